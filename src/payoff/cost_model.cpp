@@ -91,26 +91,24 @@ const CostModel& xeon_costs() {
       .machine = "2-core Sapphire Rapids, 48 KB L1, 2 MB L2, 64 MB to be had of L3",
       .caches = parse_cache_sizes("48K,2M,64M"),
       .solid = {{
-          {.access = 0.4984, .miss = {0, 1.144, 0, 0}, .jump = {0, 2.087, 2.774, 25.69}},  // spmv
-          {.access = 0.5042,
-           .miss = {0, 0.5911, 0, 1.198},
-           .jump = {0.572, 1.884, 0, 0},
-           .repeat = 1.163},  // element
-          {.access = 0.8841,
-           .miss = {0.6105, 0.1572, 0, 1.274},
-           .jump = {0, 5.935, 6.005, 3.312}},                                                     // assembly
-          {.access = 0.3829, .miss = {0, 0.5913, 0.7469, 0}, .jump = {0.2341, 1.084, 129.8, 0}},  // springs
+          {.access = 0.4931, .miss = {0, 1.145, 0, 0.5293}, .jump = {0, 2.443, 0, 0}},  // spmv
+          {.access = 0.5071,
+           .miss = {0, 0.5205, 0, 0.4381},
+           .jump = {0.6262, 1.973, 0, 0},
+           .repeat = 1.17},  // element
+          {.access = 0.8739,
+           .miss = {0.6189, 0.1833, 0.8413, 0.5366},
+           .jump = {0, 5.816, 4.354, 3.215}},                                               // assembly
+          {.access = 0.3914, .miss = {0, 0.47, 0.2112, 0}, .jump = {0.2115, 1.387, 0, 0}},  // springs
       }},
       .flat = {{
-          {.access = 0.4984, .miss = {0, 1.152, 0, 0}, .jump = {0, 2.057, 2.129, 25.81}},  // spmv
-          {.access = 0.4815,
-           .miss = {0.2012, 0.6493, 0, 1.204},
-           .jump = {0.4097, 1.744, 0, 0},
-           .repeat = 0.9857},  // element
-          {.access = 0.9638,
-           .miss = {0.08696, 0, 0.6715, 0.6159},
-           .jump = {1.024, 5.174, 6.59, 4.232}},                                                 // assembly
-          {.access = 0.3843, .miss = {0, 0.5259, 0.827, 0}, .jump = {0.2432, 1.157, 115.5, 0}},  // springs
+          {.access = 0.4931, .miss = {0, 1.151, 0, 0.5276}, .jump = {0, 2.412, 0, 0}},  // spmv
+          {.access = 0.5158,
+           .miss = {0, 0.5637, 0, 0.4416},
+           .jump = {0.6437, 1.878, 0, 0},
+           .repeat = 1.011},                                                                       // element
+          {.access = 0.916, .miss = {0.3455, 0, 1.547, 0}, .jump = {0.4944, 5.121, 4.981, 3.42}},  // assembly
+          {.access = 0.3923, .miss = {0, 0.4265, 0.2623, 0}, .jump = {0.2197, 1.425, 0, 0}},       // springs
       }}};
   return model;
 }

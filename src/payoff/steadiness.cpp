@@ -19,8 +19,12 @@ namespace {
 constexpr double kMostWaiting = 0.05;
 constexpr double kMostPace = 0.1;
 constexpr double kMostRepeat = 0.05;
-/// How many times as long as the fastest run one of a kernel that has settled takes at most.
-constexpr double kSettled = 1.05;
+/// Returns the most seconds that a run of a kernel that has settled takes, as the fastest of these runs
+/// tells.
+double most_when_settled(const std::vector<double>& seconds) {
+  constexpr double kSettled = 1.05;
+  return kSettled * *std::min_element(seconds.begin(), seconds.end());
+}
 
 /// A chain of operations of which each waits for the one before: its time is the processor's clock alone.
 std::uint64_t fixed_arithmetic() {
@@ -64,18 +68,17 @@ double repeat_difference(const std::vector<double>& samples) {
 
 int runs_to_settle(const std::vector<double>& seconds) {
   if (seconds.size() < 2) return 1;
-  const double best = *std::min_element(seconds.begin(), seconds.end());
-  const auto settled = std::find_if(seconds.begin() + 1, seconds.end(),
-                                    [&](double of_run) { return of_run <= kSettled * best; });
+  const double most = most_when_settled(seconds);
+  const auto settled =
+      std::find_if(seconds.begin() + 1, seconds.end(), [&](double of_run) { return of_run <= most; });
   return settled == seconds.end() ? 1 : static_cast<int>(settled - seconds.begin());
 }
 
 bool is_steady(const std::vector<double>& seconds) {
   constexpr std::ptrdiff_t kRuns = 3;
   if (std::ssize(seconds) <= kRuns) return false;
-  const double best = *std::min_element(seconds.begin(), seconds.end());
-  return std::all_of(seconds.end() - kRuns, seconds.end(),
-                     [&](double of_run) { return of_run <= kSettled * best; });
+  const double most = most_when_settled(seconds);
+  return std::all_of(seconds.end() - kRuns, seconds.end(), [&](double of_run) { return of_run <= most; });
 }
 
 void SteadinessWatch::tick() {

@@ -408,7 +408,6 @@ def test_values_of_each_type_move_and_keep_it(command, tmp_path):
             assert before[0] == after[0] and before[1] != after[1] and sorted(before[1]) == sorted(after[1])
 
 
-@needs_tools
 def test_blanks_at_the_ends_of_names_and_labels_fill_up_their_places(command, tmp_path):
     write_rich(tmp_path / "a.cgns")
     before, told = content(tmp_path / "a.cgns"), command.ok("info", "a.cgns").stdout.split("Predicted")[0]
@@ -425,6 +424,7 @@ def test_blanks_at_the_ends_of_names_and_labels_fill_up_their_places(command, tm
     assert content(tmp_path / "b.cgns") == before
 
 
+@needs_tools
 def test_adf_stays_adf(command, tmp_path):
     write_rich(tmp_path / "a.cgns", real="float32")
     subprocess.run(["hdf2adf", "a.cgns", "adf.cgns"], cwd=tmp_path, check=True, capture_output=True)

@@ -49,7 +49,7 @@ herr_t note_cause(unsigned /*depth*/, const H5E_error2_t* error, void* first) {
   const std::string_view cause = error->desc != nullptr ? error->desc : "";
   if (cause.starts_with("memory allocation failed")) faults.memory = true;
   if (faults.words.front() == '\0') keep(system_words(cause), faults.words);
-  // from the function that was called to the one that failed
+  // the last one stays: the walk goes from the function that was called to the one that failed
   if (*static_cast<const bool*>(first)) keep(cause.substr(0, cause.find('\n')), faults.cause);
   return 0;
 }

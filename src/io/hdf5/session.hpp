@@ -36,6 +36,16 @@ class Session {
   void* data_ = nullptr;
 };
 
+/// Returns what `work` reads of a file, in a session. Throws InputError if any call fails meanwhile: what the
+/// library could not read must not be taken for absent.
+template <class Work>
+auto read_whole(const std::string& file, const Work& work) {
+  const Session session;
+  auto result = work();
+  session.require_no_failure(file);
+  return result;
+}
+
 /// Within a session, takes no note of calls that fail as long as it lives: for questions to which failure is
 /// an answer.
 class Unwatched {

@@ -478,10 +478,7 @@ void read_description(Reading& reading) {
   }
 }
 
-}  // namespace
-
-Mesh read(const FilePath& path, Notes& notes) {
-  const hdf5::Session session;
+Mesh read_all(const FilePath& path, Notes& notes) {
   Reading reading(path, notes);
   find_mesh(reading);
   refuse_unknown_kinds(reading);
@@ -496,9 +493,14 @@ Mesh read(const FilePath& path, Notes& notes) {
   read_equivalences(reading);
   note_others(reading);
   reading.layout->file = std::make_shared<const std::string>(reading.file.without_values(reading.taken));
-  session.require_no_failure(path.string());
   reading.mesh.format_metadata = reading.layout;
   return std::move(reading.mesh);
+}
+
+}  // namespace
+
+Mesh read(const FilePath& path, Notes& notes) {
+  return hdf5::read_whole(path.string(), [&] { return read_all(path, notes); });
 }
 
 }  // namespace meshorder::med

@@ -424,18 +424,12 @@ class XdmfReader {
 }  // namespace
 
 std::optional<RawGrid> find_raw(const FilePath& path) {
-  const hdf5::Session session;
   Notes notes;
-  std::optional<RawGrid> grid = XdmfReader(path, notes).find();
-  session.require_no_failure(path.string());
-  return grid;
+  return hdf5::read_whole(path.string(), [&] { return XdmfReader(path, notes).find(); });
 }
 
 Mesh read(const FilePath& path, Notes& notes) {
-  const hdf5::Session session;
-  Mesh mesh = XdmfReader(path, notes).read();
-  session.require_no_failure(path.string());
-  return mesh;
+  return hdf5::read_whole(path.string(), [&] { return XdmfReader(path, notes).read(); });
 }
 
 }  // namespace meshorder::xdmf
