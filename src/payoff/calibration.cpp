@@ -22,7 +22,6 @@
 #include <cmath>
 #include <ctime>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -121,8 +120,11 @@ Steadiness steadiness_of(std::span<const Steadiness> measurements) {
   return result;
 }
 
-/// The caches that costs belong to. A found one that is within a factor of 1.6 of a reported one is that one,
-/// but for the last, of which a thread has what others leave.
+/// Sizes of caches within this factor are of one cache.
+constexpr double kSameCache = 1.6;
+
+/// The caches that costs belong to. A found one that is within that factor of a reported one is that one, but
+/// for the last, of which a thread has what others leave.
 Caches effective_caches(const FoundCaches& found, const Caches& reported) {
   Caches caches;
   for (std::size_t i = 0; i < found.levels.size(); ++i) {
@@ -130,7 +132,7 @@ Caches effective_caches(const FoundCaches& found, const Caches& reported) {
     for (const Offset level : reported.level_bytes) {
       const double ratio = static_cast<double>(level) / static_cast<double>(bytes);
       const bool shared = i + 1 == found.levels.size() && level == reported.level_bytes.back();
-      if (!shared && ratio < 1.6 && ratio > 1 / 1.6) bytes = level;
+      if (!shared && ratio < kSameCache && ratio > 1 / kSameCache) bytes = level;
     }
     if (caches.level_bytes.empty() || bytes > caches.level_bytes.back()) caches.level_bytes.push_back(bytes);
   }
@@ -228,15 +230,14 @@ std::vector<TimedReuse> of_solids(std::span<const TimedReuse> runs) {
   return result;
 }
 
-/// Puts the costs that fit the runs best, with misses of at most `most` ns, into a model whose caches are
-/// known. Returns how well they do.
-FitQuality fit_all(const Runs& runs, double most, CostModel& model) {
+/// Puts the costs that fit the runs best into a model whose caches are known. Returns how well they do.
+FitQuality fit_all(const Runs& runs, const Latencies& latencies, CostModel& model) {
   FitQuality quality;
   model.threads = runs.threads;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    const FittedCosts fitted = fit_costs(of_solids(runs.timed[k]), model.caches, most);
+    const FittedCosts fitted = fit_costs(of_solids(runs.timed[k]), model.caches, latencies);
     model.solid[k] = fitted.costs;
-    model.flat[k] = fit_costs(runs.timed[k], model.caches, most).costs;
+    model.flat[k] = fit_costs(runs.timed[k], model.caches, latencies).costs;
     quality.condition[k] = fitted.condition;
     quality.error[k] = fitted.error;
     quality.floor[k] = median(runs.apart[k]);
@@ -247,8 +248,9 @@ FitQuality fit_all(const Runs& runs, double most, CostModel& model) {
 /// As above, for runs on all threads, where costs on one thread are known. Threads that share a product with
 /// the matrix never wait for each other: all its costs change by one factor, which these few runs determine
 /// better than each cost.
-FitQuality fit_all_threads(const Runs& runs, double most, const CostModel& one_thread, CostModel& model) {
-  FitQuality quality = fit_all(runs, most, model);
+FitQuality fit_all_threads(const Runs& runs, const Latencies& latencies, const CostModel& one_thread,
+                           CostModel& model) {
+  FitQuality quality = fit_all(runs, latencies, model);
   constexpr auto kProduct = static_cast<std::size_t>(Kernel::spmv);
   const FittedCosts fitted =
       scale_costs(of_solids(runs.timed[kProduct]), one_thread.solid[kProduct], model.caches);
@@ -261,21 +263,52 @@ FitQuality fit_all_threads(const Runs& runs, double most, const CostModel& one_t
 
 }  // namespace
 
-FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, double most) {
-  const Rows rows = shares_of(runs, caches);
-  const std::vector<double> ones(runs.size(), 1.0);
-  constexpr double kAny = std::numeric_limits<double>::infinity();
-  const CostRow bounds = as_row({.access = kAny,
-                                 .miss = {most, most, most, most},
-                                 .jump = {most, most, most, most},
-                                 .repeat = kAny,
-                                 .wait = kAny});
-  const std::vector<double> costs = bounded_least_squares(rows, ones, bounds);
-  CostRow row;
-  std::copy(costs.begin(), costs.end(), row.begin());
-  return {.costs = as_costs(row),
+Latencies latencies_behind(const FoundCaches& found, const Caches& caches) {
+  const auto latency_behind = [&](Offset bytes) {
+    for (const FoundCache& level : found.levels) {
+      if (static_cast<double>(level.bytes) > kSameCache * static_cast<double>(bytes))
+        return level.nanoseconds;
+    }
+    return found.memory_nanoseconds;
+  };
+  const std::array<Offset, 4> sizes = sizes_that_cost(caches);
+  const double first = latency_behind(sizes[0]);
+  const double second = latency_behind(sizes[1]);
+  const double rest = (found.memory_nanoseconds - second) / 2;
+  // what is too close to tell is no reason to take jumps for free
+  constexpr double kLeast = 1;
+  return {std::max(kLeast, first - found.levels.front().nanoseconds), std::max(kLeast, second - first),
+          std::max(kLeast, rest), std::max(kLeast, rest)};
+}
+
+FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies) {
+  const Rows shares = shares_of(runs, caches);
+  // One more unknown, in units of a share that is about right: how much of a latency a jump costs. For each
+  // jump an equation says that its cost is that share, with a twentieth of the weight of a run.
+  constexpr double kShare = 0.1;
+  constexpr double kWeight = 0.05;
+  Rows rows{.columns = shares.columns + 1};
+  std::vector<double> row(rows.columns);
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    std::copy(shares[i].begin(), shares[i].end(), row.begin());
+    rows.push_back(row);
+  }
+  std::vector<double> right(runs.size(), 1.0);
+  for (std::size_t i = 0; i < latencies.size(); ++i) {
+    KernelCosts one;
+    one.jump[i] = kWeight / (kShare * latencies[i]);
+    const CostRow of_jump = as_row(one);
+    std::copy(of_jump.begin(), of_jump.end(), row.begin());
+    row.back() = -kWeight;
+    rows.push_back(row);
+    right.push_back(0);
+  }
+  const std::vector<double> costs = non_negative_least_squares(rows, right);
+  CostRow found;
+  std::copy_n(costs.begin(), found.size(), found.begin());
+  return {.costs = as_costs(found),
           .condition = condition_number(rows),
-          .error = median_error(predicted_shares(rows, row))};
+          .error = median_error(predicted_shares(shares, found))};
 }
 
 FittedCosts scale_costs(std::span<const TimedReuse> runs, const KernelCosts& costs, const Caches& caches) {
@@ -352,11 +385,11 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   time_large(make_calibration_lattice(largest, false, model.caches, 6), since_start, effort.seconds, runs);
   calibration.steadiness = steadiness_of(runs.front().steadiness);
   calibration.all_threads = model;
-  const double most = calibration.found.memory_nanoseconds;
-  calibration.quality = fit_all(runs.front(), most, model);
-  calibration.all_threads_quality = calibration.threads > 1
-                                        ? fit_all_threads(runs.back(), most, model, calibration.all_threads)
-                                        : fit_all(runs.back(), most, calibration.all_threads);
+  const Latencies latencies = latencies_behind(calibration.found, model.caches);
+  calibration.quality = fit_all(runs.front(), latencies, model);
+  calibration.all_threads_quality =
+      calibration.threads > 1 ? fit_all_threads(runs.back(), latencies, model, calibration.all_threads)
+                              : fit_all(runs.back(), latencies, calibration.all_threads);
   calibration.seconds = since_start.seconds();
   return calibration;
 }

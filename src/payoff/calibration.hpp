@@ -6,7 +6,6 @@
 #include "payoff/steadiness.hpp"
 
 #include <array>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -78,10 +77,17 @@ struct FittedCosts {
   double error = 0;  ///< see FitQuality
 };
 
-/// Fits the costs of a kernel on a machine with such caches. A miss and a jump cost at most `most` ns each:
-/// what a load costs that waits for the memory. Runs with next to none of them would tell any cost.
-FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches,
-                      double most = std::numeric_limits<double>::infinity());
+/// What a load that waits for the one before takes longer behind each of the sizes that cost, ns.
+using Latencies = std::array<double, 4>;
+
+/// Returns these latencies, what lies behind the last cache in equal parts for it and its half; at least 1
+/// ns.
+Latencies latencies_behind(const FoundCaches& found, const Caches& caches);
+
+/// Fits the costs of a kernel on a machine with such caches. Loads do not wait for each other, so that a jump
+/// costs a share of its latency. Where runs have too few jumps to tell what they cost, it is the same share
+/// as of the others: the equations say so, with a twentieth of the weight of a run each.
+FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies);
 
 /// Fits one factor to the runs, by which all of the costs are multiplied.
 FittedCosts scale_costs(std::span<const TimedReuse> runs, const KernelCosts& costs, const Caches& caches);

@@ -85,6 +85,41 @@ const CostModel& zen4_costs() {
   return model;
 }
 
+const CostModel& zen3_costs() {
+  // printed by `meshorder calibrate --json`
+  static const CostModel model{
+      .machine = "2-core Zen 3, 32 KB L1, 512 KB L2, 12 MB to be had of 32 MB L3",
+      .caches = parse_cache_sizes("32K,512K,13004K"),
+      .solid = {{
+          {.access = 0.7382,
+           .miss = {0.2113, 0.04868, 0.03762, 2.956},
+           .jump = {0.1472, 1.413, 0.4322, 0}},  // spmv
+          {.access = 1.168,
+           .miss = {0.1101, 0.05991, 0.4114, 0},
+           .jump = {0.2047, 1.259, 3.717, 0},
+           .repeat = 2.662,
+           .wait = 176.8},  // element
+          {.access = 1.708,
+           .miss = {0.8522, 1.101, 0, 0},
+           .jump = {0.2004, 1.326, 7.63, 19.99},
+           .wait = 5.477},  // assembly
+          {.access = 0.8357,
+           .miss = {0.09984, 0.4368, 3.843, 0},
+           .jump = {0.08905, 1.047, 1.205, 0}},  // springs
+      }},
+      .flat = {{
+          {.access = 0.8118, .miss = {0.0502, 0, 0, 1.33}, .jump = {0.5701, 1.505, 6.062, 0}},  // spmv
+          {.access = 1.166,
+           .miss = {0, 0, 0.8755, 0},
+           .jump = {0.37, 0.8664, 4.973, 0},
+           .repeat = 2.604,
+           .wait = 160.8},                                                                       // element
+          {.access = 1.994, .miss = {0, 0, 0, 0}, .jump = {0.8172, 5.472, 0, 23.7}},             // assembly
+          {.access = 0.8672, .miss = {0, 0.0424, 4.263, 0}, .jump = {0.2291, 1.151, 1.431, 0}},  // springs
+      }}};
+  return model;
+}
+
 const CostModel& xeon_costs() {
   // printed by `meshorder calibrate --json`
   static const CostModel model{

@@ -67,6 +67,10 @@ const CostModel& zen5_costs();
 /// 20 MB to be had of L3).
 const CostModel& zen4_costs();
 
+/// Returns costs that `meshorder calibrate` measured on a 2-core AMD EPYC of the Zen 3 family (32 KB L1, 512
+/// KB L2, 12 MB to be had of 32 MB L3), with AVX2.
+const CostModel& zen3_costs();
+
 /// Returns costs that `meshorder calibrate` measured on a 2-core Intel Xeon of the Sapphire Rapids family (48
 /// KB L1, 2 MB L2, 64 MB to be had of L3).
 const CostModel& xeon_costs();

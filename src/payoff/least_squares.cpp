@@ -133,31 +133,6 @@ std::vector<double> non_negative_least_squares(const Rows& a, std::span<const do
   return x;
 }
 
-std::vector<double> bounded_least_squares(const Rows& a, std::span<const double> b,
-                                          std::span<const double> most) {
-  Rows free = a;
-  std::vector<double> rest(b.begin(), b.end());
-  std::vector<double> held(a.columns, 0.0);
-  for (;;) {
-    std::vector<double> x = non_negative_least_squares(free, rest);
-    std::size_t worst = a.columns;
-    for (std::size_t j = 0; j < a.columns; ++j) {
-      const bool is_above = x[j] > most[j];
-      if (is_above && (worst == a.columns || x[j] * most[worst] > x[worst] * most[j])) worst = j;
-    }
-    if (worst == a.columns) {
-      for (std::size_t j = 0; j < a.columns; ++j) x[j] += held[j];
-      return x;
-    }
-    held[worst] = most[worst];
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      double& entry = free.values[i * a.columns + worst];
-      rest[i] -= entry * most[worst];
-      entry = 0;
-    }
-  }
-}
-
 double condition_number(const Rows& a) {
   const std::vector<double> lengths = lengths_of(a);
   const std::size_t n = a.columns;

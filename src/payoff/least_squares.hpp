@@ -25,11 +25,6 @@ struct Rows {
 /// has an entry for each row.
 std::vector<double> non_negative_least_squares(const Rows& a, std::span<const double> b);
 
-/// The same with x ≤ `most`, which is ≥ 0 and may be infinite: the unknown that is farthest above its bound
-/// is held there, as long as there is one, and the others are fitted to what is left of b.
-std::vector<double> bounded_least_squares(const Rows& a, std::span<const double> b,
-                                          std::span<const double> most);
-
 /// Returns the ratio of the largest and the smallest singular value of `a` after its columns were scaled to
 /// length 1: how many times a relative error of the right side can grow in the solution. Columns that are
 /// zero do not count; infinite where the others depend on each other, 1 where there is none.

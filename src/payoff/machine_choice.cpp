@@ -17,7 +17,7 @@ namespace meshorder {
 namespace {
 
 constexpr std::array kShipped{ShippedMachine{"zen5", zen5_costs}, ShippedMachine{"zen4", zen4_costs},
-                              ShippedMachine{"xeon", xeon_costs}};
+                              ShippedMachine{"zen3", zen3_costs}, ShippedMachine{"xeon", xeon_costs}};
 constexpr std::string_view kThis = "this";
 
 /// The name itself, or what stands for an empty one.

@@ -73,7 +73,7 @@ def test_predictions_are_of_the_machine_that_was_calibrated(here, stored, measur
     text = here.ok("calibrate", "--list").stdout
     assert text.splitlines()[0].split() == ["this", "this", "machine,", "calibrated", "2026-01-02"]
     listed = here.json("calibrate", "--list")["machines"]
-    assert [machine["name"] for machine in listed] == ["this", "zen5", "zen4", "xeon"]
+    assert [machine["name"] for machine in listed] == ["this", "zen5", "zen4", "zen3", "xeon"]
     assert listed[0]["calibrated"] == "2026-01-02"
 
 
@@ -92,7 +92,7 @@ def test_an_unknown_machine_gets_the_nearest_name(here, monkeypatch):
     for command in "info", "compare":
         assert "unknown machine 'zen6'; did you mean 'zen5'?" in here.fails(command, "mesh.node", "--machine", "zen6")
     monkeypatch.setenv("MESHORDER_MACHINE", "cray")
-    assert "unknown machine 'cray'; known are this, zen5, zen4, xeon" in here.fails("info", "mesh.node")
+    assert "unknown machine 'cray'; known are this, zen5, zen4, zen3, xeon" in here.fails("info", "mesh.node")
 
 
 def test_the_first_prediction_calibrates_and_the_next_one_does_not(here):

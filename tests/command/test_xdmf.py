@@ -352,6 +352,34 @@ def test_arrays_that_share_a_dataset_keep_their_values(command, tmp_path):
             numpy.testing.assert_array_equal(file[name[1]], values)
 
 
+def test_a_topology_shares_its_dataset(command, tmp_path):
+    """What an array names beside a topology keeps its numbers, which do not follow the vertices; the topologies of two
+    steps stay one."""
+    points, tetrahedra, _ = box(2)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["points"], file["cells"], file["values"] = points, tetrahedra.astype("int64"), points[:, 0]
+    shape = tetrahedra.shape
+    step = ('<Grid Name="g" GridType="Uniform">' + topology("a.h5", "/cells", "Tetrahedron", shape)
+            + '<Geometry GeometryType="XYZ">' + item("a.h5", "/points", points.shape) + "</Geometry>"
+            + '<Time Value="{}"/>' + attribute("u", "Node", item("a.h5", "/values", (27,))) + "{}</Grid>")
+    corners = attribute("corners", "Cell", item("a.h5", "/cells", shape, "Int"), "Matrix")
+    (tmp_path / "a.xdmf").write_text(xdmf('<Grid Name="t" GridType="Collection" CollectionType="Temporal">'
+                                          + step.format(0, corners) + step.format(1, "") + "</Grid>"))
+    vertices, cells = order(command, tmp_path / "a.xdmf", tmp_path / "b.xdmf")
+    tree = ElementTree.parse(tmp_path / "b.xdmf")
+    topologies = {element.find("DataItem").text.strip().split(":")[1] for element in tree.iter("Topology")}
+    [kept] = [element.find("DataItem").text.strip().split(":")[1] for element in tree.iter("Attribute")
+              if element.get("Name") == "corners"]
+    assert len(topologies) == 1 and kept not in topologies
+    with h5py.File(tmp_path / "b.h5") as file:
+        numpy.testing.assert_array_equal(file[kept][()][cells], tetrahedra)
+        numpy.testing.assert_array_equal(file[topologies.pop()][()][cells], vertices[tetrahedra])
+    command.ok("apply", "--inverse", tmp_path / "b.xdmf-maps", tmp_path / "b.xdmf", "-o", tmp_path / "c.xdmf")
+    with h5py.File(tmp_path / "c.h5") as file:
+        for name in ("/cells", kept):
+            numpy.testing.assert_array_equal(file[name], tetrahedra)
+
+
 BROKEN = {
     "data file 'c.h5' is missing": ("a.h5:/Mesh/mesh/topology", "c.h5:/Mesh/mesh/topology"),
     "the dataset '/Mesh/mesh/cells' is missing": ("a.h5:/Mesh/mesh/topology", "a.h5:/Mesh/mesh/cells"),

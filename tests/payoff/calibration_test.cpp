@@ -90,10 +90,10 @@ Calibration made_up() {
   return calibration;
 }
 
-TEST(Calibration, CostsThatMadeTheTimesAreFound) {
-  const Caches caches = parse_cache_sizes("32K,1M,16M");
+/// Runs that take what the costs say, with jumps up to so far, in lines.
+std::vector<TimedReuse> runs_that_cost(const KernelCosts& costs, const Caches& caches, Index farthest) {
   CostModel model;
-  model.solid[0] = {.access = 0.5, .miss = {0.25, 0, 1, 2}, .jump = {0, 3, 0, 20}, .repeat = 1.5, .wait = 70};
+  model.solid[0] = costs;
   Random random(2);
   std::vector<TimedReuse> runs;
   for (int i = 0; i < 20; ++i) {
@@ -103,7 +103,7 @@ TEST(Calibration, CostsThatMadeTheTimesAreFound) {
       const auto count = 10'000 + random.below(100'000);
       for (std::uint64_t j = 0; j < count; ++j) {
         run.reuse.all.add(distance);
-        if (random.unit() < 0.1 * (i % 7)) run.reuse.jumps.add(distance);
+        if (distance <= farthest && random.unit() < 0.1 * (i % 7)) run.reuse.jumps.add(distance);
       }
     }
     run.reuse.gathers = run.reuse.all.accesses() - static_cast<Offset>(random.below(10'000));
@@ -111,13 +111,58 @@ TEST(Calibration, CostsThatMadeTheTimesAreFound) {
     run.milliseconds = predicted_ms(Kernel::spmv, run.reuse, caches, model);
     runs.push_back(std::move(run));
   }
-  const FittedCosts fitted = fit_costs(runs, caches);
+  return runs;
+}
+
+TEST(Calibration, CostsThatMadeTheTimesAreFound) {
+  const Caches caches = parse_cache_sizes("32K,1M,16M");
+  const Latencies latencies{3, 20, 60, 40};
+  // jumps that cost a seventh of their latencies, as costs are expected to
+  const KernelCosts costs{.access = 0.5,
+                          .miss = {0.25, 0, 1, 2},
+                          .jump = {3.0 / 7, 20.0 / 7, 60.0 / 7, 40.0 / 7},
+                          .repeat = 1.5,
+                          .wait = 70};
+  const FittedCosts fitted = fit_costs(runs_that_cost(costs, caches, 300'000), caches, latencies);
   const CostRow found = as_row(fitted.costs);
-  const CostRow expected = as_row(model.solid[0]);
+  const CostRow expected = as_row(costs);
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-6) << i;
   EXPECT_LT(fitted.error, 1e-9);
   EXPECT_GT(fitted.condition, 1);
   EXPECT_LT(fitted.condition, 1e4);
+}
+
+TEST(Calibration, RunsOutvoteWhatJumpsAreExpectedToCost) {
+  const Caches caches = parse_cache_sizes("32K,1M,16M");
+  const KernelCosts costs{.access = 0.5, .miss = {0.25, 0, 1, 2}, .jump = {0, 3, 0, 20}, .repeat = 1.5};
+  const FittedCosts fitted = fit_costs(runs_that_cost(costs, caches, 300'000), caches, {3, 20, 60, 40});
+  EXPECT_LT(fitted.error, 0.01);
+  EXPECT_NEAR(fitted.costs.jump[1], 3, 0.5);
+  EXPECT_LT(fitted.costs.jump[2], fitted.costs.jump[3]);
+}
+
+TEST(Calibration, JumpsThatNoRunHasCostTheShareOfTheirLatencyThatOthersDo) {
+  const Caches caches = parse_cache_sizes("32K,1M,16M");
+  const KernelCosts costs{
+      .access = 0.5, .miss = {0.25, 0, 1, 2}, .jump = {0.3, 2, 7, 9}, .repeat = 1.5, .wait = 0};
+  // 30,000 lines lie between 1 MB and 8 MB
+  const FittedCosts fitted = fit_costs(runs_that_cost(costs, caches, 30'000), caches, {3, 20, 60, 40});
+  EXPECT_NEAR(fitted.costs.jump[0], 0.3, 1e-6);
+  EXPECT_NEAR(fitted.costs.jump[1], 2, 1e-6);
+  EXPECT_NEAR(fitted.costs.jump[2], 6, 1e-5);
+  EXPECT_NEAR(fitted.costs.jump[3], 4, 1e-5);
+  EXPECT_LT(fitted.error, 1e-9);
+}
+
+TEST(Calibration, LatenciesBehindSizesAreThoseOfTheNextLevels) {
+  const FoundCaches found{.levels = {{30 << 10, 1.0}, {1100 << 10, 4.0}, {16 << 20, 24.0}},
+                          .memory_nanoseconds = 124};
+  EXPECT_EQ(latencies_behind(found, parse_cache_sizes("32K,1M,16M")), (Latencies{3, 20, 50, 50}));
+  // a level that is only found behind the second one that costs
+  EXPECT_EQ(latencies_behind(found, parse_cache_sizes("32K,16M")), (Latencies{3, 120, 1, 1}));
+  EXPECT_EQ(
+      latencies_behind({.levels = {{32 << 10, 2.0}}, .memory_nanoseconds = 2.5}, parse_cache_sizes("32K")),
+      (Latencies{1, 1, 1, 1}));
 }
 
 TEST(Calibration, OneFactorIsFoundForAllCosts) {
@@ -364,7 +409,7 @@ TEST(MachineChoice, UnknownNamesGetTheNearest) {
     return std::string();
   };
   EXPECT_EQ(fault("zen6"), "unknown machine 'zen6'; did you mean 'zen5'?");
-  EXPECT_EQ(fault("cray"), "unknown machine 'cray'; known are this, zen5, zen4, xeon");
+  EXPECT_EQ(fault("cray"), "unknown machine 'cray'; known are this, zen5, zen4, zen3, xeon");
   const Variable machine("MESHORDER_MACHINE", "cray");
   EXPECT_THAT(fault(""), HasSubstr("unknown machine 'cray'"));
 }

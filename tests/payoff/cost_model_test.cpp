@@ -96,7 +96,7 @@ TEST(CostModel, LeavesOutWhatIsBetweenTheSecondLevelAndTheLast) {
 }
 
 TEST(CostModel, NoCostIsNegativeAndLargerCachesNeverCostMore) {
-  for (const CostModel* const model : {&zen5_costs(), &zen4_costs(), &xeon_costs()}) {
+  for (const CostModel* const model : {&zen5_costs(), &zen4_costs(), &zen3_costs(), &xeon_costs()}) {
     for (const Kernel kernel : kKernels) {
       for (const int dimension : {2, 3}) {
         const KernelCosts& costs = model->costs(kernel, dimension);

@@ -109,22 +109,5 @@ TEST(ConditionNumber, ZerosDoNotCountAndCopiesAreInfinite) {
             std::numeric_limits<double>::infinity());
 }
 
-TEST(BoundedLeastSquares, HoldsWhatIsAboveItsBoundAndFitsTheRest) {
-  constexpr double kAny = std::numeric_limits<double>::infinity();
-  Rows rows{.columns = 2};
-  rows.push_back(std::vector{1.0, 0.001});
-  rows.push_back(std::vector{2.0, 0.0});
-  rows.push_back(std::vector{3.0, 0.002});
-  const std::vector<double> right{1.1, 1.7, 3.4};
-  const std::vector<double> free = bounded_least_squares(rows, right, std::vector{kAny, kAny});
-  EXPECT_EQ(free, non_negative_least_squares(rows, right));
-  EXPECT_GT(free[1], 200);
-  const std::vector<double> bounded = bounded_least_squares(rows, right, std::vector{kAny, 10.0});
-  EXPECT_EQ(bounded[1], 10);
-  // the others as if the held one were not there: Σ a (b − 10 c) / Σ a²
-  EXPECT_NEAR(bounded[0], (1.09 + 2 * 1.7 + 3 * 3.38) / 14, 1e-12);
-  EXPECT_EQ(bounded_least_squares(rows, right, std::vector{0.5, 0.0}), (std::vector{0.5, 0.0}));
-}
-
 }  // namespace
 }  // namespace meshorder

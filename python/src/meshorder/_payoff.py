@@ -245,8 +245,8 @@ def advise(
         budget: with ``measure``, seconds ≥ 0 from the start of the call: no round of measurements begins that would end
             later, but two are run.
         machine: what to predict for: "this" machine, as `calibrate` measured it, else its caches with the costs of
-            "zen5"; or "zen5", "zen4" or "xeon", whose costs come with the library. Empty: the environment variable
-            MESHORDER_MACHINE names it, else "this".
+            "zen5"; or "zen5", "zen4", "zen3" or "xeon", whose costs come with the library. Empty: the environment
+            variable MESHORDER_MACHINE names it, else "this".
         all_threads: True judges the kernels as all threads (those of the option ``threads``) share each run, False as
             one thread runs them. To predict the former needs a calibration of this machine on as many threads.
         **options: see `Options`.
