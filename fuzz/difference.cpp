@@ -74,15 +74,16 @@ std::vector<std::vector<Index>> sorted_cells(const Cells& cells) {
   return result;
 }
 
-/// Returns the arrays of a mesh sorted by what they belong to and by name, those of one name in their order:
-/// a file may have its arrays in another order.
-std::vector<const DataArray*> arrays_by_name(const Mesh& mesh) {
-  std::vector<const DataArray*> arrays;
-  for (const DataArray& array : mesh.data) arrays.push_back(&array);
-  std::stable_sort(arrays.begin(), arrays.end(), [](const DataArray* a, const DataArray* b) {
+/// Returns arrays or sets sorted by what they belong to and by name, those of one name in their order: a file
+/// may have them in another order.
+template <class Named>
+std::vector<const Named*> by_name(const std::vector<Named>& all) {
+  std::vector<const Named*> result;
+  for (const Named& one : all) result.push_back(&one);
+  std::stable_sort(result.begin(), result.end(), [](const Named* a, const Named* b) {
     return std::tie(a->association, a->name) < std::tie(b->association, b->name);
   });
-  return arrays;
+  return result;
 }
 
 std::string difference_of_arrays(const DataArray& a, const DataArray& b) {
@@ -106,8 +107,8 @@ std::string difference_of_data(const Mesh& a, const Mesh& b) {
   if (a.data.size() != b.data.size()) {
     return std::to_string(a.data.size()) + " arrays for " + std::to_string(b.data.size());
   }
-  const std::vector<const DataArray*> found_arrays = arrays_by_name(a);
-  const std::vector<const DataArray*> expected_arrays = arrays_by_name(b);
+  const std::vector<const DataArray*> found_arrays = by_name(a.data);
+  const std::vector<const DataArray*> expected_arrays = by_name(b.data);
   for (std::size_t i = 0; i < expected_arrays.size(); ++i) {
     std::string found = difference_of_arrays(*found_arrays[i], *expected_arrays[i]);
     if (!found.empty()) return found;
@@ -115,8 +116,10 @@ std::string difference_of_data(const Mesh& a, const Mesh& b) {
   if (a.sets.size() != b.sets.size()) {
     return std::to_string(a.sets.size()) + " sets for " + std::to_string(b.sets.size());
   }
-  for (std::size_t i = 0; i < b.sets.size(); ++i) {
-    if (!(a.sets[i] == b.sets[i])) return "the set '" + b.sets[i].name + "' differs";
+  const std::vector<const EntitySet*> found_sets = by_name(a.sets);
+  const std::vector<const EntitySet*> expected_sets = by_name(b.sets);
+  for (std::size_t i = 0; i < expected_sets.size(); ++i) {
+    if (!(*found_sets[i] == *expected_sets[i])) return "the set '" + expected_sets[i]->name + "' differs";
   }
   if (told_ids(a.vertex_ids) != told_ids(b.vertex_ids)) return "ids of vertices differ";
   if (told_ids(a.cell_ids) != told_ids(b.cell_ids)) return "ids of cells differ";

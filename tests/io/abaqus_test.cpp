@@ -176,13 +176,30 @@ std::vector<std::string> sorted_lines(std::string_view text) {
 
 TEST(Abaqus, BeginsALineBehindALastLineWithoutItsEnd) {
   const std::string deck =
-      "*NODE, NSET=first\n1, 0, 0, 0\n2, 1, 0, 0\n*NODE\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4\n7, 1, "
-      "2, 3, 4\n*NODE";
+      "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 4\n*NODE";
   Mesh mesh = read_deck(deck);
-  apply_reordering(mesh, Permutation::from_new_to_old({2, 1, 0, 3}), Permutation::identity(1), Ids::keep);
+  mesh.sets.push_back({.name = "new", .association = Association::vertices, .members = {1, 3}});
   const std::string text = deck_of(mesh);
-  EXPECT_THAT(text, testing::EndsWith("\n*NODE\n*NSET, NSET=first\n2, 1\n"));
-  EXPECT_EQ(test::sorted_members(read_deck(text)).sets, test::sorted_members(mesh).sets);
+  EXPECT_THAT(text, testing::EndsWith("\n*NODE\n*NSET, NSET=new\n2, 4\n"));
+  EXPECT_EQ(read_deck(text).sets, mesh.sets);
+}
+
+TEST(Abaqus, WritesSetsOfNodesBeforeTheCardsThatUseThem) {
+  const std::string nodes = "*NODE, NSET=first\n1, 0, 0, 0\n2, 1, 0, 0\n";
+  const std::string rest = "*NODE\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 4\n";
+  const std::string user = "*NSET, NSET=more\nFIRST, 4\n";
+  const std::string card = "*NSET, NSET=first\n2, 1\n";
+  const auto order_of_sets = [&](const std::string& deck) {
+    Mesh mesh = read_deck(deck);
+    apply_reordering(mesh, Permutation::from_new_to_old({2, 1, 0, 3}), Permutation::identity(1), Ids::keep);
+    const std::string text = deck_of(mesh);
+    EXPECT_EQ(test::sorted_members(read_deck(text)).sets, test::sorted_members(mesh).sets) << text;
+    return text;
+  };
+  // behind the last card that has nodes, not behind one that has none
+  EXPECT_THAT(order_of_sets(nodes + rest + "*NODE\n"), HasSubstr("4, 0, 0, 1\n" + card + "*ELEMENT"));
+  EXPECT_THAT(order_of_sets(nodes + user + rest), HasSubstr(card + user + "*NODE\n"));
+  EXPECT_THAT(order_of_sets(nodes + rest + user), HasSubstr("4, 0, 0, 1\n" + card + "*ELEMENT"));
 }
 
 TEST(Abaqus, MovesLinesAndKeepsNumbers) {

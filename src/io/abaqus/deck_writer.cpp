@@ -17,6 +17,12 @@
 namespace meshorder::abaqus {
 namespace {
 
+/// Whether a text has a name in it, in large or small letters.
+bool names(std::string_view text, std::string_view name) {
+  const auto same = [](char a, char b) { return same_but_for_case({&a, 1}, {&b, 1}); };
+  return std::search(text.begin(), text.end(), name.begin(), name.end(), same) != text.end();
+}
+
 class DeckWriter {
  public:
   DeckWriter(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes)
@@ -36,11 +42,13 @@ class DeckWriter {
       return std::find_if(deck_.sections.rbegin(), deck_.sections.rend(), is_wanted).base();
     };
     const auto after_mesh = after_last([](const Section& section) { return section.part != Part::text; });
-    const auto after_nodes = after_last([](const Section& section) { return section.part == Part::nodes; });
+    const auto after_nodes =
+        after_last([](const Section& section) { return section.part == Part::nodes && section.count > 0; });
     for (auto section = deck_.sections.begin();; ++section) {
       if (section == after_nodes) write_sets_of_cards();
       if (section == after_mesh) write_new_sets();
       if (section == deck_.sections.end()) break;
+      if (section->part == Part::text && names_set_of_cards(section->text)) write_sets_of_cards();
       write(*section);
     }
     file_.commit();
@@ -71,7 +79,13 @@ class DeckWriter {
   /// Writes as many nodes as the card had, in the order of the mesh. Where they are not its own any more, the
   /// card does not name their set; `write_sets_of_cards` does.
   void write_nodes(const Section& section) {
-    out_.text(has_its_nodes(section) ? section.text : without_parameter(section.text, "NSET"));
+    if (has_its_nodes(section)) {
+      out_.text(section.text);
+    } else {
+      out_.text(without_parameter(section.text, "NSET"));
+      std::string set(parse_card(section.text).value("NSET"));
+      if (!set.empty()) sets_of_cards_.push_back({std::move(set), &section});
+    }
     for (Index v = section.first; v < section.first + section.count; ++v) {
       out_.node(nodes_.at(v), mesh_.points[v], mesh_.dimension);
     }
@@ -83,17 +97,20 @@ class DeckWriter {
            (places.front() == section.first && index_size(places) == places.back() + 1 - section.first);
   }
 
-  /// Writes the sets that *NODE named, after the last of these cards.
+  [[nodiscard]] bool names_set_of_cards(std::string_view text) const {
+    return std::any_of(sets_of_cards_.begin(), sets_of_cards_.end(),
+                       [&](const auto& set) { return names(text, set.first); });
+  }
+
+  /// Writes the sets that *NODE named so far: after the last of these cards, or before a card that uses one.
   void write_sets_of_cards() {
-    for (const Section& section : deck_.sections) {
-      if (section.part != Part::nodes || has_its_nodes(section)) continue;
-      const std::string set(parse_card(section.text).value("NSET"));
-      if (set.empty()) continue;
+    for (const auto& [set, section] : sets_of_cards_) {
       std::vector<std::int64_t> members;
-      for (const Index v : places_of(section, nodes_)) members.push_back(nodes_.at(v));
+      for (const Index v : places_of(*section, nodes_)) members.push_back(nodes_.at(v));
       const bool quoted = set.find_first_of(" ,=") != std::string::npos;
       out_.set(Association::vertices, quoted ? '"' + set + '"' : set, members);
     }
+    sets_of_cards_.clear();
   }
 
   void write_elements(const Section& section) {
@@ -175,6 +192,7 @@ class DeckWriter {
   OutputFile file_;
   DeckOutput out_;
   bool same_numbers_;
+  std::vector<std::pair<std::string, const Section*>> sets_of_cards_;  ///< that are still to be written
 };
 
 }  // namespace
