@@ -84,7 +84,7 @@ class DeckWriter {
     } else {
       out_.text(without_parameter(section.text, "NSET"));
       std::string set(parse_card(section.text).value("NSET"));
-      if (!set.empty()) sets_of_cards_.push_back({std::move(set), &section});
+      if (!set.empty()) sets_of_cards_.emplace_back(std::move(set), &section);
     }
     for (Index v = section.first; v < section.first + section.count; ++v) {
       out_.node(nodes_.at(v), mesh_.points[v], mesh_.dimension);
