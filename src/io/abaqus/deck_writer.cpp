@@ -12,16 +12,17 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <string>
+#include <string_view>
+#include <unordered_set>
 #include <utility>
+#include <vector>
 
 namespace meshorder::abaqus {
 namespace {
 
-/// Whether a text has a name in it, in large or small letters.
-bool names(std::string_view text, std::string_view name) {
-  const auto same = [](char a, char b) { return same_but_for_case({&a, 1}, {&b, 1}); };
-  return std::search(text.begin(), text.end(), name.begin(), name.end(), same) != text.end();
-}
+/// Takes the next word of a card, in capitals; names in quotes may have several.
+std::string next_word_in_capitals(std::string_view& text) { return capitals(next_word(text, " \t,=\"\r\n")); }
 
 class DeckWriter {
  public:
@@ -48,7 +49,7 @@ class DeckWriter {
       if (section == after_nodes) write_sets_of_cards();
       if (section == after_mesh) write_new_sets();
       if (section == deck_.sections.end()) break;
-      if (section->part == Part::text && names_set_of_cards(section->text)) write_sets_of_cards();
+      if (section->part == Part::text && may_use_set_of_cards(section->text)) write_sets_of_cards();
       write(*section);
     }
     file_.commit();
@@ -83,8 +84,12 @@ class DeckWriter {
       out_.text(section.text);
     } else {
       out_.text(without_parameter(section.text, "NSET"));
-      std::string set(parse_card(section.text).value("NSET"));
-      if (!set.empty()) sets_of_cards_.emplace_back(std::move(set), &section);
+      const std::string set(parse_card(section.text).value("NSET"));
+      if (!set.empty()) {
+        std::string_view words = set;
+        words_of_sets_.insert(next_word_in_capitals(words));
+        sets_of_cards_.emplace_back(set, &section);
+      }
     }
     for (Index v = section.first; v < section.first + section.count; ++v) {
       out_.node(nodes_.at(v), mesh_.points[v], mesh_.dimension);
@@ -97,9 +102,13 @@ class DeckWriter {
            (places.front() == section.first && index_size(places) == places.back() + 1 - section.first);
   }
 
-  [[nodiscard]] bool names_set_of_cards(std::string_view text) const {
-    return std::any_of(sets_of_cards_.begin(), sets_of_cards_.end(),
-                       [&](const auto& set) { return names(text, set.first); });
+  /// Whether a card has the first word of a set that is still to be written. Linear in the card, however many
+  /// sets there are.
+  [[nodiscard]] bool may_use_set_of_cards(std::string_view text) const {
+    while (!sets_of_cards_.empty() && !text.empty()) {
+      if (words_of_sets_.contains(next_word_in_capitals(text))) return true;
+    }
+    return false;
   }
 
   /// Writes the sets that *NODE named so far: after the last of these cards, or before a card that uses one.
@@ -111,6 +120,7 @@ class DeckWriter {
       out_.set(Association::vertices, quoted ? '"' + set + '"' : set, members);
     }
     sets_of_cards_.clear();
+    words_of_sets_.clear();
   }
 
   void write_elements(const Section& section) {
@@ -193,6 +203,7 @@ class DeckWriter {
   DeckOutput out_;
   bool same_numbers_;
   std::vector<std::pair<std::string, const Section*>> sets_of_cards_;  ///< that are still to be written
+  std::unordered_set<std::string> words_of_sets_;  ///< the first of each of their names, in capitals
 };
 
 }  // namespace
