@@ -125,7 +125,7 @@ MO_API void mo_options_init(mo_options* options, size_t struct_size);
  *
  * @param offsets     n + 1, ascending, the first is `base`
  * @param neighbours  offsets[n] - base numbers from `base` on; loops and repeats are ignored
- * @param weights     one positive number for each neighbour, or null; for fiedler
+ * @param weights     one positive number for each neighbour, or null; fiedler uses them
  * @param points      dimension * n coordinates x y z x y z ... for geometric methods, or null
  * @param dimension   1 to 3; not used without points
  * @param options     or null

@@ -353,8 +353,8 @@ def test_arrays_that_share_a_dataset_keep_their_values(command, tmp_path):
 
 
 def test_a_topology_shares_its_dataset(command, tmp_path):
-    """What an array names beside a topology keeps its numbers, which do not follow the vertices; the topologies of two
-    steps stay one."""
+    """An array that names the dataset of a topology gets one of its own, as its numbers do not follow the vertices; the
+    topologies of two steps keep one."""
     points, tetrahedra, _ = box(2)
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["points"], file["cells"], file["values"] = points, tetrahedra.astype("int64"), points[:, 0]

@@ -90,7 +90,7 @@ Calibration made_up() {
   return calibration;
 }
 
-/// Runs that take what the costs say, with jumps up to so far, in lines.
+/// Runs that take as long as the costs say, without jumps that are farther than so many lines.
 std::vector<TimedReuse> runs_that_cost(const KernelCosts& costs, const Caches& caches, Index farthest) {
   CostModel model;
   model.solid[0] = costs;
