@@ -42,6 +42,12 @@ struct Runs {
 /// What `advise` estimates from a sample of the lines is estimated here.
 int halvings_for(const Mesh& mesh) { return mesh.cell_count() < 50'000 ? 0 : 3; }
 
+/// How long orders are timed.
+struct Rounds {
+  double seconds = 0;
+  int least = 3;  ///< this many, however long they take
+};
+
 /// Orders of a lattice, prepared to be timed.
 struct Prepared {
   std::vector<Mesh> meshes;
@@ -80,11 +86,11 @@ struct Prepared {
   }
 
   /// Times all in interleaved rounds: on one thread by its processor time, on several by elapsed time.
-  [[nodiscard]] Timings timed(int threads, double seconds) {
+  [[nodiscard]] Timings timed(int threads, const Rounds& rounds) {
     std::vector<KernelBench*> pointers;
     for (std::optional<KernelBench>& bench : benches) pointers.push_back(&bench.value());
-    return time_interleaved(pointers, {.budget_seconds = seconds,
-                                       .min_rounds = 3,
+    return time_interleaved(pointers, {.budget_seconds = rounds.seconds,
+                                       .min_rounds = rounds.least,
                                        .max_rounds = 40,
                                        .sample_seconds = 0.003,
                                        .processor_time = threads == 1});
@@ -92,9 +98,9 @@ struct Prepared {
 };
 
 /// Times all orders of a lattice in interleaved rounds, on the threads of `runs`, and adds what they took.
-Timings time_all(Prepared& prepared, double seconds, Runs& runs) {
+Timings time_all(Prepared& prepared, const Rounds& rounds, Runs& runs) {
   if (runs.threads > 1) prepared.share(runs.threads);
-  Timings timings = prepared.timed(runs.threads, seconds);
+  Timings timings = prepared.timed(runs.threads, rounds);
   for (std::size_t i = 0; i < prepared.reuse.size(); ++i) {
     const Simplices simplices = cut_into_simplices(prepared.meshes[i]);
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
@@ -171,7 +177,8 @@ void time_small(const CalibrationLattice& lattice, double seconds, std::span<Run
   orders.push_back(orders[twice]);
   Prepared prepared(lattice, orders);
   for (Runs& some : runs) {
-    const Timings timings = time_all(prepared, some.threads == 1 ? seconds : seconds / 4, some);
+    const Timings timings = time_all(
+        prepared, some.threads == 1 ? Rounds{seconds} : Rounds{.seconds = seconds / 4, .least = 2}, some);
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
       const double one = timings.orders[twice][kKernels[k]].best_ms;
       const double other = timings.orders.back()[kKernels[k]].best_ms;
@@ -193,7 +200,8 @@ void time_large(CalibrationLattice lattice, const Stopwatch& since_start, double
     if (i >= 2 && begin + longest > seconds) break;
     report("lattices", std::min(0.98, 0.6 + 0.4 * (begin / seconds - 0.5)));
     Prepared prepared(lattice, std::span(orders).subspan(i, 1));
-    for (Runs& some : runs.first(i < 2 ? runs.size() : 1)) (void)time_all(prepared, 0.3, some);
+    for (Runs& some : runs.first(i < 2 ? runs.size() : 1))
+      (void)time_all(prepared, {.seconds = 0.3, .least = 2}, some);
     longest = std::max(longest, since_start.seconds() - begin);
   }
 }
@@ -406,7 +414,7 @@ Recheck recheck(const Calibration& calibration) {
   const CalibrationLattice large = make_calibration_lattice(30'000, false, caches, 3);
   prepared.add(large, ends(large));
   report("recheck", 0.5);
-  const Timings timings = prepared.timed(1, 1.0);
+  const Timings timings = prepared.timed(1, {.seconds = 1});
   Recheck result;
   std::vector<std::string> moved;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {

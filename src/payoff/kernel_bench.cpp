@@ -82,12 +82,20 @@ KernelBench::KernelBench(const Mesh& mesh, int threads) : KernelBench(mesh, vert
 void KernelBench::share(int threads) {
   shares_.clear();
   const std::vector<Index> bounds = balanced_ranges(matrix_.offsets, threads);
-  std::vector<OwnedBatches> of_elements = owned_batches(rest_.vertices, rest_.dimension + 1, bounds);
-  std::vector<OwnedBatches> of_springs = owned_batches(springs_.ends, 2, bounds);
-  for (Index part = 0; part < threads; ++part) {
+  std::vector<OwnedBatches> of_elements;
+  std::vector<OwnedBatches> of_springs;
+  for_each_chunk(2, 1, [&](Index i, Index /*begin*/, Index /*end*/) {
+    if (i == 0) {
+      of_elements = owned_batches(rest_.vertices, rest_.dimension + 1, bounds);
+    } else {
+      of_springs = owned_batches(springs_.ends, 2, bounds);
+    }
+  });
+  shares_.resize(static_cast<std::size_t>(threads));
+  for_each_chunk(threads, 1, [&](Index part, Index /*begin*/, Index /*end*/) {
     OwnedBlocks blocks = owned_blocks(rest_, map_, matrix_, of_elements[part], part);
-    shares_.push_back({std::move(of_elements[part]), std::move(blocks), std::move(of_springs[part])});
-  }
+    shares_[part] = {std::move(of_elements[part]), std::move(blocks), std::move(of_springs[part])};
+  });
   const Index room = std::max(shares_.back().elements.room, shares_.back().springs.room);
   forces_ = reserved_apart<double>(Offset{kPaddedStride} * room, {positions_.data()});
   forces_.assign(Offset{kPaddedStride} * room, 0.0);

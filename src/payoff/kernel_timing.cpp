@@ -46,11 +46,12 @@ double sample(KernelBench& bench, Kernel kernel, const Plan& plan, bool processo
 Plan plan_samples(KernelBench& bench, Kernel kernel, double sample_seconds) {
   constexpr double kMostRepeats = 1e5;
   constexpr std::size_t kMostRuns = 12;
-  // a kernel that runs longer than this many samples streams far more than caches keep
+  // a kernel that runs longer than this many samples streams far more than caches keep, so that its first run
+  // prepares the next one as well as any; twice as long, as that first run is longer than others
   constexpr double kLong = 5.0;
   std::vector<double> seconds;
   double best = std::numeric_limits<double>::infinity();
-  while (seconds.size() < 2 ||
+  while (seconds.empty() || (seconds.size() < 2 && best < 2 * kLong * sample_seconds) ||
          (best < kLong * sample_seconds && seconds.size() < kMostRuns && !is_steady(seconds))) {
     seconds.push_back(std::max(seconds_of_runs(bench, kernel, 1), 1e-9));
     best = std::min(best, seconds.back());
