@@ -380,6 +380,42 @@ def test_a_topology_shares_its_dataset(command, tmp_path):
             numpy.testing.assert_array_equal(file[name], tetrahedra)
 
 
+def test_topologies_of_two_types_share_a_dataset_until_they_differ(command, tmp_path):
+    """Eight numbers are one hexahedron or two tetrahedra: what is written last gets a dataset of its own."""
+    points, _, _ = box(2)
+    corners = numpy.random.default_rng(6).permutation(27)[:24]
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["points"], file["cells"] = points, corners.astype("int64")
+    geometry = f'<Geometry GeometryType="XYZ">{item("a.h5", "/points", points.shape)}</Geometry>'
+    (tmp_path / "a.xdmf").write_text(xdmf("".join(
+        f'<Grid Name="{kind}" GridType="Uniform">' + topology("a.h5", "/cells", kind, shape) + geometry + "</Grid>"
+        for kind, shape in [("Hexahedron", (3, 8)), ("Tetrahedron", (6, 4))])))
+    vertices, _ = order(command, tmp_path / "a.xdmf", tmp_path / "b.xdmf")
+    named = [element.find("DataItem").text.strip().split(":")[1]
+             for element in ElementTree.parse(tmp_path / "b.xdmf").iter("Topology")]
+    assert len(set(named)) == 2
+    with h5py.File(tmp_path / "b.h5") as file:
+        for name, width in zip(named, (8, 4)):
+            assert sorted(file[name][()].reshape(-1, width).tolist()) == sorted(vertices[corners].reshape(-1, width).tolist())
+
+
+@pytest.mark.parametrize("other", ["an array of cells", "cells of another type"])
+def test_values_that_move_in_two_ways_need_two_items(command, tmp_path, other):
+    """Unlike a dataset, a DataItem that references name twice cannot go apart."""
+    points, _, _ = box(2)
+    corners = numpy.random.default_rng(6).permutation(27)[:24]
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["points"], file["cells"] = points, corners.astype("int64")
+    geometry = f'<Geometry GeometryType="XYZ">{item("a.h5", "/points", points.shape)}</Geometry>'
+    same = '<DataItem Reference="XML">/Xdmf/Domain/Grid/Topology/DataItem</DataItem>'
+    hexahedra = topology("a.h5", "/cells", "Hexahedron", (3, 8)) + geometry
+    (tmp_path / "a.xdmf").write_text(xdmf(
+        f'<Grid Name="a">{hexahedra}{attribute("u", "Cell", same, "Matrix")}</Grid>' if other.startswith("an array") else
+        f'<Grid Name="a">{hexahedra}</Grid><Grid Name="b"><Topology TopologyType="Tetrahedron">{same}</Topology>{geometry}</Grid>'))
+    fault = command.fails("order", tmp_path / "a.xdmf", "-o", tmp_path / "b.xdmf")
+    assert "references name these values in two places, where they move differently" in fault
+
+
 BROKEN = {
     "data file 'c.h5' is missing": ("a.h5:/Mesh/mesh/topology", "c.h5:/Mesh/mesh/topology"),
     "the dataset '/Mesh/mesh/cells' is missing": ("a.h5:/Mesh/mesh/topology", "a.h5:/Mesh/mesh/cells"),

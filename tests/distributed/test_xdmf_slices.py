@@ -185,12 +185,18 @@ def one_for_two(path):
 
 
 SET = '<Set Name="some" SetType="Node"><DataItem Dimensions="2" NumberType="Int" Format="XML">3 5</DataItem></Set></Grid>\n'
+QUADRILATERALS = """<Grid Name="again" GridType="Uniform"><Topology TopologyType="Quadrilateral">
+<DataItem Dimensions="900 4" NumberType="Int" Format="HDF">a.h5:/Mesh/mesh/topology</DataItem></Topology>
+<xi:include xpointer="xpointer(/Xdmf/Domain/Grid[1]/Geometry)"/></Grid>
+"""
 BY_RANK_0 = {
     "another order of bytes": change_data("Cell/pair", lambda values: values.astype(">f4")),
     "chunks": change_data("Cell/pair", lambda values: values, chunks=True),
     "narrow indices": change_data("Mesh/mesh/topology", lambda values: values.astype("u2")),
     "a set": change_xml('</Grid>\n    <Grid Name="f" GridType="Collection"', SET + '<Grid Name="f" GridType="Collection"'),
     "one dataset by two names": one_for_two,
+    "cells of two types in one dataset": change_xml('<Grid Name="f" GridType="Collection"',
+                                                    QUADRILATERALS + '<Grid Name="f" GridType="Collection"'),
     "a dataset that the XML does not name": change_data("note", lambda values: numpy.zeros(400)),
 }
 

@@ -189,9 +189,10 @@ class XdmfReader {
         items_of(topology).size() != 1) {
       return false;
     }
+    const bool is_first = raw_.datasets.size() < 2;
     const bool is_found =
         find_values(reading_.item_of(topology), RawDataset::Role::topology, Association::cells, type->nodes);
-    if (!is_found) return false;
+    if (!is_found || (!is_first && type->shape != raw_.shape)) return false;
     raw_.shape = type->shape;
     const std::string announced = attribute(topology, "NumberOfElements", "Dimensions");
     std::string_view rest = announced;
@@ -371,8 +372,26 @@ class XdmfReader {
         reading_.notes);
     if (reading_.mesh.cell_blocks.size() == 1) reading_.mesh.cell_blocks.clear();
     arrays_.finish();
+    check_items();
     keep_rest(reading_.mesh.vertex_count(), reading_.mesh.cell_count());
     reading_.mesh.format_metadata = reading_.layout;
+  }
+
+  /// Throws where references make one DataItem the values of what moves differently.
+  void check_items() const {
+    std::map<std::size_t, std::string> movements;
+    for (std::size_t i = 0; i < reading_.layout->fields.size(); ++i) {
+      const Field& field = reading_.layout->fields[i];
+      std::string movement =
+          field.association == Association::cells ? fmt::format("cells of part {}", field.part) : "points";
+      if (field.role == Field::Role::set) movement += " of a set";
+      if (field.role == Field::Role::topology) movement = fmt::format("corners of topology {}", i);
+      const auto [known, is_new] = movements.try_emplace(field.place.item, movement);
+      if (is_new || known->second == movement) continue;
+      throw reading_.document.error(reading_.document.item(field.place.item),
+                                    "references name these values in two places, where they move differently",
+                                    "write them twice, in DataItems of their own");
+    }
   }
 
   /// Keeps what the files have beside the mesh for the writer.

@@ -42,6 +42,18 @@ std::size_t hash_of(const std::vector<Index>& vertices) {
   return hash;
 }
 
+/// Names the cells of a Topology: two whose values are one array may take them for cells of different types.
+std::string key_of_cells(pugi::xml_node topology, const DataPlace& place, int base) {
+  const TopologyType* const type = topology_type(attribute(topology, "TopologyType", "Type"));
+  std::string key = fmt::format("{} {} {}", key_of(place), type == nullptr ? kMixed : type->number, base);
+  if (type != nullptr && type->nodes == 0) {
+    key += fmt::format(" {} {} {}", topology.attribute("NodesPerElement").value(),
+                       attribute(topology, "NumberOfElements", "Dimensions"),
+                       place.shape.empty() ? 0 : place.shape.back());
+  }
+  return key;
+}
+
 }  // namespace
 
 int TopologyReader::read(const GridElement& grid, pugi::xml_node topology) {
@@ -51,14 +63,14 @@ int TopologyReader::read(const GridElement& grid, pugi::xml_node topology) {
   }
   const pugi::xml_node item = item_of_topology(topology);
   Field field{Field::Role::topology, reading_.data.place_of(item)};
-  const std::string key = key_of(field.place);
+  field.base = topology.attribute("BaseOffset").as_int(0);
+  const std::string key = key_of_cells(topology, field.place, field.base);
   std::vector<Field>& fields = reading_.layout->fields;
   if (const auto known = known_topologies_.find(key); known != known_topologies_.end()) {
     Field& same = fields[known->second];
     if (field.place.named_by != same.place.named_by) same.also_named_by.push_back(field.place.named_by);
     return same.part;
   }
-  field.base = topology.attribute("BaseOffset").as_int(0);
   field.part = part_of(grid, topology, piece_of(topology, item, field.place, field.base));
   known_topologies_.emplace(key, fields.size());
   fields.push_back(field);
