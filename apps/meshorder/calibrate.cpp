@@ -163,7 +163,7 @@ void add_calibrate(CLI::App& subcommand) {
       "Measure this machine, so that `info` predicts times for it: what a thread gets of the caches,\n"
       "latencies, bandwidths, and what misses cost each kernel on one thread and on all. The result is\n"
       "kept for this processor and this build in $MESHORDER_CACHE, else in $XDG_CACHE_HOME/meshorder,\n"
-      "else in ~/.cache/meshorder. `info` does it by itself the first time, some 20 s, unless --machine\n"
+      "else in ~/.cache/meshorder. `info` does it by itself the first time, 20 to 40 s, unless --machine\n"
       "or $MESHORDER_MACHINE names another machine.");
   subcommand.footer(
       "Examples:\n"

@@ -42,7 +42,7 @@ MachineChoice calibrated(MachineChoice choice, bool all_threads, Progress& progr
   if (!choice.stands_in) return choice;
   if (!choice.fault.empty()) notes.push_back(choice.fault + "; this machine is measured anew");
   if (!quiet) {
-    write_stderr("meshorder: measuring this machine once, some 20 s; `--machine zen5` predicts without\n");
+    write_stderr("meshorder: measuring this machine once, 20 to 40 s; `--machine zen5` predicts without\n");
   }
   progress.stage("measuring this machine", 0, 0.9);
   Run run;

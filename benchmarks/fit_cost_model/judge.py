@@ -19,7 +19,7 @@ import statistics
 import subprocess
 
 KERNELS = {"spmv": "SpMV", "element": "element force", "assembly": "assembly", "springs": "springs"}
-MACHINES = {"zen5": "zen5", "prior": "zen5, caches of this machine"}
+MACHINES = {"zen5": "zen5", "prior": "not calibrated"}
 CALIBRATED = ("calibrated here", "calibrated here again")
 MESHES = ["grid-17", "ball-24", "torus-12", "bunny", "grid-32", "armadillo", "dragon", "torus-20", "ball-45", "grid-64"]
 OWN = "original/original"

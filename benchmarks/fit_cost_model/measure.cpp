@@ -8,7 +8,7 @@
 // measure judge MESH BUDGET THREADS MACHINES VERTICES/ELEMENTS…: times the kernels in these orders, and in
 // those that `auto` takes for each kernel, in interleaved rounds, twice over, the second time on other pages
 // of memory, and predicts them for machines whose names are separated by commas ("zen5", "this"; "prior":
-// zen5 with the caches of this machine; with a slash: the file of a calibration, whose costs of all threads
+// what stands in for this machine where it is not calibrated; with a slash: the file of a calibration, whose costs of all threads
 // are taken where THREADS are as many; with a colon behind it, those of one). Prints mesh, vertices,
 // order, kernel, the best milliseconds of each half, then the milliseconds predicted for each machine; and
 // mesh, vertices, "auto", kernel, the order that `auto` takes.
@@ -162,7 +162,7 @@ mo::CostModel machine_named(const std::string& name, int threads) {
     return threads == calibration.threads ? calibration.all_threads : calibration.model;
   }
   if (name != "prior") return mo::choose_machine(name).model;
-  mo::CostModel model = mo::zen5_costs();
+  mo::CostModel model = mo::stand_in_for(mo::family_of_this_machine()).costs();
   model.caches = mo::caches_of_this_machine();
   return model;
 }

@@ -97,7 +97,8 @@ struct PayoffOptions {
   std::vector<MeshMethods> methods = {};
   bool predict = true;  ///< gives the same times on every run
   /// What to predict for: a machine whose costs ship with the library ("zen5"), or "this": this machine as
-  /// `calibrate` measured it, else its caches with the costs of the first of those. Empty: what the
+  /// `calibrate` measured it, else its caches with the costs of one of those: of the same family of
+  /// processors, "zen5" where none is. Empty: what the
   /// environment variable MESHORDER_MACHINE says, else "this".
   std::string machine = {};
   bool measure = false;  ///< runs the kernels here

@@ -31,6 +31,19 @@ std::string processor_name(std::istream& cpuinfo, const std::string& architectur
 /// Returns the name of this machine's processor, as processor_name.
 std::string processor_of_this_machine();
 
+/// The family of a processor, by the numbers that x86's CPUID gives.
+struct ProcessorFamily {
+  std::string maker;  ///< "AuthenticAMD" or "GenuineIntel"; empty on other processors
+  int family = -1;
+  int model = -1;
+};
+
+/// Returns the family of the first processor in Linux's /proc/cpuinfo.
+ProcessorFamily processor_family(std::istream& cpuinfo);
+
+/// Returns the family of this machine's processor.
+ProcessorFamily family_of_this_machine();
+
 /// Returns the version of this program, its compiler with the options, and the instruction set that its
 /// kernels chose here: times of another build are other times.
 std::string build_of_this_program();

@@ -16,8 +16,33 @@
 namespace meshorder {
 namespace {
 
-constexpr std::array kShipped{ShippedMachine{"zen5", zen5_costs}, ShippedMachine{"zen4", zen4_costs},
-                              ShippedMachine{"zen3", zen3_costs}, ShippedMachine{"xeon", xeon_costs}};
+// Families and models are those of Linux: init_amd in arch/x86/kernel/cpu/amd.c, and
+// arch/x86/include/asm/intel-family.h.
+
+bool is_zen5(const ProcessorFamily& family) {
+  return family.maker == "AuthenticAMD" && family.family == 0x1a;
+}
+
+bool is_zen3_or_4(const ProcessorFamily& family) {
+  return family.maker == "AuthenticAMD" && family.family == 0x19;
+}
+
+bool is_zen4(const ProcessorFamily& family) {
+  return is_zen3_or_4(family) &&
+         ((family.model >= 0x10 && family.model <= 0x1f) || (family.model >= 0x60 && family.model <= 0xaf));
+}
+
+bool is_zen3(const ProcessorFamily& family) { return is_zen3_or_4(family) && !is_zen4(family); }
+
+/// Sapphire Rapids and its successor of the same kind, Emerald Rapids.
+bool is_xeon(const ProcessorFamily& family) {
+  return family.maker == "GenuineIntel" && family.family == 6 &&
+         (family.model == 0x8f || family.model == 0xcf);
+}
+
+constexpr std::array kShipped{
+    ShippedMachine{"zen5", zen5_costs, is_zen5}, ShippedMachine{"zen4", zen4_costs, is_zen4},
+    ShippedMachine{"zen3", zen3_costs, is_zen3}, ShippedMachine{"xeon", xeon_costs, is_xeon}};
 constexpr std::string_view kThis = "this";
 
 /// The name itself, or what stands for an empty one.
@@ -40,13 +65,21 @@ std::string MachineChoice::in_words() const {
   return stands_in ? "this machine's caches at the costs of " + name : name;
 }
 
+const ShippedMachine& stand_in_for(const ProcessorFamily& family) {
+  const auto found = std::find_if(kShipped.begin(), kShipped.end(), [&](const ShippedMachine& machine) {
+    return machine.is_of_family(family);
+  });
+  return found == kShipped.end() ? kShipped.front() : *found;
+}
+
 MachineChoice choose_machine(std::string_view name, bool all_threads) {
   const std::string asked = asked_name(name);
   MachineChoice choice;
   if (asked == kThis) {
     StoredCalibration stored = load_calibration(key_of_this_machine());
     if (stored.calibration) return chosen(*stored.calibration, all_threads);
-    choice = {std::string(kShipped.front().name), kShipped.front().costs(), {}, true, {}, stored.fault};
+    const ShippedMachine& machine = stand_in_for(family_of_this_machine());
+    choice = {std::string(machine.name), machine.costs(), {}, true, {}, stored.fault};
     choice.model.caches = caches_of_this_machine();
     return choice;
   }

@@ -3,6 +3,7 @@
 
 #include "payoff/calibration.hpp"
 #include "payoff/cost_model.hpp"
+#include "payoff/machine.hpp"
 
 #include <array>
 #include <span>
@@ -15,10 +16,14 @@ namespace meshorder {
 struct ShippedMachine {
   std::string_view name;
   const CostModel& (*costs)();
+  bool (*is_of_family)(const ProcessorFamily& family);
 };
 
-/// All of them; the first one stands for machines that are not calibrated.
 std::span<const ShippedMachine> shipped_machines();
+
+/// Returns the shipped machine that stands for an uncalibrated one: that of the same family of processors,
+/// the first where there is none.
+const ShippedMachine& stand_in_for(const ProcessorFamily& family);
 
 /// Returns " on 2 threads", nothing for one.
 std::string on_threads(int threads);
@@ -40,9 +45,9 @@ struct MachineChoice {
 };
 
 /// Returns the shipped machine of a name; for "this", a calibration of this machine that was stored for this
-/// build, else the first shipped machine with this machine's caches. An empty name stands for what the
-/// environment variable MESHORDER_MACHINE says, and "this" where it is not set. Throws InvalidArgument, which
-/// names the nearest one, for unknown names.
+/// build, else the shipped machine that stands for it, with this machine's caches. An empty name stands for
+/// what the environment variable MESHORDER_MACHINE says, and "this" where it is not set. Throws
+/// InvalidArgument, which names the nearest one, for unknown names.
 ///
 /// With `all_threads` the costs are those of kernels that all threads share, which only a calibration of this
 /// machine has: throws InvalidArgument for a shipped machine and where this one was calibrated on another

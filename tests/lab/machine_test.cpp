@@ -31,6 +31,18 @@ TEST(Machine, ProcessorsWithoutANameAreCalledByTheirNumbers) {
   EXPECT_EQ(name_in(""), "aarch64 processor");
 }
 
+TEST(Machine, FamiliesAreThoseOfTheFirstProcessor) {
+  std::istringstream amd(
+      "processor\t: 0\nvendor_id\t: AuthenticAMD\ncpu family\t: 25\nmodel\t\t: 17\nmodel name\t: AMD EPYC\n\n"
+      "processor\t: 1\nmodel\t\t: 18\n");
+  const ProcessorFamily family = processor_family(amd);
+  EXPECT_EQ(family.maker, "AuthenticAMD");
+  EXPECT_EQ(family.family, 25);
+  EXPECT_EQ(family.model, 17);
+  std::istringstream arm("processor\t: 0\nCPU implementer\t: 0x41\n");
+  EXPECT_EQ(processor_family(arm).family, -1);
+}
+
 TEST(Machine, ProgramsAreCalledByVersionAndRevision) {
   MachineRecord machine;
   machine.program = "0.2.0";

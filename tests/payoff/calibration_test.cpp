@@ -362,9 +362,10 @@ TEST(MachineChoice, IsTheOneNamedThenTheVariableThenThisMachine) {
   EXPECT_FALSE(choose_machine().stands_in);
   const MachineChoice prior = choose_machine("this");
   EXPECT_TRUE(prior.stands_in);
-  EXPECT_EQ(prior.in_words(), "this machine's caches at the costs of zen5");
+  const ShippedMachine& like = stand_in_for(family_of_this_machine());
+  EXPECT_EQ(prior.in_words(), "this machine's caches at the costs of " + std::string(like.name));
   EXPECT_EQ(prior.model.caches, caches_of_this_machine());
-  EXPECT_EQ(prior.model.solid, zen5_costs().solid);
+  EXPECT_EQ(prior.model.solid, like.costs().solid);
   (void)save_calibration(made_up());
   const MachineChoice calibrated = choose_machine("this");
   EXPECT_EQ(calibrated.in_words(), "this machine, calibrated 2026-01-02");
@@ -397,6 +398,21 @@ TEST(MachineChoice, OnAllThreadsIsACalibrationOnAsMany) {
   } catch (const InvalidArgument& error) {
     EXPECT_THAT(error.what(), HasSubstr("; `meshorder calibrate` measures it anew"));
   }
+}
+
+TEST(MachineChoice, OneOfTheSameFamilyStandsIn) {
+  const auto name = [](const char* maker, int family, int model) {
+    return stand_in_for({maker, family, model}).name;
+  };
+  EXPECT_EQ(name("AuthenticAMD", 26, 2), "zen5");   // EPYC 9005
+  EXPECT_EQ(name("AuthenticAMD", 25, 17), "zen4");  // EPYC 9004
+  EXPECT_EQ(name("AuthenticAMD", 25, 97), "zen4");  // Ryzen 7000
+  EXPECT_EQ(name("AuthenticAMD", 25, 1), "zen3");   // EPYC 7003
+  EXPECT_EQ(name("AuthenticAMD", 25, 33), "zen3");  // Ryzen 5000
+  EXPECT_EQ(name("GenuineIntel", 6, 143), "xeon");  // Sapphire Rapids
+  EXPECT_EQ(name("GenuineIntel", 6, 207), "xeon");  // Emerald Rapids
+  EXPECT_EQ(name("GenuineIntel", 6, 106), "zen5");  // Ice Lake: none
+  EXPECT_EQ(name("", -1, -1), "zen5");
 }
 
 TEST(MachineChoice, UnknownNamesGetTheNearest) {

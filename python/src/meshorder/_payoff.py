@@ -210,7 +210,7 @@ def calibrate(seconds: float = 16, *, keep: bool = True, **options: Any) -> Cali
     Takes about 1 GB of memory. Other work on the machine during the call spoils the measurements.
 
     Args:
-        seconds: > 0: no measurement begins that would end later, except that each is made once; 16 take some 20 s.
+        seconds: > 0: no measurement begins that would end later, except that each is made once; 16 take 20 to 40 s.
         keep: True stores the measurements for this processor and this build of the library, in the user's cache folder
             ($MESHORDER_CACHE, else $XDG_CACHE_HOME/meshorder, else ~/.cache/meshorder).
         **options: see `Options`; only ``threads`` and ``progress`` have an effect.
@@ -245,7 +245,8 @@ def advise(
         budget: with ``measure``, seconds ≥ 0 from the start of the call: no round of measurements begins that would end
             later, but two are run.
         machine: what to predict for: "this" machine, as `calibrate` measured it, else its caches with the costs of
-            "zen5"; or "zen5", "zen4", "zen3" or "xeon", whose costs come with the library. Empty: the environment
+            the one of the following whose processor is of its family, "zen5" where none is; or "zen5", "zen4", "zen3" or
+            "xeon", whose costs come with the library. Empty: the environment
             variable MESHORDER_MACHINE names it, else "this".
         all_threads: True judges the kernels as all threads (those of the option ``threads``) share each run, False as
             one thread runs them. To predict the former needs a calibration of this machine on as many threads.
