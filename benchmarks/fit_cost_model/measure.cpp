@@ -8,10 +8,10 @@
 // measure judge MESH BUDGET THREADS MACHINES VERTICES/ELEMENTS…: times the kernels in these orders, and in
 // those that `auto` takes for each kernel, in interleaved rounds, twice over, the second time on other pages
 // of memory, and predicts them for machines whose names are separated by commas ("zen5", "this"; "prior":
-// what stands in for this machine where it is not calibrated; with a slash: the file of a calibration, whose costs of all threads
-// are taken where THREADS are as many; with a colon behind it, those of one). Prints mesh, vertices,
-// order, kernel, the best milliseconds of each half, then the milliseconds predicted for each machine; and
-// mesh, vertices, "auto", kernel, the order that `auto` takes.
+// what stands in for this machine where it is not calibrated; with a slash: the file of a calibration, whose
+// costs of all threads are taken where THREADS are as many; with a colon behind it, those of one). Prints
+// mesh, vertices, order, kernel, the best milliseconds of each half, then the milliseconds predicted for each
+// machine; and mesh, vertices, "auto", kernel, the order that `auto` takes.
 //
 // MESH is the name of a model, "grid-20", "dragon", or a file; with "-skin" behind it, the triangles on its
 // surface. benchmarks/fit_cost_model/collect.py calls this for all of them.
