@@ -133,7 +133,9 @@ def test_costs_of_all_threads_that_are_not_known_are_refused(here, stored):
 
 def test_measuring_does_not_wait_for_a_calibration(here):
     result = here.json("info", "mesh.node", "--measure")
-    assert result["verdict"]["machine"] == "this machine's caches at the costs of zen5"
+    # which one depends on the family of the processor
+    stands_in = [f"this machine's caches at the costs of {name}" for name in ("zen5", "zen4", "zen3", "xeon")]
+    assert result["verdict"]["machine"] in stands_in
     assert not (here.folder / "cache").exists()
 
 
