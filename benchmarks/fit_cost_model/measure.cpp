@@ -161,10 +161,7 @@ mo::CostModel machine_named(const std::string& name, int threads) {
         mo::parse_calibration({std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()});
     return threads == calibration.threads ? calibration.all_threads : calibration.model;
   }
-  if (name != "prior") return mo::choose_machine(name).model;
-  mo::CostModel model = mo::stand_in_for(mo::family_of_this_machine()).costs();
-  model.caches = mo::caches_of_this_machine();
-  return model;
+  return name == "prior" ? mo::not_calibrated().model : mo::choose_machine(name).model;
 }
 
 /// Prints the order that `auto` takes for each kernel, and adds it to `orders`.

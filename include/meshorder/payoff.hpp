@@ -98,8 +98,8 @@ struct PayoffOptions {
   bool predict = true;  ///< gives the same times on every run
   /// What to predict for: a machine whose costs ship with the library ("zen5"), or "this": this machine as
   /// `calibrate` measured it, else its caches with the costs of one of those: of the same family of
-  /// processors, "zen5" where none is. Empty: what the
-  /// environment variable MESHORDER_MACHINE says, else "this".
+  /// processors, "zen5" where none is. Empty: what the environment variable MESHORDER_MACHINE says, else
+  /// "this".
   std::string machine = {};
   bool measure = false;  ///< runs the kernels here
   /// Judge the kernels as all threads share their runs, not as one runs them. To predict this needs a

@@ -72,15 +72,21 @@ const ShippedMachine& stand_in_for(const ProcessorFamily& family) {
   return found == kShipped.end() ? kShipped.front() : *found;
 }
 
+MachineChoice not_calibrated() {
+  const ShippedMachine& machine = stand_in_for(family_of_this_machine());
+  MachineChoice choice{std::string(machine.name), machine.costs(), {}, true, {}, {}};
+  choice.model.caches = caches_of_this_machine();
+  return choice;
+}
+
 MachineChoice choose_machine(std::string_view name, bool all_threads) {
   const std::string asked = asked_name(name);
   MachineChoice choice;
   if (asked == kThis) {
     StoredCalibration stored = load_calibration(key_of_this_machine());
     if (stored.calibration) return chosen(*stored.calibration, all_threads);
-    const ShippedMachine& machine = stand_in_for(family_of_this_machine());
-    choice = {std::string(machine.name), machine.costs(), {}, true, {}, stored.fault};
-    choice.model.caches = caches_of_this_machine();
+    choice = not_calibrated();
+    choice.fault = stored.fault;
     return choice;
   }
   for (const ShippedMachine& machine : kShipped) {

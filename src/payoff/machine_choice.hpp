@@ -54,6 +54,9 @@ struct MachineChoice {
 /// number of threads than there are now; a machine that stands in keeps the costs of one thread.
 MachineChoice choose_machine(std::string_view name = {}, bool all_threads = false);
 
+/// Returns what choose_machine returns for "this" where this machine is not calibrated.
+MachineChoice not_calibrated();
+
 /// Returns what choose_machine returns for a calibrated machine.
 MachineChoice chosen(const Calibration& calibration, bool all_threads = false);
 

@@ -246,8 +246,8 @@ def advise(
             later, but two are run.
         machine: what to predict for: "this" machine, as `calibrate` measured it, else its caches with the costs of
             the one of the following whose processor is of its family, "zen5" where none is; or "zen5", "zen4", "zen3" or
-            "xeon", whose costs come with the library. Empty: the environment
-            variable MESHORDER_MACHINE names it, else "this".
+            "xeon", whose costs come with the library. Empty: the environment variable MESHORDER_MACHINE names it, else
+            "this".
         all_threads: True judges the kernels as all threads (those of the option ``threads``) share each run, False as
             one thread runs them. To predict the former needs a calibration of this machine on as many threads.
         **options: see `Options`.
