@@ -3,6 +3,7 @@
 
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
+#include "base/processor.hpp"
 #include "base/text.hpp"
 #include "kernels/simd_target.hpp"
 #include "lab/support/revision.hpp"

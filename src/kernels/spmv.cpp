@@ -16,11 +16,12 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-// blocks from a prefetch to its use; hardware prefetches less far ahead
+// blocks from a prefetch to its use
 constexpr Offset kAhead = 128;
 
-/// With `Gather` the entries of x are prefetched too: kAhead blocks must follow the last row.
-template <bool Gather, class Value>
+/// With `Blocks` the blocks are prefetched, with `Gather` the entries of x: then kAhead blocks must follow
+/// the last row.
+template <bool Blocks, bool Gather, class Value>
 double product_rows(const BlockCsrOf<Value>& matrix, const double* x, double* y, Index begin, Index end) {
   const Value* const values = matrix.values.data();
   const Index* const columns = matrix.columns.data();
@@ -29,7 +30,7 @@ double product_rows(const BlockCsrOf<Value>& matrix, const double* x, double* y,
   for (Index v = begin; v < end; ++v) {
     RowSums sums;
     for (const Offset row_end = matrix.offsets[v + 1]; k < row_end; ++k) {
-      __builtin_prefetch(values + 9 * (k + kAhead));
+      if constexpr (Blocks) __builtin_prefetch(values + 9 * (k + kAhead));
       if constexpr (Gather) __builtin_prefetch(x + Offset{3} * columns[k + kAhead]);
       sums.add(values + 9 * k, x + Offset{3} * columns[k]);
     }
@@ -41,25 +42,31 @@ double product_rows(const BlockCsrOf<Value>& matrix, const double* x, double* y,
   return dot;
 }
 
-template <class Value>
+template <bool Blocks, class Value>
 double product(const BlockCsrOf<Value>& matrix, const double* x, double* y, Index begin, Index end) {
   // a vector that fits into the second-level cache needs no prefetch
   constexpr Index kNearVertices = (Index{3} << 20) / (2 * 3 * sizeof(double));
-  if (matrix.size() <= kNearVertices) return product_rows<false>(matrix, x, y, begin, end);
+  if (matrix.size() <= kNearVertices) return product_rows<Blocks, false>(matrix, x, y, begin, end);
   const auto row_ends = matrix.offsets.begin() + 1;
   const auto followed = static_cast<Index>(
       std::upper_bound(row_ends + begin, row_ends + end, matrix.block_count() - kAhead) - row_ends);
-  return product_rows<true>(matrix, x, y, begin, followed) + product_rows<false>(matrix, x, y, followed, end);
+  return product_rows<Blocks, true>(matrix, x, y, begin, followed) +
+         product_rows<Blocks, false>(matrix, x, y, followed, end);
 }
 
 double product_of_doubles(const BlockCsrOf<double>& matrix, const double* x, double* y, Index begin,
                           Index end) {
-  return product(matrix, x, y, begin, end);
+  return product<true>(matrix, x, y, begin, end);
+}
+
+double product_of_streamed_doubles(const BlockCsrOf<double>& matrix, const double* x, double* y, Index begin,
+                                   Index end) {
+  return product<false>(matrix, x, y, begin, end);
 }
 
 double product_of_floats(const BlockCsrOf<float>& matrix, const double* x, double* y, Index begin,
                          Index end) {
-  return product(matrix, x, y, begin, end);
+  return product<true>(matrix, x, y, begin, end);
 }
 
 }  // namespace
@@ -67,11 +74,21 @@ double product_of_floats(const BlockCsrOf<float>& matrix, const double* x, doubl
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "base/processor.hpp"
+
 namespace meshorder {
 namespace {
 
 HWY_EXPORT(product_of_doubles);
+HWY_EXPORT(product_of_streamed_doubles);
 HWY_EXPORT(product_of_floats);
+
+/// Whether the processor reads blocks of doubles faster where they are not prefetched: Zen 4 does
+/// (docs/benchmarks.md, What the product asks for). Of the others none was seen to.
+bool streams_by_itself() {
+  static const bool result = is_zen4(family_of_this_machine());
+  return result;
+}
 
 }  // namespace
 
@@ -83,6 +100,10 @@ double multiply_rows_dot(const BlockCsrOf<Value>& matrix, std::span<const double
     throw InvalidArgument("multiply: x and y must hold 3 doubles for each row of blocks");
   }
   if constexpr (std::is_same_v<Value, double>) {
+    if (streams_by_itself()) {
+      return HWY_DYNAMIC_DISPATCH(product_of_streamed_doubles)(matrix, x.data(), y.data(), begin_row,
+                                                               end_row);
+    }
     return HWY_DYNAMIC_DISPATCH(product_of_doubles)(matrix, x.data(), y.data(), begin_row, end_row);
   } else {
     return HWY_DYNAMIC_DISPATCH(product_of_floats)(matrix, x.data(), y.data(), begin_row, end_row);

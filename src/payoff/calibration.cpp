@@ -4,6 +4,7 @@
 #include "base/median.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
+#include "base/processor.hpp"
 #include "base/run_scope.hpp"
 #include "base/stopwatch.hpp"
 #include "kernels/simplices.hpp"

@@ -2,6 +2,7 @@
 #include "payoff/calibration_store.hpp"
 
 #include "base/checksum.hpp"
+#include "base/processor.hpp"
 #include "base/user_folder.hpp"
 #include "payoff/machine.hpp"
 #include <meshorder/error.hpp>

@@ -5,11 +5,9 @@
 #include "kernels/simd_target.hpp"
 
 #include <sched.h>
-#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <map>
 #include <set>
@@ -67,18 +65,6 @@ std::string core_of(int processor) {
   return std::getline(in, siblings) ? siblings : std::to_string(processor);
 }
 
-/// Returns what Linux's /proc/cpuinfo says first about each subject.
-std::map<std::string, std::string> facts_of_first_processor(std::istream& cpuinfo) {
-  std::map<std::string, std::string> facts;
-  for (std::string line; std::getline(cpuinfo, line);) {
-    const std::size_t colon = line.find(':');
-    if (colon != std::string::npos)
-      facts.emplace(trimmed(std::string_view(line).substr(0, colon)),
-                    trimmed(std::string_view(line).substr(colon + 1)));
-  }
-  return facts;
-}
-
 }  // namespace
 
 Caches reported_caches() {
@@ -97,39 +83,6 @@ Caches caches_of_the_paper() { return parse_cache_sizes("32K,256K,10M"); }
 Caches parse_caches(std::string_view text) {
   if (text.empty() || text == "this") return caches_of_this_machine();
   return text == "paper" ? caches_of_the_paper() : parse_cache_sizes(text);
-}
-
-std::string processor_name(std::istream& cpuinfo, const std::string& architecture) {
-  std::map<std::string, std::string> first_values = facts_of_first_processor(cpuinfo);
-  if (!first_values["model name"].empty()) return first_values["model name"];
-  std::string result = architecture + " processor";
-  const std::string maker = first_values["CPU implementer"];
-  const std::string part = first_values["CPU part"];
-  if (!maker.empty() && !part.empty()) result += ", implementer " + maker + ", part " + part;
-  return result;
-}
-
-std::string processor_of_this_machine() {
-  utsname system{};
-  uname(&system);
-  std::ifstream cpuinfo("/proc/cpuinfo");
-  return processor_name(cpuinfo, system.machine);
-}
-
-ProcessorFamily processor_family(std::istream& cpuinfo) {
-  std::map<std::string, std::string> facts = facts_of_first_processor(cpuinfo);
-  const auto number = [&](const char* name) {
-    int value = -1;
-    const std::string& text = facts[name];
-    std::from_chars(text.data(), text.data() + text.size(), value);
-    return value;
-  };
-  return {facts["vendor_id"], number("cpu family"), number("model")};
-}
-
-ProcessorFamily family_of_this_machine() {
-  std::ifstream cpuinfo("/proc/cpuinfo");
-  return processor_family(cpuinfo);
 }
 
 std::string build_of_this_program() {

@@ -3,7 +3,6 @@
 
 #include "metrics/cache.hpp"
 
-#include <istream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,26 +22,6 @@ Caches caches_of_the_paper();
 /// Returns this machine's caches for "this" or "", the paper's for "paper", else those that parse_cache_sizes
 /// reads. Throws InvalidArgument as that does.
 Caches parse_caches(std::string_view text);
-
-/// Returns the name of the first processor in Linux's /proc/cpuinfo. ARM processors have only numbers there:
-/// "aarch64 processor, implementer 0x41, part 0xd0c". Without either, "`architecture` processor".
-std::string processor_name(std::istream& cpuinfo, const std::string& architecture);
-
-/// Returns the name of this machine's processor, as processor_name.
-std::string processor_of_this_machine();
-
-/// The family of a processor, by the numbers that x86's CPUID gives.
-struct ProcessorFamily {
-  std::string maker;  ///< "AuthenticAMD" or "GenuineIntel"; empty on other processors
-  int family = -1;
-  int model = -1;
-};
-
-/// Returns the family of the first processor in Linux's /proc/cpuinfo.
-ProcessorFamily processor_family(std::istream& cpuinfo);
-
-/// Returns the family of this machine's processor.
-ProcessorFamily family_of_this_machine();
 
 /// Returns the version of this program, its compiler with the options, and the instruction set that its
 /// kernels chose here: times of another build are other times.

@@ -16,33 +16,9 @@
 namespace meshorder {
 namespace {
 
-// Families and models are those of Linux: init_amd in arch/x86/kernel/cpu/amd.c, and
-// arch/x86/include/asm/intel-family.h.
-
-bool is_zen5(const ProcessorFamily& family) {
-  return family.maker == "AuthenticAMD" && family.family == 0x1a;
-}
-
-bool is_zen3_or_4(const ProcessorFamily& family) {
-  return family.maker == "AuthenticAMD" && family.family == 0x19;
-}
-
-bool is_zen4(const ProcessorFamily& family) {
-  return is_zen3_or_4(family) &&
-         ((family.model >= 0x10 && family.model <= 0x1f) || (family.model >= 0x60 && family.model <= 0xaf));
-}
-
-bool is_zen3(const ProcessorFamily& family) { return is_zen3_or_4(family) && !is_zen4(family); }
-
-/// Sapphire Rapids and its successor of the same kind, Emerald Rapids.
-bool is_xeon(const ProcessorFamily& family) {
-  return family.maker == "GenuineIntel" && family.family == 6 &&
-         (family.model == 0x8f || family.model == 0xcf);
-}
-
 constexpr std::array kShipped{
     ShippedMachine{"zen5", zen5_costs, is_zen5}, ShippedMachine{"zen4", zen4_costs, is_zen4},
-    ShippedMachine{"zen3", zen3_costs, is_zen3}, ShippedMachine{"xeon", xeon_costs, is_xeon}};
+    ShippedMachine{"zen3", zen3_costs, is_zen3}, ShippedMachine{"xeon", xeon_costs, is_sapphire_rapids}};
 constexpr std::string_view kThis = "this";
 
 /// The name itself, or what stands for an empty one.

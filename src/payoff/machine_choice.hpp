@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/processor.hpp"
 #include "payoff/calibration.hpp"
 #include "payoff/cost_model.hpp"
-#include "payoff/machine.hpp"
 
 #include <array>
 #include <span>

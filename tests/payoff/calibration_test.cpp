@@ -2,6 +2,7 @@
 #include "payoff/calibration.hpp"
 
 #include "base/parallel.hpp"
+#include "base/processor.hpp"
 #include "base/random.hpp"
 #include "mesh/graphs.hpp"
 #include "payoff/calibration_lattices.hpp"
