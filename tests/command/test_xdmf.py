@@ -399,6 +399,31 @@ def test_topologies_of_two_types_share_a_dataset_until_they_differ(command, tmp_
             assert sorted(file[name][()].reshape(-1, width).tolist()) == sorted(vertices[corners].reshape(-1, width).tolist())
 
 
+def test_what_gets_a_dataset_of_its_own_gets_it_in_every_step(command, tmp_path):
+    """27 numbers of points are also those of nine triangles: one of the two goes apart, wherever it is named."""
+    points, _, _ = box(2)
+    corners = numpy.random.default_rng(7).permutation(27)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["points"], file["cells"] = points, corners.astype("int32")
+    geometry = f'<Geometry GeometryType="XYZ">{item("a.h5", "/points", points.shape)}</Geometry>'
+    step = (topology("a.h5", "/cells", "Triangle", (9, 3)).replace('Precision="8"', 'Precision="4"') + geometry +
+            attribute("number", "Node", item("a.h5", "/cells", (9, 3), "Int", 4)))
+    (tmp_path / "a.xdmf").write_text(xdmf('<Grid GridType="Collection" CollectionType="Temporal">' + "".join(
+        f'<Grid Name="step">{step}<Time Value="{time}"/></Grid>' for time in range(3)) + "</Grid>"))
+    vertices, _ = order(command, tmp_path / "a.xdmf", tmp_path / "b.xdmf")
+    written = ElementTree.parse(tmp_path / "b.xdmf")
+    numbers, cells = ([element.find("DataItem") for element in written.iter(name)] for name in ("Attribute", "Topology"))
+    assert len(numbers) == len(cells) == 3
+    named = {data.text.strip() for data in numbers}
+    assert len(named) == 1 and named.isdisjoint(data.text.strip() for data in cells)
+    assert {data.get("Dimensions") for data in numbers} == {"27"}
+    with h5py.File(tmp_path / "b.h5") as file:
+        of_points = numpy.empty(27, "int32")
+        of_points[vertices] = corners
+        assert (file[named.pop().split(":")[1]][()] == of_points).all()
+        assert sorted(map(sorted, file["cells"][()].reshape(9, 3).tolist())) == sorted(map(sorted, vertices[corners].reshape(9, 3).tolist()))
+
+
 @pytest.mark.parametrize("other", ["an array of cells", "cells of another type"])
 def test_values_that_move_in_two_ways_need_two_items(command, tmp_path, other):
     """Unlike a dataset, a DataItem that references name twice cannot go apart."""
@@ -417,6 +442,7 @@ def test_values_that_move_in_two_ways_need_two_items(command, tmp_path, other):
 
 
 BROKEN = {
+    "a <Xdmf> follows the <Xdmf> element": ("</Xdmf>", "</Xdmf>\n<Xdmf/>"),
     "data file 'c.h5' is missing": ("a.h5:/Mesh/mesh/topology", "c.h5:/Mesh/mesh/topology"),
     "the dataset '/Mesh/mesh/cells' is missing": ("a.h5:/Mesh/mesh/topology", "a.h5:/Mesh/mesh/cells"),
     "Dimensions is '48 5'": ('Dimensions="48 4"', 'Dimensions="48 5"'),

@@ -87,7 +87,11 @@ void ArrayReader::read_attribute(const GridElement& grid, int part, pugi::xml_no
   field.part = on_vertices ? 0 : part;
   field.association = on_vertices ? Association::vertices : Association::cells;
   const std::string key = fmt::format("{} {} {}", key_of(field.place), field.part, on_vertices);
-  if (!known_arrays_.insert(key + name).second) return;
+  const auto [known, is_new] = known_arrays_.try_emplace(key + name);
+  if (!is_new) {
+    if (known->second) pending_[*known->second].field.place.repeat(field.place);
+    return;
+  }
 
   DataArray array;
   array.association = field.association;
@@ -103,6 +107,7 @@ void ArrayReader::read_attribute(const GridElement& grid, int part, pugi::xml_no
   array.components = static_cast<Index>(values / static_cast<std::size_t>(rows));
   array.name = name;
   if (is_label(field, array)) take_label(field, array);
+  known->second = pending_.size();
   pending_.push_back({std::move(field), std::move(array), grid});
 }
 
@@ -154,7 +159,9 @@ void ArrayReader::read_set(int part, pugi::xml_node element) {
   field.part = on_vertices ? 0 : part;
   field.association = on_vertices ? Association::vertices : Association::cells;
   field.name = name;
-  if (!known_arrays_.insert(fmt::format("{} {} set", key_of(field.place), field.part) + name).second) return;
+  const std::string key = fmt::format("{} {} {} ", key_of(field.place), field.part, on_vertices);
+  const auto [known, is_new] = known_sets_.try_emplace(key + name, reading_.layout->fields.size());
+  if (!is_new) return reading_.layout->fields[known->second].place.repeat(field.place);
   const std::vector<Index> members = reading_.data.read_indices(field.place);
   const std::vector<Index>& rows = reading_.rows[static_cast<std::size_t>(part)];
   const Index count = on_vertices ? reading_.mesh.vertex_count() : index_size(rows);

@@ -103,6 +103,10 @@ std::pair<std::string, int> number_type_of(std::size_t alternative) {
   return {std::string(found->name), found->precision};
 }
 
+void DataPlace::repeat(const DataPlace& other) {
+  if (other.named_by != named_by) repeats.push_back({other.item, other.named_by});
+}
+
 std::string key_of(const DataPlace& place) {
   if (place.format == Format::hdf) return place.file + ":" + place.dataset;
   return std::to_string(place.item);

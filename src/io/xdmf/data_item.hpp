@@ -33,6 +33,16 @@ struct DataPlace {
   std::vector<std::uint64_t> shape = {};
   /// Number of the DataItem in the Topology, Geometry, Attribute or Set: the same, or one that refers to it.
   std::size_t named_by = 0;
+
+  /// `item` and `named_by` where the file says the same once more, in another time step for example.
+  struct Repeat {
+    std::size_t item;
+    std::size_t named_by;
+  };
+  std::vector<Repeat> repeats = {};
+
+  /// Adds a place of the same values that the file names behind this one.
+  void repeat(const DataPlace& other);
 };
 
 /// Names an array: two DataItems with one key have the same values.

@@ -143,6 +143,11 @@ Document::Document(const FilePath& path) : file_(path.string()), source_(path.re
     throw InputError(Location{file_, 1, -1}, fmt::format("the file is a <{}>", root().name()),
                      "a file of XDMF begins with <Xdmf …>");
   }
+  for (pugi::xml_node next = root().next_sibling(); next; next = next.next_sibling()) {
+    if (next.type() != pugi::node_element) continue;
+    throw error(next, fmt::format("a <{}> follows the <Xdmf> element", next.name()),
+                "put all Grids into one <Xdmf>, as XML has one root element");
+  }
   items_ = elements_named(xml_, "DataItem");
   for (std::size_t i = 0; i < items_.size(); ++i) numbers_.emplace(items_[i].hash_value(), i);
   const std::vector<pugi::xml_node> grids = elements_named(xml_, "Grid");

@@ -96,7 +96,9 @@ void Writer::write_topology(const Field& field) {
     }
   }
   announce_cells(topology, rows.size());
-  for (const std::size_t item : field.also_named_by) announce_cells(items_[item].parent(), rows.size());
+  for (const DataPlace::Repeat& repeat : field.place.repeats) {
+    announce_cells(items_[repeat.named_by].parent(), rows.size());
+  }
   if (type != nullptr && field.base == 0 && is_identity(rows, mesh_.cell_count()) &&
       !is_turned(rows.front())) {
     return put_indices(field.place, mesh_.cells.vertices, nodes);
@@ -185,24 +187,40 @@ void Writer::write_set(const Field& field) {
   put_indices(field.place, numbers, 1);
 }
 
-void Writer::remove_element(const Field& field) {
-  const bool is_hdf = field.place.format == DataPlace::Format::hdf;
-  if (is_hdf) gone_datasets_.insert(field.place.file + ":" + field.place.dataset);
-  if (!is_hdf || field.place.named_by != field.place.item) gone_.push_back(element_of(field));
-}
+void Writer::remove_element(const Field& field) { gone_.insert(&field); }
 
 void Writer::remove_gone() {
-  for (const pugi::xml_node item : gone_datasets_.empty() ? std::vector<pugi::xml_node>() : items_) {
-    const auto [file, dataset] = split_hdf5_name(item.text().get());
-    if (!gone_datasets_.contains(fmt::format("{}:{}", file, dataset))) continue;
-    const std::string_view name = item.parent().name();
-    gone_.push_back(name == "Attribute" || name == "Set" ? item.parent() : item);
+  if (gone_.empty()) return;
+  std::set<std::size_t> used;
+  for (const Field& field : layout_.fields) {
+    if (gone_.contains(&field)) continue;
+    used.insert(field.place.item);
+    for (const DataPlace::Repeat& repeat : field.place.repeats) used.insert(repeat.item);
   }
-  for (const std::string& name : gone_datasets_) {
-    const auto [file, dataset] = split_hdf5_name(name);
-    files_.at(file).file->remove(dataset);
+  std::set<pugi::xml_node> elements;
+  for (const Field* const field : gone_) {
+    const auto remove = [&](std::size_t item, std::size_t named_by) {
+      elements.insert(items_[named_by].parent());
+      if (item != named_by && !used.contains(item)) elements.insert(items_[item]);
+    };
+    remove(field->place.item, field->place.named_by);
+    for (const DataPlace::Repeat& repeat : field->place.repeats) remove(repeat.item, repeat.named_by);
   }
-  for (pugi::xml_node element : gone_) element.parent().remove_child(element);
+  std::erase_if(elements, [&](pugi::xml_node element) {  // goes with another one
+    while ((element = element.parent()) && !elements.contains(element)) {
+    }
+    return static_cast<bool>(element);
+  });
+  for (pugi::xml_node element : elements) element.parent().remove_child(element);
+  std::set<std::pair<std::string, std::string>> named;
+  for (const pugi::xml_node item : elements_named(xml_, "DataItem")) {
+    named.insert(split_hdf5_name(item.text().get()));
+  }
+  for (const Field* const field : gone_) {
+    const DataPlace& place = field->place;
+    if (place.format == DataPlace::Format::hdf && named.emplace(place.file, place.dataset).second)
+      files_.at(place.file).file->remove(place.dataset);
+  }
 }
 
 std::vector<Index> Writer::places_in(const std::vector<Index>& rows) const {

@@ -342,7 +342,14 @@ class XdmfReader {
   void read_points(const GridElement& grid, pugi::xml_node geometry) {
     std::string key;
     for (const pugi::xml_node item : items_of(geometry)) key += key_of(reading_.data.place_of(item)) + "\n";
-    if (!known_geometries_.insert(key).second) return;
+    std::vector<Field>& known_fields = reading_.layout->fields;
+    const auto [known, is_new] = known_geometries_.try_emplace(key, known_fields.size());
+    if (!is_new) {
+      std::size_t field = known->second;
+      for (const pugi::xml_node item : items_of(geometry))
+        known_fields[field++].place.repeat(reading_.data.place_of(item));
+      return;
+    }
     std::vector<Field> fields;
     int dimension = 3;
     std::vector<Point> points = points_of(geometry, fields, dimension);
@@ -358,7 +365,7 @@ class XdmfReader {
       }
       return arrays_.add_moved_points(grid, fields, std::move(points), dimension);
     }
-    reading_.layout->fields.insert(reading_.layout->fields.end(), fields.begin(), fields.end());
+    known_fields.insert(known_fields.end(), fields.begin(), fields.end());
   }
 
   // ---- the mesh
@@ -386,11 +393,16 @@ class XdmfReader {
           field.association == Association::cells ? fmt::format("cells of part {}", field.part) : "points";
       if (field.role == Field::Role::set) movement += " of a set";
       if (field.role == Field::Role::topology) movement = fmt::format("corners of topology {}", i);
-      const auto [known, is_new] = movements.try_emplace(field.place.item, movement);
-      if (is_new || known->second == movement) continue;
-      throw reading_.document.error(reading_.document.item(field.place.item),
-                                    "references name these values in two places, where they move differently",
-                                    "write them twice, in DataItems of their own");
+      const auto check = [&](std::size_t item) {
+        const auto [known, is_new] = movements.try_emplace(item, movement);
+        if (is_new || known->second == movement) return;
+        throw reading_.document.error(
+            reading_.document.item(item),
+            "references name these values in two places, where they move differently",
+            "write them twice, in DataItems of their own");
+      };
+      check(field.place.item);
+      for (const DataPlace::Repeat& repeat : field.place.repeats) check(repeat.item);
     }
   }
 
@@ -437,7 +449,7 @@ class XdmfReader {
   RawGrid raw_;
   TopologyReader topologies_{reading_};
   ArrayReader arrays_{reading_};
-  std::set<std::string> known_geometries_;
+  std::map<std::string, std::size_t> known_geometries_;  // places of their first fields in the layout, by key
 };
 
 }  // namespace

@@ -68,7 +68,7 @@ int TopologyReader::read(const GridElement& grid, pugi::xml_node topology) {
   std::vector<Field>& fields = reading_.layout->fields;
   if (const auto known = known_topologies_.find(key); known != known_topologies_.end()) {
     Field& same = fields[known->second];
-    if (field.place.named_by != same.place.named_by) same.also_named_by.push_back(field.place.named_by);
+    same.place.repeat(field.place);
     return same.part;
   }
   field.part = part_of(grid, topology, piece_of(topology, item, field.place, field.base));

@@ -69,15 +69,28 @@ void Writer::put_apart(pugi::xml_node item, const std::string& file, const std::
   set_text(item, file + ":" + dataset);
 }
 
+std::vector<pugi::xml_node> Writer::items_at(const DataPlace& place) const {
+  std::vector<pugi::xml_node> items{items_[place.item]};
+  for (const DataPlace::Repeat& repeat : place.repeats) items.push_back(items_[repeat.item]);
+  return items;
+}
+
 void Writer::put(const DataPlace& place, const Values& values, std::size_t components) {
   pugi::xml_node item = items_[place.item];
   if (is_taken(place, values)) {
     const std::string dataset = unused_dataset(files_.at(place.file), 0, "");
-    return put_apart(item, place.file, dataset, values, describe(item, values, components));
+    put_apart(item, place.file, dataset, values, shape_of(size_of(values), components));
+    for (pugi::xml_node each : items_at(place)) {
+      describe(each, values, components);
+      set_text(each, item.text().get());
+    }
+    return;
   }
   const std::vector<std::uint64_t> shape = shape_at(place, size_of(values), components);
   const bool same_type = values.index() == place.alternative;
-  if (!same_type || layout_.is_made) set_number_type(item, values.index());
+  if (!same_type || layout_.is_made) {
+    for (pugi::xml_node each : items_at(place)) set_number_type(each, values.index());
+  }
   switch (place.format) {
     case DataPlace::Format::xml:
       set_text(item, text_of_values(values, components));

@@ -75,6 +75,8 @@ class Writer {
   /// the old XML.
   void put_apart(pugi::xml_node item, const std::string& file, const std::string& dataset,
                  const Values& values, const std::vector<std::uint64_t>& shape);
+  /// Returns the DataItems that have the values of a place.
+  [[nodiscard]] std::vector<pugi::xml_node> items_at(const DataPlace& place) const;
   /// Writes values to a place in their own number type: rows of so many components.
   void put(const DataPlace& place, const Values& values, std::size_t components);
   /// Writes indices to a place in the number type that it has, unless that is too narrow.
@@ -144,8 +146,7 @@ class Writer {
   std::map<std::string, std::vector<std::uint64_t>>
       shapes_;  // that have changed, by the new name of a dataset
   std::vector<OutputFile> binaries_;
-  std::set<std::string> gone_datasets_;  // with their files
-  std::vector<pugi::xml_node> gone_;
+  std::set<const Field*> gone_;
   std::set<std::pair<Association, std::string>> names_;  // of arrays
 };
 

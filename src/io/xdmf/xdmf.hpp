@@ -69,8 +69,6 @@ struct Field {
   std::string name = {};  ///< of the array or the set
   int axis = -1;          ///< of points in separate arrays
   int base = 0;           ///< number of the first point in a topology
-  /// Numbers of the DataItems by which further Topologies name these cells.
-  std::vector<std::size_t> also_named_by = {};
 };
 
 /// Data of XDMF's files beyond the mesh.
