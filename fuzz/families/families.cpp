@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace meshorder::fuzz {
@@ -16,8 +17,15 @@ namespace {
 
 using Mutate = std::string (*)(std::string input, std::uint32_t seed);
 
+/// An XDMF file: its XML or the values that stand beside it.
+std::string mutate_xdmf(std::string input, std::uint32_t seed) {
+  if (seed % 2 == 0) return mutate_hdf5(std::move(input), seed / 2);
+  return mutate_xml(std::move(input), seed / 2);
+}
+
 /// Returns what changes files of a mesh format knowing their structure; null if nothing does.
 Mutate mutation_of(const MeshFamily& family) {
+  if (family.name == "xdmf") return mutate_xdmf;
   if (family.by_library) return mutate_hdf5;
   if (family.name == "gmsh") return mutate_sections;
   if (family.name == "ply") return mutate_ply;

@@ -31,6 +31,7 @@ void check_planted(std::string_view family, Family::Bytes input);
 std::string mutate_sections(std::string input, std::uint32_t seed);
 std::string mutate_ply(std::string input, std::uint32_t seed);
 std::string mutate_vtu(std::string input, std::uint32_t seed);
+std::string mutate_xml(std::string input, std::uint32_t seed);
 std::string mutate_hdf5(std::string input, std::uint32_t seed);
 std::string mutate_checkpoint(std::string input, std::uint32_t seed);
 
