@@ -17,20 +17,20 @@ namespace {
 
 using Mutate = std::string (*)(std::string input, std::uint32_t seed);
 
-/// An XDMF file: its XML or the values that stand beside it.
-std::string mutate_xdmf(std::string input, std::uint32_t seed) {
-  if (seed % 2 == 0) return mutate_hdf5(std::move(input), seed / 2);
-  return mutate_xml(std::move(input), seed / 2);
+/// Changes an input in one of two ways.
+template <Mutate One, Mutate Other>
+std::string either(std::string input, std::uint32_t seed) {
+  return seed % 2 == 0 ? One(std::move(input), seed / 2) : Other(std::move(input), seed / 2);
 }
 
-/// Returns what changes files of a mesh format knowing their structure; null if nothing does.
+/// Returns what changes files of a mesh format knowing their structure.
 Mutate mutation_of(const MeshFamily& family) {
-  if (family.name == "xdmf") return mutate_xdmf;
+  if (family.name == "xdmf") return either<mutate_xml, mutate_hdf5>;
   if (family.by_library) return mutate_hdf5;
-  if (family.name == "gmsh") return mutate_sections;
-  if (family.name == "ply") return mutate_ply;
-  if (family.name == "vtu") return mutate_vtu;
-  return nullptr;
+  if (family.name == "gmsh") return either<mutate_sections, mutate_words>;
+  if (family.name == "ply") return either<mutate_ply, mutate_words>;
+  if (family.name == "vtu") return either<mutate_vtu, mutate_xml>;
+  return mutate_words;
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ Mutate mutation_of(const MeshFamily& family) {
 std::span<const Family> families() {
   static const std::vector<Family> all = [] {
     std::vector<Family> list{
-        {"openfoam", check_openfoam},
+        {"openfoam", check_openfoam, mutate_words},
         {"npy", check_npy},
         {"scenario", check_scenario},
         {"results", check_results},

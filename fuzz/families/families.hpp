@@ -28,6 +28,7 @@ void check_planted(std::string_view family, Family::Bytes input);
 
 // Mutations that know the structure of a format; see Family::mutate.
 
+std::string mutate_words(std::string input, std::uint32_t seed);
 std::string mutate_sections(std::string input, std::uint32_t seed);
 std::string mutate_ply(std::string input, std::uint32_t seed);
 std::string mutate_vtu(std::string input, std::uint32_t seed);

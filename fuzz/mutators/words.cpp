@@ -1,0 +1,83 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Files of lines and words: lines are moved, copied and removed, words take each other's places. Names come
+// to be named twice and numbers to point elsewhere, while the lines stay what a reader understands.
+#include "fuzz/families/families.hpp"
+#include "fuzz/mutators/choice.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace meshorder::fuzz {
+namespace {
+
+constexpr std::string_view kBetweenWords = " \t\r\n,;=()/";
+
+/// Returns the parts of a text between the separators; no part is empty.
+std::vector<std::string_view> parts_of(std::string_view text, std::string_view separators) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const auto begin = text.find_first_not_of(separators);
+    if (begin == std::string_view::npos) return parts;
+    text.remove_prefix(begin);
+    parts.push_back(text.substr(0, text.find_first_of(separators)));
+    text.remove_prefix(parts.back().size());
+  }
+}
+
+/// Returns the text with others for two of its parts, neither of which begins before the other ends.
+std::string with(std::string_view text, std::string_view one, std::string_view for_one,
+                 std::string_view other, std::string_view for_other) {
+  if (one.data() > other.data()) {
+    std::swap(one, other);
+    std::swap(for_one, for_other);
+  }
+  std::string result(text.data(), one.data());
+  result += for_one;
+  result.append(one.data() + one.size(), other.data());
+  result += for_other;
+  result.append(other.data() + other.size(), text.data() + text.size());
+  return result;
+}
+
+/// Returns the text with another one for a part.
+std::string with(std::string_view text, std::string_view part, std::string_view for_part) {
+  return with(text, part, for_part, text.substr(text.size()), {});
+}
+
+/// Returns a whole number near to the one that a word is, another word where it is none.
+std::string near_number(std::string_view word, std::string_view other, Choice& choice) {
+  long long number = 0;
+  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (fault != std::errc() || end != word.data() + word.size()) return std::string(other);
+  return std::to_string(number + static_cast<long long>(choice.below(5)) - 2);
+}
+
+}  // namespace
+
+std::string mutate_words(std::string input, std::uint32_t seed) {
+  Choice choice(seed);
+  const bool by_lines = choice.below(3) == 0;
+  const std::vector<std::string_view> parts = parts_of(input, by_lines ? "\n" : kBetweenWords);
+  if (parts.empty()) return {};
+  const std::string_view one = parts[choice.below(parts.size())];
+  const std::string_view other = parts[choice.below(parts.size())];
+  if (one.data() == other.data())
+    return by_lines ? with(input, one, {}) : with(input, one, near_number(one, one, choice));
+  switch (choice.below(4)) {
+    case 0:
+      return with(input, one, other);
+    case 1:
+      return with(input, one, other, other, one);
+    case 2:
+      return by_lines ? with(input, one, std::string(one) + '\n' + std::string(other))
+                      : with(input, one, near_number(one, other, choice));
+    default:
+      return with(input, one, by_lines ? std::string() : near_number(one, other, choice));
+  }
+}
+
+}  // namespace meshorder::fuzz
