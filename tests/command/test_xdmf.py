@@ -407,12 +407,15 @@ def test_what_gets_a_dataset_of_its_own_gets_it_in_every_step(command, tmp_path)
         file["points"], file["cells"] = points, corners.astype("int32")
     geometry = f'<Geometry GeometryType="XYZ">{item("a.h5", "/points", points.shape)}</Geometry>'
     step = (topology("a.h5", "/cells", "Triangle", (9, 3)).replace('Precision="8"', 'Precision="4"') + geometry +
-            attribute("number", "Node", item("a.h5", "/cells", (9, 3), "Int", 4)))
+            attribute("number", "Node", item("a.h5", "/cells", (9, 3), "Int", 4)) +
+            attribute("again", "Node", '<DataItem Reference="/Xdmf/Domain/Grid/Grid[1]/Attribute[1]/DataItem"/>'))
     (tmp_path / "a.xdmf").write_text(xdmf('<Grid GridType="Collection" CollectionType="Temporal">' + "".join(
         f'<Grid Name="step">{step}<Time Value="{time}"/></Grid>' for time in range(3)) + "</Grid>"))
     vertices, _ = order(command, tmp_path / "a.xdmf", tmp_path / "b.xdmf")
     written = ElementTree.parse(tmp_path / "b.xdmf")
-    numbers, cells = ([element.find("DataItem") for element in written.iter(name)] for name in ("Attribute", "Topology"))
+    items = [element.find("DataItem") for element in written.iter("Attribute")]
+    numbers, cells = items[::2], [element.find("DataItem") for element in written.iter("Topology")]
+    assert all(data.get("Reference") for data in items[1::2])
     assert len(numbers) == len(cells) == 3
     named = {data.text.strip() for data in numbers}
     assert len(named) == 1 and named.isdisjoint(data.text.strip() for data in cells)

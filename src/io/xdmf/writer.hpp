@@ -146,6 +146,7 @@ class Writer {
   std::map<std::string, std::vector<std::uint64_t>>
       shapes_;  // that have changed, by the new name of a dataset
   std::vector<OutputFile> binaries_;
+  std::set<std::size_t> apart_;  // DataItems with a dataset of their own
   std::set<const Field*> gone_;
   std::set<std::pair<Association, std::string>> names_;  // of arrays
 };
