@@ -50,10 +50,11 @@ std::string with(std::string_view text, std::string_view part, std::string_view 
 
 /// Returns a whole number near to the one that a word is, another word where it is none.
 std::string near_number(std::string_view word, std::string_view other, Choice& choice) {
-  long long number = 0;
+  std::int64_t number = 0;
   const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), number);
   if (fault != std::errc() || end != word.data() + word.size()) return std::string(other);
-  return std::to_string(number + static_cast<long long>(choice.below(5)) - 2);
+  // may wrap around
+  return std::to_string(static_cast<std::int64_t>(static_cast<std::uint64_t>(number) + choice.below(5) - 2));
 }
 
 }  // namespace
