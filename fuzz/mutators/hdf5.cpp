@@ -45,11 +45,16 @@ std::string with_other_values(const std::string& bytes, Choice& choice) {
     file.remove(path);
     return file.bytes();
   }
-  const hdf5::DatasetInfo info = file.info(path);
-  Values values = file.read(path);
-  std::visit([&](auto& numbers) { change(numbers, choice); }, values);
+  const std::string& source = choice.below(8) == 0 ? datasets[choice.below(datasets.size())].first : path;
+  const hdf5::DatasetInfo info = file.info(source);
+  Values values = file.read(source);
   std::vector<std::uint64_t> shape = info.shape;
-  if (choice.below(16) == 0 && shape.size() > 1) std::swap(shape.front(), shape.back());
+  if (source == path) {
+    std::visit([&](auto& numbers) { change(numbers, choice); }, values);
+    if (choice.below(16) == 0 && shape.size() > 1) std::swap(shape.front(), shape.back());
+  } else {  // two have the same values
+    file.remove(path);
+  }
   file.write(path, values, shape);
   return file.bytes();
 }
