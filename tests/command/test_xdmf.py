@@ -415,21 +415,21 @@ def test_what_gets_a_dataset_of_its_own_gets_it_in_every_step(command, tmp_path)
     written = ElementTree.parse(tmp_path / "b.xdmf")
     items = [element.find("DataItem") for element in written.iter("Attribute")]
     numbers, cells = items[::2], [element.find("DataItem") for element in written.iter("Topology")]
-    assert all(data.get("Reference") for data in items[1::2])
     assert len(numbers) == len(cells) == 3
-    named = {data.text.strip() for data in numbers}
-    assert len(named) == 1 and named.isdisjoint(data.text.strip() for data in cells)
-    assert {data.get("Dimensions") for data in numbers} == {"27"}
+    names = [{data.text.strip() for data in data_of} for data_of in (numbers, items[1::2], cells)]
+    assert [len(named) for named in names] == [1, 1, 1] and names[2].isdisjoint(names[0] | names[1])
+    assert {data.get("Dimensions") for data in items} == {"27"}
     with h5py.File(tmp_path / "b.h5") as file:
         of_points = numpy.empty(27, "int32")
         of_points[vertices] = corners
-        assert (file[named.pop().split(":")[1]][()] == of_points).all()
+        for named in names[:2]:
+            assert (file[named.pop().split(":")[1]][()] == of_points).all()
         assert sorted(map(sorted, file["cells"][()].reshape(9, 3).tolist())) == sorted(map(sorted, vertices[corners].reshape(9, 3).tolist()))
 
 
 @pytest.mark.parametrize("other", ["an array of cells", "cells of another type"])
-def test_values_that_move_in_two_ways_need_two_items(command, tmp_path, other):
-    """Unlike a dataset, a DataItem that references name twice cannot go apart."""
+def test_values_that_move_in_two_ways_get_two_items(command, tmp_path, other):
+    """Where a DataItem is a reference to one whose values move in another way, it becomes one of its own."""
     points, _, _ = box(2)
     corners = numpy.random.default_rng(6).permutation(27)[:24]
     with h5py.File(tmp_path / "a.h5", "w") as file:
@@ -437,11 +437,58 @@ def test_values_that_move_in_two_ways_need_two_items(command, tmp_path, other):
     geometry = f'<Geometry GeometryType="XYZ">{item("a.h5", "/points", points.shape)}</Geometry>'
     same = '<DataItem Reference="XML">/Xdmf/Domain/Grid/Topology/DataItem</DataItem>'
     hexahedra = topology("a.h5", "/cells", "Hexahedron", (3, 8)) + geometry
+    of_cells = other.startswith("an array")
     (tmp_path / "a.xdmf").write_text(xdmf(
-        f'<Grid Name="a">{hexahedra}{attribute("u", "Cell", same, "Matrix")}</Grid>' if other.startswith("an array") else
+        f'<Grid Name="a">{hexahedra}{attribute("u", "Cell", same, "Matrix")}</Grid>' if of_cells else
         f'<Grid Name="a">{hexahedra}</Grid><Grid Name="b"><Topology TopologyType="Tetrahedron">{same}</Topology>{geometry}</Grid>'))
+    vertices, cells = order(command, tmp_path / "a.xdmf", tmp_path / "b.xdmf")
+    written = ElementTree.parse(tmp_path / "b.xdmf")
+    first, second = ([*written.iter("Topology")] + [*written.iter("Attribute")])[:2]
+    assert second.find("DataItem").get("Reference") is None
+    with h5py.File(tmp_path / "b.h5") as file:
+        hexahedra, others = (file[element.find("DataItem").text.strip().split(":")[1]][()] for element in (first, second))
+    assert sorted(hexahedra.reshape(3, 8).tolist()) == sorted(vertices[corners].reshape(3, 8).tolist())
+    if of_cells:
+        moved = numpy.empty((3, 8), int)
+        moved[cells] = corners.reshape(3, 8)
+        assert (others.reshape(3, 8) == moved).all()
+    else:
+        assert sorted(others.reshape(6, 4).tolist()) == sorted(vertices[corners].reshape(6, 4).tolist())
+
+
+def test_a_set_and_an_array_of_one_item(command, tmp_path):
+    """Marks of a set that the mesh brings into another order are numbered, and an array that names them is not."""
+    points, tetrahedra, _ = box(2)
+    marks = numpy.zeros(27, "uint8")
+    marks[[3, 9, 20, 26]] = 1
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["points"], file["cells"], file["marks"] = points, tetrahedra, marks
+    of_set = '<DataItem Reference="/Xdmf/Domain/Grid/Attribute[2]/DataItem"/>'
+    (tmp_path / "a.xdmf").write_text(xdmf(
+        f'<Grid Name="a">{topology("a.h5", "/cells", "Tetrahedron", tetrahedra.shape)}'
+        f'<Geometry GeometryType="XYZ">{item("a.h5", "/points", points.shape)}</Geometry>'
+        f'{attribute("number", "Node", of_set)}{attribute("set:some", "Node", item("a.h5", "/marks", (27,), "UChar", 1))}</Grid>'))
+    vertices, _ = order(command, tmp_path / "a.xdmf", tmp_path / "b.xdmf")
+    items = {element.get("Name"): element.find("DataItem") for element in ElementTree.parse(tmp_path / "b.xdmf").iter("Attribute")}
+    with h5py.File(tmp_path / "b.h5") as file:
+        values = {name: file[data.text.strip().split(":")[1]][()] for name, data in items.items()}
+    assert (values["number"][vertices] == marks).all()
+    assert ((values["set:some"][vertices] != 0) == marks).all()
+
+
+def test_an_attribute_of_two_grids_with_other_cells_is_refused(command, tmp_path):
+    points, _, _ = box(2)
+    corners = numpy.arange(24)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["points"], file["cells"], file["u"] = points, corners, numpy.arange(3.0)
+    geometry = f'<Geometry GeometryType="XYZ">{item("a.h5", "/points", points.shape)}</Geometry>'
+    triangles = '<Topology TopologyType="Triangle"><DataItem Dimensions="3 3" NumberType="Int">0 1 2 1 2 3 2 3 4</DataItem></Topology>'
+    (tmp_path / "a.xdmf").write_text(xdmf(
+        f'<Grid Name="a">{topology("a.h5", "/cells", "Hexahedron", (3, 8))}{geometry}'
+        f'{attribute("u", "Cell", item("a.h5", "/u", (3,)))}</Grid>'
+        f'<Grid Name="b">{triangles}{geometry}<Attribute Reference="/Xdmf/Domain/Grid[1]/Attribute"/></Grid>'))
     fault = command.fails("order", tmp_path / "a.xdmf", "-o", tmp_path / "b.xdmf")
-    assert "references name these values in two places, where they move differently" in fault
+    assert "the <Attribute> is referred to by a Grid with other cells" in fault
 
 
 BROKEN = {

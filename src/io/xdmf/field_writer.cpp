@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <new>
 #include <string_view>
 #include <type_traits>
 
@@ -32,6 +33,30 @@ bool is_identity(const std::vector<Index>& rows, Index count) {
 }  // namespace
 
 pugi::xml_node Writer::element_of(const Field& field) const { return items_[field.place.named_by].parent(); }
+
+void Writer::part_references() {
+  const auto for_each_place = [&](const auto& visit) {
+    for (Field& field : fields_) {
+      visit(field, field.place.item, field.place.named_by);
+      for (DataPlace::Repeat& repeat : field.place.repeats) visit(field, repeat.item, repeat.named_by);
+    }
+  };
+  std::map<std::size_t, const Field*> first;  // by DataItem
+  std::set<std::size_t> shared;
+  for_each_place([&](const Field& field, std::size_t item, std::size_t /*named_by*/) {
+    if (first.emplace(item, &field).first->second != &field) shared.insert(item);
+  });
+  for_each_place([&](const Field& /*field*/, std::size_t& item, std::size_t named_by) {
+    if (item == named_by || !shared.contains(item)) return;
+    pugi::xml_node own = items_[named_by];
+    own.remove_attributes();
+    for (const pugi::xml_attribute attribute : items_[item].attributes()) {
+      if (!own.append_copy(attribute)) throw std::bad_alloc();
+    }
+    set_text(own, items_[item].text().get());
+    item = named_by;
+  });
+}
 
 void Writer::write_field(const Field& field) {
   switch (field.role) {
@@ -191,17 +216,11 @@ void Writer::remove_element(const Field& field) { gone_.insert(&field); }
 
 void Writer::remove_gone() {
   if (gone_.empty()) return;
-  std::set<std::size_t> used;
-  for (const Field& field : layout_.fields) {
-    if (gone_.contains(&field)) continue;
-    used.insert(field.place.item);
-    for (const DataPlace::Repeat& repeat : field.place.repeats) used.insert(repeat.item);
-  }
   std::set<pugi::xml_node> elements;
   for (const Field* const field : gone_) {
     const auto remove = [&](std::size_t item, std::size_t named_by) {
       elements.insert(items_[named_by].parent());
-      if (item != named_by && !used.contains(item)) elements.insert(items_[item]);
+      if (item != named_by) elements.insert(items_[item]);
     };
     remove(field->place.item, field->place.named_by);
     for (const DataPlace::Repeat& repeat : field->place.repeats) remove(repeat.item, repeat.named_by);

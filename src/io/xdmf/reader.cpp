@@ -379,30 +379,24 @@ class XdmfReader {
         reading_.notes);
     if (reading_.mesh.cell_blocks.size() == 1) reading_.mesh.cell_blocks.clear();
     arrays_.finish();
-    check_items();
+    check_elements();
     keep_rest(reading_.mesh.vertex_count(), reading_.mesh.cell_count());
     reading_.mesh.format_metadata = reading_.layout;
   }
 
-  /// Throws where references make one DataItem the values of what moves differently.
-  void check_items() const {
-    std::map<std::size_t, std::string> movements;
-    for (std::size_t i = 0; i < reading_.layout->fields.size(); ++i) {
-      const Field& field = reading_.layout->fields[i];
-      std::string movement =
-          field.association == Association::cells ? fmt::format("cells of part {}", field.part) : "points";
-      if (field.role == Field::Role::set) movement += " of a set";
-      if (field.role == Field::Role::topology) movement = fmt::format("corners of topology {}", i);
-      const auto check = [&](std::size_t item) {
-        const auto [known, is_new] = movements.try_emplace(item, movement);
-        if (is_new || known->second == movement) return;
-        throw reading_.document.error(
-            reading_.document.item(item),
-            "references name these values in two places, where they move differently",
-            "write them twice, in DataItems of their own");
-      };
-      check(field.place.item);
-      for (const DataPlace::Repeat& repeat : field.place.repeats) check(repeat.item);
+  /// Throws where a reference makes one element that of two Grids with different cells.
+  void check_elements() const {
+    std::set<std::size_t> items;
+    const auto check = [&](std::size_t named_by) {
+      if (items.insert(named_by).second) return;
+      const pugi::xml_node element = reading_.document.item(named_by).parent();
+      throw reading_.document.error(
+          element, fmt::format("the <{}> is referred to by a Grid with other cells", element.name()),
+          "write it twice, in each of the Grids");
+    };
+    for (const Field& field : reading_.layout->fields) {
+      check(field.place.named_by);
+      for (const DataPlace::Repeat& repeat : field.place.repeats) check(repeat.named_by);
     }
   }
 

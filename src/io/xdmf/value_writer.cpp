@@ -78,7 +78,6 @@ std::vector<pugi::xml_node> Writer::items_at(const DataPlace& place) const {
 void Writer::put(const DataPlace& place, const Values& values, std::size_t components) {
   pugi::xml_node item = items_[place.item];
   if (is_taken(place, values)) {
-    if (!apart_.insert(place.item).second) return;  // a reference to it, which moves alike
     const std::string dataset = unused_dataset(files_.at(place.file), 0, "");
     put_apart(item, place.file, dataset, values, shape_of(size_of(values), components));
     for (pugi::xml_node each : items_at(place)) {

@@ -19,6 +19,7 @@ Writer::Writer(const Mesh& mesh, const Layout& layout, std::vector<std::vector<I
                const FilePath& path, Notes& notes)
     : mesh_(mesh),
       layout_(layout),
+      fields_(layout.fields),
       path_(path),
       stem_(path.path().stem().string()),
       notes_(notes),
@@ -26,12 +27,13 @@ Writer::Writer(const Mesh& mesh, const Layout& layout, std::vector<std::vector<I
   parse(xml_, layout.xml);
   items_ = elements_named(xml_, "DataItem");
   grids_ = elements_named(xml_, "Grid");
+  part_references();
 }
 
 void Writer::write() {
   OutputFile xml(path_);
   open_files();
-  for (const Field& field : layout_.fields) write_field(field);
+  for (const Field& field : fields_) write_field(field);
   remove_gone();
   add_others();
   rename_files();
@@ -56,7 +58,7 @@ std::string Writer::write_without_values(const std::filesystem::path& data, cons
     throw InputError(name, "cannot be written", "the disk may be full");
   output.file = std::make_unique<hdf5::File>(hdf5::File::change(data, name));
   hdf5::File& file = *files_.emplace(old_name, std::move(output)).first->second.file;
-  for (const Field& field : layout_.fields) {
+  for (const Field& field : fields_) {
     file.give_room(field.place.dataset);
     if (field.role == Field::Role::topology) announce_cells_of(field);
   }

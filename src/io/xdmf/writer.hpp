@@ -87,6 +87,8 @@ class Writer {
   static std::string text_of_values(const Values& values, std::size_t components);
 
   // fields of the layout: field_writer.cpp
+  /// Gives each field DataItems of its own where references make one the values of several.
+  void part_references();
   /// Returns the Topology, Geometry, Attribute or Set whose values a field is.
   [[nodiscard]] pugi::xml_node element_of(const Field& field) const;
   void write_field(const Field& field);
@@ -135,6 +137,7 @@ class Writer {
 
   const Mesh& mesh_;
   const Layout& layout_;
+  std::vector<Field> fields_;
   FilePath path_;
   std::string stem_;
   Notes& notes_;
@@ -146,7 +149,6 @@ class Writer {
   std::map<std::string, std::vector<std::uint64_t>>
       shapes_;  // that have changed, by the new name of a dataset
   std::vector<OutputFile> binaries_;
-  std::set<std::size_t> apart_;  // DataItems with a dataset of their own
   std::set<const Field*> gone_;
   std::set<std::pair<Association, std::string>> names_;  // of arrays
 };
