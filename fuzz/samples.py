@@ -18,8 +18,8 @@ FAMILIES = {
     "medit": ("io/medit_test.cpp", ""), "vtk": ("vtk/vtk_legacy_test.cpp", "# vtk"), "vtu": ("vtk/vtu_test.cpp", "<"),
     "vega": ("io/vega_test.cpp", ""), "off": ("io/off_test.cpp", ""), "ply": ("io/ply_test.cpp", "ply"),
     "obj": ("io/obj_test.cpp", ""), "stl": ("io/stl_test.cpp", ""), "su2": ("io/su2_test.cpp", ""),
-    "abaqus": ("io/abaqus_test.cpp", ""), "nastran": ("io/nastran_test.cpp", ""), "unv": ("io/unv_test.cpp", " "), "xdmf": ("io/xdmf_test.cpp", "<"),
-    "matrix": ("io/matrix_test.cpp", "%%"), "graph": ("io/matrix_test.cpp", ""),
+    "abaqus": ("io/abaqus_test.cpp", ""), "nastran": ("io/nastran_test.cpp", ""), "unv": ("io/unv_test.cpp", " "),
+    "xdmf": ("io/xdmf_test.cpp", "<"), "matrix": ("io/matrix_test.cpp", "%%"), "graph": ("io/matrix_test.cpp", ""),
 }
 NAME = r"^(?:constexpr std::string_view|const std::string) (k\w+)\s*=\s*"
 PLAIN = re.compile(NAME + r'((?:"(?:\\.|[^"\\])*"\s*)+);', re.MULTILINE)

@@ -5,7 +5,6 @@
 #include "fuzz/families/families.hpp"
 #include "fuzz/mutators/choice.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <string_view>
 #include <utility>
@@ -66,19 +65,11 @@ std::string mutate_words(std::string input, std::uint32_t seed) {
   if (parts.empty()) return {};
   const std::string_view one = parts[choice.below(parts.size())];
   const std::string_view other = parts[choice.below(parts.size())];
-  if (one.data() == other.data())
-    return by_lines ? with(input, one, {}) : with(input, one, near_number(one, one, choice));
-  switch (choice.below(4)) {
-    case 0:
-      return with(input, one, other);
-    case 1:
-      return with(input, one, other, other, one);
-    case 2:
-      return by_lines ? with(input, one, std::string(one) + '\n' + std::string(other))
-                      : with(input, one, near_number(one, other, choice));
-    default:
-      return with(input, one, by_lines ? std::string() : near_number(one, other, choice));
-  }
+  const std::size_t change = one.data() == other.data() ? 3 : choice.below(4);
+  if (change == 0) return with(input, one, other);
+  if (change == 1) return with(input, one, other, other, one);
+  if (!by_lines) return with(input, one, near_number(one, other, choice));
+  return with(input, one, change == 2 ? std::string(one) + '\n' + std::string(other) : std::string());
 }
 
 }  // namespace meshorder::fuzz
