@@ -3,6 +3,9 @@
 // Writes the first inputs of all families, one folder for each:
 //
 //   meshorder_fuzz_seeds FOLDER
+#ifdef MESHORDER_HAS_NETCDF
+#include "fuzz/exodus_seed.hpp"
+#endif
 #include "fuzz/families/mesh_formats.hpp"
 #include "fuzz/input_files.hpp"
 #ifdef MESHORDER_HAS_CGNS
@@ -122,6 +125,15 @@ void add_encodings(Seeds& seeds) {
   seeds.add("gmsh", test::kGmsh22);
 }
 
+#ifdef MESHORDER_HAS_NETCDF
+void add_exodus(Seeds& seeds) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder.path() / "mesh.exo";
+  write_exodus_seed(path);
+  seeds.add("exodus", test::content_of(path));
+}
+#endif
+
 #ifdef MESHORDER_HAS_CGNS
 /// CGNS's older kind of file, which is read and kept, but not made of other formats.
 void add_adf(Seeds& seeds) {
@@ -235,6 +247,9 @@ int main(int argc, char** argv) {
     Seeds seeds(argv[1]);
     add_meshes(seeds);
     add_encodings(seeds);
+#ifdef MESHORDER_HAS_NETCDF
+    add_exodus(seeds);
+#endif
 #ifdef MESHORDER_HAS_CGNS
     add_adf(seeds);
 #endif

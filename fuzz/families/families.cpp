@@ -26,6 +26,7 @@ std::string either(std::string input, std::uint32_t seed) {
 /// Returns what changes files of a mesh format knowing their structure.
 Mutate mutation_of(const MeshFamily& family) {
   if (family.name == "xdmf") return either<mutate_xml, mutate_hdf5>;
+  if (family.name == "exodus") return mutate_exodus;
   if (family.by_library) return mutate_hdf5;
   if (family.name == "gmsh") return either<mutate_sections, mutate_words>;
   if (family.name == "ply") return either<mutate_ply, mutate_words>;
@@ -40,8 +41,8 @@ std::span<const Family> families() {
     std::vector<Family> list{
         {"openfoam", check_openfoam, mutate_words},
         {"npy", check_npy},
-        {"scenario", check_scenario},
-        {"results", check_results},
+        {"scenario", check_scenario, mutate_json},
+        {"results", check_results, mutate_json},
         {"checkpoint", check_checkpoint, mutate_checkpoint},
         {"motion", check_motion},
         {"graphs", check_graphs},

@@ -34,6 +34,8 @@ std::string mutate_ply(std::string input, std::uint32_t seed);
 std::string mutate_vtu(std::string input, std::uint32_t seed);
 std::string mutate_xml(std::string input, std::uint32_t seed);
 std::string mutate_hdf5(std::string input, std::uint32_t seed);
+std::string mutate_exodus(std::string input, std::uint32_t seed);
+std::string mutate_json(std::string input, std::uint32_t seed);
 std::string mutate_checkpoint(std::string input, std::uint32_t seed);
 
 }  // namespace meshorder::fuzz

@@ -7,6 +7,8 @@
 
 namespace meshorder::fuzz {
 
+inline constexpr std::size_t kTextRoom = 16;  ///< bytes by which a text within a file may grow
+
 /// The choices of a mutation.
 class Choice {
  public:

@@ -17,8 +17,6 @@
 namespace meshorder::fuzz {
 namespace {
 
-constexpr std::size_t kTextRoom = 16;  // bytes by which a text may grow
-
 std::vector<pugi::xml_node> elements_of(const pugi::xml_document& document) {
   std::vector<pugi::xml_node> elements;
   for (const pugi::xpath_node& found : document.select_nodes("//*")) elements.push_back(found.node());

@@ -219,6 +219,21 @@ TEST(Exodus, NamesWithoutValuesGetNone) {
   test::expect_same(read_mesh(std::as_bytes(std::span(files.files.front().bytes))), mesh);
 }
 
+TEST(Exodus, TellsWhichNamesOfVariablesOfSetsChange) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "a.exo";
+  write_two_blocks(path, [](exodus::NcOutput& file) {
+    (void)file.dimension({"num_node_sets", 1});
+    const exodus::NcSink sink = file.variable("node_ns1", exodus::kInt, {"one"});
+    file.later([sink] { sink.integers(std::vector<std::int32_t>{2}); });
+    put_names(file, "nset", "\t");
+    put_values(file, "vals_nset_var1ns1", "one", exodus::kDouble, {4});
+  });
+  Notes notes;
+  write_mesh(read_mesh(path), folder.path() / "b.exo", &notes);
+  EXPECT_THAT(notes, ElementsAre("the name '\t' is written as '_'"));
+}
+
 TEST(Exodus, ValuesOfBlocksOfMixedTypesStay) {
   constexpr double kLarge = 1e165;
   const TemporaryFolder folder;

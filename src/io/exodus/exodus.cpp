@@ -668,8 +668,11 @@ void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
   for (const BlockPlan& block : writing.blocks) names.push_back(block.name);
   for (const Columns& columns : attributes) add_names(columns, names);
   add_names(nodal_attributes, names);
-  for (const auto& of_kind : sets) {
-    for (const SetPlan& set : of_kind) names.push_back(set.name);
+  for (std::size_t kind = 0; kind < sets.size(); ++kind) {
+    if (sets[kind].empty()) continue;
+    for (const SetPlan& set : sets[kind]) names.push_back(set.name);
+    const std::vector<std::string>& variables = metadata.sets[kind].variables;
+    names.insert(names.end(), variables.begin(), variables.end());
   }
   for (const auto* maps : {&node_maps, &element_maps}) {
     for (const MapPlan& map : *maps) names.push_back(map.name);

@@ -1,0 +1,12 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+
+namespace meshorder::fuzz {
+
+/// Writes a file of Exodus II of some kilobytes with blocks, sets, sides, attributes, maps and variables of
+/// all kinds in two steps. Writers of other meshes do not use most of these.
+void write_exodus_seed(const std::filesystem::path& path);
+
+}  // namespace meshorder::fuzz

@@ -1,0 +1,217 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// Exodus II files: names, values and attributes are changed by libnetcdf, so that the file stays one of
+// netCDF's.
+#include "fuzz/families/families.hpp"
+#include "fuzz/families/scratch.hpp"
+#include "fuzz/mutators/choice.hpp"
+#include "io/exodus/netcdf.hpp"
+#include "support/files.hpp"
+#include <meshorder/error.hpp>
+
+#include <netcdf.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <limits>
+#include <vector>
+
+namespace meshorder::fuzz {
+namespace {
+
+constexpr std::size_t kMostValues = 1U << 16U;  // of a variable that is changed
+constexpr std::array kNumbers{0.0,
+                              -1.0,
+                              std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::quiet_NaN(),
+                              2147483647.0,
+                              2147483648.0};
+
+struct Variable {
+  int id = 0;
+  std::string name;
+  nc_type type = NC_NAT;
+  std::vector<int> dimensions;
+  std::size_t values = 0;
+};
+
+Variable variable_of(int file, int id) {
+  std::array<char, NC_MAX_NAME + 1> name{};
+  Variable variable{.id = id};
+  int rank = 0;
+  (void)nc_inq_varndims(file, id, &rank);
+  variable.dimensions.resize(static_cast<std::size_t>(rank));
+  (void)nc_inq_var(file, id, name.data(), &variable.type, nullptr, variable.dimensions.data(), nullptr);
+  variable.name = name.data();
+  variable.values = 1;
+  for (const int dimension : variable.dimensions) {
+    std::size_t length = 0;
+    (void)nc_inq_dimlen(file, dimension, &length);
+    variable.values = length > kMostValues ? kMostValues + 1 : variable.values * length;
+    variable.values = std::min(variable.values, kMostValues + 1);
+  }
+  return variable;
+}
+
+/// Returns the name with another digit in place of one that it has; the same name where it has none.
+std::string near_name(std::string name, Choice& choice) {
+  std::vector<std::size_t> digits;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (std::isdigit(static_cast<unsigned char>(name[i])) != 0) digits.push_back(i);
+  }
+  if (!digits.empty()) name[digits[choice.below(digits.size())]] = static_cast<char>('1' + choice.below(4));
+  return name;
+}
+
+/// Gives all values of a variable of numbers to `change`, and writes what it leaves.
+template <class Change>
+void change_numbers(int file, const Variable& variable, Change change) {
+  std::vector<double> values(variable.values);
+  if (nc_get_var_double(file, variable.id, values.data()) != NC_NOERR) return;
+  change(values);
+  (void)nc_put_var_double(file, variable.id, values.data());
+}
+
+void change_values(int file, const Variable& variable, Choice& choice) {
+  if (variable.values == 0 || variable.values > kMostValues) return;
+  if (variable.type == NC_CHAR) {
+    std::string text(variable.values, '\0');
+    if (nc_get_var_text(file, variable.id, text.data()) != NC_NOERR) return;
+    text = mutated_bytes(std::move(text), variable.values);
+    text.resize(variable.values);
+    (void)nc_put_var_text(file, variable.id, text.data());
+    return;
+  }
+  change_numbers(file, variable, [&](std::vector<double>& values) {
+    double& value = values[choice.below(values.size())];
+    const double other = values[choice.below(values.size())];
+    const std::array<double, 4> choices{value + 1, value - 1, other, kNumbers[choice.below(kNumbers.size())]};
+    value = choices[choice.below(choices.size())];
+  });
+}
+
+/// Gives `variable` the values of `other`, again from the first one on where they are too few.
+void copy_values(int file, const Variable& variable, const Variable& other) {
+  if (other.values == 0 || std::max(variable.values, other.values) > kMostValues) return;
+  std::vector<double> source(other.values);
+  if (nc_get_var_double(file, other.id, source.data()) != NC_NOERR) return;
+  change_numbers(file, variable, [&](std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = source[i % source.size()];
+  });
+}
+
+/// Adds a copy of a variable under another name; the copy may have the dimensions of `shape`.
+void add_copy(int file, const Variable& variable, const std::string& name, const Variable& shape) {
+  int id = 0;
+  (void)nc_redef(file);
+  const int status = nc_def_var(file, name.c_str(), variable.type, static_cast<int>(shape.dimensions.size()),
+                                shape.dimensions.data(), &id);
+  (void)nc_enddef(file);
+  if (status == NC_NOERR) copy_values(file, variable_of(file, id), variable);
+}
+
+/// Exchanges the names of two things of one kind.
+template <class Rename>
+void exchange_names(int file, int one, const std::string& name, int other, const std::string& other_name,
+                    Rename rename) {
+  (void)nc_redef(file);
+  (void)rename(file, one, "exchanged");
+  (void)rename(file, other, name.c_str());
+  (void)rename(file, one, other_name.c_str());
+  (void)nc_enddef(file);
+}
+
+void exchange_dimensions(int file, Choice& choice) {
+  int count = 0;
+  (void)nc_inq_ndims(file, &count);
+  const auto any = [&] { return static_cast<int>(choice.below(static_cast<std::size_t>(count))); };
+  const auto name_of = [&](int id) {
+    std::array<char, NC_MAX_NAME + 1> name{};
+    (void)nc_inq_dimname(file, id, name.data());
+    return std::string(name.data());
+  };
+  const int one = any();
+  const int other = any();
+  if (one != other) exchange_names(file, one, name_of(one), other, name_of(other), nc_rename_dim);
+}
+
+/// Removes an attribute of a variable, or of the file, or changes its text.
+void change_attribute(int file, int variable, Choice& choice) {
+  int count = 0;
+  (void)nc_inq_varnatts(file, variable, &count);
+  if (count == 0) return;
+  std::array<char, NC_MAX_NAME + 1> name{};
+  const auto which = static_cast<int>(choice.below(static_cast<std::size_t>(count)));
+  if (nc_inq_attname(file, variable, which, name.data()) != NC_NOERR) return;
+  nc_type type = NC_NAT;
+  std::size_t length = 0;
+  (void)nc_inq_att(file, variable, name.data(), &type, &length);
+  (void)nc_redef(file);
+  if (type != NC_CHAR || choice.below(4) == 0) {
+    (void)nc_del_att(file, variable, name.data());
+  } else {
+    std::string text(length, '\0');
+    (void)nc_get_att_text(file, variable, name.data(), text.data());
+    text = mutated_bytes(std::move(text), length + kTextRoom);
+    (void)nc_put_att_text(file, variable, name.data(), text.size(), text.data());
+  }
+  (void)nc_enddef(file);
+}
+
+/// Changes an open file. A call of libnetcdf that fails changes nothing, which is a mutation, too.
+void change(int file, Choice& choice) {
+  int count = 0;
+  (void)nc_inq_nvars(file, &count);
+  if (count == 0) return;
+  const auto any = [&] {
+    return variable_of(file, static_cast<int>(choice.below(static_cast<std::size_t>(count))));
+  };
+  const Variable variable = any();
+  const Variable other = any();
+  switch (choice.below(8)) {
+    case 0:
+      if (variable.id != other.id)
+        exchange_names(file, variable.id, variable.name, other.id, other.name, nc_rename_var);
+      break;
+    case 1:
+      exchange_dimensions(file, choice);
+      break;
+    case 2:
+      copy_values(file, variable, other);
+      break;
+    case 3:
+      add_copy(file, variable, near_name(choice.below(2) == 0 ? variable.name : other.name, choice), other);
+      break;
+    case 4:
+      (void)nc_redef(file);
+      (void)nc_rename_var(file, variable.id, near_name(variable.name, choice).c_str());
+      (void)nc_enddef(file);
+      break;
+    case 5:
+      change_attribute(file, choice.below(3) == 0 ? NC_GLOBAL : variable.id, choice);
+      break;
+    default:
+      change_values(file, variable, choice);
+  }
+}
+
+}  // namespace
+
+std::string mutate_exodus(std::string input, std::uint32_t seed) {
+  Choice choice(seed);
+  try {  // libnetcdf trusts what a damaged header says
+    exodus::check_classic_header(
+        "input", [&](std::size_t most) { return input.substr(0, most); }, input.size());
+  } catch (const InputError&) {
+    return {};
+  }
+  // not in memory: libnetcdf leaks some files there that it cannot open
+  const std::filesystem::path path = scratch_file("mutated.nc", input);
+  int file = 0;
+  if (nc_open(path.c_str(), NC_WRITE, &file) != NC_NOERR) return {};
+  change(file, choice);
+  return nc_close(file) == NC_NOERR ? test::content_of(path) : std::string();
+}
+
+}  // namespace meshorder::fuzz
