@@ -78,8 +78,8 @@ std::vector<std::vector<Index>> sorted_cells(const Cells& cells) {
 /// may have them in another order.
 template <class Named>
 std::vector<const Named*> by_name(const std::vector<Named>& all) {
-  std::vector<const Named*> result;
-  for (const Named& one : all) result.push_back(&one);
+  std::vector<const Named*> result(all.size());
+  std::transform(all.begin(), all.end(), result.begin(), [](const Named& one) { return &one; });
   std::stable_sort(result.begin(), result.end(), [](const Named* a, const Named* b) {
     return std::tie(a->association, a->name) < std::tie(b->association, b->name);
   });

@@ -11,13 +11,17 @@
 #include <filesystem>
 #include <random>
 
+// NOLINTBEGIN(readability-identifier-naming): the engine's names
+
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 
 namespace meshorder::fuzz {
 namespace {
 
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): the engine's functions have no context
 const Family* chosen = nullptr;
 bool keeps_files_whole = false;
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 void choose_family(const std::filesystem::path& program) {
   const std::string name = program.filename().string();
@@ -73,3 +77,5 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   if (keeps_files_whole) return size;
   return LLVMFuzzerMutate(data, size, most);
 }
+
+// NOLINTEND(readability-identifier-naming)

@@ -3,7 +3,10 @@
 
 #include "io/exodus/netcdf.hpp"
 
+#include <algorithm>
 #include <functional>
+#include <initializer_list>
+#include <map>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -55,8 +58,9 @@ class Variables {
 
  private:
   [[nodiscard]] std::vector<std::size_t> sizes(const std::vector<std::string>& dimensions) const {
-    std::vector<std::size_t> result;
-    for (const std::string& dimension : dimensions) result.push_back(lengths_.at(dimension));
+    std::vector<std::size_t> result(dimensions.size());
+    std::transform(dimensions.begin(), dimensions.end(), result.begin(),
+                   [&](const std::string& dimension) { return lengths_.at(dimension); });
     return result;
   }
   static std::size_t product(const std::vector<std::size_t>& sizes) {

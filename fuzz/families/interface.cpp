@@ -150,7 +150,7 @@ Numbers reals(Choices& from, std::size_t count) {
 std::string method_name(Choices& from) {
   const int choice = from.byte() % (mo_method_count() + 2);
   if (choice == mo_method_count()) return "auto";
-  if (choice > mo_method_count()) return std::string(1, static_cast<char>(from.byte()));
+  if (choice > mo_method_count()) return {static_cast<char>(from.byte())};
   return mo_method_name(choice);
 }
 
@@ -255,6 +255,7 @@ void check_cells(std::string_view /*family*/, Family::Bytes input) {
                                 Numbers(whole_type(from), cells), Numbers(whole_type(from), cells)};
   std::array<mo_out, 4> outs{};
   std::transform(orders.begin(), orders.end(), outs.begin(), [](Numbers& order) { return order.out(); });
+  const auto& [vertex_new_to_old, vertex_old_to_new, cell_new_to_old, cell_old_to_new] = outs;
   const mo_in offsets_in = cell_ends.in();
   const mo_in vertices_in = vertices.in();
   const mo_in types_in = types.in();
@@ -262,9 +263,10 @@ void check_cells(std::string_view /*family*/, Family::Bytes input) {
   const bool typed = from.one_in(2);
   const bool placed = from.one_in(2);
   const auto count = from.one_in(8) ? from.bits<std::int64_t>() : static_cast<std::int64_t>(n);
-  const mo_status status = mo_order_mesh(&offsets_in, &vertices_in, typed ? &types_in : nullptr, count,
-                                         placed ? &points_in : nullptr, dimension, &options.options, &outs[0],
-                                         &outs[1], &outs[2], &outs[3], nullptr, nullptr);
+  const mo_status status =
+      mo_order_mesh(&offsets_in, &vertices_in, typed ? &types_in : nullptr, count,
+                    placed ? &points_in : nullptr, dimension, &options.options, &vertex_new_to_old,
+                    &vertex_old_to_new, &cell_new_to_old, &cell_old_to_new, nullptr, nullptr);
   check_status(status);
   if (status != MO_OK) return;
   check_bijection(orders[0], orders[1], base);

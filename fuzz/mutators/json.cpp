@@ -60,7 +60,7 @@ Json other_value(const Json& value, Choice& choice) {
   if (value.is_number()) return other_number(value, choice);
   if (value.is_boolean()) return !value.get<bool>();
   if (value.is_string() && value.get_ref<const std::string&>().size() <= kMostText) {
-    const std::string& text = value.get_ref<const std::string&>();
+    const auto& text = value.get_ref<const std::string&>();
     return mutated_bytes(text, text.size() + kTextRoom);
   }
   return nullptr;

@@ -27,24 +27,20 @@ std::vector<std::string_view> parts_of(std::string_view text, std::string_view s
   }
 }
 
-/// Returns the text with others for two of its parts, neither of which begins before the other ends.
-std::string with(std::string_view text, std::string_view one, std::string_view for_one,
-                 std::string_view other, std::string_view for_other) {
-  if (one.data() > other.data()) {
-    std::swap(one, other);
-    std::swap(for_one, for_other);
-  }
-  std::string result(text.data(), one.data());
-  result += for_one;
-  result.append(one.data() + one.size(), other.data());
-  result += for_other;
-  result.append(other.data() + other.size(), text.data() + text.size());
+/// Returns the text with another one for a part.
+std::string with(std::string_view text, std::string_view part, std::string_view for_part) {
+  std::string result(text.data(), part.data());
+  result += for_part;
+  result.append(part.data() + part.size(), text.data() + text.size());
   return result;
 }
 
-/// Returns the text with another one for a part.
-std::string with(std::string_view text, std::string_view part, std::string_view for_part) {
-  return with(text, part, for_part, text.substr(text.size()), {});
+/// Returns the text with two parts in each other's place, neither of which begins before the other ends.
+std::string exchanged(std::string_view text, std::string_view one, std::string_view other) {
+  if (one.data() > other.data()) std::swap(one, other);
+  const std::string_view before = text.substr(0, static_cast<std::size_t>(other.data() - text.data()));
+  return with(before, one, other) + std::string(one) +
+         std::string(other.data() + other.size(), text.data() + text.size());
 }
 
 /// Returns a whole number near to the one that a word is, another word where it is none.
@@ -67,7 +63,7 @@ std::string mutate_words(std::string input, std::uint32_t seed) {
   const std::string_view other = parts[choice.below(parts.size())];
   const std::size_t change = one.data() == other.data() ? 3 : choice.below(4);
   if (change == 0) return with(input, one, other);
-  if (change == 1) return with(input, one, other, other, one);
+  if (change == 1) return exchanged(input, one, other);
   if (!by_lines) return with(input, one, near_number(one, other, choice));
   return with(input, one, change == 2 ? std::string(one) + '\n' + std::string(other) : std::string());
 }
