@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What a fuzzing engine calls. One program serves all families: its name ends in that of the family.
+// What a fuzzing engine calls. One program serves all families: its name ends in that of the family, and has
+// "_whole_" before it where files that a library reads stay whole.
 #include "fuzz/family.hpp"
 
 #include <tbb/global_control.h>
@@ -29,6 +30,7 @@ void choose_family(const std::filesystem::path& program) {
   const auto found = std::find_if(families().begin(), families().end(), names_it);
   if (found == families().end()) fail(name + ": no family has the name behind the last '_'");
   chosen = &*found;
+  keeps_files_whole = chosen->by_library && name.ends_with("_whole_" + std::string(chosen->name));
 }
 
 }  // namespace
@@ -66,7 +68,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
                                                unsigned seed) {
   constexpr unsigned kOneIn = 2;  // mutations that know the structure
-  if (chosen->mutate != nullptr && (seed % kOneIn == 0 || keeps_files_whole)) {
+  // libraries crash on some damaged files, in mutations that use them, too
+  const bool knows = chosen->by_library ? keeps_files_whole : seed % kOneIn == 0;
+  if (chosen->mutate != nullptr && knows) {
     const std::string changed =
         chosen->mutate({data, data + size}, static_cast<std::uint32_t>(std::mt19937(seed)()));
     if (!changed.empty() && changed.size() <= most) {

@@ -20,8 +20,8 @@ struct Family {
   /// Changes an input knowing its structure, with `seed` for all choices. Returns an empty text where the
   /// input has no such structure. Null: bytes are changed without knowledge of what they mean.
   std::string (*mutate)(std::string input, std::uint32_t seed) = nullptr;
-  /// Whether a library reads the bytes, which crashes on some damaged files: where a crash ends the run, as
-  /// in tests, inputs are changed by `mutate` alone, which leaves whole files.
+  /// Whether a library reads the bytes, which crashes on some damaged files: inputs are changed either by
+  /// `mutate` alone, which leaves whole files, as in tests, or without it.
   bool by_library = false;
 };
 

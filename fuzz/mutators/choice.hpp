@@ -1,9 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cctype>
 #include <cstddef>
 #include <cstdint>
 #include <random>
+#include <string>
+#include <vector>
 
 namespace meshorder::fuzz {
 
@@ -20,5 +23,19 @@ class Choice {
  private:
   std::minstd_rand random_;
 };
+
+/// Returns the name with another digit in place of one that it has; with one behind it where it has none.
+inline std::string near_name(std::string name, Choice& choice) {
+  std::vector<std::size_t> digits;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (std::isdigit(static_cast<unsigned char>(name[i])) != 0) digits.push_back(i);
+  }
+  if (digits.empty()) {
+    digits.push_back(name.size());
+    name += '0';
+  }
+  name[digits[choice.below(digits.size())]] = static_cast<char>('1' + choice.below(4));
+  return name;
+}
 
 }  // namespace meshorder::fuzz

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <limits>
 #include <vector>
 
@@ -52,16 +51,6 @@ Variable variable_of(int file, int id) {
     variable.values = std::min(variable.values, kMostValues + 1);
   }
   return variable;
-}
-
-/// Returns the name with another digit in place of one that it has; the same name where it has none.
-std::string near_name(std::string name, Choice& choice) {
-  std::vector<std::size_t> digits;
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    if (std::isdigit(static_cast<unsigned char>(name[i])) != 0) digits.push_back(i);
-  }
-  if (!digits.empty()) name[digits[choice.below(digits.size())]] = static_cast<char>('1' + choice.below(4));
-  return name;
 }
 
 /// Gives all values of a variable of numbers to `change`, and writes what it leaves.

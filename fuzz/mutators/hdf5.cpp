@@ -1,10 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// HDF5 files: the values of a dataset are changed by libhdf5 itself, so that the file stays one.
+// HDF5 files: values, attributes and links are changed by libhdf5 itself, so that the file stays one.
 #include "fuzz/families/families.hpp"
 #include "fuzz/input_files.hpp"
 #include "fuzz/mutators/choice.hpp"
 #include "io/hdf5/hdf5_file.hpp"
+#include "io/hdf5/session.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
@@ -35,16 +36,11 @@ void change(std::vector<Number>& numbers, Choice& choice) {
   }
 }
 
-/// Returns the file with another dataset; nothing without datasets of numbers.
-std::string with_other_values(const std::string& bytes, Choice& choice) {
-  hdf5::File file = hdf5::File::in_memory(bytes, "input");
+/// Changes a dataset of numbers. Returns false without any.
+bool change_values(hdf5::File& file, Choice& choice) {
   const auto datasets = file.datasets();
-  if (datasets.empty()) return {};
+  if (datasets.empty()) return false;
   const std::string& path = datasets[choice.below(datasets.size())].first;
-  if (choice.below(16) == 0) {
-    file.remove(path);
-    return file.bytes();
-  }
   const std::string& source = choice.below(8) == 0 ? datasets[choice.below(datasets.size())].first : path;
   const hdf5::DatasetInfo info = file.info(source);
   Values values = file.read(source);
@@ -56,7 +52,114 @@ std::string with_other_values(const std::string& bytes, Choice& choice) {
     file.remove(path);
   }
   file.write(path, values, shape);
-  return file.bytes();
+  return true;
+}
+
+/// Adds the paths of what is in a group, and in its groups, to `paths`. Links may lead round.
+void add_objects(const hdf5::File& file, const std::string& group, int depth,
+                 std::vector<std::string>& paths) {
+  constexpr int kMostDepth = 8;
+  constexpr std::size_t kMostObjects = 1000;
+  if (depth == kMostDepth) return;
+  for (const std::string& name : file.names(group)) {
+    if (paths.size() == kMostObjects) return;
+    std::string path = group;
+    path += '/';
+    path += name;
+    paths.push_back(path);
+    add_objects(file, path, depth + 1, paths);
+  }
+}
+
+/// Gives one attribute of an object the type and values that `other` has for it; removes it where that has
+/// none, or changes its bytes.
+void change_attribute(hid_t object, hid_t other, Choice& choice) {
+  const auto count = static_cast<std::size_t>(std::max(H5Aget_num_attrs(object), 0));
+  if (count == 0) return;
+  const std::size_t which = choice.below(count);
+  std::string name;
+  {
+    const hdf5::Handle attribute(
+        H5Aopen_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, which, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    name.resize(static_cast<std::size_t>(std::max<ssize_t>(H5Aget_name(attribute.id(), 0, nullptr), 0)));
+    H5Aget_name(attribute.id(), name.size() + 1, name.data());
+  }
+  const bool copies = choice.below(2) == 0;
+  if (copies && H5Aexists(other, name.c_str()) <= 0) {
+    H5Adelete(object, name.c_str());
+    return;
+  }
+  const hdf5::Handle source(H5Aopen(copies ? other : object, name.c_str(), H5P_DEFAULT), H5Aclose);
+  const hdf5::Handle type(H5Aget_type(source.id()), H5Tclose);
+  const hdf5::Handle space(H5Aget_space(source.id()), H5Sclose);
+  const H5T_class_t kind = H5Tget_class(type.id());
+  const bool is_plain =
+      kind == H5T_INTEGER || kind == H5T_FLOAT || (kind == H5T_STRING && H5Tis_variable_str(type.id()) == 0);
+  const hssize_t values = H5Sget_simple_extent_npoints(space.id());
+  if (!is_plain || values < 1 || values > 1024) return;
+  const std::size_t size = H5Tget_size(type.id()) * static_cast<std::size_t>(values);
+  std::string bytes(size, '\0');
+  if (H5Aread(source.id(), type.id(), bytes.data()) < 0) return;
+  if (!copies) {
+    bytes = mutated_bytes(std::move(bytes), size);
+    bytes.resize(size);
+  }
+  H5Adelete(object, name.c_str());
+  const hdf5::Handle made(H5Acreate2(object, name.c_str(), type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT),
+                          H5Aclose);
+  H5Awrite(made.id(), type.id(), bytes.data());
+}
+
+/// Changes which groups and datasets there are, or an attribute. A call of libhdf5 that fails changes
+/// nothing, which is a mutation, too. Returns false for an empty file.
+bool change_objects(hdf5::File& file, Choice& choice) {
+  std::vector<std::string> paths;
+  add_objects(file, "", 0, paths);
+  if (paths.empty()) return false;
+  const std::string one = paths[choice.below(paths.size())];
+  const std::string other = paths[choice.below(paths.size())];
+  const hdf5::Session session;
+  const hid_t id = file.id();
+  const auto move = [&](const std::string& from, const std::string& to) {
+    return H5Lmove(id, from.c_str(), id, to.c_str(), H5P_DEFAULT, H5P_DEFAULT) >= 0;
+  };
+  switch (choice.below(7)) {
+    case 0:  // they exchange their places
+      if (move(one, "/exchanged")) {
+        move(other, one);
+        move("/exchanged", other);
+      }
+      break;
+    case 1:
+      H5Ocopy(id, one.c_str(), id, near_name(other, choice).c_str(), H5P_DEFAULT, H5P_DEFAULT);
+      break;
+    case 2:  // what several paths lead to
+      H5Ldelete(id, other.c_str(), H5P_DEFAULT);
+      H5Lcreate_hard(id, one.c_str(), id, other.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+      break;
+    case 3:
+      H5Lcreate_soft(one.c_str(), id, near_name(other, choice).c_str(), H5P_DEFAULT, H5P_DEFAULT);
+      break;
+    case 4:
+      move(one, near_name(one, choice));
+      break;
+    case 5:
+      H5Ldelete(id, one.c_str(), H5P_DEFAULT);
+      break;
+    default: {
+      const hdf5::Handle object(H5Oopen(id, one.c_str(), H5P_DEFAULT), H5Oclose);
+      const hdf5::Handle another(H5Oopen(id, other.c_str(), H5P_DEFAULT), H5Oclose);
+      change_attribute(object.id(), another.id(), choice);
+    }
+  }
+  return true;
+}
+
+/// Returns the file with a change; nothing where there is nothing to change.
+std::string changed_file(const std::string& bytes, Choice& choice) {
+  hdf5::File file = hdf5::File::in_memory(bytes, "input");
+  const bool changed = choice.below(2) == 0 ? change_values(file, choice) : change_objects(file, choice);
+  return changed ? file.bytes() : std::string();
 }
 
 }  // namespace
@@ -68,7 +171,7 @@ std::string mutate_hdf5(std::string input, std::uint32_t seed) {
                                   [](const MemoryFile& file) { return file.bytes.starts_with(kSignature); });
   if (found == files.end()) return {};
   try {
-    found->bytes = with_other_values(found->bytes, choice);
+    found->bytes = changed_file(found->bytes, choice);
   } catch (const Error&) {  // it is no longer whole
     return {};
   }
