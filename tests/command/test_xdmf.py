@@ -352,6 +352,32 @@ def test_arrays_that_share_a_dataset_keep_their_values(command, tmp_path):
             numpy.testing.assert_array_equal(file[name[1]], values)
 
 
+def test_arrays_whose_paths_lead_to_one_dataset_keep_their_values(command, tmp_path):
+    """By a hard link, a soft link and a soft link that leads round."""
+    points, tetrahedra, _ = box(2)
+    count = len(tetrahedra)
+    points = numpy.concatenate([points, numpy.random.default_rng(1).uniform(5, 6, (count - 27, 3))])
+    values = numpy.arange(count, dtype="int32") ** 2
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["points"], file["cells"], file["values"] = points, tetrahedra.astype("int64"), values
+        file["hard"] = file["values"]
+        file["soft"], file["round"] = h5py.SoftLink("/values"), h5py.SoftLink("/")
+    paths = {"of points": "/values", "of cells": "/soft", "again": "/hard", "around": "/round/round/values"}
+    arrays = "".join(attribute(name, "Node" if name == "of points" else "Cell", item("a.h5", path, (count,), "Int", 4))
+                     for name, path in paths.items())
+    (tmp_path / "a.xdmf").write_text(xdmf(
+        '<Grid Name="g" GridType="Uniform">' + topology("a.h5", "/cells", "Tetrahedron", tetrahedra.shape)
+        + '<Geometry GeometryType="XYZ">' + item("a.h5", "/points", points.shape) + "</Geometry>" + arrays + "</Grid>"))
+    vertices, cells = order(command, tmp_path / "a.xdmf", tmp_path / "b.xdmf")
+    with h5py.File(tmp_path / "b.h5") as file:
+        for name, path in paths.items():
+            numpy.testing.assert_array_equal(file[path][()][vertices if name == "of points" else cells], values)
+    command.ok("apply", "--inverse", tmp_path / "b.xdmf-maps", tmp_path / "b.xdmf", "-o", tmp_path / "c.xdmf")
+    with h5py.File(tmp_path / "c.h5") as file:
+        for path in paths.values():
+            numpy.testing.assert_array_equal(file[path], values)
+
+
 def test_a_topology_shares_its_dataset(command, tmp_path):
     """An array that names the dataset of a topology gets one of its own, as its numbers do not follow the vertices; the
     topologies of two steps keep one."""

@@ -76,10 +76,12 @@ class CopyWithoutValues {
   void copy_link(hid_t from, hid_t to, const std::string& name, const std::string& path) {
     H5L_info_t link;
     if (H5Lget_info(from, name.c_str(), &link, H5P_DEFAULT) < 0) return;
-    if (link.type != H5L_TYPE_HARD) return copy_reference(from, to, name, link);
+    // datasets that will get values get them by each of their paths
+    const bool leads_to_listed = paths_.contains(path) || has_listed(path);
+    const bool is_followed = link.type == H5L_TYPE_HARD || (link.type == H5L_TYPE_SOFT && leads_to_listed);
+    if (!is_followed) return copy_reference(from, to, name, link);
     H5O_info_t object;
     if (H5Oget_info_by_name(from, name.c_str(), &object, H5P_DEFAULT) < 0) return;
-    // datasets that will get values get them by each of their paths
     const bool is_listed = object.type == H5O_TYPE_DATASET && paths_.contains(path);
     const bool is_around_listed = object.type == H5O_TYPE_GROUP && has_listed(path);
     const auto known = first_paths_.find(object.addr);
