@@ -334,6 +334,7 @@ def test_arrays_that_share_a_dataset_keep_their_values(command, tmp_path):
     values = numpy.arange(27, dtype="int32") ** 2
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["points"], file["edges"], file["values"] = points, edges.astype("int32"), values
+        file["Attributes/0"] = 7  # which no element names
     shared = item("a.h5", "/values", (27,), "Int", 4)
     (tmp_path / "a.xdmf").write_text(xdmf(
         '<Grid Name="g" GridType="Uniform">' + topology("a.h5", "/edges", "Polyline", (27, 2)) + '<Geometry GeometryType="XYZ">'
@@ -350,6 +351,7 @@ def test_arrays_that_share_a_dataset_keep_their_values(command, tmp_path):
     with h5py.File(tmp_path / "c.h5") as file:
         for name in named.values():
             numpy.testing.assert_array_equal(file[name[1]], values)
+        assert file["Attributes/0"][()] == 7
 
 
 def test_arrays_whose_paths_lead_to_one_dataset_keep_their_values(command, tmp_path):

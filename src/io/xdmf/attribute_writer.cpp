@@ -147,14 +147,18 @@ void Writer::add_attribute(int part, const DataArray& array, const std::string& 
 }
 
 std::string Writer::unused_dataset(Hdf5Output& output, int part, const std::string& name) {
+  // the file may have datasets that the XML does not name
+  const auto take = [&](const std::string& path) {
+    return output.datasets.insert(path).second && !output.file->has(path);
+  };
   const bool is_tags = part > 0 && name.ends_with("_tags");
   if (is_tags) {
     std::string path = "/MeshTags/" + name + "/Values";
-    if (output.datasets.insert(path).second) return path;
+    if (take(path)) return path;
   }
   while (true) {
     std::string path = fmt::format("/Attributes/{}", output.next_array++);
-    if (output.datasets.insert(path).second) return path;
+    if (take(path)) return path;
   }
 }
 
