@@ -203,6 +203,23 @@ def test_datasets_that_two_types_share_are_parted(command):
     assert_same(Content(command.folder / "new.med"), Content(command.folder / "old.med"))
 
 
+def test_a_group_of_two_paths_is_written_to_by_one(command):
+    """The family zero, which is added to /FAS, must not come to be a type of cells."""
+    by_meshio(command.folder / "old.med")
+
+    def share(file, mesh, step):
+        del file["FAS"]
+        file["FAS"] = step["MAI"]
+
+    change(command.folder / "old.med", share)
+    command.ok("order", "old.med", "-o", "new.med", "--vertices", "scrambled", "--elements", "scrambled")
+    command.ok("order", "new.med", "-o", "again.med", "--vertices", "original", "--elements", "original")
+    with h5py.File(command.folder / "again.med") as file:
+        step, = file["ENS_MAA/mesh"].values()
+        assert set(step["MAI"]) == {"TE4", "TR3"}
+        assert set(file["FAS/mesh"]) == {"FAMILLE_ZERO"}
+
+
 def test_a_file_of_meshio_stays_the_same_mesh_to_it(command):
     by_meshio(command.folder / "old.med")
     done = command.ok("order", "old.med", "-o", "new.med", "--vertices", "scrambled", "--elements", "scrambled",

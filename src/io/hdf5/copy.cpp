@@ -76,7 +76,7 @@ class CopyWithoutValues {
   void copy_link(hid_t from, hid_t to, const std::string& name, const std::string& path) {
     H5L_info_t link;
     if (H5Lget_info(from, name.c_str(), &link, H5P_DEFAULT) < 0) return;
-    // datasets that will get values get them by each of their paths
+    // what will change is there for each of its paths
     const bool leads_to_listed = paths_.contains(path) || has_listed(path);
     const bool is_followed = link.type == H5L_TYPE_HARD || (link.type == H5L_TYPE_SOFT && leads_to_listed);
     if (!is_followed) return copy_reference(from, to, name, link);
@@ -119,7 +119,7 @@ class CopyWithoutValues {
     }
   }
 
-  /// Returns whether one of the datasets is somewhere in the group.
+  /// Returns whether the group, or something in it, is listed.
   [[nodiscard]] bool has_listed(const std::string& group) const {
     const auto next = paths_.lower_bound(group + "/");
     return next != paths_.end() && next->starts_with(group + "/");

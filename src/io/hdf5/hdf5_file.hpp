@@ -119,7 +119,8 @@ class File {
 
   /// Returns the bytes of a copy of this file in which these datasets are there with their types, attributes,
   /// chunks and filters, but without their values; one that several of the paths lead to is there for each of
-  /// them. Everything else is copied.
+  /// them. Paths that end in "/" are those of groups to which something will be added, and which are there
+  /// for each of their paths, too. Everything else is copied.
   [[nodiscard]] std::string without_values(const std::set<std::string>& paths) const;
   /// Returns the bytes of a file in memory.
   [[nodiscard]] std::string bytes() const;

@@ -40,7 +40,7 @@ bool copy_attributes(hid_t from, hid_t to);
 /// without its values.
 Handle empty_copy(hid_t dataset, hid_t target, const char* name, hid_t space);
 
-/// Copies everything in a file to an empty one, but for the values of the datasets of these paths: see
+/// Copies everything in a file to an empty one, but for the values of what these paths name: see
 /// File::without_values. Returns the path of a group whose attributes could not be copied; an empty text
 /// without.
 std::string copy_without_values(hid_t file, hid_t copy, const std::set<std::string>& paths);

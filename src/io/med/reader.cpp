@@ -492,7 +492,14 @@ Mesh read_all(const FilePath& path, Notes& notes) {
   read_fields(reading);
   read_equivalences(reading);
   note_others(reading);
-  reading.layout->file = std::make_shared<const std::string>(reading.file.without_values(reading.taken));
+  Layout& layout = *reading.layout;
+  std::set<std::string> changing = std::move(reading.taken);
+  for (const std::string& group :
+       {std::string("/CHA"), std::string("/PROFILS"), layout.cells_path(),
+        layout.families_path(Association::vertices), layout.families_path(Association::cells)}) {
+    changing.insert(group + "/");
+  }
+  layout.file = std::make_shared<const std::string>(reading.file.without_values(changing));
   reading.mesh.format_metadata = reading.layout;
   return std::move(reading.mesh);
 }
