@@ -161,13 +161,19 @@ std::string difference(const Mesh& found, const Mesh& expected, Extent extent) {
 namespace {
 
 /// Whether a format without polygons of its own may have made one shape of the other: files say how many
-/// corners a face has.
+/// corners a cell has.
 bool same_shape(Shape a, Shape b, std::size_t corners) {
   const auto is_face = [&](Shape shape) {
     return shape == Shape::polygon || (shape == Shape::triangle && corners == 3) ||
            (shape == Shape::quad && corners == 4);
   };
-  return a == b || (is_face(a) && is_face(b));
+  const auto is_line = [&](Shape shape) {
+    return corners == 2 && (shape == Shape::line || shape == Shape::polyline);
+  };
+  const auto is_point = [&](Shape shape) {
+    return corners == 1 && (shape == Shape::vertex || shape == Shape::poly_vertex);
+  };
+  return a == b || (is_face(a) && is_face(b)) || (is_line(a) && is_line(b)) || (is_point(a) && is_point(b));
 }
 
 }  // namespace
