@@ -220,6 +220,20 @@ def test_a_group_of_two_paths_is_written_to_by_one(command):
         assert set(file["FAS/mesh"]) == {"FAMILLE_ZERO"}
 
 
+def test_numbers_of_families_that_are_not_there_stay(command):
+    """Those of cells should be negative, those of nodes positive."""
+    by_meshio(command.folder / "old.med")
+    chance = numpy.random.default_rng(4)
+
+    def renumber(file, mesh, step):
+        rewrite(step["MAI/TE4"], "FAM", chance.integers(-9, 9, 20))
+        rewrite(step["NOE"], "FAM", chance.integers(-9, 9, 30))
+
+    change(command.folder / "old.med", renumber)
+    command.ok("order", "old.med", "-o", "new.med", "--vertices", "scrambled", "--elements", "scrambled")
+    assert_same(Content(command.folder / "new.med"), Content(command.folder / "old.med"))
+
+
 def test_a_file_of_meshio_stays_the_same_mesh_to_it(command):
     by_meshio(command.folder / "old.med")
     done = command.ok("order", "old.med", "-o", "new.med", "--vertices", "scrambled", "--elements", "scrambled",

@@ -251,16 +251,12 @@ class FamilyWriter {
     std::sort(groups.begin(), groups.end());
     const auto own = groups_of_.find(wanted.number);
     if (own != groups_of_.end() && own->second == groups) return own->first;
-    const bool may_keep = own == groups_of_.end() && groups.empty() && has_sign(wanted.number);
-    if (wanted.number == 0 ? groups.empty() : may_keep) return wanted.number;
+    const bool is_unknown = own == groups_of_.end();
+    if (is_unknown && groups.empty()) return wanted.number;
     const auto other = number_of_.find(groups);
     if (other != number_of_.end()) return other->second;
     if (groups.empty()) return 0;
     return add_family(groups, wanted.groups);
-  }
-
-  [[nodiscard]] bool has_sign(std::int64_t number) const {
-    return association_ == Association::vertices ? number > 0 : number < 0;
   }
 
   /// Takes a family among those that the file has; of the same groups, the first one is used.
