@@ -2,10 +2,12 @@
 //
 // HDF5 files: values, attributes and links are changed by libhdf5 itself, so that the file stays one.
 #include "fuzz/families/families.hpp"
+#include "fuzz/families/scratch.hpp"
 #include "fuzz/input_files.hpp"
 #include "fuzz/mutators/choice.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/session.hpp"
+#include "support/files.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
@@ -157,9 +159,12 @@ bool change_objects(hdf5::File& file, Choice& choice) {
 
 /// Returns the file with a change; nothing where there is nothing to change.
 std::string changed_file(const std::string& bytes, Choice& choice) {
-  hdf5::File file = hdf5::File::in_memory(bytes, "input");
+  // not in memory: the library counts a wrong checksum for images of some versions
+  const std::filesystem::path path = scratch_file("mutated.h5", bytes);
+  hdf5::File file = hdf5::File::change(path, "input");
   const bool changed = choice.below(2) == 0 ? change_values(file, choice) : change_objects(file, choice);
-  return changed ? file.bytes() : std::string();
+  file.close();
+  return changed ? test::content_of(path) : std::string();
 }
 
 }  // namespace
