@@ -1,8 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "fuzz/exodus_seed.hpp"
 
-#include "io/exodus/netcdf.hpp"
-
 #include <algorithm>
 #include <functional>
 #include <initializer_list>
@@ -130,8 +128,8 @@ void put_numbers(const Variables& file) {
 
 }  // namespace
 
-void write_exodus_seed(const std::filesystem::path& path) {
-  NcOutput file(path, exodus::plain_storage(false));
+void write_exodus_seed(const std::filesystem::path& path, const exodus::Storage& storage) {
+  NcOutput file(path, storage);
   Variables variables(file);
   for (const auto& [name, length] : std::initializer_list<std::pair<const char*, std::size_t>>{
            {"len_name", kNameLength}, {"time_step", 2},       {"num_dim", 3},         {"num_nodes", 5},

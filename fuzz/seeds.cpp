@@ -22,6 +22,9 @@
 #include "support/sample_results.hpp"
 #include <meshorder/error.hpp>
 
+#ifdef MESHORDER_HAS_NETCDF
+#include <netcdf.h>
+#endif
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -129,8 +132,12 @@ void add_encodings(Seeds& seeds) {
 void add_exodus(Seeds& seeds) {
   const test::TemporaryFolder folder;
   const fs::path path = folder.path() / "mesh.exo";
-  write_exodus_seed(path);
-  seeds.add("exodus", test::content_of(path));
+  constexpr exodus::Storage kNetcdf4{.kind = NC_FORMAT_NETCDF4, .deflate = 1, .shuffle = true};
+  for (const exodus::Storage& storage :
+       {exodus::plain_storage(false), exodus::plain_storage(true), kNetcdf4}) {
+    write_exodus_seed(path, storage);
+    seeds.add("exodus", test::content_of(path));
+  }
 }
 #endif
 

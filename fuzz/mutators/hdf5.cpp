@@ -73,19 +73,22 @@ void add_objects(const hdf5::File& file, const std::string& group, int depth,
   }
 }
 
+/// Returns the name of an attribute of an object by its place among them.
+std::string name_of_attribute(hid_t object, std::size_t place) {
+  const hdf5::Handle attribute(
+      H5Aopen_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, place, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  std::string name(static_cast<std::size_t>(std::max<ssize_t>(H5Aget_name(attribute.id(), 0, nullptr), 0)),
+                   '\0');
+  H5Aget_name(attribute.id(), name.size() + 1, name.data());
+  return name;
+}
+
 /// Gives one attribute of an object the type and values that `other` has for it; removes it where that has
 /// none, or changes its bytes.
 void change_attribute(hid_t object, hid_t other, Choice& choice) {
   const auto count = static_cast<std::size_t>(std::max(H5Aget_num_attrs(object), 0));
   if (count == 0) return;
-  const std::size_t which = choice.below(count);
-  std::string name;
-  {
-    const hdf5::Handle attribute(
-        H5Aopen_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, which, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-    name.resize(static_cast<std::size_t>(std::max<ssize_t>(H5Aget_name(attribute.id(), 0, nullptr), 0)));
-    H5Aget_name(attribute.id(), name.size() + 1, name.data());
-  }
+  const std::string name = name_of_attribute(object, choice.below(count));
   const bool copies = choice.below(2) == 0;
   if (copies && H5Aexists(other, name.c_str()) <= 0) {
     H5Adelete(object, name.c_str());
