@@ -380,6 +380,24 @@ def test_arrays_whose_paths_lead_to_one_dataset_keep_their_values(command, tmp_p
             numpy.testing.assert_array_equal(file[path], values)
 
 
+def test_labels_of_two_types_that_do_not_make_one_array_keep_them(command, tmp_path):
+    points, tetrahedra, _ = box(2)
+    count = len(tetrahedra)
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["points"], file["cells"] = points, tetrahedra.astype("int64")
+        file["wide"], file["narrow"] = numpy.arange(count, dtype="int32"), numpy.arange(count, dtype="uint8")
+    labels = attribute("label", "Cell", item("a.h5", "/wide", (count,), "Int", 4)) + attribute(
+        "label", "Cell", item("a.h5", "/narrow", (count,), "UChar", 1))
+    (tmp_path / "a.xdmf").write_text(xdmf(
+        '<Grid Name="g" GridType="Uniform">' + topology("a.h5", "/cells", "Tetrahedron", tetrahedra.shape)
+        + '<Geometry GeometryType="XYZ">' + item("a.h5", "/points", points.shape) + "</Geometry>" + labels + "</Grid>"))
+    _, cells = order(command, tmp_path / "a.xdmf", tmp_path / "b.xdmf")
+    with h5py.File(tmp_path / "b.h5") as file:
+        assert [file[name].dtype for name in ("wide", "narrow")] == ["int32", "uint8"]
+        for name in ("wide", "narrow"):
+            assert file[name][()][cells].tolist() == list(range(count))
+
+
 def test_a_topology_shares_its_dataset(command, tmp_path):
     """An array that names the dataset of a topology gets one of its own, as its numbers do not follow the vertices; the
     topologies of two steps keep one."""

@@ -205,10 +205,6 @@ std::string ArrayReader::add(DataArray array, int part) {
   if (array.association == Association::vertices) return add_growing(std::move(array));
   const std::vector<Index>& rows = reading_.rows[static_cast<std::size_t>(part)];
   GrowingArray* const found = array_named(array.name, Association::cells);
-  if (found != nullptr && array.name == kLabel && found->array.values.index() != array.values.index()) {
-    found->array.values = vtk::integers_of<std::int64_t>(found->array.values);
-    array.values = vtk::integers_of<std::int64_t>(array.values);
-  }
   if (found == nullptr || !append_rows(*found, array, rows)) {
     if (index_size(rows) != reading_.mesh.cell_count() || !std::is_sorted(rows.begin(), rows.end()))
       array.indices = rows;
@@ -219,8 +215,10 @@ std::string ArrayReader::add(DataArray array, int part) {
 
 bool ArrayReader::append_rows(GrowingArray& growing, DataArray& array, const std::vector<Index>& rows) const {
   DataArray& all = growing.array;
-  if (all.is_dense() || all.components != array.components || all.values.index() != array.values.index())
-    return false;
+  const bool same_type = all.values.index() == array.values.index();
+  const bool may_join =
+      same_type || (array.name == kLabel && is_integral(all.values) && is_integral(array.values));
+  if (all.is_dense() || all.components != array.components || !may_join) return false;
   if (growing.has_row.empty()) {
     growing.has_row.assign(reading_.mesh.cells.shapes.size(), false);
     for (const Index c : all.indices) growing.has_row[static_cast<std::size_t>(c)] = true;
@@ -228,6 +226,10 @@ bool ArrayReader::append_rows(GrowingArray& growing, DataArray& array, const std
   if (std::any_of(rows.begin(), rows.end(),
                   [&](Index c) { return growing.has_row[static_cast<std::size_t>(c)]; }))
     return false;
+  if (!same_type) {
+    all.values = vtk::integers_of<std::int64_t>(all.values);
+    array.values = vtk::integers_of<std::int64_t>(array.values);
+  }
   for (const Index c : rows) growing.has_row[static_cast<std::size_t>(c)] = true;
   all.indices.insert(all.indices.end(), rows.begin(), rows.end());
   std::visit(
