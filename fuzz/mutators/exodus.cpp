@@ -37,7 +37,8 @@ struct Variable {
 
 Variable variable_of(int file, int id) {
   std::array<char, NC_MAX_NAME + 1> name{};
-  Variable variable{.id = id};
+  Variable variable;
+  variable.id = id;
   int rank = 0;
   (void)nc_inq_varndims(file, id, &rank);
   variable.dimensions.resize(static_cast<std::size_t>(rank));

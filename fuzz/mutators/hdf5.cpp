@@ -60,9 +60,9 @@ bool change_values(hdf5::File& file, Choice& choice) {
 /// Adds the paths of what is in a group, and in its groups, to `paths`. Links may lead round.
 void add_objects(const hdf5::File& file, const std::string& group, int depth,
                  std::vector<std::string>& paths) {
-  constexpr int kMostDepth = 8;
+  constexpr int kDeepest = 8;
   constexpr std::size_t kMostObjects = 1000;
-  if (depth == kMostDepth) return;
+  if (depth == kDeepest) return;
   for (const std::string& name : file.names(group)) {
     if (paths.size() == kMostObjects) return;
     std::string path = group;
