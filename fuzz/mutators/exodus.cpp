@@ -40,7 +40,7 @@ Variable variable_of(int file, int id) {
   Variable variable;
   variable.id = id;
   int rank = 0;
-  (void)nc_inq_varndims(file, id, &rank);
+  if (nc_inq_varndims(file, id, &rank) != NC_NOERR) return variable;  // it has no values to read
   variable.dimensions.resize(static_cast<std::size_t>(rank));
   (void)nc_inq_var(file, id, name.data(), &variable.type, nullptr, variable.dimensions.data(), nullptr);
   variable.name = name.data();
@@ -54,13 +54,11 @@ Variable variable_of(int file, int id) {
   return variable;
 }
 
-/// Gives all values of a variable of numbers to `change`, and writes what it leaves.
-template <class Change>
-void change_numbers(int file, const Variable& variable, Change change) {
+/// Returns all values of a variable of numbers; nothing of another one.
+std::vector<double> numbers_of(int file, const Variable& variable) {
   std::vector<double> values(variable.values);
-  if (nc_get_var_double(file, variable.id, values.data()) != NC_NOERR) return;
-  change(values);
-  (void)nc_put_var_double(file, variable.id, values.data());
+  const bool is_read = !values.empty() && nc_get_var_double(file, variable.id, values.data()) == NC_NOERR;
+  return is_read ? values : std::vector<double>();
 }
 
 void change_values(int file, const Variable& variable, Choice& choice) {
@@ -73,22 +71,23 @@ void change_values(int file, const Variable& variable, Choice& choice) {
     (void)nc_put_var_text(file, variable.id, text.data());
     return;
   }
-  change_numbers(file, variable, [&](std::vector<double>& values) {
-    double& value = values[choice.below(values.size())];
-    const double other = values[choice.below(values.size())];
-    const std::array<double, 4> choices{value + 1, value - 1, other, kNumbers[choice.below(kNumbers.size())]};
-    value = choices[choice.below(choices.size())];
-  });
+  std::vector<double> values = numbers_of(file, variable);
+  if (values.empty()) return;
+  double& value = values[choice.below(values.size())];
+  const double other = values[choice.below(values.size())];
+  const std::array<double, 4> choices{value + 1, value - 1, other, kNumbers[choice.below(kNumbers.size())]};
+  value = choices[choice.below(choices.size())];
+  (void)nc_put_var_double(file, variable.id, values.data());
 }
 
 /// Gives `variable` the values of `other`, again from the first one on where they are too few.
 void copy_values(int file, const Variable& variable, const Variable& other) {
-  if (other.values == 0 || std::max(variable.values, other.values) > kMostValues) return;
-  std::vector<double> source(other.values);
-  if (nc_get_var_double(file, other.id, source.data()) != NC_NOERR) return;
-  change_numbers(file, variable, [&](std::vector<double>& values) {
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = source[i % source.size()];
-  });
+  if (std::max(variable.values, other.values) > kMostValues) return;
+  const std::vector<double> source = numbers_of(file, other);
+  if (source.empty() || variable.values == 0) return;
+  std::vector<double> values(variable.values);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = source[i % source.size()];
+  (void)nc_put_var_double(file, variable.id, values.data());
 }
 
 /// Adds a copy of a variable under another name; the copy may have the dimensions of `shape`.
