@@ -6,6 +6,7 @@
 //
 // checks the files of the folder, or one file, then that many changed ones. It does not measure coverage, so
 // it finds what is near to the seeds. The input that breaks a promise is left in the file "crash".
+#include "fuzz/engine.hpp"
 #include "fuzz/family.hpp"
 
 #include <algorithm>
@@ -26,10 +27,6 @@
 
 // of the sanitizers, where they are built in
 extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*callback)());  // NOLINT
-extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv);
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
-                                               unsigned seed);
 
 namespace meshorder::fuzz {
 namespace {
@@ -38,8 +35,10 @@ constexpr std::size_t kMostOfInput = std::size_t{1} << 18U;  // all seeds are sh
 constexpr std::array<std::string_view, 10> kNumbers{
     "0", "1", "-1", "2147483647", "2147483648", "4294967296", "1e400", "nan", "-0", "99999999999999999999"};
 
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): signals and engines have no other context
 std::mt19937 random_numbers;
 std::string current;  // input
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 void keep_input() {
   std::ofstream("crash", std::ios::binary)

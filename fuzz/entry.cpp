@@ -2,6 +2,7 @@
 //
 // What a fuzzing engine calls. One program serves all families: its name ends in that of the family, and has
 // "_whole_" before it where files that a library reads stay whole.
+#include "fuzz/engine.hpp"
 #include "fuzz/family.hpp"
 
 #include <tbb/global_control.h>
@@ -14,12 +15,9 @@
 #include <string>
 #include <utility>
 
-// NOLINTBEGIN(readability-identifier-naming): the engine's names
-
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 // of the leak checker, where it is built in
-extern "C" __attribute__((weak)) void __lsan_disable();  // NOLINT(bugprone-reserved-identifier)
-extern "C" __attribute__((weak)) void __lsan_enable();   // NOLINT(bugprone-reserved-identifier)
+extern "C" __attribute__((weak)) void __lsan_disable();  // NOLINT
+extern "C" __attribute__((weak)) void __lsan_enable();   // NOLINT
 
 namespace meshorder::fuzz {
 namespace {
@@ -93,5 +91,3 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   if (keeps_files_whole) return size;
   return LLVMFuzzerMutate(data, size, most);
 }
-
-// NOLINTEND(readability-identifier-naming)
