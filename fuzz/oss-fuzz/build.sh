@@ -18,9 +18,12 @@ ldd "$build/bin/meshorder_fuzz" | awk '$3 ~ "^/" && $1 !~ "^lib(c|m|pthread|dl|r
 
 "$build/bin/meshorder_fuzz_seeds" "$WORK/seeds"
 python3 "$SRC/meshorder/fuzz/samples.py" "$WORK/seeds"
-while read -r family; do
-  cp "$build/bin/meshorder_fuzz" "$OUT/meshorder_fuzz_$family"
-  (cd "$WORK/seeds/$family" && python3 -m zipfile -c "$OUT/meshorder_fuzz_${family}_seed_corpus.zip" ./*)
-  dictionary=$SRC/meshorder/fuzz/dictionaries/$family.dict
-  [ ! -f "$dictionary" ] || cp "$dictionary" "$OUT/meshorder_fuzz_$family.dict"
-done <"$build/fuzz/families.txt"
+# add_program NAME FAMILY
+add_program() {
+  cp "$build/bin/meshorder_fuzz" "$OUT/meshorder_fuzz_$1"
+  (cd "$WORK/seeds/$2" && python3 -m zipfile -c "$OUT/meshorder_fuzz_$1_seed_corpus.zip" ./*)
+  dictionary=$SRC/meshorder/fuzz/dictionaries/$2.dict
+  [ ! -f "$dictionary" ] || cp "$dictionary" "$OUT/meshorder_fuzz_$1.dict"
+}
+while read -r family; do add_program "$family" "$family"; done <"$build/fuzz/families.txt"
+while read -r family; do add_program "whole_$family" "$family"; done <"$build/fuzz/families_by_library.txt"
