@@ -263,6 +263,15 @@ TEST(Unv, StepsStayInTheirPlacesWhereAHeaderIsMadeAnew) {
   test::expect_same(read_text(written(mesh)), mesh);
 }
 
+TEST(Unv, WholeNumbersThatFillTheirColumnsAreReal) {
+  std::string text =
+      with(std::string(kFile), "         8         2         3\n", "         8         1         3\n");
+  text = with(text, "  5.00000E-01  0.00000E+00  1.00000E+00\n", "2147483647         0         1\n");
+  text = with(text, "  1.00000E-01  1.23456E-07  0.00000E+00\n", "         3 -99999999         2\n");
+  const Mesh mesh = read_text(text);
+  test::expect_same(read_text(written(mesh)), mesh);
+}
+
 TEST(Unv, ReadsOlderDatasets) {
   const std::string text =
       "    -1\n    15\n"

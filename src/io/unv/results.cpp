@@ -126,7 +126,8 @@ std::optional<DataArray> array_of(const FoundResults& found, const IdMap& items)
     array.indices = std::move(rows);
   }
   const bool whole = found.results.integers && std::all_of(values.begin(), values.end(), [](double value) {
-                       return value == std::trunc(value) && std::abs(value) <= kMaxIndex;
+                       return value == std::trunc(value) && std::abs(value) <= kMaxIndex &&
+                              fits_columns(static_cast<std::int64_t>(value));
                      });
   if (whole) {
     std::vector<std::int32_t> integers(values.size());

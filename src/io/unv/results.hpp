@@ -38,4 +38,11 @@ std::vector<std::int64_t> local_systems(std::string_view text);
 /// Returns a number as Fortran writes it: 1.5D-3, 1.5E-3, 1.5-103. Throws an Error at the scanner's line.
 double real_of(const Scanner& at, std::string_view word, std::string_view what);
 
+/// Returns whether a whole number leaves a blank in its ten columns, so that readers that go by words find
+/// it.
+inline bool fits_columns(std::int64_t number) {
+  constexpr std::int64_t kLargest = 999'999'999;
+  return number <= kLargest && number > -kLargest / 10;
+}
+
 }  // namespace meshorder::unv

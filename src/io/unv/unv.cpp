@@ -383,9 +383,8 @@ class UnvWriter {
         [](const auto& values) {
           using Value = typename std::decay_t<decltype(values)>::value_type;
           if constexpr (std::is_integral_v<Value>) {
-            constexpr std::int64_t kLargest = 999'999'999;
             return std::all_of(values.begin(), values.end(), [](Value value) {
-              return std::cmp_less_equal(value, kLargest) && std::cmp_greater(value, -kLargest / 10);
+              return std::in_range<std::int64_t>(value) && fits_columns(static_cast<std::int64_t>(value));
             });
           } else {
             return false;
