@@ -8,6 +8,7 @@
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
+#include "io/unv/results.hpp"
 #include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
