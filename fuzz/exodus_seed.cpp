@@ -24,7 +24,7 @@ class Variables {
  public:
   explicit Variables(NcOutput& file) : file_(file) {}
 
-  /// Has as many values, counted from `first` on, as its dimensions ask for.
+  /// Declares a variable of numbers that are counted from `first` on, as many as its dimensions ask for.
   void counted(const std::string& name, NcType type, const std::vector<std::string>& dimensions, double first,
                const std::vector<exodus::Attribute>& attributes = {}) const {
     std::vector<double> values(product(sizes(dimensions)));

@@ -162,7 +162,7 @@ bool change_objects(hdf5::File& file, Choice& choice) {
 
 /// Returns the file with a change; nothing where there is nothing to change.
 std::string changed_file(const std::string& bytes, Choice& choice) {
-  // not in memory: the library counts a wrong checksum for images of some versions
+  // not in memory: the library computes a wrong checksum for images of some versions
   const std::filesystem::path path = scratch_file("mutated.h5", bytes);
   hdf5::File file = hdf5::File::change(path, "input");
   const bool changed = choice.below(2) == 0 ? change_values(file, choice) : change_objects(file, choice);
