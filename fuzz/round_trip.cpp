@@ -99,10 +99,11 @@ void check_same_format(const Mesh& mesh, std::string_view format, const std::str
   Mesh again = read_back(format, files->files);
   // Gmsh's entities that come in turns bind no cells; an order may bring the cells of each together
   if (format == "gmsh" && mesh.cell_blocks.empty()) again.cell_blocks.clear();
-  // numbers of TetGen that come to run from 0 or 1 are those of the places
-  if (format == "tetgen" && again.vertex_ids.empty() && is_run(mesh.vertex_ids))
-    again.vertex_ids = mesh.vertex_ids;
-  if (format == "tetgen" && again.cell_ids.empty() && is_run(mesh.cell_ids)) again.cell_ids = mesh.cell_ids;
+  // numbers of TetGen and Vega that come to run from 0 or 1 are those of the places
+  if (format == "tetgen" || format == "vega") {
+    if (again.vertex_ids.empty() && is_run(mesh.vertex_ids)) again.vertex_ids = mesh.vertex_ids;
+    if (again.cell_ids.empty() && is_run(mesh.cell_ids)) again.cell_ids = mesh.cell_ids;
+  }
   const Extent extent = extent_of(format, notes.empty());
   const std::string found = format == "med"
                                 ? difference(without_families(again), without_families(mesh), extent)
