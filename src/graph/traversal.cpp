@@ -2,6 +2,7 @@
 #include "graph/traversal.hpp"
 
 #include "base/run_scope.hpp"
+#include "graph/prefetch.hpp"
 
 #include <algorithm>
 
@@ -45,7 +46,7 @@ BreadthFirst breadth_first(GraphRef graph, Index start, std::vector<Index>& mark
     const Index level_end = found;
     for (Index k = level_begin; k < level_end; ++k) {
       poll_in_loop(k);
-      prefetch_row(graph, order, k, found);
+      prefetch_row(graph, std::span(order).first(std::size_t(found)), k);
       const std::span<const Index> row = graph[order[k]];
       if (const std::size_t most = std::size_t(found) + row.size(); most > order.size()) {
         order.resize(std::max(most, 2 * order.size()));
@@ -80,7 +81,7 @@ BreadthFirstCopy breadth_first_copy(GraphRef graph) {
     copy.old_numbers[found++] = v;
     for (Index k = first; k < found; ++k) {
       poll_in_loop(k);
-      prefetch_row(graph, copy.old_numbers, k, found);
+      prefetch_row(graph, std::span(copy.old_numbers).first(std::size_t(found)), k);
       for (const Index u : graph[copy.old_numbers[k]]) {
         const bool is_new = number[u] < 0;
         copy.old_numbers[found] = u;

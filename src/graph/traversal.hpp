@@ -26,13 +26,6 @@ struct BreadthFirst {
 /// reached are set to `mark`, so that searches can share it without clearing. O(component).
 BreadthFirst breadth_first(GraphRef graph, Index start, std::vector<Index>& marks, Index mark);
 
-/// Asks for the row of a vertex that a search comes to a few steps after `order[k]`: rows lie anywhere in
-/// memory. `found` is the number of vertices that `order` holds.
-inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k, Index found) {
-  constexpr Index kAhead = 8;
-  if (k + kAhead < found) __builtin_prefetch(graph.neighbours.data() + graph.offsets[order[k + kAhead]]);
-}
-
 /// A graph whose vertices are numbered as a breadth-first search from the smallest vertex of each component
 /// finds them, so that further searches find in the cache what they look at. Rows list the same neighbours in
 /// the same order as before: a search passes through both graphs alike.

@@ -1,8 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "kernels/assembly.hpp"
 
+#include "base/parallel.hpp"
+#include "graph/prefetch.hpp"
 #include <meshorder/error.hpp>
 
+#include <algorithm>
+#include <span>
 #include <string>
 
 namespace meshorder {
@@ -12,23 +16,38 @@ AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix) {
     throw InvalidArgument("assembly: a matrix of " + std::to_string(matrix.block_count()) +
                           " blocks; at most 2,147,483,647 can be numbered");
   }
-  const int d = rest.dimension;
+  const int corners = rest.dimension + 1;
   AssemblyMap map;
-  map.dimension = d;
-  map.blocks.reserve(rest.count * (d + 1) * (d + 1));
-  for (Offset s = 0; s < rest.count; ++s) {
-    const Index* const corner = rest.vertices.data() + s / kBatch * kBatch * (d + 1) + s % kBatch;
-    for (int a = 0; a <= d; ++a) {
-      for (int b = 0; b <= d; ++b) {
-        const Offset block = matrix.find(corner[a * kBatch], corner[b * kBatch]);
-        if (block < 0) {
-          throw InvalidArgument("assembly: the matrix has no block for the vertices " +
-                                std::to_string(corner[a * kBatch]) + " and " +
-                                std::to_string(corner[b * kBatch]) + " of an element");
-        }
-        map.blocks.push_back(static_cast<Index>(block));
+  map.dimension = rest.dimension;
+  map.blocks.resize(rest.count * corners * corners);
+  const auto corners_of = [&](Offset batch) {
+    const Offset first = std::min(batch, rest.batches() - 1) * corners * kBatch;
+    return std::span<const Index>(rest.vertices).subspan(first, Offset{corners} * kBatch);
+  };
+  constexpr Offset kSimplices = 4096;
+  for_each_range(rest.count, kSimplices, [&](Offset begin, Offset end) {
+    Index* block = map.blocks.data() + begin * corners * corners;
+    for (Offset s = begin; s < end; ++s) {
+      if (s % kBatch == 0) {
+        prefetch_offsets(matrix.offsets, corners_of(s / kBatch + 2));
+        prefetch_rows(matrix.offsets, matrix.columns, corners_of(s / kBatch + 1));
+      }
+      const Index* const corner = rest.vertices.data() + s / kBatch * kBatch * corners + s % kBatch;
+      for (int a = 0; a < corners; ++a) {
+        for (int b = 0; b < corners; ++b)
+          *block++ = static_cast<Index>(matrix.find(corner[a * kBatch], corner[b * kBatch]));
       }
     }
+  });
+  const auto missing = std::find(map.blocks.begin(), map.blocks.end(), -1);
+  if (missing != map.blocks.end()) {
+    const Offset place = missing - map.blocks.begin();
+    const Offset pair = place % (corners * corners);
+    const Offset s = place / (corners * corners);
+    throw InvalidArgument("assembly: the matrix has no block for the vertices " +
+                          std::to_string(rest.vertex(s, static_cast<Index>(pair / corners))) + " and " +
+                          std::to_string(rest.vertex(s, static_cast<Index>(pair % corners))) +
+                          " of an element");
   }
   return map;
 }

@@ -14,7 +14,7 @@ struct AssemblyMap {
 };
 
 /// Returns the map of the simplices into a matrix of that pattern. Throws InvalidArgument if the pattern
-/// lacks a block. O(simplices · log row length).
+/// lacks a block. On all threads. O(simplices · log row length).
 AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix);
 
 /// The map of one share of `owned_batches` (of rest.vertices): for its boundary batches, in their order, the

@@ -25,10 +25,16 @@ struct BlockCsrOf {
 
   /// Returns the number of the block in that row and column, −1 if the pattern has none. O(log row length).
   [[nodiscard]] Offset find(Index row, Index column) const {
-    const auto begin = columns.begin() + offsets[row];
-    const auto end = columns.begin() + offsets[row + 1];
-    const auto found = std::lower_bound(begin, end, column);
-    return found != end && *found == column ? found - columns.begin() : -1;
+    // branch-free binary search: its branches would be unpredictable
+    Offset at = offsets[row];
+    Offset left = offsets[row + 1] - at;
+    if (left == 0) return -1;
+    while (left > 1) {
+      const Offset half = left / 2;
+      at += columns[at + half - 1] < column ? half : 0;
+      left -= half;
+    }
+    return columns[at] == column ? at : -1;
   }
 };
 

@@ -80,6 +80,9 @@ class ReuseDistance {
   /// Returns the distance, −1 for a cold access. Amortised O(1 + log distance).
   Index access(Index line, Access how = Access::gathered);
 
+  /// Asks for what `access` will need to know of the line.
+  void prefetch(Index line) const { __builtin_prefetch(&last_access_of_line_[line]); }
+
   /// The accesses so far. Every line's first one is cold.
   [[nodiscard]] const Reuse& reuse() const noexcept { return reuse_; }
 

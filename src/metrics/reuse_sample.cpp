@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "metrics/reuse_sample.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -26,7 +27,14 @@ Index ReuseSample::tracked_lines() const {
   return kBlock * blocks;
 }
 
+void ReuseSample::measure_those_that_wait() {
+  const std::size_t end = sampled_accesses_;
+  for (std::size_t k = end - std::min(end, kWaiting / 2); k < end; ++k) find_among_sampled(waiting(k));
+  for (std::size_t k = end - std::min(end, kWaiting); k < end; ++k) measure(waiting(k));
+}
+
 Reuse ReuseSample::repeated() && {
+  measure_those_that_wait();
   Reuse reuse = std::move(reuse_).repeated();
   if (halvings_ == 0) return reuse;
   const double times = std::ldexp(1.0 * kBlock / (kBlock - ReuseDistance::kUncounted), halvings_);

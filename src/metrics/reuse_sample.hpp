@@ -3,6 +3,8 @@
 
 #include "metrics/reuse_distance.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -26,7 +28,8 @@ class ReuseSample {
     if (place_of_block_.empty()) {
       reuse_.access(line, how);
     } else if (const Index block = line / kBlock; sampled(block)) {
-      reuse_.access(kBlock * place_of_block_[block] + line % kBlock, how);
+      __builtin_prefetch(&place_of_block_[block]);
+      wait(line, how);
     }
   }
 
@@ -35,6 +38,33 @@ class ReuseSample {
 
  private:
   static constexpr Index kBlock = ReuseDistance::kSampledBlock;
+
+  /// A sampled access. It waits for 32 others, while the cache fetches what measuring it needs: first the
+  /// place of its block among the sampled ones; after 16 accesses what is known of its line, which by then is
+  /// numbered among the lines of those blocks.
+  struct Waiting {
+    Index line = 0;
+    Access how = Access::gathered;
+  };
+  static constexpr std::size_t kWaiting = 32;
+
+  [[nodiscard]] Waiting& waiting(std::size_t number) { return waiting_[number % kWaiting]; }
+
+  void wait(Index line, Access how) {
+    if (sampled_accesses_ >= kWaiting) measure(waiting(sampled_accesses_));
+    waiting(sampled_accesses_) = {line, how};
+    if (sampled_accesses_ >= kWaiting / 2) find_among_sampled(waiting(sampled_accesses_ - kWaiting / 2));
+    ++sampled_accesses_;
+  }
+
+  void find_among_sampled(Waiting& access) {
+    access.line = kBlock * place_of_block_[access.line / kBlock] + access.line % kBlock;
+    reuse_.prefetch(access.line);
+  }
+
+  void measure(const Waiting& access) { reuse_.access(access.line, access.how); }
+
+  void measure_those_that_wait();
 
   /// By mixed bits of its number, so that no stride of a stream falls in step with the sample.
   [[nodiscard]] bool sampled(Index block) const noexcept {
@@ -48,7 +78,9 @@ class ReuseSample {
   [[nodiscard]] Index tracked_lines() const;
 
   int halvings_;
-  std::vector<Index> place_of_block_;  ///< among the sampled ones; empty when all are
+  std::vector<Index> place_of_block_;        ///< among the sampled ones; empty when all are
+  std::array<Waiting, kWaiting> waiting_{};  ///< the last accesses, number k at k % kWaiting
+  std::size_t sampled_accesses_ = 0;
   ReuseDistance reuse_;
 };
 

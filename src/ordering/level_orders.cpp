@@ -2,6 +2,7 @@
 // Orders by levels of a breadth-first search from a vertex at the rim. Cuthill, McKee: Reducing the Bandwidth
 // of Sparse Symmetric Matrices (1969); reversed after George (1971).
 #include "base/run_scope.hpp"
+#include "graph/prefetch.hpp"
 #include "graph/traversal.hpp"
 #include "ordering/all_methods.hpp"
 
@@ -63,7 +64,7 @@ Order rcm_vertices(const VertexInput& input, const OrderOptions&) {
     Index found = 1;
     for (Index k = 0; k < found; ++k) {
       poll_in_loop(k);
-      prefetch_row(near, places, k, found);
+      prefetch_row(near, places.first(std::size_t(found)), k);
       const Index first = found;
       for (const Index u : near[places[k]]) {  // without a branch, as in breadth_first
         places[found] = u;

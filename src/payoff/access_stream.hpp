@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "graph/prefetch.hpp"
 #include "kernels/positions.hpp"
 #include "kernels/simplices.hpp"
 #include "metrics/cache.hpp"
@@ -154,10 +155,19 @@ class AccessStream {
       }
       const auto lanes = static_cast<Index>(std::min<Offset>(kBatch, simplices_.size() - first));
       for (Index lane = 0; lane < lanes; ++lane) {
+        prefetch_offsets(graph_.offsets, corners_of(first + lane + 3 * kBatch));
+        prefetch_rows(graph_.offsets, graph_.neighbours, corners_of(first + lane + 3 * kBatch / 2));
         map.read(Offset{corners} * corners * sizeof(Index), touch);
         visit_blocks(batch.data() + lane, touch);
       }
     }
+  }
+
+  /// The corners of a simplex, of the last one for those behind it.
+  [[nodiscard]] std::span<const Index> corners_of(Offset simplex) const {
+    const Offset corners = simplices_.dimension + 1;
+    return std::span<const Index>(simplices_.vertices)
+        .subspan(corners * std::min(simplex, simplices_.size() - 1), corners);
   }
 
   /// Visits the blocks of the element with corners v[0], v[kBatch] …

@@ -4,6 +4,7 @@
 #include "base/parallel.hpp"
 #include "base/resize_in_steps.hpp"
 #include "base/run_scope.hpp"
+#include "graph/prefetch.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,14 +19,6 @@ constexpr Index kFound = -2;    // seen, not yet numbered
 constexpr Index kBatch = 256;   // vertices whose discoveries are sorted together
 constexpr Index kWave = 8;      // batches from which on threads share them
 constexpr Index kDegrees = 64;  // larger degrees are rare and sorted as this one
-
-/// Asks for the row that stands a few places after `k` in the order: rows lie anywhere in memory.
-void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {
-  constexpr Index kAhead = 8;
-  if (k + kAhead < index_size(order)) {
-    __builtin_prefetch(graph.neighbours.data() + graph.offsets[order[k + kAhead]]);
-  }
-}
 
 /// Numbers the components one after another.
 class Search {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -56,6 +57,19 @@ TEST(ReuseSample, EstimatesMissesAndJumps) {
     }
   }
   EXPECT_GT(exact.jumps.misses(768), exact.all.accesses() / 10);
+}
+
+TEST(ReuseSample, MeasuresEverySampledAccessHoweverFewThereAre) {
+  constexpr int kHalvings = 2;
+  const auto accesses = [](Index line, Index count) {
+    return sampled(std::vector<Index>(static_cast<std::size_t>(count), line), kHalvings).all.accesses();
+  };
+  Index line = 0;
+  while (line < 100 && accesses(line, 1) == 0) ++line;
+  ASSERT_LT(line, 100);
+  for (Index count = 0; count < 100; ++count) {
+    EXPECT_EQ(accesses(line, count), std::llround(4 * 5.0 / 3 * count)) << count << " accesses";
+  }
 }
 
 TEST(ReuseSample, AStreamHasNoJumps) {
