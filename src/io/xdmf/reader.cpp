@@ -432,11 +432,12 @@ class XdmfReader {
       if (rows > 1 && of_mesh && !named.contains(path)) others.push_back(path);
     }
     if (others.empty()) return;
+    std::string more;
+    if (others.size() > 1) more = fmt::format(" (likewise {} more)", others.size() - 1);
     reading_.notes.push_back(
         fmt::format("{} is kept as it is{}: the XML does not name it, but it has as many rows as the mesh "
                     "has points or cells",
-                    others.front() + " in " + name,
-                    others.size() > 1 ? fmt::format(" (likewise {} others)", others.size() - 1) : ""));
+                    others.front() + " in " + name, more));
   }
 
   Reading reading_;
