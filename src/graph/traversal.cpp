@@ -2,7 +2,7 @@
 #include "graph/traversal.hpp"
 
 #include "base/run_scope.hpp"
-#include "graph/prefetch.hpp"
+#include "graph/row_access.hpp"
 
 #include <algorithm>
 

@@ -2,10 +2,11 @@
 #include "kernels/assembly.hpp"
 
 #include "base/parallel.hpp"
-#include "graph/prefetch.hpp"
+#include "graph/row_access.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <span>
 #include <string>
 
@@ -24,9 +25,11 @@ AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix) {
     const Offset first = std::min(batch, rest.batches() - 1) * corners * kBatch;
     return std::span<const Index>(rest.vertices).subspan(first, Offset{corners} * kBatch);
   };
+  std::atomic<bool> complete = true;
   constexpr Offset kSimplices = 4096;
   for_each_range(rest.count, kSimplices, [&](Offset begin, Offset end) {
     Index* block = map.blocks.data() + begin * corners * corners;
+    Offset least = 0;
     for (Offset s = begin; s < end; ++s) {
       if (s % kBatch == 0) {
         prefetch_offsets(matrix.offsets, corners_of(s / kBatch + 2));
@@ -34,14 +37,18 @@ AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix) {
       }
       const Index* const corner = rest.vertices.data() + s / kBatch * kBatch * corners + s % kBatch;
       for (int a = 0; a < corners; ++a) {
-        for (int b = 0; b < corners; ++b)
-          *block++ = static_cast<Index>(matrix.find(corner[a * kBatch], corner[b * kBatch]));
+        for (int b = 0; b < corners; ++b) {
+          const Offset found = matrix.find(corner[a * kBatch], corner[b * kBatch]);
+          least = std::min(least, found);
+          *block++ = static_cast<Index>(found);
+        }
       }
     }
+    if (least < 0) complete = false;
   });
-  const auto missing = std::find(map.blocks.begin(), map.blocks.end(), -1);
-  if (missing != map.blocks.end()) {
-    const Offset place = missing - map.blocks.begin();
+  if (!complete) {
+    // the first one, however many threads there are
+    const Offset place = std::find(map.blocks.begin(), map.blocks.end(), -1) - map.blocks.begin();
     const Offset pair = place % (corners * corners);
     const Offset s = place / (corners * corners);
     throw InvalidArgument("assembly: the matrix has no block for the vertices " +

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "graph/csr_graph.hpp"
+#include "graph/row_access.hpp"
 #include "kernels/aligned.hpp"
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 namespace meshorder {
@@ -25,16 +27,10 @@ struct BlockCsrOf {
 
   /// Returns the number of the block in that row and column, −1 if the pattern has none. O(log row length).
   [[nodiscard]] Offset find(Index row, Index column) const {
-    // branch-free binary search: its branches would be unpredictable
-    Offset at = offsets[row];
-    Offset left = offsets[row + 1] - at;
-    if (left == 0) return -1;
-    while (left > 1) {
-      const Offset half = left / 2;
-      at += columns[at + half - 1] < column ? half : 0;
-      left -= half;
-    }
-    return columns[at] == column ? at : -1;
+    const Offset begin = offsets[row];
+    const std::span<const Index> entries(columns.data() + begin, columns.data() + offsets[row + 1]);
+    const Index place = entries_below(entries, column);
+    return place < index_size(entries) && entries[place] == column ? begin + place : -1;
   }
 };
 

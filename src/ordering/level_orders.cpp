@@ -2,7 +2,7 @@
 // Orders by levels of a breadth-first search from a vertex at the rim. Cuthill, McKee: Reducing the Bandwidth
 // of Sparse Symmetric Matrices (1969); reversed after George (1971).
 #include "base/run_scope.hpp"
-#include "graph/prefetch.hpp"
+#include "graph/row_access.hpp"
 #include "graph/traversal.hpp"
 #include "ordering/all_methods.hpp"
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "graph/prefetch.hpp"
+#include "graph/row_access.hpp"
 #include "kernels/positions.hpp"
 #include "kernels/simplices.hpp"
 #include "metrics/cache.hpp"
@@ -93,16 +93,7 @@ class AccessStream {
   /// Returns the index of the block in row a and column b of the matrix: each row has a block for each
   /// neighbour and one for the diagonal.
   [[nodiscard]] Offset block(Index a, Index b) const {
-    // branch-free std::lower_bound: the branches would be unpredictable
-    const Index* row = graph_.neighbours.data() + graph_.offsets[a];
-    Index left = graph_.degree(a);
-    Offset before = 0;
-    while (left > 0) {
-      const Index half = (left + 1) / 2;
-      before += row[before + half - 1] < b ? half : 0;
-      left -= half;
-    }
-    return graph_.offsets[a] + a + before + (b > a ? 1 : 0);
+    return graph_.offsets[a] + a + entries_below(graph_[a], b) + (b > a ? 1 : 0);
   }
 
   template <class Touch>

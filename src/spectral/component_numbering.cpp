@@ -4,7 +4,7 @@
 #include "base/parallel.hpp"
 #include "base/resize_in_steps.hpp"
 #include "base/run_scope.hpp"
-#include "graph/prefetch.hpp"
+#include "graph/row_access.hpp"
 
 #include <algorithm>
 #include <array>

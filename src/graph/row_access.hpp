@@ -7,7 +7,8 @@
 
 namespace meshorder {
 
-// What asks for compressed rows that a loop comes to a few steps later: they lie anywhere in memory.
+// Loops over vertices of all kinds come to rows that lie anywhere in memory, and search them for entries that
+// nobody can foresee: they ask for rows a few steps ahead, and search without branches.
 
 /// Asks for the row of the vertex that stands a few places after `k` in the order.
 inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {
@@ -22,7 +23,7 @@ inline void prefetch_offsets(std::span<const Offset> offsets, std::span<const In
   for (const Index row : rows) __builtin_prefetch(offsets.data() + row);
 }
 
-/// Asks for the first two lines of the rows, which hold 17 entries or more.
+/// Asks for the first two cache lines of the rows, which hold at least 17 entries.
 inline void prefetch_rows(std::span<const Offset> offsets, std::span<const Index> entries,
                           std::span<const Index> rows) {
   if (entries.empty()) return;
@@ -32,6 +33,19 @@ inline void prefetch_rows(std::span<const Offset> offsets, std::span<const Index
     __builtin_prefetch(first);
     __builtin_prefetch(first + kLine);
   }
+}
+
+/// Returns the number of entries of a rising row that are less than `value`: std::lower_bound without
+/// branches, which would be unpredictable. O(log row length).
+[[nodiscard]] inline Index entries_below(std::span<const Index> row, Index value) {
+  Index left = index_size(row);
+  Index below = 0;
+  while (left > 0) {
+    const Index half = (left + 1) / 2;
+    below += row[below + half - 1] < value ? half : 0;
+    left -= half;
+  }
+  return below;
 }
 
 }  // namespace meshorder
