@@ -86,10 +86,19 @@ Mesh without_families(Mesh mesh) {
 }
 
 /// Whether numbers ascend by one from 0 or 1.
-bool is_run(const std::vector<std::int64_t>& numbers) {
+bool is_run(std::span<const std::int64_t> numbers) {
   const auto is_no_step = [](std::int64_t number, std::int64_t next) { return next != number + 1; };
   return !numbers.empty() && (numbers.front() == 0 || numbers.front() == 1) &&
          std::adjacent_find(numbers.begin(), numbers.end(), is_no_step) == numbers.end();
+}
+
+/// Whether the numbers of the cells of each dimension are a run.
+bool cells_run(const Mesh& mesh) {
+  std::array<std::vector<std::int64_t>, 4> numbers;
+  for (std::size_t c = 0; c < mesh.cell_ids.size(); ++c)
+    numbers[static_cast<std::size_t>(dimension(mesh.cells.shapes[c]))].push_back(mesh.cell_ids[c]);
+  return std::all_of(numbers.begin(), numbers.end(),
+                     [](const auto& of_dimension) { return of_dimension.empty() || is_run(of_dimension); });
 }
 
 void check_same_format(const Mesh& mesh, std::string_view format, const std::string& name) {
@@ -99,10 +108,11 @@ void check_same_format(const Mesh& mesh, std::string_view format, const std::str
   Mesh again = read_back(format, files->files);
   // Gmsh's entities that come in turns bind no cells; an order may bring the cells of each together
   if (format == "gmsh" && mesh.cell_blocks.empty()) again.cell_blocks.clear();
-  // numbers of TetGen and Vega that come to run from 0 or 1 are those of the places
+  // numbers of TetGen and Vega that come to run from 0 or 1, in each of TetGen's files, are those of the
+  // places
   if (format == "tetgen" || format == "vega") {
     if (again.vertex_ids.empty() && is_run(mesh.vertex_ids)) again.vertex_ids = mesh.vertex_ids;
-    if (again.cell_ids.empty() && is_run(mesh.cell_ids)) again.cell_ids = mesh.cell_ids;
+    if (again.cell_ids.empty() && cells_run(mesh)) again.cell_ids = mesh.cell_ids;
   }
   const Extent extent = extent_of(format, notes.empty());
   const std::string found = format == "med"

@@ -161,6 +161,15 @@ TEST(Off, WritesAndReadsItsTypes) {
   }
 }
 
+TEST(Off, RefusesPolygonsThatWouldComeBackAsLines) {
+  const TemporaryFolder folder;
+  for (const int width : {1, 2}) {
+    EXPECT_NE(write_error(cells_of_type(Shape::polygon, width, 1), folder.path() / "a.off")
+                  .find("OFF cannot hold a cell of type polygon"),
+              std::string::npos);
+  }
+}
+
 TEST(Off, NotesWhatItCannotHold) {
   const TemporaryFolder folder;
   Mesh mesh = cells_of_type(Shape::triangle, 3, 1);

@@ -328,6 +328,15 @@ TEST(Ply, LeavesOutWhatOtherReadersDoNotFind) {
             std::string::npos);
 }
 
+TEST(Ply, RefusesPolygonsThatWouldComeBackAsLines) {
+  const TemporaryFolder folder;
+  for (const int width : {1, 2}) {
+    EXPECT_NE(write_error(cells_of_type(Shape::polygon, width, 1), folder.path() / "a.ply")
+                  .find("PLY cannot hold a cell of type polygon"),
+              std::string::npos);
+  }
+}
+
 TEST(Ply, RefusesOtherCells) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.ply";

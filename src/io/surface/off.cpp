@@ -255,9 +255,9 @@ Mesh read_off(const FilePath& path, Notes&) {
 
 // ---- writing
 
-/// Other readers take no faces of one or two vertices; files that have them keep them.
+/// Other readers take no faces of one or two vertices; files that have them keep them, as vertices and lines.
 bool off_holds(const Mesh& mesh, Shape shape, int vertices) {
-  if (shape == Shape::polygon) return true;
+  if (shape == Shape::polygon) return vertices >= 3;
   const int least = mesh.format == "off" ? 0 : 2;
   return dimension(shape) >= least && dimension(shape) <= 2 && vertices == corners(shape, 0);
 }

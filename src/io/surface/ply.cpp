@@ -460,7 +460,7 @@ void write_item(NumberWriter& to, const Mesh& mesh, const Table& table, Index it
 
 /// Other readers take vertices and faces only; files that have edges and tetrahedra keep them.
 bool ply_holds(const Mesh& mesh, Shape shape, int vertices) {
-  if (shape == Shape::polygon) return true;
+  if (shape == Shape::polygon) return vertices >= 3;
   if (vertices != corners(shape, 0)) return false;
   return dimension(shape) == 2 ||
          (mesh.format == "ply" && (dimension(shape) < 2 || shape == Shape::tetrahedron));
