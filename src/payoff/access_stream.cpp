@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace meshorder {
 
@@ -82,6 +83,32 @@ Offset repeated_additions(const Simplices& simplices) {
   return repeats;
 }
 
+/// See RunReuse::stalls.
+Offset stalled_gathers(const AccessStream& product) {
+  constexpr Offset kTogether = 16;
+  constexpr Offset kLeft = 512;
+  const auto [first, count] = product.vector_lines();
+  std::vector<Offset> streamed_before(static_cast<std::size_t>(count), -kLeft);
+  Offset streamed = 0;
+  Offset gathered = 0;
+  Offset stalls = 0;
+  bool stalled = false;
+  product.visit([&](Index line, Access how) {
+    if (how == Access::streamed) {
+      ++streamed;
+      return;
+    }
+    Offset& before = streamed_before[line - first];
+    stalled |= streamed - before >= kLeft;
+    before = streamed;
+    if (++gathered % kTogether == 0) {
+      stalls += stalled ? 1 : 0;
+      stalled = false;
+    }
+  });
+  return stalls;
+}
+
 }  // namespace
 
 RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings) {
@@ -95,7 +122,8 @@ RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplic
     reuse.access(line, how);
   });
   return {std::move(reuse).repeated(), simplices.dimension, gathers,
-          kernel == Kernel::element ? repeated_additions(simplices) : 0};
+          kernel == Kernel::element ? repeated_additions(simplices) : 0,
+          kernel == Kernel::spmv ? stalled_gathers(stream) : 0};
 }
 
 KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, int halvings) {

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <utility>
 
 namespace meshorder {
 
@@ -33,6 +34,11 @@ class AccessStream {
   AccessStream(Kernel kernel, const CsrGraph& graph, const Simplices& simplices);
 
   [[nodiscard]] Index line_count() const noexcept { return static_cast<Index>(lines_); }
+
+  /// The first line of the vector that a product gathers from, and the number of its lines.
+  [[nodiscard]] std::pair<Index, Index> vector_lines() const noexcept {
+    return {static_cast<Index>(x_.first_line), static_cast<Index>((x_.bytes + kLineBytes - 1) / kLineBytes)};
+  }
 
   /// Calls `touch(line, how)` for every access, an Access being how the kernel comes to the line.
   /// O(accesses), for assembly times the logarithm of a row's length.
@@ -218,6 +224,10 @@ struct RunReuse : Reuse {
   /// Additions of element forces to a vertex that one of the two before them went to: they wait until what
   /// that one stored can be loaded. In the order in which registers of eight doubles are added.
   Offset repeats = 0;
+  /// Of a product with the matrix, the groups of 16 gathered accesses that have to wait for the second level:
+  /// one or more of them come to a line since whose last use 512 others were read from front to back (an L1
+  /// cache of 32 KB). What is read from memory meanwhile is fetched less far ahead.
+  Offset stalls = 0;
 
   bool operator==(const RunReuse&) const = default;
 };

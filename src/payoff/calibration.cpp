@@ -22,7 +22,9 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <functional>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -99,14 +101,15 @@ struct Prepared {
 };
 
 /// Times all orders of a lattice in interleaved rounds, on the threads of `runs`, and adds what they took.
-Timings time_all(Prepared& prepared, const Rounds& rounds, Runs& runs) {
+Timings time_all(Prepared& prepared, int lattice, const Rounds& rounds, Runs& runs) {
   if (runs.threads > 1) prepared.share(runs.threads);
   Timings timings = prepared.timed(runs.threads, rounds);
   for (std::size_t i = 0; i < prepared.reuse.size(); ++i) {
     const Simplices simplices = cut_into_simplices(prepared.meshes[i]);
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
       const double times = times_computed(kKernels[k], prepared.graphs[i], simplices, runs.threads);
-      runs.timed[k].push_back({prepared.reuse[i][k], timings.orders[i][kKernels[k]].best_ms / times});
+      runs.timed[k].push_back(
+          {prepared.reuse[i][k], timings.orders[i][kKernels[k]].best_ms / times, lattice});
     }
   }
   runs.steadiness.push_back(timings.steadiness);
@@ -172,14 +175,15 @@ void measure_memory(const CalibrationEffort& effort, Calibration& calibration) {
 }
 
 /// Times all orders of a lattice side by side, the last but one of them twice, at other addresses.
-void time_small(const CalibrationLattice& lattice, double seconds, std::span<Runs> runs) {
+void time_small(const CalibrationLattice& lattice, int number, double seconds, std::span<Runs> runs) {
   const std::size_t twice = lattice.orders.size() - 2;
   std::vector<LatticeOrder> orders = lattice.orders;
   orders.push_back(orders[twice]);
   Prepared prepared(lattice, orders);
   for (Runs& some : runs) {
-    const Timings timings = time_all(
-        prepared, some.threads == 1 ? Rounds{seconds} : Rounds{.seconds = seconds / 4, .least = 2}, some);
+    const Timings timings =
+        time_all(prepared, number,
+                 some.threads == 1 ? Rounds{seconds} : Rounds{.seconds = seconds / 4, .least = 2}, some);
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
       const double one = timings.orders[twice][kKernels[k]].best_ms;
       const double other = timings.orders.back()[kKernels[k]].best_ms;
@@ -190,7 +194,7 @@ void time_small(const CalibrationLattice& lattice, double seconds, std::span<Run
 
 /// Times the orders of a lattice one after another, as long as there is time, but at least the best and the
 /// worst, and these also on all threads.
-void time_large(CalibrationLattice lattice, const Stopwatch& since_start, double seconds,
+void time_large(CalibrationLattice lattice, int number, const Stopwatch& since_start, double seconds,
                 std::span<Runs> runs) {
   std::vector<LatticeOrder>& orders = lattice.orders;
   // the most that an order can cost is what meshes are predicted by that are larger than all of these
@@ -202,7 +206,7 @@ void time_large(CalibrationLattice lattice, const Stopwatch& since_start, double
     report("lattices", std::min(0.98, 0.6 + 0.4 * (begin / seconds - 0.5)));
     Prepared prepared(lattice, std::span(orders).subspan(i, 1));
     for (Runs& some : runs.first(i < 2 ? runs.size() : 1))
-      (void)time_all(prepared, {.seconds = 0.3, .least = 2}, some);
+      (void)time_all(prepared, number, {.seconds = 0.3, .least = 2}, some);
     longest = std::max(longest, since_start.seconds() - begin);
   }
 }
@@ -217,6 +221,26 @@ Rows shares_of(std::span<const TimedReuse> runs, const Caches& caches) {
     rows.push_back(row);
   }
   return rows;
+}
+
+/// Multiplies what all runs of a lattice have in common, the mean of their rows, by a factor.
+void scale_means(double factor, std::span<const TimedReuse> runs, Rows& rows) {
+  struct Mean {
+    std::vector<double> row;
+    double runs = 0;
+  };
+  std::map<int, Mean> means;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    Mean& mean = means[runs[i].lattice];
+    mean.row.resize(rows.columns);
+    std::transform(mean.row.begin(), mean.row.end(), rows[i].begin(), mean.row.begin(), std::plus<>());
+    ++mean.runs;
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Mean& mean = means[runs[i].lattice];
+    for (std::size_t j = 0; j < rows.columns; ++j)
+      rows.values[i * rows.columns + j] -= (1 - factor) * mean.row[j] / mean.runs;
+  }
 }
 
 /// The times that costs predict, as shares of those that were measured.
@@ -293,16 +317,19 @@ Latencies latencies_behind(const FoundCaches& found, const Caches& caches) {
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies) {
   const Rows shares = shares_of(runs, caches);
   // One more unknown, in units of a share that is about right: how much of a latency a jump costs. For each
-  // jump an equation says that its cost is that share, with a twentieth of the weight of a run.
+  // jump an equation says that its cost is that share, with an eightieth of the weight of a run.
   constexpr double kShare = 0.1;
-  constexpr double kWeight = 0.05;
+  constexpr double kWeight = 0.0125;
+  // What all runs of a lattice are off by counts so much.
+  constexpr double kCommon = 0.5;
   Rows rows{.columns = shares.columns + 1};
   std::vector<double> row(rows.columns);
   for (std::size_t i = 0; i < shares.size(); ++i) {
     std::copy(shares[i].begin(), shares[i].end(), row.begin());
     rows.push_back(row);
   }
-  std::vector<double> right(runs.size(), 1.0);
+  scale_means(kCommon, runs, rows);
+  std::vector<double> right(runs.size(), kCommon);
   for (std::size_t i = 0; i < latencies.size(); ++i) {
     KernelCosts one;
     one.jump[i] = kWeight / (kShare * latencies[i]);
@@ -383,15 +410,17 @@ Calibration measure_machine(const CalibrationEffort& effort) {
                          Step{largest / 8, true, 4, 0.04, true},
                          Step{largest / 3, false, 3, 0.07, true}};
   double done = 0.25;
+  int number = 0;
   for (const Step& step : steps) {
     report("lattices", done);
     const CalibrationLattice lattice =
         make_calibration_lattice(step.vertices, step.flat, model.caches, step.orders);
-    time_small(lattice, step.share * effort.seconds,
+    time_small(lattice, number++, step.share * effort.seconds,
                std::span(runs).first(step.on_all_threads ? runs.size() : 1));
     done += step.share;
   }
-  time_large(make_calibration_lattice(largest, false, model.caches, 6), since_start, effort.seconds, runs);
+  time_large(make_calibration_lattice(largest, false, model.caches, 6), number, since_start, effort.seconds,
+             runs);
   calibration.steadiness = steadiness_of(runs.front().steadiness);
   calibration.all_threads = model;
   const Latencies latencies = latencies_behind(calibration.found, model.caches);

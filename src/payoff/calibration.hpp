@@ -68,6 +68,7 @@ Calibration measure_machine(const CalibrationEffort& effort = {});
 struct TimedReuse {
   RunReuse reuse;
   double milliseconds = 0;
+  int lattice = 0;  ///< its number: runs of one lattice were timed side by side
 };
 
 /// The costs of a kernel that fit its runs best.
@@ -86,7 +87,9 @@ Latencies latencies_behind(const FoundCaches& found, const Caches& caches);
 
 /// Fits the costs of a kernel on a machine with such caches. Loads do not wait for each other, so that a jump
 /// costs a share of its latency. Where runs have too few jumps to tell what they cost, it is the same share
-/// as of the others: the equations say so, with a twentieth of the weight of a run each.
+/// as of the others: the equations say so, with an eightieth of the weight of a run each. What all runs of a
+/// lattice are off by has half of the weight of what each is off by beside them: costs are for ratios,
+/// and the rate of a shared memory changes from minute to minute.
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies);
 
 /// Fits one factor to the runs, by which all of the costs are multiplied.

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSchema = "meshorder calibration 4";
+constexpr const char* kSchema = "meshorder calibration 5";
 
 std::string sizes_text(const Caches& caches) { return caches.level_bytes.empty() ? "" : to_string(caches); }
 
@@ -55,11 +55,8 @@ double condition_from(const Json& json) {
 }
 
 Json to_json(const KernelCosts& costs) {
-  return {{"access", costs.access},
-          {"miss", costs.miss},
-          {"jump", costs.jump},
-          {"repeat", costs.repeat},
-          {"wait", costs.wait}};
+  return {{"access", costs.access}, {"miss", costs.miss}, {"jump", costs.jump},
+          {"repeat", costs.repeat}, {"wait", costs.wait}, {"stall", costs.stall}};
 }
 
 KernelCosts costs_from(const Json& json) {
@@ -71,6 +68,7 @@ KernelCosts costs_from(const Json& json) {
   }
   sum += costs.repeat = number_from(json.at("repeat"));
   sum += costs.wait = number_from(json.at("wait"));
+  sum += costs.stall = number_from(json.at("stall"));
   if (!(sum > 0)) throw InvalidArgument("has a kernel that costs nothing");
   return costs;
 }

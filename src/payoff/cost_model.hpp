@@ -13,21 +13,24 @@ namespace meshorder {
 
 /// Nanoseconds (≥ 0) that a kernel spends on each access, on each miss and, in addition, on each jump (a miss
 /// that no hardware prefetcher foresees) of four caches: the first level, the second, half of the last and
-/// all of it; on each repeat (RunReuse::repeats); and on each wait for memory: jumps of the last cache that
-/// are among the same 32 gathered accesses wait together. A thread shares the last level, so misses begin to
-/// cost when half of it is full.
+/// all of it; on each repeat (RunReuse::repeats); on each wait for memory: jumps of the last cache that
+/// are among the same 32 gathered accesses wait together; and on each stall (RunReuse::stalls), in the share
+/// of the lines read from front to back that miss the last cache. In that share a product's jumps of the
+/// first two caches cost nothing but the stalls that they make: while memory is waited for, they are served.
+/// A thread shares the last level, so misses begin to cost when half of it is full.
 struct KernelCosts {
   double access = 0.0;
   std::array<double, 4> miss{};
   std::array<double, 4> jump{};
   double repeat = 0.0;
   double wait = 0.0;
+  double stall = 0.0;
 
   bool operator==(const KernelCosts&) const = default;
 };
 
 /// Numbers, one for each cost.
-using CostRow = std::array<double, 11>;
+using CostRow = std::array<double, 12>;
 
 /// The costs as a row, and costs from one.
 CostRow as_row(const KernelCosts& costs);

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 #include <utility>
@@ -231,6 +232,34 @@ TEST(ReuseOf, CountsAdditionsToAVertexThatHardlyLeftTheRegisters) {
     for (const Kernel other : {Kernel::spmv, Kernel::assembly, Kernel::springs}) {
       EXPECT_EQ(reuse_of(other, p.graph, p.simplices).repeats, 0);
     }
+  }
+}
+
+TEST(ReuseOf, CountsSixteensOfGatheredAccessesOfWhichOneWasLeftForLong) {
+  const Prepared p(test::tetrahedral_bar(3000));
+  const Recorder stream = recorded(Kernel::spmv, p);
+  std::map<Recorder::Line, int> read_before;
+  int read = 0;
+  std::vector<bool> left;  // of each gathered access
+  for (std::size_t i = 0; i < stream.lines.size(); ++i) {
+    if (stream.how[i] == Access::streamed) {
+      ++read;
+      continue;
+    }
+    const auto found = read_before.find(stream.lines[i]);
+    left.push_back(found == read_before.end() || read - found->second >= 512);
+    read_before[stream.lines[i]] = read;
+  }
+  Offset stalls = 0;
+  for (std::size_t first = 0; first + 16 <= left.size(); first += 16) {
+    stalls += std::any_of(left.begin() + first, left.begin() + first + 16, std::identity()) ? 1 : 0;
+  }
+  ASSERT_GT(stalls, 0);
+  ASSERT_LT(stalls, static_cast<Offset>(left.size() / 32));
+  EXPECT_EQ(reuse_of(Kernel::spmv, p.graph, p.simplices).stalls, stalls);
+  EXPECT_EQ(reuse_of(Kernel::spmv, p.graph, p.simplices, 3).stalls, stalls);
+  for (const Kernel other : {Kernel::element, Kernel::assembly, Kernel::springs}) {
+    EXPECT_EQ(reuse_of(other, p.graph, p.simplices).stalls, 0);
   }
 }
 

@@ -14,8 +14,12 @@ namespace {
 /// Counts with a weight of their own each, so that any mix-up shows.
 CostModel distinct_costs() {
   CostModel model;
-  model.solid.fill(
-      {.access = 1, .miss = {10, 100, 1000, 1e4}, .jump = {1e5, 1e6, 1e7, 1e8}, .repeat = 1e9, .wait = 1e10});
+  model.solid.fill({.access = 1,
+                    .miss = {10, 100, 1000, 1e4},
+                    .jump = {1e5, 1e6, 1e7, 1e8},
+                    .repeat = 1e9,
+                    .wait = 1e10,
+                    .stall = 1e11});
   model.flat.fill({.access = 2});
   return model;
 }
@@ -69,6 +73,25 @@ TEST(CostModel, JumpsOfTheLastCacheThatAreCloseTogetherWaitTogether) {
   EXPECT_NEAR(waits(3200, 3300), 100, 0.01);
 }
 
+TEST(CostModel, StallsCostInTheShareOfTheStreamsThatMissesTheLastCache) {
+  RunReuse reuse = some_reuse(2);
+  const auto stalls = [&](Offset gathers, Offset last_cache, Offset count) {
+    const Caches caches = lines({8, 64, last_cache});
+    reuse.gathers = gathers;
+    reuse.stalls = 0;
+    const double without = predicted_ms(Kernel::spmv, reuse, caches, distinct_costs());
+    reuse.stalls = count;
+    return 1e6 * (predicted_ms(Kernel::spmv, reuse, caches, distinct_costs()) - without);
+  };
+  // of 8 accesses 2 miss 1,600 lines, 4 miss 200; the jump of the first two caches is free in the same share
+  const double jump = 1e5 + 1e6;
+  EXPECT_NEAR(stalls(0, 1600, 4), 1e11 - jump / 4, 1);
+  EXPECT_NEAR(stalls(5, 1600, 3), 2e11 - jump * 2 / 3, 1);
+  EXPECT_NEAR(stalls(5, 200, 3), 3e11 - jump, 1);  // gathered accesses miss, too
+  EXPECT_NEAR(stalls(5, 1 << 20, 3), 0, 1);
+  EXPECT_NEAR(stalls(8, 1600, 3), 0, 1);
+}
+
 TEST(CostModel, TrianglesHaveCostsOfTheirOwn) {
   RunReuse reuse = some_reuse(2);
   for (const int dimension : {2, 1}) {
@@ -78,7 +101,7 @@ TEST(CostModel, TrianglesHaveCostsOfTheirOwn) {
 }
 
 TEST(CostModel, ARowOfCostsIsTheSameCosts) {
-  const KernelCosts costs{1, {2, 3, 4, 5}, {6, 7, 8, 9}, 10, 11};
+  const KernelCosts costs{1, {2, 3, 4, 5}, {6, 7, 8, 9}, 10, 11, 12};
   const CostRow row = as_row(costs);
   for (std::size_t i = 0; i < row.size(); ++i) EXPECT_EQ(row[i], static_cast<double>(i + 1));
   EXPECT_EQ(as_costs(row), costs);
