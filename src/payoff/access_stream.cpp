@@ -87,8 +87,8 @@ Offset repeated_additions(const Simplices& simplices) {
 Offset stalled_gathers(const AccessStream& product) {
   constexpr Offset kTogether = 16;
   constexpr Offset kLeft = 512;
-  const auto [first, count] = product.vector_lines();
-  std::vector<Offset> streamed_before(static_cast<std::size_t>(count), -kLeft);
+  const AccessStream::Lines vector = product.vector_lines();
+  std::vector<Offset> streamed_before(static_cast<std::size_t>(vector.count), -kLeft);
   Offset streamed = 0;
   Offset gathered = 0;
   Offset stalls = 0;
@@ -98,7 +98,7 @@ Offset stalled_gathers(const AccessStream& product) {
       ++streamed;
       return;
     }
-    Offset& before = streamed_before[line - first];
+    Offset& before = streamed_before[line - vector.first];
     stalled |= streamed - before >= kLeft;
     before = streamed;
     if (++gathered % kTogether == 0) {

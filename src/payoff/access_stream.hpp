@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <span>
-#include <utility>
 
 namespace meshorder {
 
@@ -35,8 +34,14 @@ class AccessStream {
 
   [[nodiscard]] Index line_count() const noexcept { return static_cast<Index>(lines_); }
 
-  /// The first line of the vector that a product gathers from, and the number of its lines.
-  [[nodiscard]] std::pair<Index, Index> vector_lines() const noexcept {
+  /// Lines first … first + count − 1.
+  struct Lines {
+    Index first = 0;
+    Index count = 0;
+  };
+
+  /// The lines of the vector that a product gathers from.
+  [[nodiscard]] Lines vector_lines() const noexcept {
     return {static_cast<Index>(x_.first_line), static_cast<Index>((x_.bytes + kLineBytes - 1) / kLineBytes)};
   }
 

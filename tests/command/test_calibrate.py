@@ -57,9 +57,9 @@ def test_a_calibration_says_what_it_measured(measured):
         assert list(kernel) == ["solid", "flat", "condition", "error", "floor", "all_threads"]
         assert list(kernel["all_threads"]) == ["solid", "flat", "condition", "error", "floor"]
         for costs in kernel["solid"], kernel["flat"], kernel["all_threads"]["solid"], kernel["all_threads"]["flat"]:
-            assert list(costs) == ["access", "miss", "jump", "repeat", "wait"]
+            assert list(costs) == ["access", "miss", "jump", "repeat", "wait", "stall"]
             assert len(costs["miss"]) == len(costs["jump"]) == 4
-            assert min([costs["access"], *costs["miss"], *costs["jump"], costs["repeat"], costs["wait"]]) >= 0
+            assert min([*costs["miss"], *costs["jump"], *(costs[one] for one in ("access", "repeat", "wait", "stall"))]) >= 0
     assert all(rate > 0 for rate in measured["read_bandwidth"].values())
     assert os.path.dirname(measured["file"]).endswith("calibrations") and os.path.exists(measured["file"])
     assert os.listdir(os.path.dirname(measured["file"])) == [os.path.basename(measured["file"])]
@@ -168,7 +168,7 @@ def test_a_machine_that_moved_is_noticed(here, stored):
         for costs in kernel["solid"], kernel["flat"]:
             for levels in "miss", "jump":
                 costs[levels] = [10 * cost for cost in costs[levels]]
-            for single in "access", "repeat", "wait":
+            for single in "access", "repeat", "wait", "stall":
                 costs[single] *= 10
     stored.write_text(json.dumps(content))
     result = here.json("calibrate", "--recheck")
