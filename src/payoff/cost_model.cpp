@@ -15,6 +15,7 @@ const CostModel& zen5_costs() {
   static const CostModel model{
       .machine = "2-core Zen 5, 48 KB L1, 1 MB L2, 32 MB L3",
       .caches = parse_cache_sizes("48K,1M,32M"),
+      .stalls = false,
       .solid = {{
           {.access = 0.03582,
            .miss = {0.264, 0.442, 0.08801, 0.2538},
@@ -92,6 +93,7 @@ const CostModel& zen3_costs() {
   static const CostModel model{
       .machine = "2-core Zen 3, 32 KB L1, 512 KB L2, 12 MB to be had of 32 MB L3",
       .caches = parse_cache_sizes("32K,512K,13004K"),
+      .stalls = false,
       .solid = {{
           {.access = 0.7382,
            .miss = {0.2113, 0.04868, 0.03762, 2.956},
@@ -127,6 +129,7 @@ const CostModel& xeon_costs() {
   static const CostModel model{
       .machine = "2-core Sapphire Rapids, 48 KB L1, 2 MB L2, 64 MB to be had of L3",
       .caches = parse_cache_sizes("48K,2M,64M"),
+      .stalls = false,
       .solid = {{
           {.access = 0.4931, .miss = {0, 1.145, 0, 0.5293}, .jump = {0, 2.443, 0, 0}},  // spmv
           {.access = 0.5071,
@@ -174,7 +177,7 @@ KernelCosts as_costs(const CostRow& row) {
   return costs;
 }
 
-CostRow counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes) {
+CostRow counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes, bool stalls) {
   KernelCosts counts{.access = static_cast<double>(reuse.all.accesses()),
                      .repeat = static_cast<double>(reuse.repeats)};
   for (std::size_t i = 0; i < sizes.size(); ++i) {
@@ -188,7 +191,8 @@ CostRow counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes) {
     const double hits = std::max(0.0, 1 - counts.jump.back() / gathers);
     counts.wait = gathers / kTogether * (1 - std::pow(hits, kTogether));
   }
-  if (const Offset streamed = reuse.all.accesses() - reuse.gathers; reuse.stalls > 0 && streamed > 0) {
+  if (const Offset streamed = reuse.all.accesses() - reuse.gathers;
+      stalls && reuse.stalls > 0 && streamed > 0) {
     const double share = std::min(1.0, counts.miss.back() / static_cast<double>(streamed));
     counts.stall = share * static_cast<double>(reuse.stalls);
     counts.jump[0] *= 1 - share;
@@ -199,7 +203,7 @@ CostRow counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes) {
 
 double predicted_ms(Kernel kernel, const RunReuse& reuse, const Caches& caches, const CostModel& model) {
   const CostRow costs = as_row(model.costs(kernel, reuse.dimension));
-  const CostRow counts = counts_of(reuse, sizes_that_cost(caches));
+  const CostRow counts = counts_of(reuse, sizes_that_cost(caches), model.stalls);
   return 1e-6 * std::inner_product(costs.begin(), costs.end(), counts.begin(), 0.0);
 }
 

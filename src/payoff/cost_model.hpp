@@ -43,6 +43,8 @@ struct CostModel {
   /// That share each run, as KernelBench does. With several the costs are those of elapsed time, for the
   /// accesses that one thread would make, times `times_computed`.
   int threads = 1;
+  /// Whether stalls are counted: they were not when some of the costs that ship were fitted.
+  bool stalls = true;
   std::array<KernelCosts, kKernels.size()> solid;  ///< of meshes of tetrahedra
   std::array<KernelCosts, kKernels.size()> flat;   ///< of meshes of triangles and edges
 
@@ -59,8 +61,9 @@ struct CostModel {
 std::array<Offset, 4> sizes_that_cost(const Caches& caches);
 
 /// Returns how often each cost occurs in a run, for caches of the sizes of sizes_that_cost. Waits are counted
-/// as if the jumps were spread evenly over the gathered accesses. O(levels · bins of the histograms).
-CostRow counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes);
+/// as if the jumps were spread evenly over the gathered accesses. Without `stalls` there are none, and all
+/// jumps count. O(levels · bins of the histograms).
+CostRow counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes, bool stalls = true);
 
 /// Returns costs that benchmarks/fit_cost_model fitted to measurements on a 2-core Zen 5 server processor (48
 /// KB L1, 1 MB L2, 32 MB L3). docs/prediction.md shows how well they predict other meshes.

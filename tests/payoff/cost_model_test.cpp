@@ -92,6 +92,19 @@ TEST(CostModel, StallsCostInTheShareOfTheStreamsThatMissesTheLastCache) {
   EXPECT_NEAR(stalls(8, 1600, 3), 0, 1);
 }
 
+TEST(CostModel, CostsFittedWithoutStallsGoByAllJumps) {
+  CostModel model = distinct_costs();
+  RunReuse reuse = some_reuse(2);
+  const Caches caches = lines({8, 64, 1600});
+  const double without = predicted_ms(Kernel::spmv, reuse, caches, model);
+  reuse.stalls = 3;
+  EXPECT_NE(predicted_ms(Kernel::spmv, reuse, caches, model), without);
+  model.stalls = false;
+  EXPECT_EQ(predicted_ms(Kernel::spmv, reuse, caches, model), without);
+  EXPECT_TRUE(zen4_costs().stalls);
+  EXPECT_FALSE(zen5_costs().stalls);
+}
+
 TEST(CostModel, TrianglesHaveCostsOfTheirOwn) {
   RunReuse reuse = some_reuse(2);
   for (const int dimension : {2, 1}) {
