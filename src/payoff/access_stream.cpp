@@ -104,6 +104,7 @@ Offset stalled_gathers(const AccessStream& product) {
     if (++gathered % kTogether == 0) {
       stalls += stalled ? 1 : 0;
       stalled = false;
+      if (gathered % 0x10000 == 0) poll();
     }
   });
   return stalls;
