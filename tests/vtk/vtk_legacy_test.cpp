@@ -189,17 +189,24 @@ TEST(VtkLegacy, ReadsPointsCellsAndAllArrays) {
 
 TEST(VtkLegacy, KeepsAnArrayThatOnlyHasTheNameOfTheCellTypes) {
   const TemporaryFolder folder;
-  Mesh mesh = mixed_mesh();
-  const DataArray array{
-      "vtk:type", Association::cells, 1, std::vector<std::uint8_t>(mesh.cells.shapes.size(), 1), {}, {}};
-  mesh.data.push_back(array);
-  for (const char* const name : {"a.vtk", "a.vtu"}) {
-    write_mesh(mesh, folder.path() / name);
-    const Mesh back = read_mesh(folder.path() / name);
-    const DataArray* const found = find_array(back, "vtk:type", Association::cells);
-    ASSERT_NE(found, nullptr) << name;
-    EXPECT_EQ(*found, array) << name;
-  }
+  const auto expect_kept = [&](Mesh mesh, std::vector<std::uint8_t> numbers) {
+    const DataArray array{"vtk:type", Association::cells, 1, std::move(numbers), {}, {}};
+    mesh.data.push_back(array);
+    for (const char* const name : {"a.vtk", "a.vtu"}) {
+      write_mesh(mesh, folder.path() / name);
+      const Mesh back = read_mesh(folder.path() / name);
+      const DataArray* const found = find_array(back, "vtk:type", Association::cells);
+      ASSERT_NE(found, nullptr) << name;
+      EXPECT_EQ(*found, array) << name;
+    }
+  };
+  const Mesh mixed = mixed_mesh();
+  expect_kept(mixed, std::vector<std::uint8_t>(mixed.cells.shapes.size(), 1));
+  // 64, a tetrahedron of higher order, fits the first cell
+  const Mesh bar = tetrahedral_bar(1);
+  std::vector<std::uint8_t> one_fits(bar.cells.shapes.size(), 0);
+  one_fits.front() = 64;
+  expect_kept(bar, one_fits);
 }
 
 TEST(VtkLegacy, WritesTextThatKeepsEveryDigitAndSection) {

@@ -126,17 +126,23 @@ const CellType* default_type(Shape shape, int vertices) {
   return found == kTypes.end() ? nullptr : &*found;
 }
 
-/// Returns the type of that number if it fits a cell of this shape, else null.
-const CellType* own_type(int number, Shape shape, int vertices) {
+/// Whether a cell of this shape can be of the type of that number.
+bool can_be(int number, Shape shape, int vertices) {
   const CellType* const type = type_of(number);
-  return type != nullptr && type->shape == shape && fits(*type, vertices) ? type : nullptr;
+  return type != nullptr && type->shape == shape && fits(*type, vertices);
 }
 
-/// Returns the numbers of VTK's types that the reader kept, null if there are none.
+/// Returns the numbers of VTK's types that the reader kept, null if there are none: an array of that name
+/// with a number that does not fit its cell is one like any other. O(cells).
 const std::vector<std::uint8_t>* kept_types(const Mesh& mesh) {
   const DataArray* const kept = find_array(mesh, kCellTypes, Association::cells);
   if (kept == nullptr || !kept->is_dense() || kept->components != 1) return nullptr;
-  return std::get_if<std::vector<std::uint8_t>>(&kept->values);
+  const auto* const numbers = std::get_if<std::vector<std::uint8_t>>(&kept->values);
+  if (numbers == nullptr) return nullptr;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (!can_be((*numbers)[c], mesh.cells.shapes[c], mesh.cells.vertex_count(c))) return nullptr;
+  }
+  return numbers;
 }
 
 /// Caches default types, as a mesh has few.
@@ -241,25 +247,15 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
   if (type == nullptr) return false;
   const bool lagrange = type->number >= kFirstLagrange && type->number <= kLastLagrange;
   if (!lagrange || is_from_vtk(mesh)) return true;
-  // cells of this type whose numbers of VTK's types are known
-  const std::vector<std::uint8_t>* const numbers = kept_types(mesh);
-  if (numbers == nullptr) return false;
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    if (mesh.cells.shapes[c] != shape || mesh.cells.vertex_count(c) != vertices) continue;
-    if (own_type((*numbers)[c], shape, vertices) == nullptr) return false;
-  }
-  return true;
+  return kept_types(mesh) != nullptr;  // which Lagrange type it is, is known then
 }
 
 std::vector<std::uint8_t> cell_types(const Mesh& mesh) {
-  const std::vector<std::uint8_t>* const numbers = kept_types(mesh);
+  if (const std::vector<std::uint8_t>* const numbers = kept_types(mesh); numbers != nullptr) return *numbers;
   DefaultTypes defaults;
   std::vector<std::uint8_t> types(mesh.cells.shapes.size());
   for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const Shape shape = mesh.cells.shapes[c];
-    const int vertices = mesh.cells.vertex_count(c);
-    const CellType* own = numbers != nullptr ? own_type((*numbers)[c], shape, vertices) : nullptr;
-    types[c] = static_cast<std::uint8_t>((own != nullptr ? own : defaults(shape, vertices))->number);
+    types[c] = static_cast<std::uint8_t>(defaults(mesh.cells.shapes[c], mesh.cells.vertex_count(c))->number);
   }
   return types;
 }
