@@ -231,7 +231,7 @@ struct RunReuse : Reuse {
   Offset repeats = 0;
   /// Of a product with the matrix, the groups of 16 gathered accesses that have to wait for the second level:
   /// one or more of them come to a line since whose last use 512 others were read from front to back (an L1
-  /// cache of 32 KB). What is read from memory meanwhile is fetched less far ahead.
+  /// cache of 32 KB). Less of the matrix arrives from memory meanwhile (docs/prediction.md).
   Offset stalls = 0;
 
   bool operator==(const RunReuse&) const = default;
