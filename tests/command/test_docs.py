@@ -65,6 +65,7 @@ def test_simulations(command, tmp_path):
 
 
 @pytest.mark.parametrize("results, tables", [("results.json", "tables.md"), ("zen4.json", "zen4-tables.md"),
+                                             ("zen4-short.json", "zen4-short-tables.md"),
                                              ("300k.json", "300k-tables.md"), ("2m.json", "2m-tables.md")])
 def test_the_reproduction_is_what_its_results_say(command, tmp_path, results, tables):
     """The committed tables are those that the command makes of the committed results."""
@@ -74,7 +75,8 @@ def test_the_reproduction_is_what_its_results_say(command, tmp_path, results, ta
     assert (tmp_path / "tables.md").read_text() == (committed / tables).read_text()
 
 
-@pytest.mark.parametrize("table, name", enumerate(["results.json", "zen4.json", "300k.json", "2m.json"]))
+@pytest.mark.parametrize("table, name", enumerate(["results.json", "zen4.json", "zen4-short.json",
+                                                   "300k.json", "2m.json"]))
 def test_speedups_in_the_reproduction_are_those_of_its_results(table, name):
     text = (conftest.ROOT / "docs" / "reproduction.md").read_text()
     results = json.loads((conftest.ROOT / "docs" / "reproduction" / name).read_text())
