@@ -47,10 +47,11 @@ std::string in_columns(const KernelCosts& costs) {
   std::string misses;
   std::string jumps;
   for (std::size_t i = 0; i < costs.miss.size(); ++i) {
-    misses += fmt::format("{:>7.3g}", costs.miss[i]);
-    jumps += fmt::format("{:>7.3g}", costs.jump[i]);
+    misses += fmt::format("{:>8.3g}", costs.miss[i]);
+    jumps += fmt::format("{:>8.3g}", costs.jump[i]);
   }
-  return fmt::format("{:>7.3g}{}{}{:>8.3g}{:>7.3g}", costs.access, misses, jumps, costs.repeat, costs.wait);
+  return fmt::format("{:>7.3g}{}{}{:>8.3g}{:>7.3g}{:>7.3g}", costs.access, misses, jumps, costs.repeat,
+                     costs.wait, costs.stall);
 }
 
 /// Prints two lines for each kernel, of tetrahedra and of triangles.
@@ -86,9 +87,11 @@ void print_calibration(const Console& console, const Calibration& calibration) {
       "\nWhat a kernel pays, in ns: an access, a miss and in addition a jump of the first cache, the "
       "second,\n"
       "half of the last and all of it; an addition to what was added to just before; a wait for jumps of\n"
-      "the last one that are close together. The second line of each kernel is of triangles");
-  console.print("{:<14}{:>7}{:>28}{:>28}{:>8}{:>7}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps",
-                "repeat", "wait", "condition", "error", "floor");
+      "the last one that are close together; a stall of a product whose matrix comes from memory, where "
+      "what\n"
+      "it gathers has left the first cache. The second line of each kernel is of triangles");
+  console.print("{:<14}{:>7}{:>32}{:>32}{:>8}{:>7}{:>7}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps",
+                "repeat", "wait", "stall", "condition", "error", "floor");
   print_costs(console, calibration.model, calibration.quality);
   if (calibration.threads > 1) {
     console.print("on {} threads, in elapsed ns:", calibration.threads);

@@ -161,6 +161,15 @@ def test_a_folder_that_cannot_be_written_is_one_warning(here, monkeypatch):
     assert result["verdict"]["machine"].startswith("this machine, calibrated ")
 
 
+def test_costs_are_printed_in_columns(here):
+    lines = here.ok("calibrate", "--budget", "1").stdout.splitlines()
+    heading = next(k for k, line in enumerate(lines) if line.split()[:2] == ["access", "misses"])
+    assert lines[heading].split() == ["access", "misses", "jumps", "repeat", "wait", "stall", "condition", "error", "floor"]
+    row = lines[heading + 1].removeprefix("SpMV").split()
+    # an access, four misses, four jumps, repeat, wait, stall
+    assert len(row) == 15 and all(float(number) >= 0 for number in row[:12])
+
+
 def test_a_machine_that_moved_is_noticed(here, stored):
     content = json.loads(stored.read_text())
     for kernel in content["kernels"].values():
