@@ -6,6 +6,7 @@
 #include <meshorder/error.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <functional>
 #include <vector>
 
@@ -56,6 +57,27 @@ void for_each_chunk(Index n, Index size, Work work) {
   parallel_loop(chunks, [&](Index chunk) {
     const Index begin = chunk * size;
     work(chunk, begin, static_cast<Index>(std::min(Offset{begin} + size, Offset{n})));
+  });
+}
+
+/// Calls `work(i)` for 0 … n−1, on all threads: each takes the next i when it is done with one, so that what
+/// takes longest should come first. For few turns of a millisecond and more; each polls on the calling
+/// thread.
+///
+/// @throws as `parallel_loop`; turns that have not begun by then are left out
+template <class Work>
+void take_turns(Index n, const Work& work) {
+  std::atomic<Index> next = 0;
+  parallel_loop(std::min(n, thread_count()), [&](Index /*thread*/) {
+    for (Index i = next++; i < n; i = next++) {
+      try {
+        poll();
+        work(i);
+      } catch (...) {
+        next = n;
+        throw;
+      }
+    }
   });
 }
 

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/csr_graph.hpp"
 
+#include "base/parallel.hpp"
 #include "base/run_scope.hpp"
 #include <meshorder/error.hpp>
 
@@ -59,11 +60,14 @@ CsrGraph renumbered(GraphRef graph, std::span<const Index> old_to_new) {
   for (Index v = 0; v < graph.size(); ++v) result.offsets[old_to_new[v] + 1] = graph.degree(v);
   std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
   result.neighbours.resize(graph.neighbours.size());
-  for (Index v = 0; v < graph.size(); ++v) {
-    const auto row = result.neighbours.begin() + result.offsets[old_to_new[v]];
-    std::transform(graph[v].begin(), graph[v].end(), row, [&](Index u) { return old_to_new[u]; });
-    std::sort(row, row + graph.degree(v));
-  }
+  constexpr Index kRowsAtOnce = 16384;
+  for_each_chunk(graph.size(), kRowsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) {
+      const auto row = result.neighbours.begin() + result.offsets[old_to_new[v]];
+      std::transform(graph[v].begin(), graph[v].end(), row, [&](Index u) { return old_to_new[u]; });
+      std::sort(row, row + graph.degree(v));
+    }
+  });
   return result;
 }
 

@@ -39,9 +39,11 @@ struct Odd {
 TEST(ParallelLoop, ThrowsWithinALoopThatIsCancelled) {
   const auto none = [](Index) {};
   const std::vector<std::function<void()>> inner_loops{
-      [&] { parallel_loop(100, none); }, [&] { for_each_part(7, none); },
+      [&] { parallel_loop(100, none); },
+      [&] { for_each_part(7, none); },
       [] { for_each_chunk(100, 3, [](Index, Index, Index) {}); },
       [] { for_each_range(Offset{100}, Offset{3}, [](Offset, Offset) {}); },
+      [&] { take_turns(100, none); },
       [] { (void)sum_over_chunks<Offset>(100, 3, [](Index begin, Index end) { return end - begin; }); }};
   for (const std::function<void()>& inner : inner_loops) {
     bool returned = false;
@@ -78,6 +80,40 @@ TEST(ParallelLoop, DoesAllTurnsOrThrowsWhereAnotherThreadCancels) {
                  Odd);
   }
   RecordProperty("inner loops done", returned);
+}
+
+TEST(TakeTurns, DoesEachTurnOnceAndOneThreadDoesThemInOrder) {
+  for (const int threads : {1, 2, 4}) {
+    for (const Index turns : {0, 1, 2, 3, 100}) {
+      std::vector<int> done(static_cast<std::size_t>(turns));
+      std::atomic<Index> begun = 0;
+      in_arena({.threads = threads}, [&] {
+        take_turns(turns, [&](Index i) {
+          EXPECT_TRUE(threads > 1 || begun == i);
+          ++begun;
+          ++done[i];
+        });
+      });
+      EXPECT_EQ(std::count(done.begin(), done.end(), 1), turns) << threads << " threads";
+    }
+  }
+}
+
+TEST(TakeTurns, BeginsNoTurnAfterOneHasFailed) {
+  for (const int threads : {1, 4}) {
+    std::atomic<int> begun = 0;
+    EXPECT_THROW(in_arena({.threads = threads},
+                          [&] {
+                            take_turns(100'000, [&](Index i) {
+                              ++begun;
+                              if (i == 5) throw Odd{i};
+                              std::this_thread::sleep_for(std::chrono::microseconds(10));
+                            });
+                          }),
+                 Odd);
+    EXPECT_GE(begun, 6);
+    EXPECT_LT(begun, 50'000) << threads << " threads";
+  }
 }
 
 TEST(ParallelLoop, OfTheLibraryIsWholeWithinALoopOfTheCallersThatIsCancelled) {
