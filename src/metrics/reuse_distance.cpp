@@ -100,12 +100,16 @@ ReuseDistance::ReuseDistance(Index lines, int halvings) : halvings_(halvings), l
     levels_.emplace_back(nodes);
   } while (nodes > 1);
   marks_in_open_.assign(levels_.size(), 0);
+  if (halvings > 0) {
+    far_of_line_.resize(static_cast<std::size_t>(lines));
+    far_of_block_.resize(static_cast<std::size_t>(lines) / kSampledBlock + 1);
+  }
 }
 
-Index ReuseDistance::access(Index line, Access how) {
+Index ReuseDistance::access(Index line, Access how, std::uint32_t streamed) {
   const Index distance = move_to_front(line);
   if (distance >= 0) {
-    const bool jump = distance >= (kFar >> halvings_) && is_jump(line, how);
+    const bool jump = distance >= (kFar >> halvings_) && is_jump(line, how, streamed);
     if (counts(line)) {
       reuse_.all.add(distance);
       if (jump) reuse_.jumps.add(distance);
@@ -113,7 +117,7 @@ Index ReuseDistance::access(Index line, Access how) {
     return distance;
   }
   first_accesses_.push_back(line);
-  first_access_jumps_.push_back(is_jump(line, how));
+  first_access_jumps_.push_back(is_jump(line, how, streamed));
   if (counts(line)) {
     reuse_.all.add_cold();
     if (first_access_jumps_.back()) reuse_.jumps.add_cold();
@@ -138,13 +142,32 @@ Index ReuseDistance::move_to_front(Index line) {
 }
 
 /// Notes an access from afar; whether no other led to it.
-bool ReuseDistance::is_jump(Index line, Access how) {
+bool ReuseDistance::is_jump(Index line, Access how, std::uint32_t streamed) {
+  if (halvings_ > 0) return is_jump_in_sample(line, how, streamed);
   ++far_accesses_;
   bool jump = how == Access::gathered;
   for (Index before = std::max(0, line - 2); before < line; ++before) {
-    jump = jump && far_accesses_ - last_access_of_line_[before].far > (kFollowing >> halvings_);
+    jump = jump && far_accesses_ - last_access_of_line_[before].far > kFollowing;
   }
   last_access_of_line_[line].far = far_accesses_;
+  return jump;
+}
+
+bool ReuseDistance::is_jump_in_sample(Index line, Access how, std::uint32_t streamed) {
+  std::uint32_t& of_block = far_of_block_[line / kSampledBlock];
+  if (how == Access::gathered) {
+    ++far_accesses_;
+    ++of_block;
+  }
+  const FarOfSample now{far_accesses_, of_block, streamed};
+  bool jump = how == Access::gathered;
+  for (Index before = std::max(0, line - 2); before < line; ++before) {
+    const FarOfSample& then = far_of_line_[before];
+    const std::uint32_t own = now.own - then.own;
+    const std::uint64_t others = now.gathered - then.gathered - own;
+    jump = jump && now.streamed - then.streamed + own + (others << halvings_) > kFollowing;
+  }
+  far_of_line_[line] = now;
   return jump;
 }
 

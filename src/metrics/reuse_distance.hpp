@@ -73,15 +73,21 @@ struct Reuse {
 class ReuseDistance {
  public:
   /// For accesses to lines 0 … lines − 1. With `halvings` > 0 these are told to be a sample of 2^-halvings of
-  /// the lines, as ReuseSample draws it: the last three of five lines count, and what is far is nearer by
+  /// the lines, as ReuseSample draws it: the last nine of eleven lines count, and what is far is nearer by
   /// that.
   explicit ReuseDistance(Index lines, int halvings = 0);
 
   /// Returns the distance, −1 for a cold access. Amortised O(1 + log distance).
-  Index access(Index line, Access how = Access::gathered);
+  ///
+  /// @param streamed  of a sample: how many accesses were streamed so far, those to other lines among them
+  Index access(Index line, Access how = Access::gathered, std::uint32_t streamed = 0);
 
-  /// Asks for what `access` will need to know of the line.
-  void prefetch(Index line) const { __builtin_prefetch(&last_access_of_line_[line]); }
+  /// Asks for what `access` will need to know of the line, of a sample.
+  void prefetch(Index line) const {
+    __builtin_prefetch(&last_access_of_line_[line]);
+    __builtin_prefetch(&far_of_line_[line]);
+    __builtin_prefetch(&far_of_block_[line / kSampledBlock]);
+  }
 
   /// The accesses so far. Every line's first one is cold.
   [[nodiscard]] const Reuse& reuse() const noexcept { return reuse_; }
@@ -100,13 +106,22 @@ class ReuseDistance {
   static constexpr Slot kNever = ~Slot{0};
   static constexpr Index kFar = 512;
   static constexpr std::uint32_t kFollowing = 64;
-  static constexpr Index kSampledBlock = 5;
+  static constexpr Index kSampledBlock = 11;
   static constexpr Index kUncounted = 2;  ///< the first of a block
 
   /// Side by side, since both are wanted together and lie far from what is in this machine's caches.
   struct LastAccess {
     Slot slot = kNever;
     std::uint32_t far = 0;  ///< number of the last access from afar, cold ones among them
+  };
+
+  /// Accesses from afar before a line's last one, of a sample. A line's block is sampled with it, so that
+  /// those to the block are all there are, and gathered ones to other blocks a sample of them. What streams
+  /// comes from afar.
+  struct FarOfSample {
+    std::uint32_t gathered = 0;
+    std::uint32_t own = 0;  ///< those gathered in the line's block
+    std::uint32_t streamed = 0;
   };
 
   /// For each of 16 sister nodes the marks in those after it.
@@ -119,7 +134,8 @@ class ReuseDistance {
   Index move_mark(Slot from, Slot to);
   void close_word(std::size_t word);
   void close_gaps();
-  bool is_jump(Index line, Access how);
+  bool is_jump(Index line, Access how, std::uint32_t streamed);
+  bool is_jump_in_sample(Index line, Access how, std::uint32_t streamed);
 
   [[nodiscard]] bool counts(Index line) const noexcept {
     return halvings_ == 0 || line % kSampledBlock >= kUncounted;
@@ -134,8 +150,10 @@ class ReuseDistance {
   std::vector<std::uint32_t> marks_in_open_;  ///< at each level those in the node that holds the next slot
   Slot slot_count_ = 0;
   Slot next_ = 0;
-  std::uint32_t far_accesses_ = kFollowing;
-  std::vector<bool> first_access_jumps_;  ///< as first_accesses_
+  std::uint32_t far_accesses_ = kFollowing;  ///< of a sample the gathered ones
+  std::vector<FarOfSample> far_of_line_;     ///< of a sample
+  std::vector<std::uint32_t> far_of_block_;  ///< of a sample: gathered ones
+  std::vector<bool> first_access_jumps_;     ///< as first_accesses_
   Reuse reuse_;
   friend class ReuseSample;
 };

@@ -14,23 +14,33 @@ namespace meshorder {
 /// accesses to sampled lines, seen among these alone, is the share of the lines sampled of the true one
 /// (Waldspurger, Park, Garthwaite and Ahmad 2015: Efficient MRC construction with SHARDS).
 ///
-/// Sampled are blocks of five lines, by a hash of their number, of which the last three count: whether a
-/// stream leads to one is seen on the two before. Five divides no period of a kernel's arrays, such as the 9
-/// lines of 8 matrix blocks. Other accesses cost a hash each. The same stream gives the same
-/// estimate on every run. Its error falls with the root of the lines sampled and of the cache's size:
-/// estimates for caches below about 100 · 2^halvings lines are unreliable.
+/// Sampled are blocks of eleven lines, by a hash of their number, of which the last nine count: whether a
+/// stream leads to one is seen on the two before. Eleven divides no period of a kernel's arrays, such as the
+/// 9 lines of 8 matrix blocks. Other accesses cost a hash each. The same stream gives the same estimate on
+/// every run. Its error falls with the root of the lines sampled and of the cache's size: estimates for
+/// caches below about 100 · 2^halvings lines are unreliable.
 class ReuseSample {
  public:
   /// For accesses to lines 0 … lines − 1, of which 2^-halvings are sampled; 0 halvings measure exactly.
   ReuseSample(Index lines, int halvings);
 
   void access(Index line, Access how = Access::gathered) {
+    streamed_ += how == Access::streamed ? 1 : 0;
     if (place_of_block_.empty()) {
       reuse_.access(line, how);
     } else if (const Index block = line / kBlock; sampled(block)) {
       __builtin_prefetch(&place_of_block_[block]);
       wait(line, how);
     }
+  }
+
+  /// Whether one of the lines first … last is sampled: accesses to others need not be told. O(lines).
+  [[nodiscard]] bool samples(Index first, Index last) const noexcept {
+    if (place_of_block_.empty()) return true;
+    for (Index block = first / kBlock; block <= last / kBlock; ++block) {
+      if (sampled(block)) return true;
+    }
+    return false;
   }
 
   /// As ReuseDistance::repeated, estimated for all lines.
@@ -45,6 +55,7 @@ class ReuseSample {
   struct Waiting {
     Index line = 0;
     Access how = Access::gathered;
+    std::uint32_t streamed = 0;  ///< accesses that had been streamed
   };
   static constexpr std::size_t kWaiting = 32;
 
@@ -52,7 +63,7 @@ class ReuseSample {
 
   void wait(Index line, Access how) {
     if (sampled_accesses_ >= kWaiting) measure(waiting(sampled_accesses_));
-    waiting(sampled_accesses_) = {line, how};
+    waiting(sampled_accesses_) = {line, how, streamed_};
     if (sampled_accesses_ >= kWaiting / 2) find_among_sampled(waiting(sampled_accesses_ - kWaiting / 2));
     ++sampled_accesses_;
   }
@@ -62,7 +73,7 @@ class ReuseSample {
     reuse_.prefetch(access.line);
   }
 
-  void measure(const Waiting& access) { reuse_.access(access.line, access.how); }
+  void measure(const Waiting& access) { reuse_.access(access.line, access.how, access.streamed); }
 
   void measure_those_that_wait();
 
@@ -81,6 +92,7 @@ class ReuseSample {
   std::vector<Index> place_of_block_;        ///< among the sampled ones; empty when all are
   std::array<Waiting, kWaiting> waiting_{};  ///< the last accesses, number k at k % kWaiting
   std::size_t sampled_accesses_ = 0;
+  std::uint32_t streamed_ = 0;
   ReuseDistance reuse_;
 };
 

@@ -59,6 +59,49 @@ TEST(ReuseSample, EstimatesMissesAndJumps) {
   EXPECT_GT(exact.jumps.misses(768), exact.all.accesses() / 10);
 }
 
+TEST(ReuseSample, TellsWhetherOneOfSomeLinesIsSampled) {
+  const auto is_sampled = [](Index line) { return sampled({line}, 3).all.accesses() > 0; };
+  const ReuseSample sample(kLines, 3);
+  Index first = 0;
+  int with = 0;
+  for (; first < 2000; first += 40) {
+    bool some = false;
+    for (Index line = first; line < first + 40; ++line) some = some || is_sampled(line);
+    // the first two of a block are sampled and not counted
+    const bool told = sample.samples(first, first + 39);
+    EXPECT_TRUE(told || !some) << first;
+    with += told ? 1 : 0;
+  }
+  EXPECT_GT(with, 5);
+  EXPECT_LT(with, 45);
+  EXPECT_TRUE(ReuseSample(kLines, 0).samples(3, 3));
+}
+
+/// Lines that are gathered one after another, each after so many lines of a stream.
+Reuse gathered_between_streams(int halvings, Index streamed) {
+  constexpr Index kGathered = 20'000;
+  ReuseSample sample(kGathered * (1 + streamed), halvings);
+  Index stream = kGathered;
+  for (Index line = 0; line < kGathered; ++line) {
+    for (Index i = 0; i < streamed; ++i) sample.access(stream++, Access::streamed);
+    sample.access(line, Access::gathered);
+  }
+  return std::move(sample).repeated();
+}
+
+TEST(ReuseSample, CountsWhatStreamsBetweenTwoLinesThatFollowEachOther) {
+  // one of 64 and fewer accesses led there, and one of more did not
+  for (const Index streamed : {45, 55, 75}) {
+    const Reuse exact = gathered_between_streams(0, streamed);
+    const Reuse estimate = gathered_between_streams(3, streamed);
+    EXPECT_NEAR(static_cast<double>(estimate.jumps.accesses()), static_cast<double>(exact.jumps.accesses()),
+                0.1 * 20'000)
+        << streamed;
+  }
+  EXPECT_LT(gathered_between_streams(3, 55).jumps.accesses(), 100);
+  EXPECT_GT(gathered_between_streams(0, 75).jumps.accesses(), 19'000);
+}
+
 TEST(ReuseSample, MeasuresEverySampledAccessHoweverFewThereAre) {
   constexpr int kHalvings = 2;
   const auto accesses = [](Index line, Index count) {
@@ -68,7 +111,7 @@ TEST(ReuseSample, MeasuresEverySampledAccessHoweverFewThereAre) {
   while (line < 100 && accesses(line, 1) == 0) ++line;
   ASSERT_LT(line, 100);
   for (Index count = 0; count < 100; ++count) {
-    EXPECT_EQ(accesses(line, count), std::llround(4 * 5.0 / 3 * count)) << count << " accesses";
+    EXPECT_EQ(accesses(line, count), std::llround(4 * 11.0 / 9 * count)) << count << " accesses";
   }
 }
 
