@@ -23,7 +23,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,52 +45,52 @@ struct InfoArguments : Common {
 
 /// Seconds from the command's start until --measure is done, for meshes of up to about 300 thousand vertices.
 constexpr double kMeasureWithin = 3.8;
+/// Simplices up to which times are predicted without being asked, in a few seconds a million vertices.
+constexpr Offset kMaxPredicted = 16'000'000;
 /// Simplices above which there is no time to measure a second order.
 constexpr Offset kMaxOfTwoOrders = 500'000;
 
-/// Whether the mesh has elements, so few that times are predicted without being asked.
-bool is_predicted(const InfoArguments& arguments, const Mesh& mesh) {
-  const Offset simplices = mesh.cells.highest_dimension() < 1 ? 0 : cut_into_simplices(mesh).size();
-  return simplices > 0 && (simplices <= kMaxPredicted || !arguments.caches.empty());
+/// Whether there are elements, so few that times are predicted without being asked.
+bool is_predicted(const InfoArguments& arguments, const Simplices& simplices) {
+  return simplices.dimension > 0 && simplices.size() > 0 &&
+         (simplices.size() <= kMaxPredicted || !arguments.caches.empty());
+}
+
+/// As of `reuse_of`: all lines are followed for the caches that are asked for.
+int halvings_of(const InfoArguments& arguments, const Simplices& simplices) {
+  return arguments.caches.empty() ? halvings_for(simplices.size()) : 0;
 }
 
 /// Returns what reordering is worth; nothing for a mesh without elements, nor for a large one unless --cache
 /// or --measure is given.
 std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph,
-                                double graph_seconds, const MachineChoice& machine,
+                                double graph_seconds, const Simplices& simplices,
+                                const std::optional<KernelReuse>& reuse, const MachineChoice& machine,
                                 const Stopwatch& since_start) {
-  const Offset simplices = mesh.cells.highest_dimension() < 1 ? 0 : cut_into_simplices(mesh).size();
   AdviceOptions options;
   options.machine = machine;
   if (arguments.all_threads) options.threads = thread_count();
   if (!arguments.caches.empty()) options.caches = parse_caches(arguments.caches);
   options.graph_seconds = graph_seconds;
-  options.predict =
-      (simplices <= kMaxPredicted || !arguments.caches.empty()) && machine.model.threads == options.threads;
-  if (simplices == 0 || !(options.predict || arguments.measure)) return std::nullopt;
-  if (arguments.measure) {
+  if (arguments.caches.empty()) options.reuse_as_is = reuse;
+  options.predict = is_predicted(arguments, simplices) && machine.model.threads == options.threads;
+  const bool is_measured = arguments.measure && simplices.dimension > 0 && simplices.size() > 0;
+  if (!options.predict && !is_measured) return std::nullopt;
+  if (is_measured) {
     options.measure_within = kMeasureWithin - since_start.seconds();
-    options.for_springs_too = simplices <= kMaxOfTwoOrders;
-    if (simplices > kMaxOfTwoOrders) options.halvings = 5;
+    options.for_springs_too = simplices.size() <= kMaxOfTwoOrders;
+    if (simplices.size() > kMaxOfTwoOrders) options.halvings = 5;
   }
   return advise(mesh, graph, options);
 }
 
-/// Cells above which reuse is estimated from a sample of the lines, unless --cache is given.
-constexpr Index kMaxExact = 200'000;
-constexpr int kHalvings = 3;
-
-bool is_estimated(const InfoArguments& arguments, const Mesh& mesh) {
-  return arguments.caches.empty() && mesh.cell_count() > kMaxExact;
-}
-
 /// Returns the reuse of the mesh in its order; nothing for a large mesh unless --cache is given, nor when
 /// measuring leaves no time for it.
-std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph) {
-  const Simplices simplices = cut_into_simplices(mesh);
+std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const CsrGraph& graph,
+                                    const Simplices& simplices) {
   const Offset most = arguments.measure ? kMaxOfTwoOrders : kMaxPredicted;
   if (arguments.caches.empty() && simplices.size() > most) return std::nullopt;
-  return reuse_of_kernels(graph, simplices, is_estimated(arguments, mesh) ? kHalvings : 0);
+  return reuse_of_kernels(graph, simplices, halvings_of(arguments, simplices));
 }
 
 /// Whether the points of a mesh differ: those of a matrix or a graph are all at the origin.
@@ -155,8 +157,9 @@ void run(const InfoArguments& arguments) {
   progress.stage("reading " + arguments.input, 0, 0.3);
   const Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
 
+  const Simplices simplices = cut_into_simplices(mesh);
   // who asks for measured times does not wait for what they would be predicted by
-  if (!arguments.measure && is_predicted(arguments, mesh)) {
+  if (!arguments.measure && is_predicted(arguments, simplices)) {
     machine = calibrated(std::move(machine), arguments.all_threads, progress, console.quiet(), notes);
   }
   const Caches caches = arguments.caches.empty() ? machine.model.caches : parse_caches(arguments.caches);
@@ -165,17 +168,31 @@ void run(const InfoArguments& arguments) {
   const CsrGraph graph = vertex_graph(mesh);
   const double graph_seconds = building_graph.seconds();
   const Permutation order = Permutation::identity(mesh.vertex_count());
-  const EdgeSpan span = edge_span(graph, order);
-  const Offset envelope = profile(graph, order);
-  const std::vector<Offset> histogram = span_histogram_log2(graph, order);
-  const std::optional<KernelReuse> reuse = reuse_of(arguments, mesh, graph);
-  const auto components = connected_components(graph);
-  const auto isolated =
-      std::count_if(components.begin(), components.end(), [](const auto& c) { return c.size() == 1; });
-  const auto connected = static_cast<long long>(components.size()) - isolated;
-  const auto degenerate = static_cast<long long>(degenerate_cells(mesh.cells).size());
+  EdgeSpan span;
+  Offset envelope = 0;
+  std::vector<Offset> histogram;
+  std::optional<KernelReuse> reuse;
+  Offset components = 0;
+  Offset isolated = 0;
+  Offset degenerate = 0;
+  const std::array<std::function<void()>, 4> looks{
+      [&] { reuse = reuse_of(arguments, graph, simplices); },
+      [&] {
+        const auto found = connected_components(graph);
+        components = std::ssize(found);
+        isolated = std::count_if(found.begin(), found.end(), [](const auto& c) { return c.size() == 1; });
+      },
+      [&] {
+        span = edge_span(graph, order);
+        envelope = profile(graph, order);
+        histogram = span_histogram_log2(graph, order);
+      },
+      [&] { degenerate = std::ssize(degenerate_cells(mesh.cells)); }};
+  take_turns(index_size(looks), [&](Index turn) { looks[turn](); });
+  const Offset connected = components - isolated;
   progress.stage(arguments.measure ? "running kernels" : "predicting", 0.6, 1);
-  const std::optional<Advice> advice = advice_on(arguments, mesh, graph, graph_seconds, machine, since_start);
+  const std::optional<Advice> advice =
+      advice_on(arguments, mesh, graph, graph_seconds, simplices, reuse, machine, since_start);
 
   progress.finish();
   if (advice && !advice->doubt.empty()) notes.push_back(advice->doubt);
@@ -196,10 +213,9 @@ void run(const InfoArguments& arguments) {
   console.print("{:<12} {}", "profile", with_commas(envelope));
   if (!histogram.empty()) print_histogram(console, histogram);
   if (reuse) {
+    const int halvings = halvings_of(arguments, simplices);
     console.print("\nPredicted for each run of a kernel{}\n{}",
-                  is_estimated(arguments, mesh)
-                      ? fmt::format(", estimated from 1/{} of the lines", 1 << kHalvings)
-                      : "",
+                  halvings > 0 ? fmt::format(", estimated from 1/{} of the lines", 1 << halvings) : "",
                   kReuseLegend);
     console.print("{:<14}{}", "", reuse_header(caches));
     for (std::size_t k = 0; k < kKernels.size(); ++k)

@@ -11,11 +11,9 @@
 
 namespace meshorder::command {
 
-/// Simplices up to which misses are predicted without being asked: it takes a few seconds, and 13 bytes for
-/// each cache line that a kernel touches.
-inline constexpr Offset kMaxPredicted = 2'000'000;
-
-/// Returns whether the mesh has at most kMaxPredicted simplices.
+/// Returns whether the mesh has so few simplices, two million at most, that misses are predicted without
+/// being asked, all lines followed: it takes a few seconds, and 13 bytes for each cache line that a kernel
+/// touches.
 bool is_quick_to_predict(const Mesh& mesh);
 
 /// Returns {"spmv": {"accesses", "misses": […], "jumps": […], "mean_log2"}, …}, misses and jumps by level.

@@ -46,8 +46,6 @@ namespace mo = meshorder;
 namespace {
 
 constexpr std::string_view kSkin = "-skin";
-// what `info` takes
-constexpr int kHalvings = 3;
 
 /// The triangles that belong to one tetrahedron alone, in the order of the tetrahedra, on their vertices in
 /// the order of the mesh.
@@ -117,7 +115,8 @@ void predict(const std::string& name, const mo::Caches& caches, const std::strin
     mo::write_npy(r.vertices.permutation.old_to_new(), file_of(folder, order, "vertices"));
     mo::write_npy(r.cells.permutation.old_to_new(), file_of(folder, order, "cells"));
     const mo::KernelReuse reuse =
-        mo::reuse_of_kernels(mesh, graph, r.vertices.permutation, r.cells.permutation, kHalvings);
+        mo::reuse_of_kernels(mesh, graph, r.vertices.permutation, r.cells.permutation,
+                             mo::halvings_for(mo::cut_into_simplices(mesh).size()));
     for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
       fmt::print("{},{},{},{},{},{},{},{},{},{},{}\n", name, mesh.vertex_count(), simplices.size(),
                  simplices.dimension, order, mo::to_string(mo::kKernels[k]), reuse[k].all.accesses(),
@@ -196,7 +195,7 @@ void judge(const std::string& name, double budget, int threads, const std::strin
         mo::compute_reordering(mesh, graph, {.methods = {order.substr(0, slash), order.substr(slash + 1)}}));
     const mo::Simplices simplices = mo::cut_into_simplices(meshes.back());
     const mo::CsrGraph ordered = mo::vertex_graph(meshes.back());
-    reuse.push_back(mo::reuse_of_kernels(ordered, simplices, simplices.size() < 50'000 ? 0 : kHalvings));
+    reuse.push_back(mo::reuse_of_kernels(ordered, simplices, mo::halvings_for(simplices.size())));
     auto& times = computed.emplace_back();
     for (std::size_t k = 0; k < mo::kKernels.size(); ++k)
       times[k] = mo::times_computed(mo::kKernels[k], ordered, simplices, threads);

@@ -18,7 +18,6 @@ namespace meshorder {
 namespace {
 
 constexpr Offset kMostExact = 1'000'000;
-constexpr int kHalvings = 3;  ///< an eighth of the lines
 /// The share of the time that orders and simulated caches take where kernels are timed, about.
 constexpr double kUntilTiming = 0.5;
 
@@ -114,7 +113,7 @@ class MeshStudy {
 
   void simulate_caches(const MeshOrder& order, MeshOrderRecord& record) const {
     const std::vector<NamedCaches>& hierarchies = result_.record.hierarchies;
-    const int halvings = result_.record.tetrahedra > kMostExact ? kHalvings : 0;
+    const int halvings = result_.record.tetrahedra > kMostExact ? halvings_for(result_.record.tetrahedra) : 0;
     const KernelReuse reuse =
         reuse_of_kernels(mesh_, graph_, order.vertices.permutation, order.cells.permutation, halvings);
     const KernelMilliseconds predicted = predicted_ms(reuse, hierarchies.front().caches);

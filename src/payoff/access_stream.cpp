@@ -25,8 +25,8 @@ AccessStream::AccessStream(Kernel kernel, const CsrGraph& graph, const Simplices
   if (kernel == Kernel::spmv) {
     offsets_ = place(static_cast<Offset>(sizeof(Offset)) * (n + 1));
     columns_ = place(static_cast<Offset>(sizeof(Index)) * blocks);
-    x_ = place(static_cast<Offset>(3 * sizeof(double)) * n);
-    y_ = place(static_cast<Offset>(3 * sizeof(double)) * n);
+    x_ = place(kVectorBytes * n);
+    y_ = place(kVectorBytes * n);
   } else {
     positions_ = place(kPaddedBytes * n);
   }
@@ -56,6 +56,34 @@ AccessStream::Array AccessStream::place(Offset bytes) {
   const Array array{lines_, bytes};
   lines_ += (bytes + kLineBytes - 1) / kLineBytes;
   return array;
+}
+
+Offset AccessStream::gather_count() const {
+  const auto lines_in = [](Offset byte, Offset count) {
+    Offset lines = 0;
+    const auto count_line = [&](Index /*line*/, Access /*how*/) { ++lines; };
+    Array{}.gather(byte, count, count_line);
+    return lines;
+  };
+  const Offset corners = simplices_.dimension + 1;
+  const Offset elements = corners == 1 ? 0 : simplices_.size();
+  const auto in_batches = [](Offset count) { return (count + kBatch - 1) / kBatch * kBatch; };
+  switch (kernel_) {
+    case Kernel::spmv: {
+      Offset count = 0;
+      for (Index v = 0; v < graph_.size(); ++v)
+        count += (index_size(graph_[v]) + 1) * lines_in(kVectorBytes * v, kVectorBytes);
+      return count;
+    }
+    case Kernel::element:
+      return 2 * corners * in_batches(elements);
+    case Kernel::assembly:
+      // nine doubles lie in two lines, wherever they begin
+      return corners * in_batches(elements) + 2 * corners * corners * elements;
+    case Kernel::springs:
+      return 4 * in_batches(graph_.edge_count());
+  }
+  return 0;
 }
 
 namespace {
@@ -116,20 +144,27 @@ RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplic
   const AccessStream stream(kernel, graph, simplices);
   ReuseSample reuse(stream.line_count(), halvings);
   std::uint32_t accesses = 0;
-  Offset gathers = 0;
-  stream.visit([&](Index line, Access how) {
-    if (++accesses % 0x10000 == 0) poll();
-    gathers += how == Access::gathered ? 1 : 0;
-    reuse.access(line, how);
-  });
-  return {std::move(reuse).repeated(), simplices.dimension, gathers,
+  stream.visit(
+      [&](Index line, Access how) {
+        if (++accesses % 0x10000 == 0) poll();
+        reuse.access(line, how);
+      },
+      [&](Index first, Index last) { return reuse.samples(first, last); });
+  return {std::move(reuse).repeated(), simplices.dimension, stream.gather_count(),
           kernel == Kernel::element ? repeated_additions(simplices) : 0,
           kernel == Kernel::spmv ? stalled_gathers(stream) : 0};
 }
 
+int halvings_for(Offset simplices) {
+  if (simplices < 200'000) return 0;
+  if (simplices < 1'000'000) return 3;
+  return simplices < 8'000'000 ? 4 : 5;
+}
+
 KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, int halvings) {
   KernelReuse result;
-  for_each_chunk(index_size(kKernels), 1, [&](Index k, Index /*begin*/, Index /*end*/) {
+  take_turns(index_size(kKernels), [&](Index turn) {
+    const std::size_t k = kLongestFirst[turn];
     result[k] = reuse_of(kKernels[k], graph, simplices, halvings);
   });
   return result;

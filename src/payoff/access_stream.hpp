@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <vector>
 
 namespace meshorder {
 
@@ -45,17 +46,30 @@ class AccessStream {
     return {static_cast<Index>(x_.first_line), static_cast<Index>((x_.bytes + kLineBytes - 1) / kLineBytes)};
   }
 
+  /// The accesses that are gathered, not streamed. O(vertices).
+  [[nodiscard]] Offset gather_count() const;
+
   /// Calls `touch(line, how)` for every access, an Access being how the kernel comes to the line.
   /// O(accesses), for assembly times the logarithm of a row's length.
   template <class Touch>
   void visit(Touch touch) const {
+    visit(touch, [](Index /*first*/, Index /*last*/) { return true; });
+  }
+
+  /// As above, but may leave out what `is_wanted(first, last)` says is wanted of none of the lines first …
+  /// last. Assembly leaves out the blocks of rows whose lines are not wanted, and does not look for their
+  /// places.
+  template <class Touch, class Wanted>
+  void visit(Touch touch, Wanted is_wanted) const {
     switch (kernel_) {
       case Kernel::spmv:
         return visit_spmv(touch);
       case Kernel::element:
-        return visit_elements(touch, false);
-      case Kernel::assembly:
-        return visit_elements(touch, true);
+        return visit_elements(touch, nullptr);
+      case Kernel::assembly: {
+        const std::vector<bool> rows = wanted_rows(is_wanted);
+        return visit_elements(touch, &rows);
+      }
       case Kernel::springs:
         return visit_springs(touch);
     }
@@ -97,14 +111,31 @@ class AccessStream {
   };
 
   static constexpr Offset kBlockBytes = 9 * sizeof(double);
+  static constexpr Offset kVectorBytes = 3 * sizeof(double);  ///< of a vertex
   static constexpr Offset kPaddedBytes = kPaddedStride * sizeof(double);
 
   Array place(Offset bytes);
 
-  /// Returns the index of the block in row a and column b of the matrix: each row has a block for each
-  /// neighbour and one for the diagonal.
+  /// The first block of row a of the matrix: each row has a block for each neighbour and one for the
+  /// diagonal.
+  [[nodiscard]] Offset row_begin(Index a) const { return graph_.offsets[a] + a; }
+
+  /// Returns the index of the block in row a and column b of the matrix.
   [[nodiscard]] Offset block(Index a, Index b) const {
-    return graph_.offsets[a] + a + entries_below(graph_[a], b) + (b > a ? 1 : 0);
+    return row_begin(a) + entries_below(graph_[a], b) + (b > a ? 1 : 0);
+  }
+
+  /// Whether some of the lines of each row of the matrix are wanted.
+  template <class Wanted>
+  [[nodiscard]] std::vector<bool> wanted_rows(Wanted is_wanted) const {
+    const auto line_of = [&](Offset byte) {
+      return static_cast<Index>(values_.first_line + byte / kLineBytes);
+    };
+    std::vector<bool> result(static_cast<std::size_t>(graph_.size()));
+    for (Index a = 0; a < graph_.size(); ++a) {
+      result[a] = is_wanted(line_of(kBlockBytes * row_begin(a)), line_of(kBlockBytes * row_begin(a + 1) - 1));
+    }
+    return result;
   }
 
   template <class Touch>
@@ -118,7 +149,7 @@ class AccessStream {
     const auto multiply = [&](Index column) {
       columns.read(sizeof(Index), touch);
       values.read(kBlockBytes, touch);
-      x_.gather(Offset{3} * sizeof(double) * column, 3 * sizeof(double), touch);
+      x_.gather(kVectorBytes * column, kVectorBytes, touch);
     };
     offsets.read(sizeof(Offset), touch);
     for (Index v = 0; v < graph_.size(); ++v) {
@@ -128,15 +159,16 @@ class AccessStream {
       std::for_each(row.begin(), after_diagonal, multiply);
       multiply(v);
       std::for_each(after_diagonal, row.end(), multiply);
-      y.read(3 * sizeof(double), touch);
+      y.read(kVectorBytes, touch);
     }
   }
 
+  /// Element forces, or the assembly of such rows of the matrix.
   template <class Touch>
-  void visit_elements(Touch& touch, bool assembly) const {
+  void visit_elements(Touch& touch, const std::vector<bool>* rows) const {
     const int corners = simplices_.dimension + 1;
     if (corners == 1) return;
-    const Array& result = assembly ? values_ : forces_;
+    const Array& result = rows != nullptr ? values_ : forces_;
     result.clear(touch);
     Reader vertices(vertices_), geometry(geometry_), map(map_);
     std::array<Index, Offset{4} * kBatch> batch;
@@ -151,7 +183,7 @@ class AccessStream {
       geometry.read(geometry_of_batch_, touch);
       vertices.read(vertices_of_batch_, touch);
       visit_vertices(positions_, of_batch, touch);
-      if (!assembly) {
+      if (rows == nullptr) {
         visit_vertices(forces_, of_batch, touch);
         continue;
       }
@@ -160,7 +192,7 @@ class AccessStream {
         prefetch_offsets(graph_.offsets, corners_of(first + lane + 3 * kBatch));
         prefetch_rows(graph_.offsets, graph_.neighbours, corners_of(first + lane + 3 * kBatch / 2));
         map.read(Offset{corners} * corners * sizeof(Index), touch);
-        visit_blocks(batch.data() + lane, touch);
+        visit_blocks(batch.data() + lane, *rows, touch);
       }
     }
   }
@@ -172,14 +204,17 @@ class AccessStream {
         .subspan(corners * std::min(simplex, simplices_.size() - 1), corners);
   }
 
-  /// Visits the blocks of the element with corners v[0], v[kBatch] …
+  /// Visits the blocks of the element with corners v[0], v[kBatch] … in these rows.
   template <class Touch>
-  void visit_blocks(const Index* v, Touch& touch) const {
+  void visit_blocks(const Index* v, const std::vector<bool>& rows, Touch& touch) const {
+    const auto visit_block = [&](Index i, Index j) {
+      if (rows[i]) values_.gather(kBlockBytes * block(i, j), kBlockBytes, touch);
+    };
     for (int a = 0; a <= simplices_.dimension; ++a) {
       for (int b = a; b <= simplices_.dimension; ++b) {
         const Index i = v[a * kBatch], j = v[b * kBatch];
-        values_.gather(kBlockBytes * block(i, j), kBlockBytes, touch);
-        if (a != b) values_.gather(kBlockBytes * block(j, i), kBlockBytes, touch);
+        visit_block(i, j);
+        if (a != b) visit_block(j, i);
       }
     }
   }
@@ -241,6 +276,13 @@ struct RunReuse : Reuse {
 /// about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0 that of
 /// the lines is estimated from 2^-halvings of them (see ReuseSample), which is faster.
 RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings = 0);
+
+/// The places in kKernels, what takes longest to follow first: assembly adds to 16 blocks an element.
+inline constexpr std::array<std::size_t, kKernels.size()> kLongestFirst{2, 0, 1, 3};
+
+/// Returns of how many lines reuse is estimated, 2^-halvings of them: all of them below 200,000 simplices,
+/// and the fewer the more there are, so that 300,000 vertices are followed in some 0.4 s a kernel and order.
+int halvings_for(Offset simplices);
 
 /// By kernel, as kKernels lists them.
 using KernelReuse = std::array<RunReuse, kKernels.size()>;

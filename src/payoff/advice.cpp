@@ -8,6 +8,7 @@
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
 #include "metrics/sparsity_pattern.hpp"
+#include "ordering/method.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/cost_model.hpp"
 #include "payoff/shared_work.hpp"
@@ -33,17 +34,17 @@ struct Ordered {
 std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
                                             const AdviceOptions& options) {
   report("predict");
-  std::vector<Simplices> simplices;
-  simplices.reserve(orders.size());
-  for (const Ordered& order : orders) simplices.push_back(cut_into_simplices(order.mesh));
+  std::vector<Simplices> simplices(orders.size());
+  take_turns(index_size(orders), [&](Index i) { simplices[i] = cut_into_simplices(orders[i].mesh); });
   const Caches& caches = options.caches.level_bytes.empty() ? options.machine.model.caches : options.caches;
-  const int halvings = simplices.front().size() < options.sample_from ? 0 : options.halvings;
+  const int halvings = options.halvings.value_or(halvings_for(simplices.front().size()));
   std::vector<KernelMilliseconds> result(orders.size());
-  const Index kernels = index_size(kKernels);
-  for_each_chunk(kernels * index_size(orders), 1, [&](Index task, Index /*begin*/, Index /*end*/) {
-    const Index i = task % index_size(orders);
-    const Index k = task / index_size(orders);
-    const RunReuse reuse = reuse_of(kKernels[k], orders[i].graph, simplices[i], halvings);
+  take_turns(index_size(kKernels) * index_size(orders), [&](Index turn) {
+    const Index i = turn % index_size(orders);
+    const std::size_t k = kLongestFirst[turn / index_size(orders)];
+    const RunReuse reuse = i == 0 && options.reuse_as_is
+                               ? (*options.reuse_as_is)[k]
+                               : reuse_of(kKernels[k], orders[i].graph, simplices[i], halvings);
     result[i][k] = predicted_ms(kKernels[k], reuse, caches, options.machine.model) *
                    times_computed(kKernels[k], orders[i].graph, simplices[i], options.threads);
   });
@@ -74,16 +75,22 @@ Timings raced(const std::vector<Ordered>& orders, int threads, const OrderTimer&
   return timer(index_size(orders), prepare, for_seconds(kSeconds * static_cast<double>(orders.size())));
 }
 
-/// What is asked for of `compute_reordering`, one after another.
-std::vector<ReorderOptions> asked_for(const AdviceOptions& options) {
+/// What is asked for of `compute_reordering`, one after another. `auto` judges an order for springs as it
+/// judges one for all kernels, so that the same method is the same order.
+std::vector<ReorderOptions> asked_for(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options) {
   std::vector<ReorderOptions> result;
   for (const MeshMethods& methods : options.methods) {
     result.push_back({.methods = methods, .order = options.ordering});
   }
   if (!result.empty()) return result;
-  result.assign(options.for_springs_too ? 2 : 1, {.order = options.ordering});
+  const auto method_for = [&](Workload workload) {
+    return choose_vertex_method({graph, mesh.points}, workload).name;
+  };
+  const bool springs_apart =
+      options.for_springs_too && method_for(Workload::springs) != method_for(Workload::all);
+  result.assign(springs_apart ? 2 : 1, {.order = options.ordering});
   result.front().order.workload = Workload::all;
-  if (options.for_springs_too) result.back().order.workload = Workload::springs;
+  if (springs_apart) result.back().order.workload = Workload::springs;
   return result;
 }
 
@@ -110,8 +117,10 @@ double cost_for(Workload workload, const Advice& advice, const OrderCosts& costs
   return sum / kernels;
 }
 
-/// Leaves the first candidate and the best others, `most` in all, in their order.
-void keep_best(Advice& advice, std::vector<Ordered>& orders, Workload workload, std::size_t most) {
+/// Leaves the first candidate and the best others, `most` in all, in their order; `order_of` says for each
+/// the place of its order.
+void keep_best(Advice& advice, std::vector<Ordered>& orders, std::vector<std::size_t>& order_of,
+               Workload workload, std::size_t most) {
   std::vector<std::size_t> places(advice.candidates.size());
   std::iota(places.begin(), places.end(), 0);
   if (places.size() <= most) return;
@@ -124,10 +133,18 @@ void keep_best(Advice& advice, std::vector<Ordered>& orders, Workload workload, 
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (places[i] == i) continue;
     advice.candidates[i] = std::move(advice.candidates[places[i]]);
-    orders[1 + i] = std::move(orders[1 + places[i]]);
+    order_of[i] = order_of[places[i]];
   }
   advice.candidates.resize(most);
-  orders.erase(orders.begin() + 1 + static_cast<std::ptrdiff_t>(most), orders.end());
+  order_of.resize(most);
+  std::vector<Ordered> kept(1);
+  kept.front() = std::move(orders.front());
+  for (std::size_t& place : order_of) {
+    if (place == 0) continue;
+    kept.push_back(std::move(orders[place]));
+    place = kept.size() - 1;
+  }
+  orders = std::move(kept);
 }
 
 }  // namespace
@@ -174,49 +191,64 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   orders.front().mesh.points = mesh.points;
   orders.front().mesh.cells = mesh.cells;
   orders.front().graph = graph;
-  for (const ReorderOptions& reordering : asked_for(options)) {
+  // of each candidate, its place in `orders`: that of the mesh as it is where nothing moves
+  std::vector<std::size_t> order_of;
+  for (const ReorderOptions& reordering : asked_for(mesh, graph, options)) {
     const Stopwatch stopwatch;
     const MeshOrder order = compute_reordering(mesh, graph, reordering);
-    Ordered ordered = orders.front();
-    apply_reordering(ordered.mesh, order);
     Candidate candidate{.vertices = order.vertices.method,
                         .elements = order.cells.method,
                         .workload = reordering.order.workload};
     const bool moves_nothing = are_one(candidate, advice.as_is);
-    if (!moves_nothing) candidate.order_seconds = options.graph_seconds + stopwatch.seconds();
+    Ordered ordered;
+    if (!moves_nothing) {
+      ordered.mesh = orders.front().mesh;
+      apply_reordering(ordered.mesh, order);
+      candidate.order_seconds = options.graph_seconds + stopwatch.seconds();
+    }
     const bool is_known = std::any_of(advice.candidates.begin(), advice.candidates.end(),
                                       [&](const Candidate& other) { return are_one(other, candidate); });
     if (is_known && (options.methods.empty() || options.race_of > 0)) continue;
+    order_of.push_back(moves_nothing ? 0 : orders.size());
+    advice.candidates.push_back(std::move(candidate));
+    if (moves_nothing) continue;
     ordered.graph = renumbered(graph, order.vertices.permutation.old_to_new());
     orders.push_back(std::move(ordered));
-    advice.candidates.push_back(std::move(candidate));
   }
-  const auto candidate = [&](std::size_t i) -> Candidate& {
-    return i == 0 ? advice.as_is : advice.candidates[i - 1];
+  // calls it for the mesh as it is, and for each candidate with the place of its order
+  const auto for_candidates = [&](auto call) {
+    call(advice.as_is, std::size_t{0});
+    for (std::size_t i = 0; i < order_of.size(); ++i) call(advice.candidates[i], order_of[i]);
   };
-  for (std::size_t i = 0; i < orders.size(); ++i) {
+  std::vector<Candidate> described(orders.size());
+  take_turns(index_size(orders), [&](Index i) {
     const Permutation as_ordered = Permutation::identity(orders[i].graph.size());
-    candidate(i).spans = quality_of(orders[i].graph, as_ordered);
-    candidate(i).pattern = pattern_of(orders[i].graph, as_ordered, kPatternSide);
-  }
+    described[i].spans = quality_of(orders[i].graph, as_ordered);
+    described[i].pattern = pattern_of(orders[i].graph, as_ordered, kPatternSide);
+  });
+  for_candidates([&](Candidate& candidate, std::size_t order) {
+    candidate.spans = described[order].spans;
+    candidate.pattern = described[order].pattern;
+  });
   if (options.predict) {
     advice.machine = options.machine.in_words();
     const std::vector<KernelMilliseconds> predicted = predictions(orders, options);
-    for (std::size_t i = 0; i < orders.size(); ++i) candidate(i).costs.predicted = predicted[i];
+    for_candidates(
+        [&](Candidate& candidate, std::size_t order) { candidate.costs.predicted = predicted[order]; });
   }
-  if (options.race_of > 0) keep_best(advice, orders, options.ordering.workload, options.race_of);
+  if (options.race_of > 0) keep_best(advice, orders, order_of, options.ordering.workload, options.race_of);
   const bool in_race = options.race_of > 0 && options.race_timer;
   if (in_race || options.measure_within) {
     report("measure");
     const Timings timings = in_race ? raced(orders, options.threads, options.race_timer)
                                     : measured(orders, options.threads, since_call, *options.measure_within);
     advice.doubt = reason_to_doubt(timings.steadiness);
-    for (std::size_t i = 0; i < orders.size(); ++i) {
-      KernelMilliseconds& milliseconds = candidate(i).costs.measured.emplace();
+    for_candidates([&](Candidate& candidate, std::size_t order) {
+      KernelMilliseconds& milliseconds = candidate.costs.measured.emplace();
       for (std::size_t k = 0; k < kKernels.size(); ++k) {
-        milliseconds[k] = timings.orders[i][kKernels[k]].best_ms;
+        milliseconds[k] = timings.orders[order][kKernels[k]].best_ms;
       }
-    }
+    });
   }
   advice.floor = options.machine.floor;
   advice.kernels = kernel_advice(advice);

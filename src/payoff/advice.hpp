@@ -3,6 +3,7 @@
 
 #include "graph/csr_graph.hpp"
 #include "metrics/cache.hpp"
+#include "payoff/access_stream.hpp"
 #include "payoff/kernel_timing.hpp"
 #include "payoff/machine_choice.hpp"
 #include <meshorder/mesh.hpp>
@@ -28,9 +29,10 @@ struct AdviceOptions {
   double graph_seconds = 0;  ///< time that the vertex graph took
   bool predict = true;
   bool for_springs_too = true;  ///< add a candidate for springs if `auto` chooses another method for them
-  /// Reuse is estimated from 2^-halvings of the lines for meshes of at least `sample_from` simplices.
-  int halvings = 3;
-  Offset sample_from = 50'000;
+  std::optional<int> halvings =
+      {};  ///< reuse is estimated from 2^-halvings of the lines; unset: `halvings_for`
+  /// Of the mesh in its own order, where that is known; else it is computed.
+  std::optional<KernelReuse> reuse_as_is = {};
   /// Time the kernels, in the mesh's order and in every candidate, in as many rounds as end within this
   /// number of seconds after the call, at least two; unset: do not time them.
   std::optional<double> measure_within = {};

@@ -3,6 +3,7 @@
 
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
+#include "metrics/reuse_sample.hpp"
 #include "support/sample_meshes.hpp"
 
 #include <gtest/gtest.h>
@@ -193,6 +194,39 @@ TEST(AccessStream, TouchesTheLinesThatTheKernelTouches) {
   }
 }
 
+TEST(AccessStream, TellsAllThatIsWantedWhereItMayLeaveOutTheRest) {
+  for (const Mesh& mesh : meshes()) {
+    const Prepared prepared(mesh);
+    for (const Kernel kernel : kKernels) {
+      SCOPED_TRACE(std::string(to_string(kernel)) + ", " + std::to_string(mesh.vertex_count()) + " vertices");
+      const AccessStream stream(kernel, prepared.graph, prepared.simplices);
+      const auto is_wanted = [](Index line) { return line / 7 % 50 == 1; };
+      const auto some_wanted = [&](Index first, Index last) {
+        for (Index line = first; line <= last; ++line) {
+          if (is_wanted(line)) return true;
+        }
+        return false;
+      };
+      std::vector<std::pair<Index, Access>> all, wanted;
+      Offset told = 0, total = 0;
+      stream.visit([&](Index line, Access how) {
+        ++total;
+        if (is_wanted(line)) all.emplace_back(line, how);
+      });
+      stream.visit(
+          [&](Index line, Access how) {
+            ++told;
+            if (is_wanted(line)) wanted.emplace_back(line, how);
+          },
+          some_wanted);
+      EXPECT_EQ(wanted, all);
+      if (kernel == Kernel::assembly && prepared.graph.size() > 30 && mesh.cells.highest_dimension() == 3) {
+        EXPECT_LT(told, 0.75 * static_cast<double>(total));
+      }
+    }
+  }
+}
+
 TEST(ReuseOf, HasNoColdAccessesAndMissesTheLeastWithTheLargestCache) {
   const Prepared prepared(test::tetrahedral_bar(200));
   for (const Kernel kernel : kKernels) {
@@ -264,6 +298,29 @@ TEST(ReuseOf, CountsSixteensOfGatheredAccessesOfWhichOneWasLeftForLong) {
   for (const Kernel other : {Kernel::element, Kernel::assembly, Kernel::springs}) {
     EXPECT_EQ(reuse_of(other, p.graph, p.simplices).stalls, 0);
   }
+}
+
+TEST(ReuseOf, IsTheSameWhereRowsWithoutSampledLinesAreLeftOut) {
+  const Prepared p(test::tetrahedral_bar(400));
+  const AccessStream stream(Kernel::assembly, p.graph, p.simplices);
+  ReuseSample of_all(stream.line_count(), 3);
+  stream.visit([&](Index line, Access how) { of_all.access(line, how); });
+  const Reuse expected = std::move(of_all).repeated();
+  const Reuse found = reuse_of(Kernel::assembly, p.graph, p.simplices, 3);
+  EXPECT_EQ(found, expected);
+  EXPECT_GT(found.all.accesses(), 0);
+}
+
+TEST(HalvingsFor, FollowsAllLinesOfSmallMeshesAndFewerOfLargerOnes) {
+  EXPECT_EQ(halvings_for(0), 0);
+  EXPECT_EQ(halvings_for(180'000), 0);
+  int before = 0;
+  for (const Offset simplices : {300'000, 1'600'000, 60'000'000}) {
+    EXPECT_GT(halvings_for(simplices), before);
+    before = halvings_for(simplices);
+  }
+  // a first level of 32 KB is 16 lines of the sample
+  EXPECT_LE(before, 5);
 }
 
 TEST(ReuseOfKernels, IsThatOfEachByItself) {

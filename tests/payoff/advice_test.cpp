@@ -81,8 +81,10 @@ TEST(Advice, AMeshInTheOrderThatIsAdvisedHasNothingToGain) {
 TEST(Advice, SamplingChangesPredictedRatiosLittle) {
   const Mesh mesh = grid_in_order("scrambled", "scrambled");
   AdviceOptions exact = quick();
-  exact.sample_from = 1'000'000'000;
-  const Advice sampled = advice_on(mesh);
+  exact.halvings = 0;
+  AdviceOptions eighth = quick();
+  eighth.halvings = 3;
+  const Advice sampled = advice_on(mesh, eighth);
   const Advice measured = advice_on(mesh, exact);
   EXPECT_NE(*sampled.as_is.costs.predicted, *measured.as_is.costs.predicted);
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
@@ -92,6 +94,20 @@ TEST(Advice, SamplingChangesPredictedRatiosLittle) {
     };
     EXPECT_NEAR(ratio(sampled) / ratio(measured), 1, 0.06) << to_string(kKernels[k]);
   }
+}
+
+TEST(Advice, TakesTheReuseThatIsKnownOfTheMeshAsItIs) {
+  const Mesh mesh = grid_in_order("scrambled", "scrambled");
+  const CsrGraph graph = vertex_graph(mesh);
+  const Advice computed = advice_on(mesh);
+  AdviceOptions options = quick();
+  options.reuse_as_is = reuse_of_kernels(graph, cut_into_simplices(mesh));
+  EXPECT_EQ(*advice_on(mesh, options).as_is.costs.predicted, *computed.as_is.costs.predicted);
+  const Mesh other = grid_in_order("hilbert", "lexmax");
+  options.reuse_as_is = reuse_of_kernels(vertex_graph(other), cut_into_simplices(other));
+  const Advice of_other = advice_on(mesh, options);
+  EXPECT_EQ(*of_other.as_is.costs.predicted, *advice_on(other).as_is.costs.predicted);
+  EXPECT_EQ(*of_other.candidates.front().costs.predicted, *computed.candidates.front().costs.predicted);
 }
 
 TEST(Advice, MeasuresWhereItIsAskedTo) {
