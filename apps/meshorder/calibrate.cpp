@@ -44,14 +44,18 @@ auto watched(const CalibrateArguments& arguments, const std::string& what, const
 std::string in_bytes(Offset bytes) { return to_string(Caches{{bytes}}); }
 
 std::string in_columns(const KernelCosts& costs) {
+  // a ten thousandth of a nanosecond is the least that is shown
+  const auto cell = [](double cost, int width) {
+    return fmt::format(" {:>{}.3g}", std::round(1e4 * cost) / 1e4, width - 1);
+  };
   std::string misses;
   std::string jumps;
   for (std::size_t i = 0; i < costs.miss.size(); ++i) {
-    misses += fmt::format("{:>8.3g}", costs.miss[i]);
-    jumps += fmt::format("{:>8.3g}", costs.jump[i]);
+    misses += cell(costs.miss[i], 8);
+    jumps += cell(costs.jump[i], 8);
   }
-  return fmt::format("{:>7.3g}{}{}{:>8.3g}{:>7.3g}{:>7.3g}", costs.access, misses, jumps, costs.repeat,
-                     costs.wait, costs.stall);
+  return cell(costs.access, 7) + misses + jumps + cell(costs.repeat, 8) + cell(costs.wait, 7) +
+         cell(costs.stall, 7);
 }
 
 /// Prints two lines for each kernel, of tetrahedra and of triangles.

@@ -42,8 +42,8 @@ struct Runs {
   std::vector<Steadiness> steadiness = {};  ///< of each measurement
 };
 
-/// What `advise` estimates from a sample of the lines is estimated here.
-int halvings_for(const Mesh& mesh) { return mesh.cell_count() < 50'000 ? 0 : 3; }
+/// Reuse of the larger lattices is estimated, from more of the lines than that of meshes.
+int halvings_for_lattice(const Simplices& simplices) { return simplices.size() < 50'000 ? 0 : 3; }
 
 /// How long orders are timed.
 struct Rounds {
@@ -53,33 +53,47 @@ struct Rounds {
 
 /// Orders of a lattice, prepared to be timed.
 struct Prepared {
-  std::vector<Mesh> meshes;
+  std::vector<LatticeOrder> orders;
   std::vector<CsrGraph> graphs;
+  std::vector<Simplices> simplices;
   std::vector<KernelReuse> reuse;
   std::vector<std::optional<KernelBench>> benches;
 
-  Prepared(const CalibrationLattice& lattice, std::span<const LatticeOrder> orders) { add(lattice, orders); }
+  Prepared(const CalibrationLattice& lattice, std::span<const LatticeOrder> some) { add(lattice, some); }
 
   /// Orders, predicts and prepares on all threads.
-  void add(const CalibrationLattice& lattice, std::span<const LatticeOrder> orders) {
+  void add(const CalibrationLattice& lattice, std::span<const LatticeOrder> some) {
     const std::size_t first = benches.size();
-    const std::size_t all = first + orders.size();
-    meshes.resize(all);
-    graphs.resize(all);
-    reuse.resize(all);
-    benches.resize(all);
-    for_each_chunk(index_size(orders), 1, [&](Index i, Index /*begin*/, Index /*end*/) {
-      meshes[first + i] = in_order(lattice, orders[i]);
-      graphs[first + i] = vertex_graph(meshes[first + i]);
+    orders.insert(orders.end(), some.begin(), some.end());
+    graphs.resize(orders.size());
+    simplices.resize(orders.size());
+    reuse.resize(orders.size());
+    benches.resize(orders.size());
+    std::vector<Mesh> meshes(some.size());
+    take_turns(index_size(some), [&](Index turn) {
+      const std::size_t i = first + static_cast<std::size_t>(turn);
+      meshes[turn] = in_order(lattice, orders[i]);
+      graphs[i] = vertex_graph(meshes[turn]);
+      simplices[i] = cut_into_simplices(meshes[turn]);
     });
-    for_each_chunk(2 * index_size(orders), 1, [&](Index task, Index /*begin*/, Index /*end*/) {
-      const std::size_t i = first + static_cast<std::size_t>(task) / 2;
-      if (task % 2 == 0) {
-        benches[i].emplace(meshes[i], graphs[i]);
-      } else {
-        reuse[i] = reuse_of_kernels(graphs[i], cut_into_simplices(meshes[i]), halvings_for(meshes[i]));
+    // what a lattice is timed twice in is followed once
+    const auto place_of = [&](std::size_t i) {
+      return static_cast<std::size_t>(
+          std::find(orders.begin() + static_cast<std::ptrdiff_t>(first), orders.end(), orders[i]) -
+          orders.begin());
+    };
+    take_turns(index_size(some) * (1 + index_size(kKernels)), [&](Index turn) {
+      const Index order = turn % index_size(some);
+      const Index task = turn / index_size(some);
+      const std::size_t i = first + static_cast<std::size_t>(order);
+      if (task == 0) {
+        benches[i].emplace(meshes[order], graphs[i]);
+      } else if (place_of(i) == i) {
+        const std::size_t k = kLongestFirst[task - 1];
+        reuse[i][k] = reuse_of(kKernels[k], graphs[i], simplices[i], halvings_for_lattice(simplices[i]));
       }
     });
+    for (std::size_t i = first; i < orders.size(); ++i) reuse[i] = reuse[place_of(i)];
   }
 
   /// Shares the kernels' runs from now on among so many threads.
@@ -105,9 +119,9 @@ Timings time_all(Prepared& prepared, int lattice, const Rounds& rounds, Runs& ru
   if (runs.threads > 1) prepared.share(runs.threads);
   Timings timings = prepared.timed(runs.threads, rounds);
   for (std::size_t i = 0; i < prepared.reuse.size(); ++i) {
-    const Simplices simplices = cut_into_simplices(prepared.meshes[i]);
     for (std::size_t k = 0; k < kKernels.size(); ++k) {
-      const double times = times_computed(kKernels[k], prepared.graphs[i], simplices, runs.threads);
+      const double times =
+          times_computed(kKernels[k], prepared.graphs[i], prepared.simplices[i], runs.threads);
       runs.timed[k].push_back(
           {prepared.reuse[i][k], timings.orders[i][kKernels[k]].best_ms / times, lattice});
     }
@@ -263,14 +277,18 @@ std::vector<TimedReuse> of_solids(std::span<const TimedReuse> runs) {
   return result;
 }
 
-/// Puts the costs that fit the runs best into a model whose caches are known. Returns how well they do.
-FitQuality fit_all(const Runs& runs, const Latencies& latencies, CostModel& model) {
+/// Puts the costs that fit the runs best into a model whose caches are known; `like` as in fit_costs. Returns
+/// how well they do.
+FitQuality fit_all(const Runs& runs, const Latencies& latencies, CostModel& model,
+                   const CostModel* like = nullptr) {
   FitQuality quality;
   model.threads = runs.threads;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    const FittedCosts fitted = fit_costs(of_solids(runs.timed[k]), model.caches, latencies);
+    const FittedCosts fitted = fit_costs(of_solids(runs.timed[k]), model.caches, latencies,
+                                         like != nullptr ? &like->solid[k] : nullptr);
     model.solid[k] = fitted.costs;
-    model.flat[k] = fit_costs(runs.timed[k], model.caches, latencies).costs;
+    model.flat[k] =
+        fit_costs(runs.timed[k], model.caches, latencies, like != nullptr ? &like->flat[k] : nullptr).costs;
     quality.condition[k] = fitted.condition;
     quality.error[k] = fitted.error;
     quality.floor[k] = median(runs.apart[k]);
@@ -283,7 +301,7 @@ FitQuality fit_all(const Runs& runs, const Latencies& latencies, CostModel& mode
 /// better than each cost.
 FitQuality fit_all_threads(const Runs& runs, const Latencies& latencies, const CostModel& one_thread,
                            CostModel& model) {
-  FitQuality quality = fit_all(runs, latencies, model);
+  FitQuality quality = fit_all(runs, latencies, model, &one_thread);
   constexpr auto kProduct = static_cast<std::size_t>(Kernel::spmv);
   const FittedCosts fitted =
       scale_costs(of_solids(runs.timed[kProduct]), one_thread.solid[kProduct], model.caches);
@@ -314,15 +332,18 @@ Latencies latencies_behind(const FoundCaches& found, const Caches& caches) {
           std::max(kLeast, rest), std::max(kLeast, rest)};
 }
 
-FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies) {
+FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies,
+                      const KernelCosts* like) {
   const Rows shares = shares_of(runs, caches);
-  // One more unknown, in units of a share that is about right: how much of a latency a jump costs. For each
-  // jump an equation says that its cost is that share, with an eightieth of the weight of a run.
+  // Two more unknowns. One, in units of a share that is about right: how much of a latency a jump costs. For
+  // each jump an equation says that its cost is that share, with an eightieth of the weight of a run.
   constexpr double kShare = 0.1;
   constexpr double kWeight = 0.0125;
   // What all runs of a lattice are off by counts so much.
   constexpr double kCommon = 0.5;
-  Rows rows{.columns = shares.columns + 1};
+  // The other: how many times as long all takes as it does by `like`. For each cost an equation says so.
+  constexpr double kLike = 0.4;
+  Rows rows{.columns = shares.columns + 2};
   std::vector<double> row(rows.columns);
   for (std::size_t i = 0; i < shares.size(); ++i) {
     std::copy(shares[i].begin(), shares[i].end(), row.begin());
@@ -335,7 +356,21 @@ FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, co
     one.jump[i] = kWeight / (kShare * latencies[i]);
     const CostRow of_jump = as_row(one);
     std::copy(of_jump.begin(), of_jump.end(), row.begin());
-    row.back() = -kWeight;
+    row[shares.columns] = -kWeight;
+    rows.push_back(row);
+    right.push_back(0);
+  }
+  const CostRow known = like != nullptr ? as_row(*like) : CostRow{};
+  for (std::size_t j = 0; like != nullptr && j < known.size(); ++j) {
+    std::fill(row.begin(), row.end(), 0.0);
+    if (known[j] > 0) {
+      row[j] = kLike / known[j];
+      row.back() = -kLike;
+    } else {
+      // none, as far as it would change the times in the mean
+      for (std::size_t i = 0; i < shares.size(); ++i)
+        row[j] += shares[i][j] / static_cast<double>(shares.size());
+    }
     rows.push_back(row);
     right.push_back(0);
   }
@@ -395,26 +430,30 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   };
   const std::array<Offset, 4> sizes = sizes_that_cost(model.caches);
   /// A lattice, and its share of the time. It is also timed on all threads where it adds to what they cost:
-  /// to wake them takes as long as a run on the smallest.
+  /// to wake them takes as long as a run on the smallest. One whose matrix streams from memory has one more
+  /// order, with a window whose rows fill the second cache twice: as in a Fiedler order, what is gathered has
+  /// left the first cache and what is added to the second.
   struct Step {
     Index vertices;
     bool flat;
     std::size_t orders;
     double share;
     bool on_all_threads;
+    bool streams = false;
   };
-  const std::array steps{Step{rows_in(sizes[1], 0.6), false, 3, 0.03, false},
-                         Step{rows_in(sizes[3], 0.35), false, 5, 0.04, true},
-                         Step{rows_in(sizes[3], 0.75), false, 3, 0.03, false},
-                         Step{largest / 8, false, 7, 0.1, true},
-                         Step{largest / 8, true, 4, 0.04, true},
-                         Step{largest / 3, false, 3, 0.07, true}};
+  const std::array steps{Step{rows_in(sizes[1], 0.6), false, 3, 0.02, false},
+                         Step{rows_in(sizes[3], 0.35), false, 5, 0.03, true},
+                         Step{rows_in(sizes[3], 0.75), false, 3, 0.02, false},
+                         Step{largest / 8, false, 6, 0.08, true},
+                         Step{largest / 8, true, 4, 0.03, true},
+                         Step{largest / 3, false, 3, 0.06, true, true}};
   double done = 0.25;
   int number = 0;
   for (const Step& step : steps) {
     report("lattices", done);
-    const CalibrationLattice lattice =
+    CalibrationLattice lattice =
         make_calibration_lattice(step.vertices, step.flat, model.caches, step.orders);
+    if (step.streams) lattice.orders.insert(lattice.orders.begin() + 2, {rows_in(sizes[1], 2)});
     time_small(lattice, number++, step.share * effort.seconds,
                std::span(runs).first(step.on_all_threads ? runs.size() : 1));
     done += step.share;

@@ -90,7 +90,12 @@ Latencies latencies_behind(const FoundCaches& found, const Caches& caches);
 /// as of the others: the equations say so, with an eightieth of the weight of a run each. What all runs of a
 /// lattice are off by has half of the weight of what each is off by beside them: costs are for ratios,
 /// and the rate of a shared memory changes from minute to minute.
-FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies);
+///
+/// @param like  costs of the same kernel on one thread where the runs are on all, or null. Where the runs do
+///              not tell otherwise, all costs are those, times one factor: an equation for each says so, with
+///              two fifths of the weight of a run
+FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies,
+                      const KernelCosts* like = nullptr);
 
 /// Fits one factor to the runs, by which all of the costs are multiplied.
 FittedCosts scale_costs(std::span<const TimedReuse> runs, const KernelCosts& costs, const Caches& caches);

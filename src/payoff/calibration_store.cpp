@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSchema = "meshorder calibration 5";
+constexpr const char* kSchema = "meshorder calibration 6";
 
 std::string sizes_text(const Caches& caches) { return caches.level_bytes.empty() ? "" : to_string(caches); }
 

@@ -184,6 +184,41 @@ TEST(Calibration, JumpsThatNoRunHasCostTheShareOfTheirLatencyThatOthersDo) {
   EXPECT_LT(fitted.error, 1e-9);
 }
 
+TEST(Calibration, WhatRunsDoNotTellIsTakenFromKnownCostsTimesOneFactor) {
+  const Caches caches = parse_cache_sizes("32K,1M,16M");
+  const Latencies latencies{3, 20, 60, 40};
+  const KernelCosts known{.access = 0.5,
+                          .miss = {0.25, 0, 1, 2},
+                          .jump = {3.0 / 7, 20.0 / 7, 60.0 / 7, 40.0 / 7},
+                          .repeat = 1.5,
+                          .wait = 70};
+  CostRow faster = as_row(known);
+  for (double& cost : faster) cost *= 0.6;
+  CostModel model;
+  model.solid[0] = as_costs(faster);
+  std::vector<TimedReuse> runs = runs_that_cost(known, caches, 300'000);
+  for (TimedReuse& run : runs) {
+    run.reuse.repeats = 0;
+    run.milliseconds = predicted_ms(Kernel::spmv, run.reuse, caches, model);
+  }
+  const CostRow found = as_row(fit_costs(runs, caches, latencies, &known).costs);
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], faster[i], 1e-6) << i;
+  EXPECT_EQ(fit_costs(runs, caches, latencies).costs.repeat, 0);
+}
+
+TEST(Calibration, RunsMoveCostsAwayFromKnownOnes) {
+  const Caches caches = parse_cache_sizes("32K,1M,16M");
+  const KernelCosts costs{.access = 0.5, .miss = {0.25, 0, 1, 2}, .jump = {0.3, 2, 6, 4}, .repeat = 3};
+  KernelCosts known = costs;
+  known.repeat = 1.5;
+  known.miss[1] = 2;
+  const std::vector<TimedReuse> runs = runs_that_cost(costs, caches, 300'000);
+  const FittedCosts fitted = fit_costs(runs, caches, {3, 20, 60, 40}, &known);
+  EXPECT_LT(fitted.error, 0.5 * scale_costs(runs, known, caches).error);
+  EXPECT_GT(fitted.costs.repeat, 1.8);
+  EXPECT_LT(fitted.costs.miss[1], 1.2);
+}
+
 TEST(Calibration, LatenciesBehindSizesAreThoseOfTheNextLevels) {
   const FoundCaches found{.levels = {{30 << 10, 1.0}, {1100 << 10, 4.0}, {16 << 20, 24.0}},
                           .memory_nanoseconds = 124};
@@ -359,7 +394,7 @@ TEST(CalibrationStore, NoDamagedFileIsTaken) {
   EXPECT_THAT(fault_of("{}"), HasSubstr("is no calibration"));
   EXPECT_THAT(fault_of("[1]"), HasSubstr("is no calibration"));
   EXPECT_THAT(fault_of(R"({"schema": 3})"), HasSubstr("is no calibration"));
-  EXPECT_THAT(fault_of(test::with(text, "calibration 5", "calibration 4")), HasSubstr("is no calibration"));
+  EXPECT_THAT(fault_of(test::with(text, "calibration 6", "calibration 5")), HasSubstr("is no calibration"));
   EXPECT_THAT(fault_of(test::with(text, "\"spmv\"", "\"smpv\"")), HasSubstr("is damaged"));
   EXPECT_THAT(fault_of(test::with(text, "\"date\": \"2026-01-02\"", "\"date\": 7")), HasSubstr("is damaged"));
   EXPECT_THAT(fault_of(test::with(text, "\"access\": ", "\"access\": -")), HasSubstr("negative"));
