@@ -18,24 +18,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <utility>
 
 namespace meshorder {
 namespace {
 
-/// A mesh in one of the orders.
-struct Ordered {
+/// A mesh in the order of a candidate.
+struct Moved {
   Mesh mesh;  ///< points and cells
   CsrGraph graph;
 };
+
+/// A mesh in one of the orders.
+struct Ordered {
+  const Mesh* mesh = nullptr;
+  const CsrGraph* graph = nullptr;
+  std::unique_ptr<const Moved> moved = {};  ///< what they are of; none: the mesh as it is
+};
+
+Ordered ordered(std::unique_ptr<const Moved> moved) {
+  return {&moved->mesh, &moved->graph, std::move(moved)};
+}
 
 /// The predictions for all orders, every kernel of every order on a thread of its own.
 std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
                                             const AdviceOptions& options) {
   report("predict");
   std::vector<Simplices> simplices(orders.size());
-  take_turns(index_size(orders), [&](Index i) { simplices[i] = cut_into_simplices(orders[i].mesh); });
+  take_turns(index_size(orders), [&](Index i) { simplices[i] = cut_into_simplices(*orders[i].mesh); });
   const Caches& caches = options.caches.level_bytes.empty() ? options.machine.model.caches : options.caches;
   const int halvings = options.halvings.value_or(halvings_for(simplices.front().size()));
   std::vector<KernelMilliseconds> result(orders.size());
@@ -44,9 +56,9 @@ std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
     const std::size_t k = kLongestFirst[turn / index_size(orders)];
     const RunReuse reuse = i == 0 && options.reuse_as_is
                                ? (*options.reuse_as_is)[k]
-                               : reuse_of(kKernels[k], orders[i].graph, simplices[i], halvings);
+                               : reuse_of(kKernels[k], *orders[i].graph, simplices[i], halvings);
     result[i][k] = predicted_ms(kKernels[k], reuse, caches, options.machine.model) *
-                   times_computed(kKernels[k], orders[i].graph, simplices[i], options.threads);
+                   times_computed(kKernels[k], *orders[i].graph, simplices[i], options.threads);
   });
   return result;
 }
@@ -60,7 +72,7 @@ Timings measured(const std::vector<Ordered>& orders, int threads, const Stopwatc
                  double seconds) {
   std::vector<std::optional<KernelBench>> benches(orders.size());
   for_each_chunk(index_size(orders), 1, [&](Index i, Index /*begin*/, Index /*end*/) {
-    benches[i].emplace(orders[i].mesh, orders[i].graph, threads);
+    benches[i].emplace(*orders[i].mesh, *orders[i].graph, threads);
   });
   std::vector<KernelBench*> pointers;
   pointers.reserve(benches.size());
@@ -71,7 +83,7 @@ Timings measured(const std::vector<Ordered>& orders, int threads, const Stopwatc
 /// For half a second an order, as many at a time as memory allows.
 Timings raced(const std::vector<Ordered>& orders, int threads, const OrderTimer& timer) {
   constexpr double kSeconds = 0.5;
-  const auto prepare = [&](Index i) { return KernelBench(orders[i].mesh, orders[i].graph, threads); };
+  const auto prepare = [&](Index i) { return KernelBench(*orders[i].mesh, *orders[i].graph, threads); };
   return timer(index_size(orders), prepare, for_seconds(kSeconds * static_cast<double>(orders.size())));
 }
 
@@ -188,9 +200,7 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   advice.threads = options.threads;
   advice.as_is.vertices.name = advice.as_is.elements.name = "original";
   std::vector<Ordered> orders(1);
-  orders.front().mesh.points = mesh.points;
-  orders.front().mesh.cells = mesh.cells;
-  orders.front().graph = graph;
+  orders.front() = {&mesh, &graph};
   // of each candidate, its place in `orders`: that of the mesh as it is where nothing moves
   std::vector<std::size_t> order_of;
   for (const ReorderOptions& reordering : asked_for(mesh, graph, options)) {
@@ -200,10 +210,11 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
                         .elements = order.cells.method,
                         .workload = reordering.order.workload};
     const bool moves_nothing = are_one(candidate, advice.as_is);
-    Ordered ordered;
+    auto moved = std::make_unique<Moved>();
     if (!moves_nothing) {
-      ordered.mesh = orders.front().mesh;
-      apply_reordering(ordered.mesh, order);
+      moved->mesh.points = mesh.points;
+      moved->mesh.cells = mesh.cells;
+      apply_reordering(moved->mesh, order);
       candidate.order_seconds = options.graph_seconds + stopwatch.seconds();
     }
     const bool is_known = std::any_of(advice.candidates.begin(), advice.candidates.end(),
@@ -212,8 +223,8 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
     order_of.push_back(moves_nothing ? 0 : orders.size());
     advice.candidates.push_back(std::move(candidate));
     if (moves_nothing) continue;
-    ordered.graph = renumbered(graph, order.vertices.permutation.old_to_new());
-    orders.push_back(std::move(ordered));
+    moved->graph = renumbered(graph, order.vertices.permutation.old_to_new());
+    orders.push_back(ordered(std::move(moved)));
   }
   // calls it for the mesh as it is, and for each candidate with the place of its order
   const auto for_candidates = [&](auto call) {
@@ -222,9 +233,9 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   };
   std::vector<Candidate> described(orders.size());
   take_turns(index_size(orders), [&](Index i) {
-    const Permutation as_ordered = Permutation::identity(orders[i].graph.size());
-    described[i].spans = quality_of(orders[i].graph, as_ordered);
-    described[i].pattern = pattern_of(orders[i].graph, as_ordered, kPatternSide);
+    const Permutation as_ordered = Permutation::identity(orders[i].graph->size());
+    described[i].spans = quality_of(*orders[i].graph, as_ordered);
+    described[i].pattern = pattern_of(*orders[i].graph, as_ordered, kPatternSide);
   });
   for_candidates([&](Candidate& candidate, std::size_t order) {
     candidate.spans = described[order].spans;
