@@ -54,8 +54,9 @@ std::string in_columns(const KernelCosts& costs) {
     misses += cell(costs.miss[i], 8);
     jumps += cell(costs.jump[i], 8);
   }
-  return cell(costs.access, 7) + misses + jumps + cell(costs.repeat, 8) + cell(costs.wait, 7) +
-         cell(costs.stall, 7);
+  std::string waits;
+  for (const double wait : costs.wait) waits += cell(wait, 7);
+  return cell(costs.access, 7) + misses + jumps + cell(costs.repeat, 8) + waits + cell(costs.stall, 7);
 }
 
 /// Prints two lines for each kernel, of tetrahedra and of triangles.
@@ -91,11 +92,11 @@ void print_calibration(const Console& console, const Calibration& calibration) {
       "\nWhat a kernel pays, in ns: an access, a miss and in addition a jump of the first cache, the "
       "second,\n"
       "half of the last and all of it; an addition to what was added to just before; a wait for jumps of\n"
-      "the last one that are close together; a stall of a product whose matrix comes from memory, where "
-      "what\n"
-      "it gathers has left the first cache. The second line of each kernel is of triangles");
-  console.print("{:<14}{:>7}{:>32}{:>32}{:>8}{:>7}{:>7}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps",
-                "repeat", "wait", "stall", "condition", "error", "floor");
+      "all caches but the first that are close together, of which the first is no jump; a stall where what\n"
+      "is gathered has left the first cache while the rest comes from memory. The second line of each\n"
+      "kernel is of triangles");
+  console.print("{:<14}{:>7}{:>32}{:>32}{:>8}{:>21}{:>7}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps",
+                "repeat", "waits", "stall", "condition", "error", "floor");
   print_costs(console, calibration.model, calibration.quality);
   if (calibration.threads > 1) {
     console.print("on {} threads, in elapsed ns:", calibration.threads);

@@ -119,7 +119,7 @@ def arguments():
 def initialiser(kernel, coefficients):
     numbers = [f"{1e6 * c:.4g}" for c in coefficients]
     return (f"    {{.access = {numbers[0]}, .miss = {{{', '.join(numbers[1:5])}}}, .jump = {{{', '.join(numbers[5:9])}}}, "
-            f".repeat = {numbers[9]}, .wait = {numbers[10]}}},  // {kernel}")
+            f".repeat = {numbers[9]}, .wait = {{0, 0, {numbers[10]}}}}},  // {kernel}")
 
 
 def tables(rows, meshes, sizes, results):

@@ -217,7 +217,7 @@ void judge(const std::string& name, double budget, int threads, const std::strin
                  timings[1].orders[i][mo::kKernels[k]].best_ms);
       for (const mo::CostModel& model : models) {
         const double times = model.threads == 1 ? 1 : computed[i][k];
-        fmt::print(",{:.6f}", times * mo::predicted_ms(mo::kKernels[k], reuse[i][k], model.caches, model));
+        fmt::print(",{:.6f}", times * mo::predicted_ms(reuse[i][k], model.caches, model));
       }
       fmt::print("\n");
     }

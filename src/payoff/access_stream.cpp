@@ -150,7 +150,10 @@ RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplic
         reuse.access(line, how);
       },
       [&](Index first, Index last) { return reuse.samples(first, last); });
-  return {std::move(reuse).repeated(), simplices.dimension, stream.gather_count(),
+  return {std::move(reuse).repeated(),
+          kernel,
+          simplices.dimension,
+          stream.gather_count(),
           kernel == Kernel::element ? repeated_additions(simplices) : 0,
           kernel == Kernel::spmv ? stalled_gathers(stream) : 0};
 }

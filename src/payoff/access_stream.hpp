@@ -259,6 +259,7 @@ class AccessStream {
 
 /// What a run of a kernel uses again: cache lines, and sums.
 struct RunReuse : Reuse {
+  Kernel kernel = Kernel::spmv;
   int dimension = 0;   ///< of the simplices: 3 for tetrahedra
   Offset gathers = 0;  ///< gathered accesses
   /// Additions of element forces to a vertex that one of the two before them went to: they wait until what

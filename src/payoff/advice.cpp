@@ -57,7 +57,7 @@ std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
     const RunReuse reuse = i == 0 && options.reuse_as_is
                                ? (*options.reuse_as_is)[k]
                                : reuse_of(kKernels[k], *orders[i].graph, simplices[i], halvings);
-    result[i][k] = predicted_ms(kKernels[k], reuse, caches, options.machine.model) *
+    result[i][k] = predicted_ms(reuse, caches, options.machine.model) *
                    times_computed(kKernels[k], *orders[i].graph, simplices[i], options.threads);
   });
   return result;

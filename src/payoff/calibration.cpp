@@ -489,7 +489,7 @@ Recheck recheck(const Calibration& calibration) {
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     std::vector<double> ratios;
     for (std::size_t i = 0; i < prepared.reuse.size(); ++i) {
-      const double predicted = predicted_ms(kKernels[k], prepared.reuse[i][k], caches, calibration.model);
+      const double predicted = predicted_ms(prepared.reuse[i][k], caches, calibration.model);
       ratios.push_back(timings.orders[i][kKernels[k]].best_ms / std::max(predicted, 1e-9));
     }
     result.ratio[k] = median(std::move(ratios));

@@ -67,7 +67,8 @@ KernelCosts costs_from(const Json& json) {
     sum += costs.jump[i] = number_from(json.at("jump").at(i));
   }
   sum += costs.repeat = number_from(json.at("repeat"));
-  sum += costs.wait = number_from(json.at("wait"));
+  for (std::size_t i = 0; i < costs.wait.size(); ++i)
+    sum += costs.wait[i] = number_from(json.at("wait").at(i));
   sum += costs.stall = number_from(json.at("stall"));
   if (!(sum > 0)) throw InvalidArgument("has a kernel that costs nothing");
   return costs;

@@ -20,31 +20,31 @@ const CostModel& zen5_costs() {
           {.access = 0.03582,
            .miss = {0.264, 0.442, 0.08801, 0.2538},
            .jump = {0, 0, 0, 0},
-           .wait = 27.69},  // spmv
+           .wait = {0, 0, 27.69}},  // spmv
           {.access = 0.2224,
            .miss = {0.02055, 1.83, 1.042, 0},
            .jump = {0.0535, 0, 3.241, 0},
-           .wait = 40.08},  // element
+           .wait = {0, 0, 40.08}},  // element
           {.access = 0.6869,
            .miss = {0.1201, 0.4412, 0.6889, 0},
            .jump = {0.8737, 0, 0.6091, 2.157},
-           .wait = 3.446},                                                                         // assembly
+           .wait = {0, 0, 3.446}},                                                                 // assembly
           {.access = 0.4631, .miss = {0.01272, 0.3411, 0.3603, 0}, .jump = {0, 0, 6.897, 9.478}},  // springs
       }},
       .flat = {{
           {.access = 0.03099,
            .miss = {0.1883, 0.5413, 0.1304, 0.2113},
            .jump = {0, 0, 0.2776, 0},
-           .wait = 26.12},  // spmv
+           .wait = {0, 0, 26.12}},  // spmv
           {.access = 0.4801,
            .miss = {0, 0.04593, 1.134, 0},
            .jump = {0.1071, 0.8144, 5.951, 0},
            .repeat = 0.1944,
-           .wait = 33.65},  // element
+           .wait = {0, 0, 33.65}},  // element
           {.access = 0.7647,
            .miss = {0, 0, 0, 0.5728},
            .jump = {1.111, 0.635, 3.112, 0},
-           .wait = 5.692},                                                                         // assembly
+           .wait = {0, 0, 5.692}},                                                                 // assembly
           {.access = 0.4856, .miss = {0, 0, 0.5416, 0}, .jump = {0.03384, 0.2992, 7.262, 6.648}},  // springs
       }}};
   return model;
@@ -52,43 +52,52 @@ const CostModel& zen5_costs() {
 
 const CostModel& zen4_costs() {
   // printed by `meshorder calibrate --json`
-  static const CostModel model{
-      .machine = "2-core Zen 4, 32 KB L1, 1 MB L2, 20 MB to be had of 32 MB L3",
-      .caches = parse_cache_sizes("32K,1M,20642K"),
-      .solid = {{
-          {.access = 0.304,
-           .miss = {0.342, 0.0563, 0.141, 0},
-           .jump = {0, 1.505, 0.9728, 11.81},
-           .wait = 3.153,
-           .stall = 15.98},  // spmv
-          {.access = 0.7526,
-           .miss = {0, 0.02409, 0.06262, 0.1588},
-           .jump = {0.2343, 1.171, 7.402, 4.827},
-           .repeat = 1.286,
-           .wait = 18.06},                                                                 // element
-          {.access = 1.147, .miss = {0.5588, 0, 0, 0}, .jump = {0, 1.698, 13.14, 4.106}},  // assembly
-          {.access = 0.6338,
-           .miss = {0, 0.1748, 0.2548, 0.02245},
-           .jump = {0.1438, 0.239, 2.153, 2.348},
-           .wait = 70.29},  // springs
-      }},
-      .flat = {{
-          {.access = 0.3016,
-           .miss = {0.3456, 0.0698, 0.1498, 0},
-           .jump = {0, 0.6869, 0.8254, 12.29},
-           .wait = 1.676,
-           .stall = 15.79},  // spmv
-          {.access = 0.7621,
-           .miss = {0, 0, 0.2408, 0.1201},
-           .jump = {0.193, 1.017, 7.833, 5.035},
-           .repeat = 0.9811,
-           .wait = 14.13},                                                                      // element
-          {.access = 1.182, .miss = {0.1744, 0, 0, 0}, .jump = {0.6787, 1.493, 5.027, 14.54}},  // assembly
-          {.access = 0.6316,
-           .miss = {0, 0, 0.4792, 0},
-           .jump = {0.1661, 0.4316, 0.3934, 2.354},
-           .wait = 100.7},  // springs
-      }}};
+  static const CostModel model{.machine = "2-core Zen 4, 32 KB L1, 1 MB L2, 20 MB to be had of 32 MB L3",
+                               .caches = parse_cache_sizes("32K,1M,20642K"),
+                               .solid = {{
+                                   {.access = 0.2937,
+                                    .miss = {0.3564, 0.05428, 0.1531, 0},
+                                    .jump = {0, 2.134, 2.311, 9.352},
+                                    .wait = {0, 0, 3.903},
+                                    .stall = 11.31},  // spmv
+                                   {.access = 0.7116,
+                                    .miss = {0.2611, 0.08151, 0.1144, 0.0615},
+                                    .jump = {0, 0.2946, 5.208, 0},
+                                    .repeat = 1.073,
+                                    .wait = {2.626, 0, 0},
+                                    .stall = 0.7817},  // element
+                                   {.access = 1.222,
+                                    .miss = {0.4929, 0, 0, 0},
+                                    .jump = {0, 1.173, 8.433, 8.284},
+                                    .wait = {5.224, 7.533, 0},
+                                    .stall = 0.1728},  // assembly
+                                   {.access = 0.6285,
+                                    .miss = {0, 0.1745, 0.1675, 0.2917},
+                                    .jump = {0.1173, 0.1136, 0, 1.194},
+                                    .wait = {2.238, 4.627, 0}},  // springs
+                               }},
+                               .flat = {{
+                                   {.access = 0.2856,
+                                    .miss = {0.3706, 0.0782, 0.1612, 0},
+                                    .jump = {0, 0.531, 2.22, 7.372},
+                                    .wait = {0, 0, 4.904},
+                                    .stall = 10.98},  // spmv
+                                   {.access = 0.7539,
+                                    .miss = {0, 0, 0.3095, 0.006963},
+                                    .jump = {0.2509, 0.2979, 5.003, 0},
+                                    .repeat = 0.9635,
+                                    .wait = {2.108, 0, 0},
+                                    .stall = 0.8589},  // element
+                                   {.access = 1.273,
+                                    .miss = {0.3157, 0, 0, 0},
+                                    .jump = {0, 1.496, 1.221, 14.27},
+                                    .wait = {4.583, 0, 0},
+                                    .stall = 2.758},  // assembly
+                                   {.access = 0.6282,
+                                    .miss = {0, 0, 0.4276, 0.2189},
+                                    .jump = {0.1258, 0.314, 0, 1.699},
+                                    .wait = {2.133, 3.877, 0}},  // springs
+                               }}};
   return model;
 }
 
@@ -106,11 +115,11 @@ const CostModel& zen3_costs() {
            .miss = {0.1101, 0.05991, 0.4114, 0},
            .jump = {0.2047, 1.259, 3.717, 0},
            .repeat = 2.662,
-           .wait = 176.8},  // element
+           .wait = {0, 0, 176.8}},  // element
           {.access = 1.708,
            .miss = {0.8522, 1.101, 0, 0},
            .jump = {0.2004, 1.326, 7.63, 19.99},
-           .wait = 5.477},  // assembly
+           .wait = {0, 0, 5.477}},  // assembly
           {.access = 0.8357,
            .miss = {0.09984, 0.4368, 3.843, 0},
            .jump = {0.08905, 1.047, 1.205, 0}},  // springs
@@ -121,7 +130,7 @@ const CostModel& zen3_costs() {
            .miss = {0, 0, 0.8755, 0},
            .jump = {0.37, 0.8664, 4.973, 0},
            .repeat = 2.604,
-           .wait = 160.8},                                                                       // element
+           .wait = {0, 0, 160.8}},                                                               // element
           {.access = 1.994, .miss = {0, 0, 0, 0}, .jump = {0.8172, 5.472, 0, 23.7}},             // assembly
           {.access = 0.8672, .miss = {0, 0.0424, 4.263, 0}, .jump = {0.2291, 1.151, 1.431, 0}},  // springs
       }}};
@@ -169,17 +178,30 @@ CostRow as_row(const KernelCosts& costs) {
   std::copy(costs.miss.begin(), costs.miss.end(), row.begin() + 1);
   std::copy(costs.jump.begin(), costs.jump.end(), row.begin() + 5);
   row[9] = costs.repeat;
-  row[10] = costs.wait;
-  row[11] = costs.stall;
+  std::copy(costs.wait.begin(), costs.wait.end(), row.begin() + 10);
+  row[13] = costs.stall;
   return row;
 }
 
 KernelCosts as_costs(const CostRow& row) {
-  KernelCosts costs{.access = row[0], .repeat = row[9], .wait = row[10], .stall = row[11]};
+  KernelCosts costs{.access = row[0], .repeat = row[9], .stall = row[13]};
   std::copy_n(row.begin() + 1, costs.miss.size(), costs.miss.begin());
   std::copy_n(row.begin() + 5, costs.jump.size(), costs.jump.begin());
+  std::copy_n(row.begin() + 10, costs.wait.size(), costs.wait.begin());
   return costs;
 }
+
+namespace {
+
+/// How many groups of accesses under way at a time have a jump, if jumps are spread evenly.
+double waits_for(double jumps, double gathers) {
+  constexpr double kTogether = 32;
+  // an estimate from a sample of the lines may be above the whole
+  const double hits = std::max(0.0, 1 - jumps / gathers);
+  return gathers / kTogether * (1 - std::pow(hits, kTogether));
+}
+
+}  // namespace
 
 CostRow counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes, bool stalls) {
   KernelCosts counts{.access = static_cast<double>(reuse.all.accesses()),
@@ -188,25 +210,32 @@ CostRow counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes, boo
     counts.miss[i] = static_cast<double>(reuse.all.misses(sizes[i] / kLineBytes));
     counts.jump[i] = static_cast<double>(reuse.jumps.misses(sizes[i] / kLineBytes));
   }
-  // what a processor has under way at a time, about
-  constexpr double kTogether = 32;
+  const bool is_product = reuse.kernel == Kernel::spmv;
   if (const auto gathers = static_cast<double>(reuse.gathers); gathers > 0) {
-    // an estimate from a sample of the lines may be above the whole
-    const double hits = std::max(0.0, 1 - counts.jump.back() / gathers);
-    counts.wait = gathers / kTogether * (1 - std::pow(hits, kTogether));
+    if (is_product || !stalls) {
+      counts.wait.back() = waits_for(counts.jump.back(), gathers);
+    } else {
+      for (std::size_t i = 0; i < counts.wait.size(); ++i) {
+        counts.wait[i] = waits_for(counts.jump[i + 1], gathers);
+        counts.jump[i + 1] = std::max(0.0, counts.jump[i + 1] - counts.wait[i]);
+      }
+    }
   }
-  if (const Offset streamed = reuse.all.accesses() - reuse.gathers;
-      stalls && reuse.stalls > 0 && streamed > 0) {
+  if (const Offset streamed = reuse.all.accesses() - reuse.gathers; stalls && streamed > 0) {
     const double share = std::min(1.0, counts.miss.back() / static_cast<double>(streamed));
-    counts.stall = share * static_cast<double>(reuse.stalls);
-    counts.jump[0] *= 1 - share;
-    counts.jump[1] *= 1 - share;
+    if (!is_product) {
+      counts.stall = share * counts.jump[0];
+    } else if (reuse.stalls > 0) {
+      counts.stall = share * static_cast<double>(reuse.stalls);
+      counts.jump[0] *= 1 - share;
+      counts.jump[1] *= 1 - share;
+    }
   }
   return as_row(counts);
 }
 
-double predicted_ms(Kernel kernel, const RunReuse& reuse, const Caches& caches, const CostModel& model) {
-  const CostRow costs = as_row(model.costs(kernel, reuse.dimension));
+double predicted_ms(const RunReuse& reuse, const Caches& caches, const CostModel& model) {
+  const CostRow costs = as_row(model.costs(reuse.kernel, reuse.dimension));
   const CostRow counts = counts_of(reuse, sizes_that_cost(caches), model.stalls);
   return 1e-6 * std::inner_product(costs.begin(), costs.end(), counts.begin(), 0.0);
 }
@@ -214,7 +243,7 @@ double predicted_ms(Kernel kernel, const RunReuse& reuse, const Caches& caches, 
 KernelMilliseconds predicted_ms(const KernelReuse& reuse, const Caches& caches, const CostModel& model) {
   KernelMilliseconds result{};
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    result[k] = predicted_ms(kKernels[k], reuse[k], caches, model);
+    result[k] = predicted_ms(reuse[k], caches, model);
   }
   return result;
 }

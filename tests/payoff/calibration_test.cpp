@@ -113,7 +113,7 @@ std::vector<TimedReuse> runs_that_cost(const KernelCosts& costs, const Caches& c
     run.reuse.repeats = static_cast<Offset>(random.below(200'000));
     if (costs.stall > 0) run.reuse.stalls = static_cast<Offset>(random.below(20'000));
     run.lattice = i / 5;
-    run.milliseconds = predicted_ms(Kernel::spmv, run.reuse, caches, model);
+    run.milliseconds = predicted_ms(run.reuse, caches, model);
     runs.push_back(std::move(run));
   }
   return runs;
@@ -127,7 +127,7 @@ TEST(Calibration, CostsThatMadeTheTimesAreFound) {
                           .miss = {0.25, 0, 1, 2},
                           .jump = {3.0 / 7, 20.0 / 7, 60.0 / 7, 40.0 / 7},
                           .repeat = 1.5,
-                          .wait = 70,
+                          .wait = {0, 0, 70},
                           .stall = 20};
   const FittedCosts fitted = fit_costs(runs_that_cost(costs, caches, 300'000), caches, latencies);
   const CostRow found = as_row(fitted.costs);
@@ -151,8 +151,8 @@ TEST(Calibration, WhatAllRunsOfALatticeAreOffByMattersLess) {
     double off = 0;
     for (std::size_t i = 1; i < runs.size(); ++i) {
       if (runs[i].lattice != runs[i - 1].lattice) continue;
-      const double ratio = predicted_ms(Kernel::spmv, runs[i].reuse, caches, model) /
-                           predicted_ms(Kernel::spmv, runs[i - 1].reuse, caches, model);
+      const double ratio =
+          predicted_ms(runs[i].reuse, caches, model) / predicted_ms(runs[i - 1].reuse, caches, model);
       off += std::abs(std::log(ratio * runs[i - 1].milliseconds / runs[i].milliseconds));
     }
     return off;
@@ -173,8 +173,7 @@ TEST(Calibration, RunsOutvoteWhatJumpsAreExpectedToCost) {
 
 TEST(Calibration, JumpsThatNoRunHasCostTheShareOfTheirLatencyThatOthersDo) {
   const Caches caches = parse_cache_sizes("32K,1M,16M");
-  const KernelCosts costs{
-      .access = 0.5, .miss = {0.25, 0, 1, 2}, .jump = {0.3, 2, 7, 9}, .repeat = 1.5, .wait = 0};
+  const KernelCosts costs{.access = 0.5, .miss = {0.25, 0, 1, 2}, .jump = {0.3, 2, 7, 9}, .repeat = 1.5};
   // 30,000 lines lie between 1 MB and 8 MB
   const FittedCosts fitted = fit_costs(runs_that_cost(costs, caches, 30'000), caches, {3, 20, 60, 40});
   EXPECT_NEAR(fitted.costs.jump[0], 0.3, 1e-6);
@@ -191,7 +190,7 @@ TEST(Calibration, WhatRunsDoNotTellIsTakenFromKnownCostsTimesOneFactor) {
                           .miss = {0.25, 0, 1, 2},
                           .jump = {3.0 / 7, 20.0 / 7, 60.0 / 7, 40.0 / 7},
                           .repeat = 1.5,
-                          .wait = 70};
+                          .wait = {0, 0, 70}};
   CostRow faster = as_row(known);
   for (double& cost : faster) cost *= 0.6;
   CostModel model;
@@ -199,7 +198,7 @@ TEST(Calibration, WhatRunsDoNotTellIsTakenFromKnownCostsTimesOneFactor) {
   std::vector<TimedReuse> runs = runs_that_cost(known, caches, 300'000);
   for (TimedReuse& run : runs) {
     run.reuse.repeats = 0;
-    run.milliseconds = predicted_ms(Kernel::spmv, run.reuse, caches, model);
+    run.milliseconds = predicted_ms(run.reuse, caches, model);
   }
   const CostRow found = as_row(fit_costs(runs, caches, latencies, &known).costs);
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], faster[i], 1e-6) << i;
@@ -241,7 +240,7 @@ TEST(Calibration, OneFactorIsFoundForAllCosts) {
     // errors of a tenth to both sides: the factor is Σ r / Σ r² of what the costs predict over what was
     // measured
     const double error = vertices == 1000 ? 1.1 : vertices == 4000 ? 1 / 1.1 : 1;
-    runs.push_back({reuse, 0.6 * error * predicted_ms(Kernel::spmv, reuse, caches, model)});
+    runs.push_back({reuse, 0.6 * error * predicted_ms(reuse, caches, model)});
   }
   const double r = 1 / 1.1 + 1.1 + 1;
   const double factor = 0.6 * r / (1 / 1.21 + 1.21 + 1);
