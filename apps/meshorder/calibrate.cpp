@@ -89,12 +89,11 @@ void print_calibration(const Console& console, const Calibration& calibration) {
   console.print("read       {:.1f} GB/s on one thread, {:.1f} GB/s on {}", calibration.read_bandwidth,
                 calibration.read_bandwidth_all, calibration.threads);
   console.print(
-      "\nWhat a kernel pays, in ns: an access, a miss and in addition a jump of the first cache, the "
-      "second,\n"
-      "half of the last and all of it; an addition to what was added to just before; a wait for jumps of\n"
-      "all caches but the first that are close together, of which the first is no jump; a stall where what\n"
-      "is gathered has left the first cache while the rest comes from memory. The second line of each\n"
-      "kernel is of triangles");
+      "\nWhat a kernel pays, in ns: an access; a miss and, in addition, a jump of the first cache, the\n"
+      "second, half of the last and all of it; an addition to what was added to just before (repeat);\n"
+      "from the second cache on, the first of jumps that are close together, in place of a jump (wait);\n"
+      "a load that has left the first cache while the rest comes from memory (stall). The second line\n"
+      "of each kernel is of triangles");
   console.print("{:<14}{:>7}{:>32}{:>32}{:>8}{:>21}{:>7}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps",
                 "repeat", "waits", "stall", "condition", "error", "floor");
   print_costs(console, calibration.model, calibration.quality);

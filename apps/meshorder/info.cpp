@@ -50,10 +50,12 @@ constexpr Offset kMaxPredicted = 16'000'000;
 /// Simplices above which there is no time to measure a second order.
 constexpr Offset kMaxOfTwoOrders = 500'000;
 
-/// Whether there are elements, so few that times are predicted without being asked.
+/// Whether there is something for the kernels to compute: points are no elements.
+bool has_elements(const Simplices& simplices) { return simplices.dimension > 0 && simplices.size() > 0; }
+
+/// Whether times are predicted: unless --cache is given, only where this takes seconds.
 bool is_predicted(const InfoArguments& arguments, const Simplices& simplices) {
-  return simplices.dimension > 0 && simplices.size() > 0 &&
-         (simplices.size() <= kMaxPredicted || !arguments.caches.empty());
+  return has_elements(simplices) && (simplices.size() <= kMaxPredicted || !arguments.caches.empty());
 }
 
 /// As of `reuse_of`: all lines are followed for the caches that are asked for.
@@ -74,7 +76,7 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
   options.graph_seconds = graph_seconds;
   if (arguments.caches.empty()) options.reuse_as_is = reuse;
   options.predict = is_predicted(arguments, simplices) && machine.model.threads == options.threads;
-  const bool is_measured = arguments.measure && simplices.dimension > 0 && simplices.size() > 0;
+  const bool is_measured = arguments.measure && has_elements(simplices);
   if (!options.predict && !is_measured) return std::nullopt;
   if (is_measured) {
     options.measure_within = kMeasureWithin - since_start.seconds();

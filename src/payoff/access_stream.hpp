@@ -281,8 +281,9 @@ RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplic
 /// The places in kKernels, what takes longest to follow first: assembly adds to 16 blocks an element.
 inline constexpr std::array<std::size_t, kKernels.size()> kLongestFirst{2, 0, 1, 3};
 
-/// Returns of how many lines reuse is estimated, 2^-halvings of them: all of them below 200,000 simplices,
-/// and the fewer the more there are, so that 300,000 vertices are followed in some 0.4 s a kernel and order.
+/// Returns the halvings with which `reuse_of` follows a mesh of so many simplices: 0 below 200,000, and up to
+/// 5 from eight million on, so that larger meshes take less time than in proportion (docs/prediction.md says
+/// how far off that is).
 int halvings_for(Offset simplices);
 
 /// By kernel, as kKernels lists them.

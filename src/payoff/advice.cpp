@@ -149,8 +149,8 @@ void keep_best(Advice& advice, std::vector<Ordered>& orders, std::vector<std::si
   }
   advice.candidates.resize(most);
   order_of.resize(most);
-  std::vector<Ordered> kept(1);
-  kept.front() = std::move(orders.front());
+  std::vector<Ordered> kept;
+  kept.push_back(std::move(orders.front()));
   for (std::size_t& place : order_of) {
     if (place == 0) continue;
     kept.push_back(std::move(orders[place]));
