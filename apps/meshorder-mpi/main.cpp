@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/communicator.hpp"
+#include "freed_memory.hpp"
 #include "help_format.hpp"
 #include "interruption.hpp"
 #include "launcher.hpp"
@@ -94,6 +95,7 @@ int tell_of_launcher(bool is_first_process) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  meshorder::command::keep_freed_memory();
   meshorder::command::occupy_closed_streams();
   meshorder::command::clean_up_quietly_at_signals();
 #ifdef MESHORDER_HAS_HDF5

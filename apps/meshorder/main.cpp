@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
+#include "freed_memory.hpp"
 #include "hand_over.hpp"
 #include "help_format.hpp"
 #include "interruption.hpp"
@@ -141,6 +142,7 @@ extern "C" void tell_if_a_library_ended_it() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  meshorder::command::keep_freed_memory();
   meshorder::command::occupy_closed_streams();
   meshorder::command::clean_up_at_signals();
   (void)std::atexit(tell_if_a_library_ended_it);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <new>
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -37,27 +38,57 @@ std::size_t next_colour() {
   return turn * kBetweenColours;
 }
 
+#if defined(__linux__)
+
+/// Returns memory of its own from a multiple of kHugePage on: what the heap hands out a second time keeps the
+/// small pages that it had. Large pages are a hint; without it they have their ordinary size.
+void* allocate_pages(std::size_t bytes) {
+  const std::size_t mapped = bytes + kHugePage;
+  void* const map = mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (map == MAP_FAILED) throw std::bad_alloc();
+  const std::size_t before = (kHugePage - reinterpret_cast<std::uintptr_t>(map) % kHugePage) % kHugePage;
+  char* const block = static_cast<char*>(map) + before;
+  if (before > 0) (void)munmap(map, before);
+  (void)munmap(block + bytes, mapped - before - bytes);
+  (void)madvise(block, bytes, MADV_HUGEPAGE);
+  return block;
+}
+
+void free_pages(void* block, std::size_t bytes) noexcept { (void)munmap(block, bytes); }
+
+#else
+
+void* allocate_pages(std::size_t bytes) { return ::operator new (bytes, std::align_val_t{kHugePage}); }
+
+void free_pages(void* block, std::size_t /*bytes*/) noexcept {
+  ::operator delete (block, std::align_val_t{kHugePage});
+}
+
+#endif
+
+/// Returns the bytes of whole pages, since no other array may share the last one, for an array that begins
+/// `colour` bytes from the start of the first.
+std::size_t bytes_of_pages(std::size_t bytes, std::size_t colour) {
+  return (bytes + colour + kHugePage - 1) / kHugePage * kHugePage;
+}
+
 }  // namespace
 
 void* allocate_aligned(std::size_t bytes) {
   const std::size_t alignment = alignment_of(bytes);
   if (alignment == kCacheLine) return ::operator new (bytes, std::align_val_t{kCacheLine});
   const std::size_t colour = next_colour();
-  std::size_t room = bytes + colour;
-  // whole pages, since no other array may share the last one
-  if (alignment == kHugePage) room = (room + kHugePage - 1) / kHugePage * kHugePage;
-  char* const block = static_cast<char*>(::operator new (room, std::align_val_t{alignment}));
-#if defined(__linux__)
-  // a hint; without it the pages have their ordinary size
-  if (alignment == kHugePage) (void)madvise(block, room, MADV_HUGEPAGE);
-#endif
-  return block + colour;
+  void* const block = alignment == kHugePage ? allocate_pages(bytes_of_pages(bytes, colour))
+                                             : ::operator new (bytes + colour, std::align_val_t{alignment});
+  return static_cast<char*>(block) + colour;
 }
 
 void free_aligned(void* block, std::size_t bytes) noexcept {
   const std::size_t alignment = alignment_of(bytes);
   // colours are less than the alignment of the blocks that have them
-  char* const start = static_cast<char*>(block) - reinterpret_cast<std::uintptr_t>(block) % alignment;
+  const std::size_t colour = reinterpret_cast<std::uintptr_t>(block) % alignment;
+  char* const start = static_cast<char*>(block) - colour;
+  if (alignment == kHugePage) return free_pages(start, bytes_of_pages(bytes, colour));
   ::operator delete (start, std::align_val_t{alignment});
 }
 
