@@ -14,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace meshorder {
 
@@ -47,32 +48,34 @@ std::array<std::uint32_t, 3> Lattice::cell_of(const Point& point) const {
   return cell;
 }
 
-LatticePoints on_lattice(const PointsView& points) {
-  LatticePoints result;
-  if (points.size() == 0) return result;
+namespace {
 
-  // the bounding box
-  const Index n = index_size(points);
-  Point low = point_at(points, 0);
-  Point high = low;
-  for (Index i = 0; i < n; ++i) {
-    poll_in_loop(i);
-    const Point point = point_at(points, i);
+constexpr Index kPointsAtOnce = 16384;  // that a thread looks at together
+
+/// The bounding box of some points, as a sum: that of two sets is the sum of theirs.
+struct Box {
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Point low{kInfinity, kInfinity, kInfinity};
+  Point high{-kInfinity, -kInfinity, -kInfinity};
+
+  Box& operator+=(const Box& other) {
     for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], point[a]);
-      high[a] = std::max(high[a], point[a]);
+      low[a] = std::min(low[a], other.low[a]);
+      high[a] = std::max(high[a], other.high[a]);
     }
+    return *this;
   }
+};
 
-  const Lattice lattice(low, high);
-  result.axes = lattice.axes();
-  result.bits = lattice.bits();
-  result.coordinates.reserve(points.size());
-  for (Index i = 0; i < n; ++i) {
-    poll_in_loop(i);
-    result.coordinates.push_back(lattice.cell_of(point_at(points, i)));
-  }
-  return result;
+}  // namespace
+
+Lattice lattice_of(const PointsView& points) {
+  const Box box = sum_over_chunks<Box>(index_size(points), kPointsAtOnce, [&](Index begin, Index end) {
+    Box of_chunk;
+    for (Index i = begin; i < end; ++i) of_chunk += Box{point_at(points, i), point_at(points, i)};
+    return of_chunk;
+  });
+  return {box.low, box.high};
 }
 
 std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int axes, int bits) {
@@ -83,55 +86,118 @@ std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int a
   return key;
 }
 
-std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x, int axes, int bits) {
-  if (axes == 0) return 0;
-  // undo the rotations and reflections of each scale, from the coarsest
-  for (std::uint32_t q = 1U << static_cast<unsigned>(bits - 1); q > 1; q >>= 1U) {
-    const std::uint32_t below = q - 1;
-    for (int a = 0; a < axes; ++a) {
-      if ((x[a] & q) != 0) {
-        x[0] ^= below;
-      } else {
-        const std::uint32_t swapped = (x[0] ^ x[a]) & below;
-        x[0] ^= swapped;
-        x[a] ^= swapped;
-      }
+namespace {
+
+/// Where a cube of the lattice lies along Hilbert's curve, and how the curve runs through the cubes in it.
+struct CurveState {
+  std::array<int, 3> axis{0, 1, 2};  ///< which one of the lattice each one of the curve is
+  unsigned reflected = 0;            ///< a bit for each axis of the curve
+  bool backwards = false;            ///< a Gray code that began with an odd number
+
+  constexpr bool operator==(const CurveState&) const = default;
+};
+
+/// The half of a cube along each axis of the lattice, the first in the highest bit, takes the curve to a
+/// cube's number in the curve and the state in there.
+struct CurveStep {
+  std::uint8_t number = 0;
+  std::uint8_t state = 0;
+};
+
+/// Skilling's transformation of one scale: undoes rotation and reflection, then the Gray code.
+template <int Axes>
+constexpr std::pair<unsigned, CurveState> enter(CurveState state, unsigned halves) {
+  unsigned number = 0;
+  bool odd = false;
+  const CurveState outside = state;
+  for (int a = 0; a < Axes; ++a) {
+    const unsigned half = (halves >> static_cast<unsigned>(Axes - 1 - outside.axis[a]) ^
+                           outside.reflected >> static_cast<unsigned>(a)) &
+                          1U;
+    odd = odd != (half != 0);
+    number = number << 1U | (odd != outside.backwards ? 1U : 0U);
+    if (half != 0) {
+      state.reflected ^= 1U;
+    } else {
+      std::swap(state.axis[0], state.axis[a]);
+      const unsigned differ = (state.reflected ^ state.reflected >> static_cast<unsigned>(a)) & 1U;
+      state.reflected ^= differ | differ << static_cast<unsigned>(a);
     }
   }
-  // Gray code
-  for (int a = 1; a < axes; ++a) x[a] ^= x[a - 1];
-  std::uint32_t flips = 0;
-  for (std::uint32_t q = 1U << static_cast<unsigned>(bits - 1); q > 1; q >>= 1U) {
-    if ((x[axes - 1] & q) != 0) flips ^= q - 1;
+  state.backwards = outside.backwards != odd;
+  return {number, state};
+}
+
+/// The steps from each state, numbered as they are reached from the first.
+template <int Axes>
+constexpr auto curve_steps() {
+  constexpr unsigned kCubes = 1U << static_cast<unsigned>(Axes);
+  std::array<CurveState, 96> states{};  // 6 rotations, 8 reflections, 2 directions
+  std::array<std::array<CurveStep, kCubes>, 96> steps{};
+  std::size_t found = 1;
+  for (std::size_t s = 0; s < found; ++s) {
+    for (unsigned halves = 0; halves < kCubes; ++halves) {
+      const auto [number, state] = enter<Axes>(states[s], halves);
+      std::size_t place = 0;
+      while (place < found && !(states[place] == state)) ++place;
+      if (place == found) states[found++] = state;
+      steps[s][halves] = {static_cast<std::uint8_t>(number), static_cast<std::uint8_t>(place)};
+    }
   }
-  for (int a = 0; a < axes; ++a) x[a] ^= flips;
-  return interleaved(x, axes, bits);
+  return steps;
+}
+
+template <int Axes>
+std::uint64_t along_curve(const std::array<std::uint32_t, 3>& x, int bits) {
+  static constexpr auto kSteps = curve_steps<Axes>();
+  std::uint64_t key = 0;
+  std::size_t state = 0;
+  for (auto bit = static_cast<unsigned>(bits); bit-- > 0;) {
+    unsigned halves = 0;
+    for (int a = 0; a < Axes; ++a) halves = halves << 1U | (x[a] >> bit & 1U);
+    const CurveStep step = kSteps[state][halves];
+    key = key << static_cast<unsigned>(Axes) | step.number;
+    state = step.state;
+  }
+  return key;
+}
+
+}  // namespace
+
+std::uint64_t hilbert_key(const std::array<std::uint32_t, 3>& x, int axes, int bits) {
+  switch (axes) {
+    case 1:
+      return along_curve<1>(x, bits);
+    case 2:
+      return along_curve<2>(x, bits);
+    case 3:
+      return along_curve<3>(x, bits);
+    default:
+      return 0;
+  }
 }
 
 namespace {
 
-constexpr Index kPointsAtOnce = 16384;  // whose keys a thread finds together
-
 /// The number of each point along the curve that `key(coordinates, axes, bits)` gives.
 template <class Key>
-std::vector<std::uint64_t> keys_of(const LatticePoints& lattice, Key key) {
-  std::vector<std::uint64_t> keys(lattice.coordinates.size());
+std::vector<std::uint64_t> keys_of(const PointsView& points, Key key) {
+  const Lattice lattice = lattice_of(points);
+  std::vector<std::uint64_t> keys(points.size());
   for_each_chunk(index_size(keys), kPointsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) keys[i] = key(lattice.coordinates[i], lattice.axes, lattice.bits);
+    for (Index i = begin; i < end; ++i)
+      keys[i] = key(lattice.cell_of(point_at(points, i)), lattice.axes(), lattice.bits());
   });
   return keys;
 }
 
-Permutation along_hilbert_curve(const PointsView& points) {
-  return sorted_by(keys_of(on_lattice(points), hilbert_key));
-}
+Permutation along_hilbert_curve(const PointsView& points) { return sorted_by(keys_of(points, hilbert_key)); }
 
 }  // namespace
 
 Order morton_vertices(const VertexInput& input, const OrderOptions&) {
   check_points(input.points, static_cast<std::size_t>(input.graph.size()), "morton");
-  const LatticePoints lattice = on_lattice(input.points);
-  return {sorted_by(keys_of(lattice, interleaved)), {}};
+  return {sorted_by(keys_of(input.points, interleaved)), {}};
 }
 
 Order hilbert_vertices(const VertexInput& input, const OrderOptions&) {

@@ -34,23 +34,16 @@ class Lattice {
   double extent_ = 0;  ///< of the longest axis: one scale for all, so that cells are cubes
 };
 
-/// Points on a lattice.
-struct LatticePoints {
-  int axes = 3;   ///< as of `Lattice`
-  int bits = 21;  ///< as of `Lattice`
-  std::vector<std::array<std::uint32_t, 3>> coordinates;
-};
-
 /// Throws InvalidArgument, naming `method`, unless there are `count` points.
 void check_points(const PointsView& points, std::size_t count, std::string_view method);
 
-/// The points on the `Lattice` of their bounding box. O(points).
-LatticePoints on_lattice(const PointsView& points);
+/// The `Lattice` of the points' bounding box; without points of no axes. O(points).
+Lattice lattice_of(const PointsView& points);
 
 /// One bit of each axis in turn, highest first: the number of a cell along Morton's curve.
 std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int axes, int bits);
 
-/// The number of the lattice cell x along Hilbert's curve, below 2^63.
-std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x, int axes, int bits);
+/// The number of the lattice cell x along Hilbert's curve, below 2^63. O(bits).
+std::uint64_t hilbert_key(const std::array<std::uint32_t, 3>& x, int axes, int bits);
 
 }  // namespace meshorder

@@ -83,6 +83,37 @@ TEST(Hilbert, DoesNotDependOnScaleAndPlace) {
   EXPECT_EQ(order_of("hilbert", points), order);
 }
 
+/// The same number by Skilling's transformation of the coordinates, scale by scale (2004, AxestoTranspose).
+std::uint64_t skillings_number(std::array<std::uint32_t, 3> x, int axes, int bits) {
+  for (std::uint32_t q = 1U << static_cast<unsigned>(bits - 1); q > 1; q /= 2) {
+    for (int a = 0; a < axes; ++a) {
+      const std::uint32_t change = (x[a] & q) != 0 ? q - 1 : (x[0] ^ x[a]) & (q - 1);
+      if ((x[a] & q) == 0) x[a] ^= change;
+      if ((x[a] & q) != 0 || a > 0) x[0] ^= change;
+    }
+  }
+  for (int a = 1; a < axes; ++a) x[a] ^= x[a - 1];
+  std::uint32_t flips = 0;
+  for (std::uint32_t q = 1U << static_cast<unsigned>(bits - 1); q > 1; q /= 2) {
+    if ((x[axes - 1] & q) != 0) flips ^= q - 1;
+  }
+  for (int a = 0; a < axes; ++a) x[a] ^= flips;
+  return interleaved(x, axes, bits);
+}
+
+TEST(Hilbert, NumbersCellsAsSkillingsTransformationDoes) {
+  std::mt19937 random(1);
+  for (const auto& [axes, bits] : {std::pair(1, 31), std::pair(2, 31), std::pair(3, 21), std::pair(3, 1)}) {
+    for (int trial = 0; trial < 2000; ++trial) {
+      std::array<std::uint32_t, 3> x{};
+      for (int a = 0; a < axes; ++a)
+        x[a] = static_cast<std::uint32_t>(random()) % (1U << static_cast<unsigned>(bits));
+      ASSERT_EQ(hilbert_key(x, axes, bits), skillings_number(x, axes, bits)) << axes << " axes";
+    }
+  }
+  EXPECT_EQ(hilbert_key({}, 0, 31), 0U);
+}
+
 /// The number that the bits of the coordinates spell, x before y before z, highest first.
 std::uint64_t spelt(const std::array<std::uint32_t, 3>& coordinates, int axes, int bits) {
   std::uint64_t number = 0;
@@ -159,14 +190,15 @@ TEST(SpaceFilling, OfEqualPointsKeepsTheirOrder) {
 
 TEST(SpaceFilling, LatticeCoversTheBox) {
   const std::vector<Point> points{{-1, 2, 0}, {3, 2.5, 0}, {1, 2.25, 0}};
-  const LatticePoints lattice = on_lattice(points);
-  EXPECT_EQ(lattice.axes, 2);
-  EXPECT_EQ(lattice.bits, 31);
+  const Lattice lattice = lattice_of(PointsView(points));
+  EXPECT_EQ(lattice.axes(), 2);
+  EXPECT_EQ(lattice.bits(), 31);
   const std::uint32_t last = (1U << 31U) - 1;
-  EXPECT_EQ(lattice.coordinates[0], (std::array<std::uint32_t, 3>{0, 0, 0}));
-  EXPECT_EQ(lattice.coordinates[1], (std::array<std::uint32_t, 3>{last, last / 8, 0})) << "cells are cubes";
-  EXPECT_EQ(lattice.coordinates[2], (std::array<std::uint32_t, 3>{last / 2, last / 16, 0}));
-  EXPECT_TRUE(on_lattice({}).coordinates.empty());
+  EXPECT_EQ(lattice.cell_of(points[0]), (std::array<std::uint32_t, 3>{0, 0, 0}));
+  EXPECT_EQ(lattice.cell_of(points[1]), (std::array<std::uint32_t, 3>{last, last / 8, 0}))
+      << "cells are cubes";
+  EXPECT_EQ(lattice.cell_of(points[2]), (std::array<std::uint32_t, 3>{last / 2, last / 16, 0}));
+  EXPECT_EQ(lattice_of({}).axes(), 0);
 }
 
 TEST(Hilbert, OfElementsGoesThroughTheirCentroids) {
