@@ -5,26 +5,53 @@
 #include "graph/row_access.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace meshorder {
 
+namespace {
+
+/// A forest in which every vertex is below a smaller one of its component or the root of a tree.
+class Forest {
+ public:
+  explicit Forest(Index vertices) : parents_(static_cast<std::size_t>(vertices)) {
+    std::iota(parents_.begin(), parents_.end(), Index{0});
+  }
+
+  [[nodiscard]] Index parent(Index v) const { return parents_[v]; }
+
+  void join(Index a, Index b) {
+    const Index root = root_of(a);
+    const Index other = root_of(b);
+    parents_[std::max(root, other)] = std::min(root, other);
+  }
+
+ private:
+  /// Halves the way on the way (Tarjan and van Leeuwen 1984).
+  Index root_of(Index v) {
+    while (parents_[v] != v) v = parents_[v] = parents_[parents_[v]];
+    return v;
+  }
+
+  std::vector<Index> parents_;
+};
+
+}  // namespace
+
 std::vector<std::vector<Index>> connected_components(GraphRef graph) {
-  std::vector<std::vector<Index>> components;
-  std::vector<bool> reached(graph.size(), false);
-  for (Index start = 0; start < graph.size(); ++start) {
-    if (reached[start]) continue;
-    std::vector<Index> component{start};
-    reached[start] = true;
-    for (std::size_t k = 0; k < component.size(); ++k) {
-      poll_in_loop(k);
-      for (const Index u : graph[component[k]]) {
-        if (reached[u]) continue;
-        reached[u] = true;
-        component.push_back(u);
-      }
+  Forest forest(graph.size());
+  for (Index v = 0; v < graph.size(); ++v) {
+    poll_in_loop(v);
+    for (const Index u : graph[v]) {
+      if (u < v) forest.join(u, v);
     }
-    std::sort(component.begin(), component.end());
-    components.push_back(std::move(component));
+  }
+  std::vector<std::vector<Index>> components;
+  std::vector<Index> component_of(static_cast<std::size_t>(graph.size()));
+  for (Index v = 0; v < graph.size(); ++v) {
+    if (forest.parent(v) == v) components.emplace_back();
+    component_of[v] = forest.parent(v) == v ? index_size(components) - 1 : component_of[forest.parent(v)];
+    components[component_of[v]].push_back(v);
   }
   std::stable_sort(components.begin(), components.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });

@@ -10,7 +10,7 @@
 namespace meshorder {
 
 /// The vertices of each connected component, rising; components by falling size, ties by their smallest
-/// vertex, so that isolated vertices come last. O(n + edges).
+/// vertex, so that isolated vertices come last. O(edges · log n), nearly O(edges).
 std::vector<std::vector<Index>> connected_components(GraphRef graph);
 
 /// The vertices reached from `start` in breadth-first order, neighbours as their rows list them;
