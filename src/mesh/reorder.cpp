@@ -21,11 +21,6 @@ namespace {
 
 Index class_count(const Mesh& mesh) { return 4 * std::max<Index>(1, index_size(mesh.cell_blocks)); }
 
-/// Returns whether all cells have one class, as in most meshes.
-bool is_one_class(const std::vector<Index>& classes) {
-  return std::all_of(classes.begin(), classes.end(), [&](Index k) { return k == classes.front(); });
-}
-
 Cells reordered(const Cells& cells, const Permutation& vertices, const Permutation& order) {
   constexpr Index kCellsAtOnce = 65536;
   const auto for_cells = [&](auto work) {
@@ -55,8 +50,9 @@ void reorder_data(DataArray& array, const Permutation& order) {
   }
 }
 
-/// Sorts the ids of each class, ascending along the positions of that class.
+/// Sorts the ids of each class, ascending along the positions of that class; no classes: of all cells.
 void sort_ids_within_classes(std::vector<std::int64_t>& ids, const std::vector<Index>& classes, Index count) {
+  if (classes.empty()) return std::sort(ids.begin(), ids.end());
   std::vector<std::vector<std::int64_t>> by_class(count);
   for (std::size_t c = 0; c < ids.size(); ++c) by_class[classes[c]].push_back(ids[c]);
   for (auto& of_class : by_class) std::sort(of_class.begin(), of_class.end());
@@ -142,9 +138,9 @@ void apply_reordering(Mesh& mesh, const MeshOrder& order, Ids ids) {
 
 void move_mesh(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {
   check_fits(mesh, vertices, cells);
-  const std::vector<Index> classes = slot_classes(cell_arrays(mesh));
-  const Index to_check = is_one_class(classes) ? 0 : mesh.cell_count();
-  for (Index c = 0; c < to_check; ++c) {
+  const CellArrays arrays = cell_arrays(mesh);
+  const std::vector<Index> classes = has_one_slot_class(arrays) ? std::vector<Index>{} : slot_classes(arrays);
+  for (Index c = 0; c < index_size(classes); ++c) {
     if (classes[cells.old_to_new()[c]] != classes[c]) {
       throw InvalidArgument("reorder: cell " + std::to_string(c) +
                             " would leave its block or take the place of a cell of another dimension");

@@ -39,6 +39,12 @@ std::vector<Index> dense_groups(const IndexView& groups, Index size, const char*
 
 }  // namespace
 
+bool has_one_slot_class(const CellArrays& cells) {
+  if (cells.block_starts.size() > 1) return false;
+  const auto is_as_first = [&](Shape shape) { return dimension(shape) == dimension(cells.shapes.front()); };
+  return std::all_of(cells.shapes.begin(), cells.shapes.end(), is_as_first);
+}
+
 std::vector<Index> slot_classes(const CellArrays& cells) {
   std::vector<Index> classes(static_cast<std::size_t>(cells.size()));
   const std::vector<Index>& starts = cells.block_starts;
@@ -84,6 +90,8 @@ Order order_cells(std::string_view method, const CellArrays& cells, const Permut
     choice = choose_element_method(input, options.workload);
   Order result = order_incidence(choice.name, input, options);
   if (!choice.reason.empty()) result.method = std::move(choice);
+
+  if (groups.empty() && has_one_slot_class(cells)) return result;
 
   std::vector<Index> sequence;
   sequence.reserve(static_cast<std::size_t>(cells.size()));

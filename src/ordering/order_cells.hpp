@@ -10,6 +10,10 @@
 
 namespace meshorder {
 
+/// Whether all cells may change places with each other, as in most meshes: one block of one dimension.
+/// O(cells).
+bool has_one_slot_class(const CellArrays& cells);
+
 /// Cells that may change places with each other have the same slot class: block × dimension. Returns the
 /// class of each cell, 4 · block + dimension. O(cells).
 std::vector<Index> slot_classes(const CellArrays& cells);
