@@ -46,31 +46,32 @@ struct InfoArguments : Common {
 /// Seconds from the command's start until --measure is done, for meshes of up to about 300 thousand vertices.
 constexpr double kMeasureWithin = 3.8;
 /// Simplices up to which times are predicted without being asked, in a few seconds a million vertices.
-constexpr Offset kMaxPredicted = 16'000'000;
+constexpr Offset kMaxPredicted = 100'000'000;
 /// Simplices above which there is no time to measure a second order.
 constexpr Offset kMaxOfTwoOrders = 500'000;
 
 /// Whether there is something for the kernels to compute: points are no elements.
-bool has_elements(const Simplices& simplices) { return simplices.dimension > 0 && simplices.size() > 0; }
+bool has_elements(SimplicesRef simplices) { return simplices.size() > 0; }
 
 /// Whether times are predicted: unless --cache is given, only where this takes seconds.
-bool is_predicted(const InfoArguments& arguments, const Simplices& simplices) {
+bool is_predicted(const InfoArguments& arguments, SimplicesRef simplices) {
   return has_elements(simplices) && (simplices.size() <= kMaxPredicted || !arguments.caches.empty());
 }
 
 /// As of `reuse_of`: all lines are followed for the caches that are asked for.
-int halvings_of(const InfoArguments& arguments, const Simplices& simplices) {
+int halvings_of(const InfoArguments& arguments, SimplicesRef simplices) {
   return arguments.caches.empty() ? halvings_for(simplices.size()) : 0;
 }
 
 /// Returns what reordering is worth; nothing for a mesh without elements, nor for a large one unless --cache
 /// or --measure is given.
 std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph,
-                                double graph_seconds, const Simplices& simplices,
+                                double graph_seconds, SimplicesRef simplices,
                                 const std::optional<KernelReuse>& reuse, const MachineChoice& machine,
                                 const Stopwatch& since_start) {
   AdviceOptions options;
   options.machine = machine;
+  options.describe = false;
   if (arguments.all_threads) options.threads = thread_count();
   if (!arguments.caches.empty()) options.caches = parse_caches(arguments.caches);
   options.graph_seconds = graph_seconds;
@@ -89,7 +90,7 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
 /// Returns the reuse of the mesh in its order; nothing for a large mesh unless --cache is given, nor when
 /// measuring leaves no time for it.
 std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const CsrGraph& graph,
-                                    const Simplices& simplices) {
+                                    SimplicesRef simplices) {
   const Offset most = arguments.measure ? kMaxOfTwoOrders : kMaxPredicted;
   if (arguments.caches.empty() && simplices.size() > most) return std::nullopt;
   return reuse_of_kernels(graph, simplices, halvings_of(arguments, simplices));
@@ -159,7 +160,7 @@ void run(const InfoArguments& arguments) {
   progress.stage("reading " + arguments.input, 0, 0.3);
   const Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
 
-  const Simplices simplices = cut_into_simplices(mesh);
+  const CellSimplices simplices(mesh);
   // who asks for measured times does not wait for what they would be predicted by
   if (!arguments.measure && is_predicted(arguments, simplices)) {
     machine = calibrated(std::move(machine), arguments.all_threads, progress, console.quiet(), notes);

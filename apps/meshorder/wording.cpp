@@ -18,10 +18,16 @@ namespace {
 /// Returns the number of cells of each type, highest dimension first.
 std::vector<std::pair<std::string, Index>> type_counts(const Mesh& mesh) {
   std::map<std::array<int, 3>, Index> counts;
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const Shape shape = mesh.cells.shapes[c];
+  const auto is_as = [&](Index a, Index b) {
+    return mesh.cells.shapes[a] == mesh.cells.shapes[b] &&
+           mesh.cells.vertex_count(a) == mesh.cells.vertex_count(b);
+  };
+  for (Index first = 0, end = 0; first < mesh.cell_count(); first = end) {
+    while (end < mesh.cell_count() && is_as(first, end)) ++end;
+    const Shape shape = mesh.cells.shapes[first];
     const bool fixed = corners(shape, 0) > 0;  // polygons are one type
-    ++counts[{-dimension(shape), static_cast<int>(shape), fixed ? mesh.cells.vertex_count(c) : 0}];
+    counts[{-dimension(shape), static_cast<int>(shape), fixed ? mesh.cells.vertex_count(first) : 0}] +=
+        end - first;
   }
   std::vector<std::pair<std::string, Index>> result;
   result.reserve(counts.size());

@@ -1,7 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/simplices.hpp"
 
+#include "base/parallel.hpp"
+
 #include <algorithm>
+#include <array>
+#include <iterator>
+#include <numeric>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -48,12 +54,22 @@ std::vector<int> pieces(Shape shape, int vertices) {
   return {};
 }
 
+/// Whether every cell is a simplex of that dimension, without mid-side nodes.
+bool are_simplices(const Cells& cells, int dimension) {
+  constexpr std::array kShapes{Shape::vertex, Shape::line, Shape::triangle, Shape::tetrahedron};
+  const auto of_shape = [&](Shape shape) { return shape == kShapes[dimension]; };
+  return dimension > 0 && Offset{cells.size()} * (dimension + 1) == std::ssize(cells.vertices) &&
+         std::all_of(cells.shapes.begin(), cells.shapes.end(), of_shape);
+}
+
 }  // namespace
 
 Simplices cut_into_simplices(const Mesh& mesh) {
   Simplices result;
   result.dimension = std::max(0, mesh.cells.highest_dimension());
   if (result.dimension == 0) return result;
+  result.vertices.reserve(mesh.cells.vertices.size());
+  result.cells.reserve(mesh.cells.shapes.size());
   Shape shape = Shape::vertex;
   int vertices = 0;
   std::vector<int> cut;
@@ -67,6 +83,49 @@ Simplices cut_into_simplices(const Mesh& mesh) {
     for (const int corner : cut) result.vertices.push_back(mesh.cells[c][corner]);
     result.cells.insert(result.cells.end(), cut.size() / (result.dimension + 1), c);
   }
+  return result;
+}
+
+CellSimplices::CellSimplices(const Mesh& mesh) {
+  const int dimension = std::max(0, mesh.cells.highest_dimension());
+  if (are_simplices(mesh.cells, dimension)) {
+    ref_ = {dimension, mesh.cells.vertices};
+    return;
+  }
+  Simplices cut = cut_into_simplices(mesh);
+  own_ = std::move(cut.vertices);
+  ref_ = {dimension, own_};
+  starts_.assign(mesh.cells.offsets.size(), 0);
+  for (const Index cell : cut.cells) ++starts_[cell + 1];
+  std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+}
+
+CellSimplices CellSimplices::moved(const Permutation& vertices, const Permutation& cells) const {
+  constexpr Index kCellsAtOnce = 65536;
+  const Offset corners = ref_.dimension + 1;
+  CellSimplices result;
+  if (!starts_.empty()) {
+    result.starts_.assign(starts_.size(), 0);
+    for (Index c = 0; c < cells.size(); ++c) {
+      const Index old = cells.new_to_old()[c];
+      result.starts_[c + 1] = result.starts_[c] + starts_[old + 1] - starts_[old];
+    }
+  }
+  result.own_.resize(ref_.vertices.size());
+  result.ref_ = {ref_.dimension, result.own_};
+  if (ref_.dimension == 0) return result;
+  const auto first_of = [](const std::vector<Offset>& starts, Index cell) {
+    return starts.empty() ? Offset{cell} : starts[cell];
+  };
+  for_each_chunk(cells.size(), kCellsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
+    for (Index c = begin; c < end; ++c) {
+      const Index old = cells.new_to_old()[c];
+      std::transform(ref_.vertices.begin() + corners * first_of(starts_, old),
+                     ref_.vertices.begin() + corners * first_of(starts_, old + 1),
+                     result.own_.begin() + corners * first_of(result.starts_, c),
+                     [&](Index v) { return vertices.old_to_new()[v]; });
+    }
+  });
   return result;
 }
 

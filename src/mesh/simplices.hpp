@@ -2,20 +2,32 @@
 #pragma once
 
 #include <meshorder/mesh.hpp>
+#include <meshorder/permutation.hpp>
 
+#include <span>
 #include <vector>
 
 namespace meshorder {
 
-/// Simplices of one dimension D, each on D + 1 vertices: lines, triangles or tetrahedra.
-struct Simplices {
-  int dimension = 0;            ///< 0 if there are none
-  std::vector<Index> vertices;  ///< simplex s has `vertices[(D + 1) s] … vertices[(D + 1) s + D]`
-  std::vector<Index> cells;     ///< the cell that each was cut out of
+/// Simplices of one dimension D, each on D + 1 vertices: lines, triangles or tetrahedra. A view, its array
+/// owned by somebody else.
+struct SimplicesRef {
+  int dimension = 0;                ///< 0 if there are none
+  std::span<const Index> vertices;  ///< simplex s has `vertices[(D + 1) s] … vertices[(D + 1) s + D]`
 
   [[nodiscard]] Offset size() const noexcept {
     return static_cast<Offset>(vertices.size()) / (dimension + 1);
   }
+};
+
+/// Simplices of one dimension, as SimplicesRef has them, and where they come from.
+struct Simplices {
+  int dimension = 0;
+  std::vector<Index> vertices;
+  std::vector<Index> cells;  ///< the cell that each was cut out of
+
+  operator SimplicesRef() const { return {dimension, vertices}; }  // NOLINT(google-explicit-constructor)
+  [[nodiscard]] Offset size() const noexcept { return SimplicesRef(*this).size(); }
 };
 
 /// Cuts the mesh's elements, in their order, into simplices on their corners: a hexahedron into six
@@ -25,5 +37,32 @@ struct Simplices {
 /// pieces of a cell depend on the order of its corners alone, so that reordering the mesh reorders the
 /// simplices and changes none. O(cells).
 Simplices cut_into_simplices(const Mesh& mesh);
+
+/// The simplices that the elements of a mesh are cut into, as cut_into_simplices has them. Where every cell
+/// is a simplex on its corners alone, they are the mesh's own array and take no memory.
+class CellSimplices {
+ public:
+  /// Of no mesh.
+  CellSimplices() = default;
+  /// Of a mesh that stays as it is while this is used. O(cells).
+  explicit CellSimplices(const Mesh& mesh);
+  CellSimplices(CellSimplices&&) = default;
+  CellSimplices& operator=(CellSimplices&&) = default;
+  CellSimplices(const CellSimplices&) = delete;
+  CellSimplices& operator=(const CellSimplices&) = delete;
+  ~CellSimplices() = default;
+
+  operator SimplicesRef() const { return ref_; }  // NOLINT(google-explicit-constructor)
+  [[nodiscard]] Offset size() const noexcept { return ref_.size(); }
+  [[nodiscard]] int dimension() const noexcept { return ref_.dimension; }
+
+  /// Returns those of the mesh after move_mesh with these permutations. O(simplices), on all threads.
+  [[nodiscard]] CellSimplices moved(const Permutation& vertices, const Permutation& cells) const;
+
+ private:
+  SimplicesRef ref_;
+  std::vector<Index> own_;
+  std::vector<Offset> starts_;  ///< of each cell, its first simplex; empty where each cell is one
+};
 
 }  // namespace meshorder

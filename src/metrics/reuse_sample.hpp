@@ -3,6 +3,7 @@
 
 #include "metrics/reuse_distance.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -31,6 +32,20 @@ class ReuseSample {
     } else if (const Index block = line / kBlock; sampled(block)) {
       __builtin_prefetch(&place_of_block_[block]);
       wait(line, how);
+    }
+  }
+
+  /// Streamed accesses to lines first … end − 1, one after another. O(those lines).
+  void stream(Index first, Index end) {
+    while (first < end) {
+      const Index block = first / kBlock;
+      const Index of_block = std::min(end, kBlock * (block + 1));
+      if (place_of_block_.empty() || sampled(block)) {
+        for (Index line = first; line < of_block; ++line) access(line, Access::streamed);
+      } else {
+        streamed_ += static_cast<std::uint32_t>(of_block - first);
+      }
+      first = of_block;
     }
   }
 

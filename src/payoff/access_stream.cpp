@@ -3,10 +3,10 @@
 
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
-#include "mesh/reorder.hpp"
 #include "metrics/reuse_sample.hpp"
 #include <meshorder/error.hpp>
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -14,7 +14,7 @@
 
 namespace meshorder {
 
-AccessStream::AccessStream(Kernel kernel, const CsrGraph& graph, const Simplices& simplices)
+AccessStream::AccessStream(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices)
     : kernel_(kernel), graph_(graph), simplices_(simplices) {
   const Offset n = graph.size();
   const Offset blocks = n + static_cast<Offset>(graph.neighbours.size());
@@ -60,10 +60,7 @@ AccessStream::Array AccessStream::place(Offset bytes) {
 
 Offset AccessStream::gather_count() const {
   const auto lines_in = [](Offset byte, Offset count) {
-    Offset lines = 0;
-    const auto count_line = [&](Index /*line*/, Access /*how*/) { ++lines; };
-    Array{}.gather(byte, count, count_line);
-    return lines;
+    return (byte + count - 1) / kLineBytes - byte / kLineBytes + 1;
   };
   const Offset corners = simplices_.dimension + 1;
   const Offset elements = corners == 1 ? 0 : simplices_.size();
@@ -89,7 +86,7 @@ Offset AccessStream::gather_count() const {
 namespace {
 
 /// See RunReuse::repeats.
-Offset repeated_additions(const Simplices& simplices) {
+Offset repeated_additions(SimplicesRef simplices) {
   // the halves of a register hold lanes 0 … 3 and 4 … 7, and the first of both are added first
   constexpr std::array<Index, kBatch> kLanes{0, 4, 1, 5, 2, 6, 3, 7};
   const Index corners = simplices.dimension + 1;
@@ -111,51 +108,102 @@ Offset repeated_additions(const Simplices& simplices) {
   return repeats;
 }
 
-/// See RunReuse::stalls.
-Offset stalled_gathers(const AccessStream& product) {
-  constexpr Offset kTogether = 16;
-  constexpr Offset kLeft = 512;
-  const AccessStream::Lines vector = product.vector_lines();
-  std::vector<Offset> streamed_before(static_cast<std::size_t>(vector.count), -kLeft);
-  Offset streamed = 0;
-  Offset gathered = 0;
-  Offset stalls = 0;
-  bool stalled = false;
-  product.visit([&](Index line, Access how) {
-    if (how == Access::streamed) {
-      ++streamed;
-      return;
-    }
-    Offset& before = streamed_before[line - vector.first];
-    stalled |= streamed - before >= kLeft;
-    before = streamed;
-    if (++gathered % kTogether == 0) {
-      stalls += stalled ? 1 : 0;
-      stalled = false;
-      if (gathered % 0x10000 == 0) poll();
-    }
-  });
-  return stalls;
+/// Counts the sixteens that RunReuse::stalls tells of.
+class StallCount {
+ public:
+  explicit StallCount(const AccessStream& product)
+      : product_(product),
+        first_line_(product.vector_lines().first),
+        streamed_before_(static_cast<std::size_t>(product.vector_lines().count), -kLeft) {}
+
+  /// Goes through these rows, which counts where `counts`.
+  void visit(Index first, Index end, bool counts) {
+    product_.visit_rows(first, end, [&](Index line, Access how) {
+      if (how == Access::streamed) {
+        ++streamed_;
+        return;
+      }
+      Offset& before = streamed_before_[line - first_line_];
+      stalled_ |= streamed_ - before >= kLeft;
+      before = streamed_;
+      if (++gathered_ % kTogether == 0) {
+        stalls_ += stalled_ && counts ? 1 : 0;
+        stalled_ = false;
+        if (gathered_ % 0x10000 == 0) poll();
+      }
+    });
+  }
+
+  [[nodiscard]] Offset stalls() const noexcept { return stalls_; }
+
+ private:
+  static constexpr Offset kTogether = 16;
+  static constexpr Offset kLeft = 512;
+
+  const AccessStream& product_;
+  Index first_line_;
+  std::vector<Offset> streamed_before_;  ///< the last access to each line of the vector
+  Offset streamed_ = 0;
+  Offset gathered_ = 0;
+  Offset stalls_ = 0;
+  bool stalled_ = false;
+};
+
+/// See RunReuse::stalls. Of a sample from every eighth stretch of rows; those before it in the stretch read
+/// more than a first level keeps.
+Offset stalled_gathers(const AccessStream& product, Index rows, int halvings) {
+  constexpr int kSampledFrom = 4;
+  constexpr Index kStretch = 1024;
+  constexpr Index kBefore = 128;
+  constexpr Index kStride = 8 * kStretch;
+  StallCount count(product);
+  if (halvings < kSampledFrom || rows < kStride) {
+    count.visit(0, rows, true);
+    return count.stalls();
+  }
+  Offset counted = 0;
+  for (Offset first = 0; first + kStretch <= rows; first += kStride) {
+    const auto begin = static_cast<Index>(first);
+    count.visit(begin, begin + kBefore, false);
+    count.visit(begin + kBefore, begin + kStretch, true);
+    counted += kStretch - kBefore;
+  }
+  return std::llround(static_cast<double>(count.stalls()) * rows / static_cast<double>(counted));
 }
+
+/// Polls while a sample is told of accesses.
+struct PolledSample {
+  ReuseSample& reuse;
+  std::uint32_t visits = 0;
+
+  void gather(Index line) {
+    poll_at_times();
+    reuse.access(line, Access::gathered);
+  }
+  void stream(Index first, Index end) {
+    poll_at_times();
+    reuse.stream(first, end);
+  }
+  [[nodiscard]] bool samples(Index first, Index last) const { return reuse.samples(first, last); }
+
+  void poll_at_times() {
+    if (++visits % 0x4000 == 0) poll();
+  }
+};
 
 }  // namespace
 
-RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings) {
+RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings) {
   const AccessStream stream(kernel, graph, simplices);
   ReuseSample reuse(stream.line_count(), halvings);
-  std::uint32_t accesses = 0;
-  stream.visit(
-      [&](Index line, Access how) {
-        if (++accesses % 0x10000 == 0) poll();
-        reuse.access(line, how);
-      },
-      [&](Index first, Index last) { return reuse.samples(first, last); });
+  PolledSample visitor{reuse};
+  stream.visit_some(visitor);
   return {std::move(reuse).repeated(),
           kernel,
           simplices.dimension,
           stream.gather_count(),
           kernel == Kernel::element ? repeated_additions(simplices) : 0,
-          kernel == Kernel::spmv ? stalled_gathers(stream) : 0};
+          kernel == Kernel::spmv ? stalled_gathers(stream, graph.size(), halvings) : 0};
 }
 
 int halvings_for(Offset simplices) {
@@ -164,7 +212,7 @@ int halvings_for(Offset simplices) {
   return simplices < 8'000'000 ? 4 : 5;
 }
 
-KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, int halvings) {
+KernelReuse reuse_of_kernels(const CsrGraph& graph, SimplicesRef simplices, int halvings) {
   KernelReuse result;
   take_turns(index_size(kKernels), [&](Index turn) {
     const std::size_t k = kLongestFirst[turn];
@@ -175,11 +223,8 @@ KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, 
 
 KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
                              const Permutation& cells, int halvings) {
-  Mesh ordered;
-  ordered.points = mesh.points;
-  ordered.cells = mesh.cells;
-  apply_reordering(ordered, vertices, cells);
-  return reuse_of_kernels(renumbered(graph, vertices.old_to_new()), cut_into_simplices(ordered), halvings);
+  return reuse_of_kernels(renumbered(graph, vertices.old_to_new()),
+                          CellSimplices(mesh).moved(vertices, cells), halvings);
 }
 
 }  // namespace meshorder

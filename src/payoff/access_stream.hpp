@@ -31,7 +31,7 @@ class AccessStream {
   /// `graph` is the vertex graph of a mesh and `simplices` the result of `cut_into_simplices`, both in the
   /// order to be judged; both must outlive the stream. Throws InvalidArgument if the kernel needs 2^31 lines
   /// or more. O(1).
-  AccessStream(Kernel kernel, const CsrGraph& graph, const Simplices& simplices);
+  AccessStream(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices);
 
   [[nodiscard]] Index line_count() const noexcept { return static_cast<Index>(lines_); }
 
@@ -53,25 +53,31 @@ class AccessStream {
   /// O(accesses), for assembly times the logarithm of a row's length.
   template <class Touch>
   void visit(Touch touch) const {
-    visit(touch, [](Index /*first*/, Index /*last*/) { return true; });
+    ToEveryLine<Touch> visitor{touch};
+    visit_some(visitor);
   }
 
-  /// As above, but may leave out what `is_wanted(first, last)` says is wanted of none of the lines first …
-  /// last. Assembly leaves out the blocks of rows whose lines are not wanted, and does not look for their
-  /// places.
-  template <class Touch, class Wanted>
-  void visit(Touch touch, Wanted is_wanted) const {
+  /// As visit, of rows first … end − 1 of a product with the matrix.
+  template <class Touch>
+  void visit_rows(Index first, Index end, Touch touch) const {
+    ToEveryLine<Touch> visitor{touch};
+    multiply_rows(first, end, visitor,
+                  [&](Index column) { x_.gather(kVectorBytes * column, kVectorBytes, visitor); });
+  }
+
+  /// As visit, by `visitor.gather(line)` and, for lines that are streamed one after another,
+  /// `visitor.stream(first, end)`. May leave out gathered accesses to lines first … last of which
+  /// `visitor.samples(first, last)` says that none counts, and then does not look for their places.
+  template <class Visitor>
+  void visit_some(Visitor& visitor) const {
     switch (kernel_) {
       case Kernel::spmv:
-        return visit_spmv(touch);
+        return visit_spmv(visitor);
       case Kernel::element:
-        return visit_elements(touch, nullptr);
-      case Kernel::assembly: {
-        const std::vector<bool> rows = wanted_rows(is_wanted);
-        return visit_elements(touch, &rows);
-      }
+      case Kernel::assembly:
+        return visit_elements(visitor);
       case Kernel::springs:
-        return visit_springs(touch);
+        return visit_springs(visitor);
     }
   }
 
@@ -81,33 +87,86 @@ class AccessStream {
     Offset first_line = 0;
     Offset bytes = 0;
 
-    template <class Touch>
-    void gather(Offset byte, Offset count, Touch& touch) const {
+    template <class Visitor>
+    void gather(Offset byte, Offset count, Visitor& visitor) const {
       for (Offset line = byte / kLineBytes; kLineBytes * line < byte + count; ++line) {
-        touch(static_cast<Index>(first_line + line), Access::gathered);
+        visitor.gather(static_cast<Index>(first_line + line));
       }
     }
 
-    template <class Touch>
-    void clear(Touch& touch) const {
-      Reader(*this).read(bytes, touch);
+    template <class Visitor>
+    void clear(Visitor& visitor) const {
+      Reader(*this).read(bytes, visitor);
+    }
+
+    /// Whether one of the lines of these bytes, at least one, counts.
+    template <class Visitor>
+    [[nodiscard]] bool is_sampled(Offset byte, Offset count, const Visitor& visitor) const {
+      const auto line_of = [&](Offset of) { return static_cast<Index>(first_line + of / kLineBytes); };
+      return visitor.samples(line_of(byte), line_of(byte + count - 1));
     }
   };
 
   /// Reads an array from front to back: each line is touched when its first byte is reached.
   class Reader {
    public:
-    explicit Reader(const Array& array) : next_line_(array.first_line) {}
+    /// From a byte on whose line has been touched, unless it is the first of one.
+    explicit Reader(const Array& array, Offset byte = 0)
+        : next_line_(array.first_line + (byte + kLineBytes - 1) / kLineBytes),
+          left_((kLineBytes - byte % kLineBytes) % kLineBytes) {}
 
-    template <class Touch>
-    void read(Offset count, Touch& touch) {
+    template <class Visitor>
+    void read(Offset count, Visitor& visitor) {
       left_ -= count;
-      for (; left_ < 0; left_ += kLineBytes) touch(static_cast<Index>(next_line_++), Access::streamed);
+      if (left_ >= 0) return;
+      const Offset lines = (kLineBytes - 1 - left_) / kLineBytes;
+      visitor.stream(static_cast<Index>(next_line_), static_cast<Index>(next_line_ + lines));
+      next_line_ += lines;
+      left_ += kLineBytes * lines;
     }
 
    private:
     Offset next_line_;
-    Offset left_ = 0;  ///< bytes of the last touched line that are not read yet
+    Offset left_;  ///< bytes of the last touched line that are not read yet
+  };
+
+  /// An array of vertices that are gathered, those alone that lie in lines that count.
+  class VertexGatherer {
+   public:
+    template <class Visitor>
+    VertexGatherer(const Array& array, Offset vertex_bytes, Index vertices, const Visitor& visitor)
+        : array_(array), vertex_bytes_(vertex_bytes), sampled_(static_cast<std::size_t>(vertices)) {
+      for (Index v = 0; v < vertices; ++v) {
+        sampled_[v] = array.is_sampled(vertex_bytes * v, vertex_bytes, visitor);
+      }
+    }
+
+    template <class Visitor>
+    void gather(Index v, Visitor& visitor) const {
+      if (sampled_[v]) array_.gather(vertex_bytes_ * v, vertex_bytes_, visitor);
+    }
+
+    template <class Visitor>
+    void gather(std::span<const Index> vertices, Visitor& visitor) const {
+      for (const Index v : vertices) gather(v, visitor);
+    }
+
+   private:
+    Array array_;
+    Offset vertex_bytes_;
+    std::vector<bool> sampled_;
+  };
+
+  /// A visitor to which all lines count, one after another.
+  template <class Touch>
+  struct ToEveryLine {
+    Touch& touch;
+
+    void gather(Index line) { touch(line, Access::gathered); }
+    void stream(Index first, Index end) {
+      for (Index line = first; line < end; ++line) touch(line, Access::streamed);
+    }
+    [[nodiscard]] static bool samples(Index /*first*/, Index /*last*/) { return true; }
   };
 
   static constexpr Offset kBlockBytes = 9 * sizeof(double);
@@ -125,51 +184,95 @@ class AccessStream {
     return row_begin(a) + entries_below(graph_[a], b) + (b > a ? 1 : 0);
   }
 
-  /// Whether some of the lines of each row of the matrix are wanted.
-  template <class Wanted>
-  [[nodiscard]] std::vector<bool> wanted_rows(Wanted is_wanted) const {
-    const auto line_of = [&](Offset byte) {
-      return static_cast<Index>(values_.first_line + byte / kLineBytes);
-    };
-    std::vector<bool> result(static_cast<std::size_t>(graph_.size()));
-    for (Index a = 0; a < graph_.size(); ++a) {
-      result[a] = is_wanted(line_of(kBlockBytes * row_begin(a)), line_of(kBlockBytes * row_begin(a + 1) - 1));
+  /// The column of the k-th block of row a.
+  [[nodiscard]] Index column(Index a, Index k) const {
+    const Index before_diagonal = entries_below(graph_[a], a);
+    if (k == before_diagonal) return a;
+    return graph_[a][k < before_diagonal ? k : k - 1];
+  }
+
+  /// The blocks of the matrix that lie in lines that count, and what stands between two of them in a row.
+  class SampledBlocks {
+   public:
+    SampledBlocks() = default;
+
+    template <class Visitor>
+    SampledBlocks(const AccessStream& stream, const Visitor& visitor)
+        : rows_(static_cast<std::size_t>(stream.graph_.size())), columns_(rows_.size()) {
+      const auto count = [&](Offset first, Offset end) {
+        return stream.values_.is_sampled(kBlockBytes * first, kBlockBytes * (end - first), visitor);
+      };
+      for (Index a = 0; a < stream.graph_.size(); ++a) {
+        const Offset begin = stream.row_begin(a);
+        Offset first = begin;
+        Offset last = stream.row_begin(a + 1) - 1;
+        rows_[a] = count(first, last + 1);
+        if (!rows_[a]) continue;
+        while (first < last && !count(first, first + 1)) ++first;
+        while (first < last && !count(last, last + 1)) --last;
+        columns_[a] = {stream.column(a, static_cast<Index>(first - begin)),
+                       stream.column(a, static_cast<Index>(last - begin))};
+      }
     }
-    return result;
-  }
 
-  template <class Touch>
-  void visit_vertices(const Array& array, std::span<const Index> vertices, Touch& touch) const {
-    for (const Index v : vertices) array.gather(kPaddedBytes * v, kPaddedBytes, touch);
-  }
+    [[nodiscard]] bool has_row(Index a) const { return rows_[a]; }
+    /// Whether the block in that column of a row that has some is among them.
+    [[nodiscard]] bool has_column(Index a, Index b) const {
+      return columns_[a].first <= b && b <= columns_[a].last;
+    }
 
-  template <class Touch>
-  void visit_spmv(Touch& touch) const {
-    Reader offsets(offsets_), columns(columns_), values(values_), y(y_);
-    const auto multiply = [&](Index column) {
-      columns.read(sizeof(Index), touch);
-      values.read(kBlockBytes, touch);
-      x_.gather(kVectorBytes * column, kVectorBytes, touch);
+   private:
+    struct Columns {
+      Index first = 0;
+      Index last = 0;
     };
-    offsets.read(sizeof(Offset), touch);
-    for (Index v = 0; v < graph_.size(); ++v) {
-      offsets.read(sizeof(Offset), touch);
+
+    std::vector<bool> rows_;
+    std::vector<Columns> columns_;
+  };
+
+  template <class Visitor>
+  void visit_spmv(Visitor& visitor) const {
+    const VertexGatherer x(x_, kVectorBytes, graph_.size(), visitor);
+    multiply_rows(0, graph_.size(), visitor, [&](Index column) { x.gather(column, visitor); });
+  }
+
+  /// `gather(column)` gathers from the vector.
+  template <class Visitor, class Gather>
+  void multiply_rows(Index first, Index end, Visitor& visitor, Gather gather) const {
+    Reader offsets(offsets_, first > 0 ? Offset{sizeof(Offset)} * (first + 1) : 0);
+    Reader columns(columns_, Offset{sizeof(Index)} * row_begin(first));
+    Reader values(values_, kBlockBytes * row_begin(first));
+    Reader y(y_, kVectorBytes * first);
+    const auto multiply = [&](Index column) {
+      columns.read(sizeof(Index), visitor);
+      values.read(kBlockBytes, visitor);
+      gather(column);
+    };
+    if (first == 0) offsets.read(sizeof(Offset), visitor);
+    for (Index v = first; v < end; ++v) {
+      offsets.read(sizeof(Offset), visitor);
       const std::span<const Index> row = graph_[v];
       const auto after_diagonal = std::lower_bound(row.begin(), row.end(), v);
       std::for_each(row.begin(), after_diagonal, multiply);
       multiply(v);
       std::for_each(after_diagonal, row.end(), multiply);
-      y.read(kVectorBytes, touch);
+      y.read(kVectorBytes, visitor);
     }
   }
 
-  /// Element forces, or the assembly of such rows of the matrix.
-  template <class Touch>
-  void visit_elements(Touch& touch, const std::vector<bool>* rows) const {
+  /// Element forces, or assembly.
+  template <class Visitor>
+  void visit_elements(Visitor& visitor) const {
     const int corners = simplices_.dimension + 1;
     if (corners == 1) return;
-    const Array& result = rows != nullptr ? values_ : forces_;
-    result.clear(touch);
+    const bool assembly = kernel_ == Kernel::assembly;
+    const Index n = graph_.size();
+    const VertexGatherer positions(positions_, kPaddedBytes, n, visitor);
+    const VertexGatherer forces(forces_, kPaddedBytes, assembly ? 0 : n, visitor);
+    const SampledBlocks blocks = assembly ? SampledBlocks(*this, visitor) : SampledBlocks();
+    const Array& result = assembly ? values_ : forces_;
+    result.clear(visitor);
     Reader vertices(vertices_), geometry(geometry_), map(map_);
     std::array<Index, Offset{4} * kBatch> batch;
     for (Offset first = 0; first < simplices_.size(); first += kBatch) {
@@ -180,19 +283,21 @@ class AccessStream {
         }
       }
       const std::span<const Index> of_batch(batch.data(), Offset{corners} * kBatch);
-      geometry.read(geometry_of_batch_, touch);
-      vertices.read(vertices_of_batch_, touch);
-      visit_vertices(positions_, of_batch, touch);
-      if (rows == nullptr) {
-        visit_vertices(forces_, of_batch, touch);
+      geometry.read(geometry_of_batch_, visitor);
+      vertices.read(vertices_of_batch_, visitor);
+      positions.gather(of_batch, visitor);
+      if (!assembly) {
+        forces.gather(of_batch, visitor);
         continue;
       }
       const auto lanes = static_cast<Index>(std::min<Offset>(kBatch, simplices_.size() - first));
       for (Index lane = 0; lane < lanes; ++lane) {
         prefetch_offsets(graph_.offsets, corners_of(first + lane + 3 * kBatch));
-        prefetch_rows(graph_.offsets, graph_.neighbours, corners_of(first + lane + 3 * kBatch / 2));
-        map.read(Offset{corners} * corners * sizeof(Index), touch);
-        visit_blocks(batch.data() + lane, *rows, touch);
+        for (const Index& v : corners_of(first + lane + 3 * kBatch / 2)) {
+          if (blocks.has_row(v)) prefetch_rows(graph_.offsets, graph_.neighbours, {&v, 1});
+        }
+        map.read(Offset{corners} * corners * sizeof(Index), visitor);
+        visit_blocks(batch.data() + lane, blocks, visitor);
       }
     }
   }
@@ -200,37 +305,47 @@ class AccessStream {
   /// The corners of a simplex, of the last one for those behind it.
   [[nodiscard]] std::span<const Index> corners_of(Offset simplex) const {
     const Offset corners = simplices_.dimension + 1;
-    return std::span<const Index>(simplices_.vertices)
-        .subspan(corners * std::min(simplex, simplices_.size() - 1), corners);
+    return simplices_.vertices.subspan(corners * std::min(simplex, simplices_.size() - 1), corners);
   }
 
-  /// Visits the blocks of the element with corners v[0], v[kBatch] … in these rows.
-  template <class Touch>
-  void visit_blocks(const Index* v, const std::vector<bool>& rows, Touch& touch) const {
-    const auto visit_block = [&](Index i, Index j) {
-      if (rows[i]) values_.gather(kBlockBytes * block(i, j), kBlockBytes, touch);
+  /// Visits the blocks of the element with corners v[0], v[kBatch] …, those of the sample.
+  template <class Visitor>
+  void visit_blocks(const Index* v, const SampledBlocks& blocks, Visitor& visitor) const {
+    std::array<bool, 4> sampled{};
+    bool is_any_sampled = false;
+    for (int a = 0; a <= simplices_.dimension; ++a) {
+      sampled[a] = blocks.has_row(v[a * kBatch]);
+      is_any_sampled |= sampled[a];
+    }
+    if (!is_any_sampled) return;
+    const auto visit_block = [&](int a, int b) {
+      const Index i = v[a * kBatch], j = v[b * kBatch];
+      if (sampled[a] && blocks.has_column(i, j)) {
+        values_.gather(kBlockBytes * block(i, j), kBlockBytes, visitor);
+      }
     };
     for (int a = 0; a <= simplices_.dimension; ++a) {
       for (int b = a; b <= simplices_.dimension; ++b) {
-        const Index i = v[a * kBatch], j = v[b * kBatch];
-        visit_block(i, j);
-        if (a != b) visit_block(j, i);
+        visit_block(a, b);
+        if (a != b) visit_block(b, a);
       }
     }
   }
 
-  template <class Touch>
-  void visit_springs(Touch& touch) const {
-    forces_.clear(touch);
+  template <class Visitor>
+  void visit_springs(Visitor& visitor) const {
+    const VertexGatherer positions(positions_, kPaddedBytes, graph_.size(), visitor);
+    const VertexGatherer forces(forces_, kPaddedBytes, graph_.size(), visitor);
+    forces_.clear(visitor);
     Reader ends(ends_), rest_lengths(rest_lengths_);
     // the last batch is padded with springs from vertex 0 to itself
     std::array<Index, 2 * kBatch> batch{};
     Index lane = 0;
     const auto visit_batch = [&] {
-      ends.read(sizeof(batch), touch);
-      visit_vertices(positions_, batch, touch);
-      rest_lengths.read(kBatch * sizeof(double), touch);
-      visit_vertices(forces_, batch, touch);
+      ends.read(sizeof(batch), visitor);
+      positions.gather(batch, visitor);
+      rest_lengths.read(kBatch * sizeof(double), visitor);
+      forces.gather(batch, visitor);
       batch.fill(0);
       lane = 0;
     };
@@ -247,7 +362,7 @@ class AccessStream {
 
   Kernel kernel_;
   const CsrGraph& graph_;
-  const Simplices& simplices_;
+  SimplicesRef simplices_;
   Offset lines_ = 0;
   Offset vertices_of_batch_ = 0;  ///< bytes
   Offset geometry_of_batch_ = 0;
@@ -276,7 +391,7 @@ struct RunReuse : Reuse {
 /// Returns the reuse of a repeated kernel: of every run but the first. O(accesses · log distance) time and
 /// about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0 that of
 /// the lines is estimated from 2^-halvings of them (see ReuseSample), which is faster.
-RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int halvings = 0);
+RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
 /// The places in kKernels, what takes longest to follow first: assembly adds to 16 blocks an element.
 inline constexpr std::array<std::size_t, kKernels.size()> kLongestFirst{2, 0, 1, 3};
@@ -290,10 +405,10 @@ int halvings_for(Offset simplices);
 using KernelReuse = std::array<RunReuse, kKernels.size()>;
 
 /// Returns the reuse of all kernels, each computed on its own thread.
-KernelReuse reuse_of_kernels(const CsrGraph& graph, const Simplices& simplices, int halvings = 0);
+KernelReuse reuse_of_kernels(const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
-/// Returns the reuse of all kernels on a mesh, whose vertex graph is `graph`, after apply_reordering with
-/// these permutations.
+/// Returns the reuse of all kernels on a mesh, whose vertex graph is `graph`, after move_mesh with these
+/// permutations.
 KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
                              const Permutation& cells, int halvings = 0);
 

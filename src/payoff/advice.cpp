@@ -4,8 +4,8 @@
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
 #include "base/stopwatch.hpp"
-#include "kernels/simplices.hpp"
 #include "mesh/reorder.hpp"
+#include "mesh/simplices.hpp"
 #include "metrics/edge_span.hpp"
 #include "metrics/sparsity_pattern.hpp"
 #include "ordering/method.hpp"
@@ -27,38 +27,38 @@ namespace {
 
 /// A mesh in the order of a candidate.
 struct Moved {
-  Mesh mesh;  ///< points and cells
+  Mesh mesh;  ///< points and cells, for kernels to be timed; none where times are only predicted
   CsrGraph graph;
+  CellSimplices simplices;
 };
 
 /// A mesh in one of the orders.
 struct Ordered {
   const Mesh* mesh = nullptr;
   const CsrGraph* graph = nullptr;
+  const CellSimplices* simplices = nullptr;
   std::unique_ptr<const Moved> moved = {};  ///< what they are of; none: the mesh as it is
 };
 
 Ordered ordered(std::unique_ptr<const Moved> moved) {
-  return {&moved->mesh, &moved->graph, std::move(moved)};
+  return {&moved->mesh, &moved->graph, &moved->simplices, std::move(moved)};
 }
 
 /// The predictions for all orders, every kernel of every order on a thread of its own.
 std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
                                             const AdviceOptions& options) {
   report("predict");
-  std::vector<Simplices> simplices(orders.size());
-  take_turns(index_size(orders), [&](Index i) { simplices[i] = cut_into_simplices(*orders[i].mesh); });
   const Caches& caches = options.caches.level_bytes.empty() ? options.machine.model.caches : options.caches;
-  const int halvings = options.halvings.value_or(halvings_for(simplices.front().size()));
+  const int halvings = options.halvings.value_or(halvings_for(orders.front().simplices->size()));
   std::vector<KernelMilliseconds> result(orders.size());
   take_turns(index_size(kKernels) * index_size(orders), [&](Index turn) {
     const Index i = turn % index_size(orders);
     const std::size_t k = kLongestFirst[turn / index_size(orders)];
     const RunReuse reuse = i == 0 && options.reuse_as_is
                                ? (*options.reuse_as_is)[k]
-                               : reuse_of(kKernels[k], *orders[i].graph, simplices[i], halvings);
+                               : reuse_of(kKernels[k], *orders[i].graph, *orders[i].simplices, halvings);
     result[i][k] = predicted_ms(reuse, caches, options.machine.model) *
-                   times_computed(kKernels[k], *orders[i].graph, simplices[i], options.threads);
+                   times_computed(kKernels[k], *orders[i].graph, *orders[i].simplices, options.threads);
   });
   return result;
 }
@@ -199,8 +199,11 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   Advice advice;
   advice.threads = options.threads;
   advice.as_is.vertices.name = advice.as_is.elements.name = "original";
+  const CellSimplices simplices(mesh);
   std::vector<Ordered> orders(1);
-  orders.front() = {&mesh, &graph};
+  orders.front() = {&mesh, &graph, &simplices};
+  const bool in_race = options.race_of > 0 && options.race_timer;
+  const bool measures = in_race || options.measure_within;
   // of each candidate, its place in `orders`: that of the mesh as it is where nothing moves
   std::vector<std::size_t> order_of;
   for (const ReorderOptions& reordering : asked_for(mesh, graph, options)) {
@@ -210,37 +213,43 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
                         .elements = order.cells.method,
                         .workload = reordering.order.workload};
     const bool moves_nothing = are_one(candidate, advice.as_is);
-    auto moved = std::make_unique<Moved>();
-    if (!moves_nothing) {
-      moved->mesh.points = mesh.points;
-      moved->mesh.cells = mesh.cells;
-      apply_reordering(moved->mesh, order);
-      candidate.order_seconds = options.graph_seconds + stopwatch.seconds();
-    }
     const bool is_known = std::any_of(advice.candidates.begin(), advice.candidates.end(),
                                       [&](const Candidate& other) { return are_one(other, candidate); });
     if (is_known && (options.methods.empty() || options.race_of > 0)) continue;
     order_of.push_back(moves_nothing ? 0 : orders.size());
+    if (!moves_nothing) {
+      auto moved = std::make_unique<Moved>();
+      if (measures) {
+        moved->mesh.points = mesh.points;
+        moved->mesh.cells = mesh.cells;
+        apply_reordering(moved->mesh, order);
+        moved->simplices = CellSimplices(moved->mesh);
+      } else {
+        moved->simplices = simplices.moved(order.vertices.permutation, order.cells.permutation);
+      }
+      candidate.order_seconds = options.graph_seconds + stopwatch.seconds();
+      moved->graph = renumbered(graph, order.vertices.permutation.old_to_new());
+      orders.push_back(ordered(std::move(moved)));
+    }
     advice.candidates.push_back(std::move(candidate));
-    if (moves_nothing) continue;
-    moved->graph = renumbered(graph, order.vertices.permutation.old_to_new());
-    orders.push_back(ordered(std::move(moved)));
   }
   // calls it for the mesh as it is, and for each candidate with the place of its order
   const auto for_candidates = [&](auto call) {
     call(advice.as_is, std::size_t{0});
     for (std::size_t i = 0; i < order_of.size(); ++i) call(advice.candidates[i], order_of[i]);
   };
-  std::vector<Candidate> described(orders.size());
-  take_turns(index_size(orders), [&](Index i) {
-    const Permutation as_ordered = Permutation::identity(orders[i].graph->size());
-    described[i].spans = quality_of(*orders[i].graph, as_ordered);
-    described[i].pattern = pattern_of(*orders[i].graph, as_ordered, kPatternSide);
-  });
-  for_candidates([&](Candidate& candidate, std::size_t order) {
-    candidate.spans = described[order].spans;
-    candidate.pattern = described[order].pattern;
-  });
+  if (options.describe) {
+    std::vector<Candidate> described(orders.size());
+    take_turns(index_size(orders), [&](Index i) {
+      const Permutation as_ordered = Permutation::identity(orders[i].graph->size());
+      described[i].spans = quality_of(*orders[i].graph, as_ordered);
+      described[i].pattern = pattern_of(*orders[i].graph, as_ordered, kPatternSide);
+    });
+    for_candidates([&](Candidate& candidate, std::size_t order) {
+      candidate.spans = described[order].spans;
+      candidate.pattern = described[order].pattern;
+    });
+  }
   if (options.predict) {
     advice.machine = options.machine.in_words();
     const std::vector<KernelMilliseconds> predicted = predictions(orders, options);
@@ -248,8 +257,7 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
         [&](Candidate& candidate, std::size_t order) { candidate.costs.predicted = predicted[order]; });
   }
   if (options.race_of > 0) keep_best(advice, orders, order_of, options.ordering.workload, options.race_of);
-  const bool in_race = options.race_of > 0 && options.race_timer;
-  if (in_race || options.measure_within) {
+  if (measures) {
     report("measure");
     const Timings timings = in_race ? raced(orders, options.threads, options.race_timer)
                                     : measured(orders, options.threads, since_call, *options.measure_within);

@@ -28,6 +28,7 @@ struct AdviceOptions {
   OrderOptions ordering = {};
   double graph_seconds = 0;  ///< time that the vertex graph took
   bool predict = true;
+  bool describe = true;         ///< set the spans and the pattern of all candidates
   bool for_springs_too = true;  ///< add a candidate for springs if `auto` chooses another method for them
   std::optional<int> halvings =
       {};  ///< reuse is estimated from 2^-halvings of the lines; unset: `halvings_for`

@@ -43,7 +43,7 @@ struct Runs {
 };
 
 /// Reuse of the larger lattices is estimated, from more of the lines than that of meshes.
-int halvings_for_lattice(const Simplices& simplices) { return simplices.size() < 50'000 ? 0 : 3; }
+int halvings_for_lattice(SimplicesRef simplices) { return simplices.size() < 50'000 ? 0 : 3; }
 
 /// How long orders are timed.
 struct Rounds {

@@ -20,7 +20,7 @@ namespace {
 
 /// Throws InvalidArgument unless the mesh has cells that the kernels take.
 void check_kernels_run(const Mesh& mesh) {
-  if (mesh.cells.highest_dimension() < 1 || cut_into_simplices(mesh).size() == 0) {
+  if (CellSimplices(mesh).size() == 0) {
     throw InvalidArgument("advise: the mesh has no lines, surfaces or volumes, which the kernels work on");
   }
 }

@@ -37,11 +37,10 @@ class BatchCount {
   Offset computed_ = 0;
 };
 
-void add_simplices(const Simplices& simplices, BatchCount& count) {
+void add_simplices(SimplicesRef simplices, BatchCount& count) {
   const std::size_t size = static_cast<std::size_t>(simplices.dimension + 1) * kBatch;
-  const std::span<const Index> vertices(simplices.vertices);
-  for (std::size_t first = 0; first < vertices.size(); first += size)
-    count.add(vertices.subspan(first, std::min(size, vertices.size() - first)));
+  for (std::size_t first = 0; first < simplices.vertices.size(); first += size)
+    count.add(simplices.vertices.subspan(first, std::min(size, simplices.vertices.size() - first)));
 }
 
 /// Springs stand in the order of their higher ends, as springs_on_edges has them.
@@ -62,7 +61,7 @@ void add_springs(const CsrGraph& graph, BatchCount& count) {
 
 }  // namespace
 
-double times_computed(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int threads) {
+double times_computed(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int threads) {
   if (threads <= 1 || kernel == Kernel::spmv) return 1;
   BatchCount count(graph, threads);
   if (kernel == Kernel::springs) {

@@ -12,6 +12,6 @@ namespace meshorder {
 /// one thread; 1.02 where every fiftieth batch lies between two threads' vertices; up to the number of
 /// threads where the order is scrambled. `graph` is the vertex graph of a mesh and `simplices` the result of
 /// `cut_into_simplices`, both in the order to be judged. O(entries · log threads).
-double times_computed(Kernel kernel, const CsrGraph& graph, const Simplices& simplices, int threads);
+double times_computed(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int threads);
 
 }  // namespace meshorder

@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "mesh/reorder.hpp"
 #include "payoff/deformed.hpp"
 #include "support/sample_meshes.hpp"
 
@@ -123,6 +124,42 @@ TEST(CutIntoSimplices, FindsNoneInAMeshOfPoints) {
   const Mesh points = test::cells_of_type(Shape::vertex, 1, 3);
   EXPECT_EQ(rest_shapes(cut_into_simplices(points), points.points).count, 0);
   EXPECT_EQ(rest_shapes(cut_into_simplices(Mesh{}), {}).count, 0);
+}
+
+std::vector<Index> corners_of(SimplicesRef simplices) {
+  return {simplices.vertices.begin(), simplices.vertices.end()};
+}
+
+TEST(CellSimplices, AreThoseThatTheCellsAreCutInto) {
+  for (const Mesh& mesh :
+       {test::mixed_mesh(), test::tetrahedral_bar(4), Mesh{}, test::cells_of_type(Shape::vertex, 1, 3),
+        test::cells_of_type(Shape::hexahedron, 8, 3), test::cells_of_type(Shape::tetrahedron, 10, 3)}) {
+    const Simplices cut = cut_into_simplices(mesh);
+    const CellSimplices simplices(mesh);
+    EXPECT_EQ(simplices.size(), cut.size());
+    EXPECT_EQ(simplices.dimension(), cut.dimension);
+    EXPECT_EQ(corners_of(simplices), cut.vertices);
+  }
+}
+
+TEST(CellSimplices, AreTheArrayOfAMeshOfTetrahedra) {
+  const Mesh mesh = test::tetrahedral_bar(4);
+  const CellSimplices simplices(mesh);
+  EXPECT_EQ(SimplicesRef(simplices).vertices.data(), mesh.cells.vertices.data());
+}
+
+TEST(CellSimplices, MoveWithTheirCells) {
+  for (Mesh mesh : {test::mixed_mesh(), test::tetrahedral_bar(30), Mesh{}}) {
+    const Permutation vertices = test::shuffled(mesh.vertex_count(), 1);
+    const Permutation cells = test::shuffled_cells(mesh, 2);
+    const CellSimplices moved = CellSimplices(mesh).moved(vertices, cells);
+    move_mesh(mesh, vertices, cells, Ids::keep);
+    EXPECT_EQ(corners_of(moved), cut_into_simplices(mesh).vertices);
+    // and once more
+    const CellSimplices back = moved.moved(vertices.inverse(), cells.inverse());
+    move_mesh(mesh, vertices.inverse(), cells.inverse(), Ids::keep);
+    EXPECT_EQ(corners_of(back), cut_into_simplices(mesh).vertices);
+  }
 }
 
 TEST(RestShapes, InverseMakesTheRestMetricTheIdentity) {
