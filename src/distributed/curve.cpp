@@ -5,7 +5,6 @@
 #include "distributed/sample_sort.hpp"
 #include "ordering/space_filling.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -21,23 +20,13 @@ constexpr std::uint64_t kUnused = std::numeric_limits<std::uint64_t>::max();
 /// The lattice of the box around the used points of all ranks.
 Lattice lattice_of(const Communicator& communicator, const std::vector<Point>& points,
                    const std::vector<char>& used) {
-  struct Box {
-    Point low;
-    Point high;
-  };
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  const auto enclose = [](Box& box, const Point& low, const Point& high) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      box.low[a] = std::min(box.low[a], low[a]);
-      box.high[a] = std::max(box.high[a], high[a]);
-    }
-  };
-  Box box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  Box box;
   for (std::size_t v = 0; v < points.size(); ++v) {
-    if (used[v] != 0) enclose(box, points[v], points[v]);
+    if (used[v] != 0) box += Box{points[v], points[v]};
   }
-  for (const Box& other : communicator.gathered(box)) enclose(box, other.low, other.high);
-  return {box.low, box.high};
+  Box of_all;
+  for (const Box& other : communicator.gathered(box)) of_all += other;
+  return {of_all.low, of_all.high};
 }
 
 /// The sum of a count over the ranks before this one.

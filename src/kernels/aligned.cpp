@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/large_pages.hpp"
 #include "kernels/apart.hpp"
 
 #include <algorithm>
@@ -50,7 +51,7 @@ void* allocate_pages(std::size_t bytes) {
   char* const block = static_cast<char*>(map) + before;
   if (before > 0) (void)munmap(map, before);
   (void)munmap(block + bytes, mapped - before - bytes);
-  (void)madvise(block, bytes, MADV_HUGEPAGE);
+  ask_for_large_pages(block, bytes);
   return block;
 }
 

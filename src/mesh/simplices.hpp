@@ -54,7 +54,6 @@ class CellSimplices {
 
   operator SimplicesRef() const { return ref_; }  // NOLINT(google-explicit-constructor)
   [[nodiscard]] Offset size() const noexcept { return ref_.size(); }
-  [[nodiscard]] int dimension() const noexcept { return ref_.dimension; }
 
   /// Returns those of the mesh after move_mesh with these permutations. O(simplices), on all threads.
   [[nodiscard]] CellSimplices moved(const Permutation& vertices, const Permutation& cells) const;

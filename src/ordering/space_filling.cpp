@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -52,21 +51,6 @@ namespace {
 
 constexpr Index kPointsAtOnce = 16384;  // that a thread looks at together
 
-/// The bounding box of some points, as a sum: that of two sets is the sum of theirs.
-struct Box {
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Point low{kInfinity, kInfinity, kInfinity};
-  Point high{-kInfinity, -kInfinity, -kInfinity};
-
-  Box& operator+=(const Box& other) {
-    for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], other.low[a]);
-      high[a] = std::max(high[a], other.high[a]);
-    }
-    return *this;
-  }
-};
-
 }  // namespace
 
 Lattice lattice_of(const PointsView& points) {
@@ -97,14 +81,15 @@ struct CurveState {
   constexpr bool operator==(const CurveState&) const = default;
 };
 
-/// The half of a cube along each axis of the lattice, the first in the highest bit, takes the curve to a
-/// cube's number in the curve and the state in there.
+/// One of the halves, quarters or eighths of a cube: its number along the curve in the cube, and the number
+/// of its state.
 struct CurveStep {
   std::uint8_t number = 0;
   std::uint8_t state = 0;
 };
 
-/// Skilling's transformation of one scale: undoes rotation and reflection, then the Gray code.
+/// Enters the part of a cube that `halves` names by a bit for each axis of the lattice, the first the
+/// highest. Returns its number along the curve and its state: Skilling's transformation of one scale.
 template <int Axes>
 constexpr std::pair<unsigned, CurveState> enter(CurveState state, unsigned halves) {
   unsigned number = 0;
@@ -128,7 +113,7 @@ constexpr std::pair<unsigned, CurveState> enter(CurveState state, unsigned halve
   return {number, state};
 }
 
-/// The steps from each state, numbered as they are reached from the first.
+/// Returns the steps from each state into each part; states are numbered as they are found from the first.
 template <int Axes>
 constexpr auto curve_steps() {
   constexpr unsigned kCubes = 1U << static_cast<unsigned>(Axes);

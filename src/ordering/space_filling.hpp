@@ -3,12 +3,30 @@
 
 #include "base/point.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 #include <vector>
 
 namespace meshorder {
+
+/// A box along the axes, at first one of no points. Adding another encloses it, too.
+struct Box {
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Point low{kInfinity, kInfinity, kInfinity};
+  Point high{-kInfinity, -kInfinity, -kInfinity};
+
+  Box& operator+=(const Box& other) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], other.low[a]);
+      high[a] = std::max(high[a], other.high[a]);
+    }
+    return *this;
+  }
+};
 
 /// The finest lattice of cubes that covers a box and whose cell number fits in 64 bits: 2^bits cells along
 /// each axis.

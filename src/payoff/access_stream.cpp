@@ -116,7 +116,7 @@ class StallCount {
         first_line_(product.vector_lines().first),
         streamed_before_(static_cast<std::size_t>(product.vector_lines().count), -kLeft) {}
 
-  /// Goes through these rows, which counts where `counts`.
+  /// Follows the product of these rows. Their stalls count if `counts`.
   void visit(Index first, Index end, bool counts) {
     product_.visit_rows(first, end, [&](Index line, Access how) {
       if (how == Access::streamed) {
@@ -149,8 +149,8 @@ class StallCount {
   bool stalled_ = false;
 };
 
-/// See RunReuse::stalls. Of a sample from every eighth stretch of rows; those before it in the stretch read
-/// more than a first level keeps.
+/// Returns RunReuse::stalls. Where at most a 16th of the lines is followed, it is estimated from every eighth
+/// stretch of rows, whose first rows are followed but not counted: they read more than a first level keeps.
 Offset stalled_gathers(const AccessStream& product, Index rows, int halvings) {
   constexpr int kSampledFrom = 4;
   constexpr Index kStretch = 1024;

@@ -130,7 +130,7 @@ class AccessStream {
     Offset left_;  ///< bytes of the last touched line that are not read yet
   };
 
-  /// An array of vertices that are gathered, those alone that lie in lines that count.
+  /// Gathers vertices from an array, and leaves out those that lie in no line that counts.
   class VertexGatherer {
    public:
     template <class Visitor>
@@ -157,7 +157,7 @@ class AccessStream {
     std::vector<bool> sampled_;
   };
 
-  /// A visitor to which all lines count, one after another.
+  /// A visitor that hands every line of a stream to `touch`.
   template <class Touch>
   struct ToEveryLine {
     Touch& touch;
@@ -191,7 +191,7 @@ class AccessStream {
     return graph_[a][k < before_diagonal ? k : k - 1];
   }
 
-  /// The blocks of the matrix that lie in lines that count, and what stands between two of them in a row.
+  /// The blocks of each row of the matrix from the first to the last that lie in a line that counts.
   class SampledBlocks {
    public:
     SampledBlocks() = default;
@@ -390,7 +390,8 @@ struct RunReuse : Reuse {
 
 /// Returns the reuse of a repeated kernel: of every run but the first. O(accesses · log distance) time and
 /// about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0 that of
-/// the lines is estimated from 2^-halvings of them (see ReuseSample), which is faster.
+/// the lines is estimated from 2^-halvings of them (see ReuseSample), which is faster; from four halvings on
+/// the stalls are an estimate, too.
 RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
 /// The places in kKernels, what takes longest to follow first: assembly adds to 16 blocks an element.

@@ -137,7 +137,7 @@ TEST(CellSimplices, AreThoseThatTheCellsAreCutInto) {
     const Simplices cut = cut_into_simplices(mesh);
     const CellSimplices simplices(mesh);
     EXPECT_EQ(simplices.size(), cut.size());
-    EXPECT_EQ(simplices.dimension(), cut.dimension);
+    EXPECT_EQ(SimplicesRef(simplices).dimension, cut.dimension);
     EXPECT_EQ(corners_of(simplices), cut.vertices);
   }
 }
