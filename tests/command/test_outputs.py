@@ -16,11 +16,13 @@ import pytest
 import conftest
 import meshes
 
-# What a call of the system does instead at its FAULT_NUMBERth time: `kill` the process before it, `error`, or `pause`.
+# What a call of the system does instead at its FAULT_NUMBERth time: `kill` the process before it, `error`, or
+# `pause`, which leaves FAULT_MARK.
 INTERPOSER = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,7 +33,10 @@ static int faulty(const char* call) {
   const char* wanted = getenv("FAULT_CALL");
   if (wanted == NULL || strcmp(wanted, call) != 0 || ++count != atoi(getenv("FAULT_NUMBER"))) return 0;
   if (strcmp(getenv("FAULT"), "kill") == 0) kill(getpid(), SIGKILL);
-  if (strcmp(getenv("FAULT"), "pause") == 0) for (;;) pause();
+  if (strcmp(getenv("FAULT"), "pause") == 0) {
+    close(creat(getenv("FAULT_MARK"), 0600));
+    for (;;) pause();
+  }
   errno = EIO;
   return 1;
 }
@@ -67,11 +72,17 @@ def interposer(tmp_path_factory):
 
 
 @pytest.fixture
-def faulty(tmp_path, interposer):
+def mark(tmp_path_factory):
+    """The file that a command makes when it pauses."""
+    return tmp_path_factory.mktemp("mark") / "paused"
+
+
+@pytest.fixture
+def faulty(tmp_path, interposer, mark):
     """Starts a command that meets a fault at a call of the system."""
     def start(fault, call, number, *arguments, **options):
         environment = {**os.environ, "LD_PRELOAD": str(interposer), "FAULT": fault, "FAULT_CALL": call,
-                       "FAULT_NUMBER": str(number)}
+                       "FAULT_NUMBER": str(number), "FAULT_MARK": str(mark)}
         return subprocess.Popen([conftest.MESHORDER, *map(str, arguments)], cwd=tmp_path, env=environment, text=True,
                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
@@ -87,9 +98,14 @@ def content_of(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
-def wait_for_unfinished(folder):
+def unfinished_in(folder):
+    """The outputs that a command has not put in place, which must stand still meanwhile."""
+    return [path for path in folder.glob(".meshorder-*/new") if path.stat().st_size]
+
+
+def wait_for(mark):
     end = time.monotonic() + 30
-    while not any(path.stat().st_size for path in folder.glob(".meshorder-*/new")):
+    while not mark.exists():
         assert time.monotonic() < end
         time.sleep(0.01)
 
@@ -303,12 +319,12 @@ def test_a_name_of_255_bytes_is_written(command, tmp_path, mesh):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_signals_leave_no_unfinished_files(faulty, tmp_path, mesh, number):
+def test_signals_leave_no_unfinished_files(faulty, mark, tmp_path, mesh, number):
     before = content_of(tmp_path)
     child = faulty("pause", "fsync", 3, "order", mesh, "-o", mesh, *ORDER,
                    preexec_fn=lambda: signal.signal(number, signal.SIG_DFL))  # nohup and shells ignore some
-    wait_for_unfinished(tmp_path)
-    time.sleep(0.1)
+    wait_for(mark)
+    assert unfinished_in(tmp_path)
     child.send_signal(number)
     stdout, stderr = child.communicate(timeout=30)
     assert child.returncode == -number
@@ -331,11 +347,11 @@ def test_the_limit_on_file_sizes_leaves_no_unfinished_files(command, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mesh.ele", "mesh.node"]
 
 
-def test_ignored_signals_stay_ignored(faulty, tmp_path, mesh):
+def test_ignored_signals_stay_ignored(faulty, mark, mesh):
     """As under nohup."""
     child = faulty("pause", "fsync", 1, "order", mesh, "-o", "a.vtu",
                    preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
-    wait_for_unfinished(tmp_path)
+    wait_for(mark)
     child.send_signal(signal.SIGHUP)
     with pytest.raises(subprocess.TimeoutExpired):
         child.wait(timeout=0.3)
@@ -352,11 +368,12 @@ def test_what_killed_commands_left_is_removed_by_the_next_one(command, faulty, t
     assert sorted(path.name for path in tmp_path.iterdir()) == ["b.vtu", "mesh.ele", "mesh.node"]
 
 
-def test_what_a_living_command_writes_is_left_alone(command, faulty, tmp_path, mesh):
+def test_what_a_living_command_writes_is_left_alone(command, faulty, mark, tmp_path, mesh):
     child = faulty("pause", "fsync", 1, "order", mesh, "-o", "a.vtu", "-q")
-    wait_for_unfinished(tmp_path)
+    wait_for(mark)
+    unfinished = unfinished_in(tmp_path)
     command.ok("order", mesh, "-o", "b.vtu", "-q")
-    assert list(tmp_path.glob(".meshorder-*/new"))
+    assert unfinished and unfinished_in(tmp_path) == unfinished
     child.kill()
     child.communicate()
 
