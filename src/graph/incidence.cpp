@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/incidence.hpp"
 
+#include "base/buckets.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/resize_in_steps.hpp"
@@ -15,19 +16,96 @@
 #include <utility>
 
 namespace meshorder {
+namespace {
+
+/// Where a matrix has an entry.
+struct Position {
+  Index row;
+  Index column;
+};
+
+/// Whether the columns of one row after another lie far from each other, so that whoever writes by columns
+/// waits for memory. Looks at some thousand rows.
+bool is_scattered(IncidenceRef incidence) {
+  constexpr Index kLooks = 1000;
+  constexpr Index kFar = 65536;  // columns, whose entries fill a cache of some megabytes
+  const Index step = incidence.size() / kLooks + 1;
+  Index looks = 0;
+  Index far = 0;
+  for (Offset e = step; e < incidence.size(); e += step) {
+    const std::span<const Index> before = incidence[static_cast<Index>(e - 1)];
+    const std::span<const Index> row = incidence[static_cast<Index>(e)];
+    if (before.empty() || row.empty()) continue;
+    ++looks;
+    if (std::abs(row.front() - before.front()) > kFar) ++far;
+  }
+  return far > looks / 8;
+}
+
+// Both of the following return the rows of each column, ascending, one column after another.
+// `part_of(part)` returns what calls its argument for the positions of a part of the rows, row by row.
+
+/// @param offsets  where each column begins, and the end
+template <class PartOf>
+std::vector<Index> by_columns(Index parts, const PartOf& part_of, const std::vector<Offset>& offsets) {
+  std::vector<Index> rows;
+  resize_in_steps(rows, static_cast<std::size_t>(offsets.back()));
+  std::vector<Offset> next(offsets.begin(), offsets.end() - 1);
+  const auto write = [rows = rows.data(), next = next.data()](Position at) {
+    rows[next[at.column]++] = at.row;
+  };
+  for (Index part = 0; part < parts; ++part) {
+    poll();
+    part_of(part)(write);
+  }
+  return rows;
+}
+
+/// For scattered columns, on all threads.
+///
+/// @param offsets  are written: where each column begins, and the end
+template <class PartOf>
+std::vector<Index> by_columns_in_buckets(Index parts, const PartOf& part_of, std::vector<Offset>& offsets) {
+  const auto column_of = [](const Position& at) { return at.column; };
+  const Buckets<Position> buckets(parts, static_cast<Index>(offsets.size() - 1), part_of, column_of);
+  std::vector<Index> rows;
+  resize_in_steps(rows, static_cast<std::size_t>(buckets.start(buckets.size())));
+  parallel_loop(buckets.size(), [&](Index bucket) {
+    std::vector<Offset> next = buckets.key_starts(bucket, column_of);
+    const Index first = buckets.first_key(bucket);
+    std::copy(next.begin(), next.end() - 1, offsets.begin() + first);
+    buckets.for_each(bucket, [rows = rows.data(), next = next.data(), first](Position at) {
+      rows[next[at.column - first]++] = at.row;
+    });
+  });
+  offsets.back() = std::ssize(rows);
+  return rows;
+}
+
+}  // namespace
 
 Incidence transposed(IncidenceRef incidence) {
+  constexpr Index kPart = 16384;  // rows
+  const Index parts = chunk_count(incidence.size(), kPart);
+  const auto part_of = [&](Index part) {
+    const Index begin = part * kPart;
+    const Index end = std::min(incidence.size() - begin, kPart) + begin;
+    return [&incidence, begin, end](const auto& call) {
+      for (Index e = begin; e < end; ++e) {
+        for (const Index v : incidence[e]) call(Position{.row = e, .column = v});
+      }
+    };
+  };
   Incidence result;
   result.vertex_count = incidence.size();
   result.offsets.assign(Offset{incidence.vertex_count} + 1, 0);
+  if (is_scattered(incidence)) {
+    result.vertices = by_columns_in_buckets(parts, part_of, result.offsets);
+    return result;
+  }
   for (const Index v : incidence.vertices) ++result.offsets[v + 1];
   std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
-  resize_in_steps(result.vertices, incidence.vertices.size());
-  std::vector<Offset> next(result.offsets.begin(), result.offsets.end() - 1);
-  for (Index e = 0; e < incidence.size(); ++e) {
-    poll_in_loop(e);
-    for (const Index v : incidence[e]) result.vertices[next[v]++] = e;
-  }
+  result.vertices = by_columns(parts, part_of, result.offsets);
   return result;
 }
 
@@ -128,30 +206,25 @@ std::vector<Rows> find_rows(IncidenceRef elements, std::vector<Offset>& degrees)
   }
 }
 
-/// The symmetric graph with these rows, kRowsOfPart in each of `chunks`, each sorted: reading the rows in
-/// turn and the entries the other way sorts them all in one pass. Chunks are freed once they are read.
-CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::vector<Rows> chunks) {
+/// The symmetric graph with these rows, kRowsOfPart in each of `parts`, each sorted: by columns they are.
+/// Parts are freed once they are read.
+CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::vector<Rows> parts, bool scattered) {
   CsrGraph graph;
-  resize_in_steps(graph.neighbours, offsets.back());
-  std::vector<Offset> next(offsets.begin(), offsets.end() - 1);
   graph.offsets = std::move(offsets);
-  for (Index v = 0, chunk = 0; v < graph.size(); ++chunk) {
-    poll();
-    const Rows& rows = chunks[chunk];
-    Offset k = 0;
-    for (const Index chunk_end = std::min(graph.size() - v, kRowsOfPart) + v; v < chunk_end; ++v) {
-      for (const Offset end = k + graph.degree(v); k < end; ++k) {
-        graph.neighbours[next[rows.neighbours[k]]++] = v;
+  const auto part_of = [&](Index part) {
+    return [&graph, rows = std::move(parts[part]), begin = part * kRowsOfPart](const auto& call) {
+      const Index end = std::min(graph.size() - begin, kRowsOfPart) + begin;
+      const Index* neighbour = rows.neighbours.data();
+      for (Index v = begin; v < end; ++v) {
+        for (const Index* const last = neighbour + graph.degree(v); neighbour < last; ++neighbour)
+          call(Position{.row = v, .column = *neighbour});
       }
-    }
-    chunks[chunk] = {};
-  }
+    };
+  };
+  graph.neighbours = scattered ? by_columns_in_buckets(index_size(parts), part_of, graph.offsets)
+                               : by_columns(index_size(parts), part_of, graph.offsets);
   return graph;
 }
-
-}  // namespace
-
-namespace {
 
 /// Throws TooLarge where elements of many vertices would make a graph beyond the limit on memory.
 void require_memory(IncidenceRef elements) {
@@ -177,7 +250,7 @@ CsrGraph joined_vertices(IncidenceRef elements) {
   std::vector<Offset> offsets(Offset{elements.vertex_count} + 1, 0);
   std::vector<Rows> rows = find_rows(elements, offsets);
   std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
-  return with_sorted_rows(std::move(offsets), std::move(rows));
+  return with_sorted_rows(std::move(offsets), std::move(rows), is_scattered(elements));
 }
 
 CsrGraph joined_by_vertex(IncidenceRef elements) { return joined_vertices(transposed(elements)); }

@@ -58,10 +58,20 @@ std::vector<Index> inverted(std::span<const Index> map) {
     for_each_range(n, kEntries, [&](Offset begin, Offset end) {
       for (Offset i = begin; i < end; ++i) {
         const Index target = map[i];
-        const bool first =
-            target >= 0 && target < n &&
-            std::atomic_ref(inverse[target]).exchange(static_cast<Index>(i), std::memory_order_relaxed) < 0;
-        if (!first) bijection = false;
+        if (target < 0 || target >= n) {
+          bijection = false;
+          return;
+        }
+        std::atomic_ref(inverse[target]).store(static_cast<Index>(i), std::memory_order_relaxed);
+      }
+    });
+    if (!bijection) return;
+    for_each_range(n, kEntries, [&](Offset begin, Offset end) {  // finds all but one of equal entries
+      for (Offset i = begin; i < end; ++i) {
+        if (inverse[map[i]] != i) {
+          bijection = false;
+          return;
+        }
       }
     });
   });

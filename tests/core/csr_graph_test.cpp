@@ -54,6 +54,34 @@ TEST(VertexGraph, JoinsExactlyThePairsOfACommonElement) {
   EXPECT_EQ(found, pairs);
 }
 
+constexpr Index kMany = 200000;  // so many that what lies anywhere among them is sorted in another way
+
+TEST(Transposed, HasTheElementsAtEachOfManyVerticesThatLieAnywhere) {
+  const Incidence elements = elements_of_size(kMany, 50000, 4, 4);
+  std::vector<std::vector<Index>> at_vertex(kMany);
+  for (Index e = 0; e < elements.size(); ++e) {
+    for (const Index v : elements[e]) at_vertex[v].push_back(e);
+  }
+  const Incidence found = transposed(elements);
+  ASSERT_EQ(found.size(), kMany);
+  EXPECT_EQ(found.vertex_count, elements.size());
+  for (Index v = 0; v < kMany; ++v)
+    ASSERT_EQ(std::vector<Index>(found[v].begin(), found[v].end()), at_vertex[v]);
+}
+
+TEST(VertexGraph, OfManyVerticesThatLieAnywhereJoinsThePairsOfACommonElement) {
+  const Incidence elements = elements_of_size(kMany, 50000, 4, 5);
+  std::vector<Edge> edges;
+  for (Index e = 0; e < elements.size(); ++e) {
+    for (const Index a : elements[e]) {
+      for (const Index b : elements[e]) edges.emplace_back(a, b);
+    }
+  }
+  const CsrGraph graph = joined_vertices(elements);
+  test::check_graph(graph);
+  EXPECT_EQ(graph, graph_from_edges(kMany, edges));
+}
+
 TEST(DualGraphByVertex, JoinsExactlyTheElementsThatShareAVertex) {
   const Incidence elements = elements_of_size(80, 40, 3, 2);
   const CsrGraph dual = joined_by_vertex(elements);

@@ -12,13 +12,8 @@
 namespace meshorder {
 namespace {
 
-struct NamedGraph {
-  const char* name;
-  CsrGraph graph;
-};
-
 /// Graphs of more than one level that dense solvers still take.
-std::vector<NamedGraph> small_graphs() {
+std::vector<test::NamedGraph> small_graphs() {
   const Index n = test::kSanitized ? 120 : 400;
   return {{"path", test::path(n)},
           {"grid", test::grid(n / 20, 18)},
@@ -81,7 +76,7 @@ TEST(Hierarchy, CoarseOperatorsAreSymmetricAndAnnihilateConstants) {
 }
 
 TEST(Hierarchy, CoarseOperatorsAreGalerkinProducts) {
-  std::vector<NamedGraph> graphs = small_graphs();
+  std::vector<test::NamedGraph> graphs = small_graphs();
   // these coarsen smoothly, too
   graphs.push_back({"larger grid", test::grid(35, 20)});
   graphs.push_back({"sparse", test::random_connected(800, 300, 5)});

@@ -38,12 +38,7 @@ void expect_bijection(const Permutation& order, Index n) {
   for (Index v = 0; v < n; ++v) EXPECT_EQ(order.new_to_old()[order.old_to_new()[v]], v);
 }
 
-struct NamedGraph {
-  std::string name;
-  CsrGraph graph;
-};
-
-std::vector<NamedGraph> vertex_graphs() {
+std::vector<test::NamedGraph> vertex_graphs() {
   return {{"nothing", CsrGraph{}},
           {"one vertex", test::path(1)},
           {"one edge", test::path(2)},

@@ -5,6 +5,7 @@
 #include "graph/laplacian.hpp"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace meshorder::test {
@@ -18,6 +19,11 @@ inline constexpr bool kSanitized = false;
 
 /// The size of a large test: `n`, a tenth of it when sanitized.
 constexpr Index large(Index n) { return kSanitized ? n / 10 : n; }
+
+struct NamedGraph {
+  std::string name;
+  CsrGraph graph;
+};
 
 /// Returns the Laplacian of a graph whose edges all have weight 1.
 Laplacian combinatorial_laplacian(const CsrGraph& graph);
