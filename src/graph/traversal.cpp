@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
+#include <utility>
 
 namespace meshorder {
 
@@ -106,8 +108,15 @@ BreadthFirstCopy breadth_first_copy(GraphRef graph) {
     const Index first = found;
     number[v] = found;
     copy.old_numbers[found++] = v;
+    BreadthFirstCopy::Component component{.first = first, .end = 0, .last_level = first, .depth = 0};
+    Index level_end = found;
     for (Index k = first; k < found; ++k) {
       poll_in_loop(k);
+      if (k == level_end) {
+        component.last_level = k;
+        level_end = found;
+        ++component.depth;
+      }
       prefetch_row(graph, std::span(copy.old_numbers).first(std::size_t(found)), k);
       for (const Index u : graph[copy.old_numbers[k]]) {
         const bool is_new = number[u] < 0;
@@ -118,27 +127,29 @@ BreadthFirstCopy breadth_first_copy(GraphRef graph) {
       }
       copy.offsets.push_back(written);
     }
-    copy.components.emplace_back(first, found);
+    component.end = found;
+    copy.components.push_back(component);
   }
   copy.old_numbers.resize(n);
   std::stable_sort(copy.components.begin(), copy.components.end(),
-                   [](const auto& a, const auto& b) { return a.second - a.first > b.second - b.first; });
+                   [](const auto& a, const auto& b) { return a.end - a.first > b.end - b.first; });
   return copy;
 }
 
-Index pseudo_peripheral_vertex(GraphRef graph, Index start, std::vector<Index>& marks,
-                               std::span<const Index> names) {
-  const auto name = [&](Index v) { return names.empty() ? v : names[v]; };
-  Index mark = 0;
-  BreadthFirst search = breadth_first(graph, start, marks, mark);
-  for (;;) {
-    const auto last_level = search.order.begin() + search.level_start[search.depth()];
-    const Index candidate = *std::min_element(last_level, search.order.end(), [&](Index a, Index b) {
-      return graph.degree(a) != graph.degree(b) ? graph.degree(a) < graph.degree(b) : name(a) < name(b);
-    });
-    BreadthFirst next = breadth_first(graph, candidate, marks, ++mark);
-    if (next.depth() <= search.depth()) return search.order.front();
-    search = std::move(next);
+Index pseudo_peripheral_vertex(const BreadthFirstCopy& copy, const BreadthFirstCopy::Component& component,
+                               std::vector<Index>& marks) {
+  const GraphRef graph = copy.graph();
+  Index start = component.first;
+  Index depth = component.depth;
+  std::vector<Index> last_level = index_range(component.last_level, component.end - component.last_level);
+  for (Index mark = 0;; ++mark) {
+    const Index candidate = *std::ranges::min_element(
+        last_level, {}, [&](Index v) { return std::pair(graph.degree(v), copy.old_numbers[v]); });
+    const BreadthFirst search = breadth_first(graph, candidate, marks, mark);
+    if (search.depth() <= depth) return start;
+    start = candidate;
+    depth = search.depth();
+    last_level.assign(search.order.begin() + search.level_start[depth], search.order.end());
   }
 }
 

@@ -3,8 +3,6 @@
 
 #include "graph/csr_graph.hpp"
 
-#include <span>
-#include <utility>
 #include <vector>
 
 namespace meshorder {
@@ -33,8 +31,13 @@ struct BreadthFirstCopy {
   std::vector<Offset> offsets;
   std::vector<Index> neighbours;
   std::vector<Index> old_numbers;  ///< of each vertex
-  /// The first and the end of each component's vertices; in the order of `connected_components`.
-  std::vector<std::pair<Index, Index>> components;
+  struct Component {
+    Index first;  ///< of its vertices
+    Index end;
+    Index last_level;  ///< the first vertex of the last level
+    Index depth;       ///< how many levels come before that one
+  };
+  std::vector<Component> components;  ///< in the order of `connected_components`
 
   [[nodiscard]] GraphRef graph() const { return {offsets, neighbours}; }
 };
@@ -42,12 +45,12 @@ struct BreadthFirstCopy {
 /// Numbers a graph anew by one search, which reads each row once. O(n + edges).
 BreadthFirstCopy breadth_first_copy(GraphRef graph);
 
-/// A vertex far from the others of its component: from `start`, the search goes to a vertex of least degree
-/// in the last level until that adds no level (Gibbs, Poole, Stockmeyer 1976, as simplified by George and Liu
-/// 1979); of several that of the smallest name, or number where there are no names. `marks` needs one entry
-/// for each vertex, −1 throughout the component, where it is changed; searches of other components can share
-/// it. O(searches · component), few searches in practice.
-Index pseudo_peripheral_vertex(GraphRef graph, Index start, std::vector<Index>& marks,
-                               std::span<const Index> names = {});
+/// A vertex far from the others of a component: from its first vertex, the search goes to a vertex of least
+/// degree in the last level until that adds no level (Gibbs, Poole, Stockmeyer 1976, as simplified by George
+/// and Liu 1979); of several to that of the smallest old number. `marks` needs one entry for each vertex, −1
+/// throughout the component, where it is changed; searches of other components can share it. O(searches ·
+/// component), few searches in practice, of which the copy has made the first.
+Index pseudo_peripheral_vertex(const BreadthFirstCopy& copy, const BreadthFirstCopy::Component& component,
+                               std::vector<Index>& marks);
 
 }  // namespace meshorder

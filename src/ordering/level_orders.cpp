@@ -32,14 +32,13 @@ void sort_by_degree(GraphRef graph, std::span<Index> vertices) {
 template <class Place>
 Order by_components(GraphRef graph, const Place& place) {
   const BreadthFirstCopy copy = breadth_first_copy(graph);
-  const GraphRef near = copy.graph();
   std::vector<Index> new_to_old(std::size_t(graph.size()) + 1);
   std::vector<Index> tried(graph.size(), -1);
   std::size_t placed = 0;
-  for (const auto& [first, end] : copy.components) {
-    const Index start = pseudo_peripheral_vertex(near, first, tried, copy.old_numbers);
-    const auto size = static_cast<std::size_t>(end - first);
-    place(near, start, std::span(new_to_old).subspan(placed, size + 1));
+  for (const BreadthFirstCopy::Component& component : copy.components) {
+    const Index start = pseudo_peripheral_vertex(copy, component, tried);
+    const auto size = static_cast<std::size_t>(component.end - component.first);
+    place(copy.graph(), start, std::span(new_to_old).subspan(placed, size + 1));
     placed += size;
   }
   new_to_old.resize(placed);

@@ -62,10 +62,13 @@ TEST(BreadthFirstCopy, IsTheSameGraphInTheOrderOfASearch) {
   }
   const BreadthFirstCopy copy = breadth_first_copy(graph);
   std::vector<std::vector<Index>> components;
-  for (const auto& [first, end] : copy.components) {
+  for (const auto& [first, end, last_level, depth] : copy.components) {
     std::vector<Index> marks(graph.size(), -1);
     const std::vector<Index> members(copy.old_numbers.begin() + first, copy.old_numbers.begin() + end);
-    EXPECT_EQ(breadth_first(graph, members.front(), marks, 0).order, members);
+    const BreadthFirst search = breadth_first(graph, members.front(), marks, 0);
+    EXPECT_EQ(search.order, members);
+    EXPECT_EQ(depth, search.depth());
+    EXPECT_EQ(last_level - first, search.level_start[depth]);
     components.push_back(members);
     std::sort(components.back().begin(), components.back().end());
   }
@@ -78,29 +81,37 @@ TEST(BreadthFirstCopy, IsTheSameGraphInTheOrderOfASearch) {
   }
 }
 
+/// What is found from the vertex of the name 0 of a connected graph, in which names decide ties.
+Index found_from_zero(const CsrGraph& graph, const std::vector<Index>& names) {
+  const BreadthFirstCopy copy = breadth_first_copy(renumbered(graph, names));
+  std::vector<Index> marks(graph.size(), -1);
+  const Index name = copy.old_numbers[pseudo_peripheral_vertex(copy, copy.components.front(), marks)];
+  return static_cast<Index>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+/// The numbers of the vertices as names, but that `start` and 0 change theirs.
+std::vector<Index> with_zero_at(Index start, Index size) {
+  std::vector<Index> names = index_range(0, size);
+  std::swap(names[0], names[start]);
+  return names;
+}
+
 TEST(PseudoPeripheralVertex, IsAnEndOfAPathAndACornerOfAGrid) {
-  std::vector<Index> marks(1000, -1);
-  EXPECT_EQ(pseudo_peripheral_vertex(test::path(1000), 400, marks) % 999, 0);
-  for (const Index end : {0, 6}) {  // of two ends the one of the smaller name
-    marks.assign(7, -1);
-    std::vector<Index> names(7, 3);
-    names[end] = 1;
-    EXPECT_EQ(pseudo_peripheral_vertex(test::path(7), 3, marks, names), end);
-  }
-  marks.assign(63, -1);
-  const Index corner = pseudo_peripheral_vertex(test::grid(9, 7), 31, marks);
+  EXPECT_EQ(found_from_zero(test::path(1000), with_zero_at(400, 1000)), 999);
+  // of two ends the one of the smaller name
+  EXPECT_EQ(found_from_zero(test::path(7), {1, 2, 3, 0, 4, 5, 6}), 0);
+  EXPECT_EQ(found_from_zero(test::path(7), {6, 2, 3, 0, 4, 5, 1}), 6);
+  const Index corner = found_from_zero(test::grid(9, 7), with_zero_at(31, 63));
   EXPECT_TRUE(corner == 0 || corner == 8 || corner == 54 || corner == 62) << corner;
-  marks.assign(1, -1);
-  EXPECT_EQ(pseudo_peripheral_vertex(test::path(1), 0, marks), 0);
+  EXPECT_EQ(found_from_zero(test::path(1), {0}), 0);
 }
 
 TEST(PseudoPeripheralVertex, SeesAtLeastAsFarAsItsStart) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const CsrGraph graph = test::random_connected(150, 20, seed);
-    std::vector<Index> marks(graph.size(), -1);
     const Index start = 75;
     const std::vector<Index> from_start = distances(graph, start);
-    const std::vector<Index> from_found = distances(graph, pseudo_peripheral_vertex(graph, start, marks));
+    const std::vector<Index> from_found = distances(graph, found_from_zero(graph, with_zero_at(start, 150)));
     EXPECT_GE(*std::max_element(from_found.begin(), from_found.end()),
               *std::max_element(from_start.begin(), from_start.end()));
   }
@@ -109,9 +120,10 @@ TEST(PseudoPeripheralVertex, SeesAtLeastAsFarAsItsStart) {
 // with work that grows with the whole graph this would take minutes
 TEST(PseudoPeripheralVertex, LooksAtItsComponentOnly) {
   const Index n = 200000;
-  const CsrGraph isolated = graph_from_edges(n, {});
+  const BreadthFirstCopy isolated = breadth_first_copy(graph_from_edges(n, {}));
   std::vector<Index> marks(n, -1);
-  for (Index v = 0; v < n; ++v) ASSERT_EQ(pseudo_peripheral_vertex(isolated, v, marks), v);
+  for (Index v = 0; v < n; ++v)
+    ASSERT_EQ(pseudo_peripheral_vertex(isolated, isolated.components[v], marks), v);
 }
 
 }  // namespace
