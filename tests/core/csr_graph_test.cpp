@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
 #include <utility>
@@ -105,6 +106,17 @@ TEST(Renumbered, KeepsEveryEdge) {
   test::check_graph(renamed);
   EXPECT_NE(renamed, graph);
   EXPECT_EQ(renumbered(renamed, reversed), graph);
+}
+
+TEST(Renumbered, SortsRowsOfFewAndOfManyNeighbours) {
+  for (const Index n : {2, 20, 33, 34, 300}) {
+    const CsrGraph graph = test::star(n);
+    std::vector<Index> names = index_range(0, n);
+    std::shuffle(names.begin(), names.end(), std::mt19937(7));
+    const CsrGraph renamed = renumbered(graph, names);
+    test::check_graph(renamed);
+    EXPECT_EQ(renamed.degree(names[0]), n - 1);
+  }
 }
 
 TEST(Components, LargestFirstThenBySmallestVertex) {
