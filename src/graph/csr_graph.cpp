@@ -33,20 +33,22 @@ void tidy_rows(CsrGraph& graph) {
   graph.neighbours.resize(kept);
 }
 
-/// Sorts numbers of which no two are equal. Few ones by counting for each how many are smaller, without the
-/// branches that a processor cannot predict: two to three times faster than std::sort.
-void sort_distinct_row(std::span<Index> row) {
+/// Writes the new numbers of a row's vertices, sorted. Few ones by counting for each how many are smaller,
+/// without the branches that a processor cannot predict: two to three times faster than std::sort.
+void write_renumbered(std::span<const Index> row, std::span<const Index> old_to_new, Index* target) {
   constexpr std::size_t kFew = 32;
-  if (row.size() > kFew) {
-    std::ranges::sort(row);
+  const std::size_t size = row.size();
+  if (size > kFew) {
+    std::ranges::transform(row, target, [&](Index u) { return old_to_new[u]; });
+    std::sort(target, target + size);
     return;
   }
   std::array<Index, kFew> numbers;
-  std::ranges::copy(row, numbers.begin());
-  for (const Index number : std::span(numbers).first(row.size())) {
+  for (std::size_t k = 0; k < size; ++k) numbers[k] = old_to_new[row[k]];
+  for (std::size_t k = 0; k < size; ++k) {
     Index smaller = 0;
-    for (std::size_t k = 0; k < row.size(); ++k) smaller += numbers[k] < number ? 1 : 0;
-    row[smaller] = number;
+    for (std::size_t i = 0; i < size; ++i) smaller += numbers[i] < numbers[k] ? 1 : 0;
+    target[smaller] = numbers[k];
   }
 }
 
@@ -83,10 +85,7 @@ CsrGraph renumbered(GraphRef graph, std::span<const Index> old_to_new) {
   constexpr Index kRowsAtOnce = 16384;
   for_each_chunk(graph.size(), kRowsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
-      const std::span row(result.neighbours.data() + result.offsets[old_to_new[v]],
-                          std::size_t(graph.degree(v)));
-      std::ranges::transform(graph[v], row.begin(), [&](Index u) { return old_to_new[u]; });
-      sort_distinct_row(row);
+      write_renumbered(graph[v], old_to_new, result.neighbours.data() + result.offsets[old_to_new[v]]);
     }
   });
   return result;
