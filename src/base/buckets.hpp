@@ -12,21 +12,24 @@
 namespace meshorder {
 
 /// Entries in buckets of neighbouring keys, those of a bucket as they came: the first step of a sort of more
-/// entries than caches hold, whose second one sorts every bucket by itself. Entries come in parts, each of
-/// which a thread puts into buckets of its own, so that all writes stay near each other in whatever order the
-/// keys come. The same for any number of threads. O(entries + parts · buckets) time and memory.
+/// entries than caches hold. The second step sorts each bucket by itself. Each thread puts a part of the
+/// entries into buckets of its own, so that it writes within its caches in whatever order the keys come. The
+/// same for any number of threads. O(entries + parts · buckets) time and memory.
 template <class Entry>
 class Buckets {
  public:
-  /// @param keys     how many there are: 0 … keys − 1
-  /// @param part_of  `part_of(part)` returns what calls its argument for each entry of a part, best some
-  ///                 10⁵ of them, and does so twice. Called on all threads.
-  /// @param key      `key(entry)`
-  template <class PartOf, class Key>
-  Buckets(Index parts, Index keys, const PartOf& part_of, const Key& key) : keys_(keys), parts_(parts) {
+  /// @param rows         that the entries come from
+  /// @param rows_of_part  that a thread takes together, with about 10⁵ entries
+  /// @param keys         how many there are: 0 … keys − 1
+  /// @param entries_of   `entries_of(part, begin, end)` returns what calls its argument for each entry of the
+  ///                     part's rows; it is called twice. On all threads.
+  /// @param key          `key(entry)`
+  template <class EntriesOf, class Key>
+  Buckets(Index rows, Index rows_of_part, Index keys, const EntriesOf& entries_of, const Key& key)
+      : keys_(keys), parts_(chunk_count(rows, rows_of_part)) {
     while (chunk_count(keys, width()) > kMostBuckets) ++log2_width_;
-    parallel_loop(parts, [&](Index k) {
-      const auto for_each_entry = part_of(k);
+    for_each_chunk(rows, rows_of_part, [&](Index k, Index begin, Index end) {
+      const auto for_each_entry = entries_of(k, begin, end);
       Part& part = parts_[k];
       std::vector<Offset> next(std::size_t(size()) + 1, 0);
       for_each_entry([&](const Entry& entry) { ++next[bucket_of(key(entry)) + 1]; });
@@ -50,6 +53,7 @@ class Buckets {
   /// How many entries come before the bucket.
   [[nodiscard]] Offset start(Index bucket) const { return starts_[bucket]; }
 
+  /// The smallest key that the bucket may have.
   [[nodiscard]] Index first_key(Index bucket) const { return bucket << log2_width_; }
 
   /// Returns how many entries come before those of each key of the bucket, and of its end.

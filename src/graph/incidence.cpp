@@ -42,21 +42,27 @@ bool is_scattered(IncidenceRef incidence) {
   return far > looks / 8;
 }
 
+/// Rows that a thread takes together.
+constexpr Index kRowsOfPart = 16384;
+
 // Both of the following return the rows of each column, ascending, one column after another.
-// `part_of(part)` returns what calls its argument for the positions of a part of the rows, row by row.
+// `entries_of(part, begin, end)` returns what calls its argument for the positions in the rows of a part.
 
 /// @param offsets  where each column begins, and the end
-template <class PartOf>
-std::vector<Index> by_columns(Index parts, const PartOf& part_of, const std::vector<Offset>& offsets) {
+template <class EntriesOf>
+std::vector<Index> by_columns(Index row_count, const EntriesOf& entries_of,
+                              const std::vector<Offset>& offsets) {
   std::vector<Index> rows;
   resize_in_steps(rows, static_cast<std::size_t>(offsets.back()));
   std::vector<Offset> next(offsets.begin(), offsets.end() - 1);
   const auto write = [rows = rows.data(), next = next.data()](Position at) {
     rows[next[at.column]++] = at.row;
   };
-  for (Index part = 0; part < parts; ++part) {
+  for (Index begin = 0, part = 0; begin < row_count; ++part) {
     poll();
-    part_of(part)(write);
+    const Index end = begin + std::min(row_count - begin, kRowsOfPart);
+    entries_of(part, begin, end)(write);
+    begin = end;
   }
   return rows;
 }
@@ -64,10 +70,12 @@ std::vector<Index> by_columns(Index parts, const PartOf& part_of, const std::vec
 /// For scattered columns, on all threads.
 ///
 /// @param offsets  are written: where each column begins, and the end
-template <class PartOf>
-std::vector<Index> by_columns_in_buckets(Index parts, const PartOf& part_of, std::vector<Offset>& offsets) {
+template <class EntriesOf>
+std::vector<Index> by_columns_in_buckets(Index row_count, const EntriesOf& entries_of,
+                                         std::vector<Offset>& offsets) {
   const auto column_of = [](const Position& at) { return at.column; };
-  const Buckets<Position> buckets(parts, static_cast<Index>(offsets.size() - 1), part_of, column_of);
+  const auto columns = static_cast<Index>(offsets.size() - 1);
+  const Buckets<Position> buckets(row_count, kRowsOfPart, columns, entries_of, column_of);
   std::vector<Index> rows;
   resize_in_steps(rows, static_cast<std::size_t>(buckets.start(buckets.size())));
   parallel_loop(buckets.size(), [&](Index bucket) {
@@ -85,11 +93,7 @@ std::vector<Index> by_columns_in_buckets(Index parts, const PartOf& part_of, std
 }  // namespace
 
 Incidence transposed(IncidenceRef incidence) {
-  constexpr Index kPart = 16384;  // rows
-  const Index parts = chunk_count(incidence.size(), kPart);
-  const auto part_of = [&](Index part) {
-    const Index begin = part * kPart;
-    const Index end = std::min(incidence.size() - begin, kPart) + begin;
+  const auto entries_of = [&](Index /*part*/, Index begin, Index end) {
     return [&incidence, begin, end](const auto& call) {
       for (Index e = begin; e < end; ++e) {
         for (const Index v : incidence[e]) call(Position{.row = e, .column = v});
@@ -100,18 +104,16 @@ Incidence transposed(IncidenceRef incidence) {
   result.vertex_count = incidence.size();
   result.offsets.assign(Offset{incidence.vertex_count} + 1, 0);
   if (is_scattered(incidence)) {
-    result.vertices = by_columns_in_buckets(parts, part_of, result.offsets);
+    result.vertices = by_columns_in_buckets(incidence.size(), entries_of, result.offsets);
     return result;
   }
   for (const Index v : incidence.vertices) ++result.offsets[v + 1];
   std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
-  result.vertices = by_columns(parts, part_of, result.offsets);
+  result.vertices = by_columns(incidence.size(), entries_of, result.offsets);
   return result;
 }
 
 namespace {
-
-constexpr Index kRowsOfPart = 16384;  // vertices whose rows a thread finds together
 
 /// The size that all elements share, 0 where they differ.
 Offset common_size(IncidenceRef elements) {
@@ -206,14 +208,13 @@ std::vector<Rows> find_rows(IncidenceRef elements, std::vector<Offset>& degrees)
   }
 }
 
-/// The symmetric graph with these rows, kRowsOfPart in each of `parts`, each sorted: by columns they are.
-/// Parts are freed once they are read.
+/// The symmetric graph with these rows, kRowsOfPart in each of `parts`, each sorted: the rows of each
+/// column of a symmetric matrix are its own row, sorted. Parts are freed once they are read.
 CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::vector<Rows> parts, bool scattered) {
   CsrGraph graph;
   graph.offsets = std::move(offsets);
-  const auto part_of = [&](Index part) {
-    return [&graph, rows = std::move(parts[part]), begin = part * kRowsOfPart](const auto& call) {
-      const Index end = std::min(graph.size() - begin, kRowsOfPart) + begin;
+  const auto entries_of = [&](Index part, Index begin, Index end) {
+    return [&graph, rows = std::move(parts[part]), begin, end](const auto& call) {
       const Index* neighbour = rows.neighbours.data();
       for (Index v = begin; v < end; ++v) {
         for (const Index* const last = neighbour + graph.degree(v); neighbour < last; ++neighbour)
@@ -221,8 +222,8 @@ CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::vector<Rows> parts, 
       }
     };
   };
-  graph.neighbours = scattered ? by_columns_in_buckets(index_size(parts), part_of, graph.offsets)
-                               : by_columns(index_size(parts), part_of, graph.offsets);
+  graph.neighbours = scattered ? by_columns_in_buckets(graph.size(), entries_of, graph.offsets)
+                               : by_columns(graph.size(), entries_of, graph.offsets);
   return graph;
 }
 

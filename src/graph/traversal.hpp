@@ -28,15 +28,17 @@ BreadthFirst breadth_first(GraphRef graph, Index start, std::vector<Index>& mark
 /// finds them, so that further searches find in the cache what they look at. Rows list the same neighbours in
 /// the same order as before: a search passes through both graphs alike.
 struct BreadthFirstCopy {
-  std::vector<Offset> offsets;
-  std::vector<Index> neighbours;
-  std::vector<Index> old_numbers;  ///< of each vertex
+  /// A component's vertices, first … end − 1, level after level.
   struct Component {
-    Index first;  ///< of its vertices
+    Index first;
     Index end;
     Index last_level;  ///< the first vertex of the last level
     Index depth;       ///< how many levels come before that one
   };
+
+  std::vector<Offset> offsets;
+  std::vector<Index> neighbours;
+  std::vector<Index> old_numbers;     ///< of each vertex
   std::vector<Component> components;  ///< in the order of `connected_components`
 
   [[nodiscard]] GraphRef graph() const { return {offsets, neighbours}; }

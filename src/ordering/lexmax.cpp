@@ -60,16 +60,13 @@ Order lexmax_elements(const ElementInput& input, const OrderOptions&) {
   const IncidenceRef elements = input.elements;
   const std::span<const Index> rank_of = input.vertices.old_to_new();
   const auto largest_rank = [](const Entry& entry) { return entry.ranks[0]; };
-  const auto entries_of_part = [&](Index part) {
-    const Index begin = part * kPart;
-    const Index end = std::min(elements.size() - begin, kPart) + begin;
+  const auto entries_of = [&](Index /*part*/, Index begin, Index end) {
     std::vector<Entry> entries;
     entries.reserve(std::size_t(end - begin));
     for (Index e = begin; e < end; ++e) entries.push_back(entry_of(e, elements[e], rank_of));
     return [entries = std::move(entries)](const auto& call) { std::ranges::for_each(entries, call); };
   };
-  const Buckets<Entry> buckets(chunk_count(elements.size(), kPart), elements.vertex_count, entries_of_part,
-                               largest_rank);
+  const Buckets<Entry> buckets(elements.size(), kPart, elements.vertex_count, entries_of, largest_rank);
 
   const std::vector<Index> all_ranks = falling_ranks(elements, rank_of);
   // by the ranks after the largest, ties by number: an order without equals

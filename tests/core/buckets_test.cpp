@@ -29,10 +29,11 @@ std::vector<std::vector<Entry>> parts_with(Index keys, std::size_t parts, unsign
 TEST(Buckets, SortedOneByOneSortAllAndKeepThoseOfAKeyAsTheyCame) {
   for (const Index keys : {1, 7, 1024, 1025, 300000, 3000000}) {
     const std::vector<std::vector<Entry>> parts = parts_with(keys, 40, static_cast<unsigned>(keys));
-    const auto part_of = [&](Index part) {
+    const auto entries_of = [&](Index part, Index begin, Index end) {
+      EXPECT_EQ(std::pair(begin, end), std::pair(3 * part, std::min(3 * part + 3, 118)));
       return [&, part](const auto& call) { std::ranges::for_each(parts[part], call); };
     };
-    const Buckets<Entry> buckets(index_size(parts), keys, part_of, key_of);
+    const Buckets<Entry> buckets(118, 3, keys, entries_of, key_of);
     std::vector<Entry> sorted;
     for (Index bucket = 0; bucket < buckets.size(); ++bucket) {
       ASSERT_EQ(buckets.start(bucket), std::ssize(sorted));
@@ -52,10 +53,10 @@ TEST(Buckets, SortedOneByOneSortAllAndKeepThoseOfAKeyAsTheyCame) {
 }
 
 TEST(Buckets, OfNothingAreEmpty) {
-  const auto part_of = [](Index /*part*/) { return [](const auto& /*call*/) {}; };
-  EXPECT_EQ(Buckets<Entry>(0, 0, part_of, key_of).size(), 0);
-  EXPECT_GT(Buckets<Entry>(0, kMaxIndex, part_of, key_of).first_key(1), kMaxIndex / 4000);
-  const Buckets<Entry> without_entries(3, 5, part_of, key_of);
+  const auto entries_of = [](Index, Index, Index) { return [](const auto& /*call*/) {}; };
+  EXPECT_EQ(Buckets<Entry>(0, 3, 0, entries_of, key_of).size(), 0);
+  EXPECT_GT(Buckets<Entry>(0, 3, kMaxIndex, entries_of, key_of).first_key(1), kMaxIndex / 4000);
+  const Buckets<Entry> without_entries(9, 3, 5, entries_of, key_of);
   EXPECT_EQ(without_entries.start(without_entries.size()), 0);
   EXPECT_EQ(without_entries.key_starts(0, key_of), std::vector<Offset>(6, 0));
 }
