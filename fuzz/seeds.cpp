@@ -121,9 +121,12 @@ void add_encodings(Seeds& seeds) {
     }
   }
   for (const std::endian order : {std::endian::little, std::endian::big}) {
+    seeds.add("gmsh", test::gmsh_40_binary(order));
     seeds.add("gmsh", test::gmsh_41_binary(order));
     seeds.add("gmsh", test::gmsh_22_binary(order));
   }
+  seeds.add("gmsh", test::kGmsh1);
+  seeds.add("gmsh", test::gmsh_40());
   seeds.add("gmsh", test::kGmsh41);
   seeds.add("gmsh", test::kGmsh22);
 }

@@ -173,6 +173,44 @@ $ElementData
 $EndElementData
 )";
 
+/// The mesh of kGmsh22 with the two tags that elements have in version 1.
+inline constexpr std::string_view kGmsh1 = R"($NOD
+5
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+5 0 0 -1
+$ENDNOD
+$ELM
+4
+1 15 0 1 1 1
+2 4 4 5 4 1 2 3 4
+3 2 7 3 3 1 2 3
+4 4 9 6 4 1 3 2 5
+$ENDELM
+)";
+
+/// The file kGmsh41 in version 4.0.
+inline std::string gmsh_40() {
+  std::string content(kGmsh41);
+  const auto replace = [&](std::string_view what, std::string_view by) {
+    content.replace(content.find(what), what.size(), by);
+  };
+  const auto replace_section = [&](std::string_view name, std::string_view by) {
+    const std::size_t begin = content.find("$" + std::string(name) + "\n") + name.size() + 2;
+    content.replace(begin, content.find("$End" + std::string(name)) - begin, by);
+  };
+  replace("4.1 0 8", "4 0 8");
+  replace("1 0 0 0 0\n", "1 0 0 0 0 0 0 0\n");  // a point has two corners, too
+  replace_section("Nodes",
+                  "3 6\n1 0 0 1\n2 0 0 0\n3 2 1 2\n10 1 0 0 0.5 0.25\n20 0 1 0 0.75 0.125\n"
+                  "5 3 0 3\n30 0 0 1\n35 0.5 0.5 0.5\n40 0 0 -1\n");
+  replace_section("Elements", "3 3\n3 2 2 1\n3 2 10 20\n5 3 4 1\n7 2 10 20 30\n6 3 4 1\n9 2 20 10 40\n");
+  replace("16 1 0 0 0", "Affine 1 0 0 0");
+  return content;
+}
+
 /// Puts together binary files in either byte order.
 class Bytes {
  public:
@@ -235,6 +273,39 @@ inline std::string gmsh_41_binary(std::endian order) {
   file.ints(9).reals(1.5, 2.5, 3.5).ints(3).reals(4.5, 5.5, 6.5);
   file.text("\n$EndElementData\n$ElementNodeData\n1\n\"jump\"\n1\n0\n3\n0\n1\n1\n");
   return file.ints(3, 3).reals(1, 2, 3).text("\n$EndElementNodeData\n").content();
+}
+
+/// The same in version 4.0, as Gmsh 4.0 writes it.
+inline std::string gmsh_40_binary(std::endian order) {
+  Bytes file(order);
+  file.text("$MeshFormat\n4 1 8\n").ints(1).text("\n$EndMeshFormat\n");
+  file.text("$PhysicalNames\n1\n3 4 \"rock\"\n$EndPhysicalNames\n$Entities\n").sizes(1, 0, 1, 2);
+  file.ints(1).reals(0, 0, 0, 0, 0, 0).sizes(0);
+  file.ints(3).reals(0, 0, 0, 1, 1, 0).sizes(1).ints(7).sizes(0);
+  file.ints(5).reals(0, 0, 0, 1, 1, 1).sizes(2).ints(4, 9).sizes(1).ints(3);
+  file.ints(6)
+      .reals(0, 0, 0, 1, 1, 2)
+      .sizes(1)
+      .ints(9)
+      .sizes(0)
+      .text("\n$EndEntities\n$PartitionedEntities\n");
+  file.ints(2, 1, 8, 2).sizes(0, 0, 0, 1);  // partitions, ghosts, and a volume in one partition
+  file.ints(5, 3, 6, 1, 2).reals(0, 0, 0, 1, 1, 1).sizes(2).ints(4, 9).sizes(1).ints(3);
+  file.text("\n$EndPartitionedEntities\n$Nodes\n");
+  file.sizes(3, 6).ints(1, 0, 0).sizes(1).ints(2).reals(0, 0, 0);
+  file.ints(3, 2, 1).sizes(2).ints(10).reals(1, 0, 0, 0.5, 0.25).ints(20).reals(0, 1, 0, 0.75, 0.125);
+  file.ints(5, 3, 1).sizes(3).ints(30).reals(0, 0, 1).ints(35).reals(0.5, 0.5, 0.5).ints(40).reals(0, 0, -1);
+  file.text("\n$EndNodes\n$Elements\n").sizes(3, 3);
+  file.ints(3, 2, 2).sizes(1).ints(3, 2, 10, 20);
+  file.ints(5, 3, 4).sizes(1).ints(7, 2, 10, 20, 30);
+  file.ints(6, 3, 4).sizes(1).ints(9, 2, 20, 10, 40).text("\n$EndElements\n$Periodic\n");
+  file.ints(2, 2, 3, 8).numbers<std::int64_t>(-1).reals(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.5, 0, 0, 0, 1);
+  file.sizes(2).ints(10, 2, 20, 30).ints(0, 1, 2).sizes(1).ints(2, 10);
+  file.text("\n$EndPeriodic\n$GhostElements\n")
+      .ints(1, 9, 1, 2, 3, 4)
+      .text("\n$EndGhostElements\n$ElementData\n");
+  file.text("1\n\"stress\"\n1\n0\n3\n0\n3\n2\n").ints(9).reals(1.5, 2.5, 3.5).ints(3).reals(4.5, 5.5, 6.5);
+  return file.text("\n$EndElementData\n").content();
 }
 
 /// The mesh of kGmsh22 with its tags, in binary.

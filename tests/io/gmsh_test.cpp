@@ -11,6 +11,9 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 namespace meshorder::test {
 namespace {
@@ -151,6 +154,64 @@ TEST(Gmsh, ReadsBinaryFilesOfBothByteOrdersAlike) {
             (Reals{0.1}));
 }
 
+TEST(Gmsh, ReadsVersion40As41) {
+  expect_same(read_text(gmsh_40()), read_text(kGmsh41));
+  expect_same(read_text(gmsh_40_binary(std::endian::big)), read_text(gmsh_40_binary(std::endian::little)));
+  const Mesh binary = read_text(gmsh_40_binary(std::endian::little));
+  const Mesh text = read_text(kGmsh41);
+  EXPECT_EQ(binary.points, text.points);
+  EXPECT_EQ(binary.cells, text.cells);
+  EXPECT_EQ(binary.vertex_ids, text.vertex_ids);
+  EXPECT_EQ(binary.cell_ids, text.cell_ids);
+  EXPECT_EQ(values<std::int32_t>(binary, "gmsh:dim_tags", Association::vertices),
+            values<std::int32_t>(text, "gmsh:dim_tags", Association::vertices));
+  EXPECT_EQ(values<std::int32_t>(binary, kLabel, Association::cells), (Ints{7, 4, 9}));
+  EXPECT_EQ(values<double>(binary, "gmsh:parametric", Association::vertices),
+            (Reals{0, 0, 0, 0, 1, 0.5, 0.25, 0, 1, 0.75, 0.125, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}));
+  EXPECT_EQ(values<std::int32_t>(binary, "gmsh:ghosts", Association::cells), (Ints{1, 2, 3, 4}));
+  EXPECT_EQ(set_of(binary, "gmsh:periodic 2 3").members, set_of(text, "gmsh:periodic 2 3").members);
+  EXPECT_THAT(set_of(binary, "gmsh:periodic 0 1").members, ElementsAre(0));
+}
+
+TEST(Gmsh, ReadsAllOfVersion1) {
+  const Mesh mesh = read_text(kGmsh1);
+  const Mesh newer = read_text(kGmsh22);
+  EXPECT_EQ(mesh.points, newer.points);
+  EXPECT_EQ(mesh.cells, newer.cells);
+  EXPECT_EQ(values<std::int32_t>(mesh, kLabel, Association::cells), (Ints{0, 4, 7, 9}));
+  EXPECT_EQ(values<std::int32_t>(mesh, "gmsh:geometrical", Association::cells), (Ints{1, 5, 3, 6}));
+  // other names that Gmsh reads
+  std::string names(kGmsh1);
+  for (const auto& [old, fresh] :
+       {std::pair{"$NOD", "$NOE"}, {"$ENDNOD", "$EndNOE"}, {"$ENDELM", "$EndELM"}}) {
+    names = replaced(names, old, fresh);
+  }
+  expect_same(read_text(names), mesh);
+  const Mesh with_comments = read_text(std::string(kGmsh1) + "$Comments\nhe said $End\n$ENDComments\n");
+  EXPECT_THAT(written(with_comments), EndsWith("$ENDELM\n$Comments\nhe said $End\n$ENDComments\n"));
+}
+
+TEST(Gmsh, EndsANameAtItsSecondQuoteAndKeepsTheRest) {
+  const std::string content =
+      replaced(std::string(kGmsh41), "\"rock\"", "\"rock\" lower_dimensional_block \"x\"");
+  const Mesh mesh = read_text(content);
+  EXPECT_THAT(set_of(mesh, "rock").members, ElementsAre(1));
+  EXPECT_EQ(written(mesh), content);
+}
+
+TEST(Gmsh, TakesAnyEndOfASectionForItsEndAndSaysSo) {
+  for (const auto& [file, end, found] : std::vector<std::tuple<std::string, std::string, std::string>>{
+           {std::string(kGmsh22), "$EndElementData", "$EndElememtData"},
+           {std::string(kGmsh41), "$EndNodes", "$EndNode"},
+           {std::string(kGmsh41), "$EndPhysicalNames", "$EndPhysicalName"},
+           {std::string(kGmsh1), "$ENDELM", "$ENDELEM"}}) {
+    Notes notes;
+    const Mesh mesh = read_text(replaced(file, end + "\n", found + "\n"), &notes);
+    EXPECT_EQ(written(mesh), file);
+    EXPECT_THAT(notes, ElementsAre(HasSubstr(": " + found + " is read as " + end)));
+  }
+}
+
 TEST(Gmsh, UnderstandsAnyLineEnds) {
   std::string content;
   int line = 0;
@@ -191,9 +252,11 @@ TEST(Gmsh, TakesBlocksOfOneKindThatFollowEachOtherForOne) {
 }
 
 TEST(Gmsh, WritesAgainWhatItReadByteForByte) {
-  for (const std::string& content : {std::string(kGmsh41), std::string(kGmsh22),
-                                     gmsh_41_binary(std::endian::little), gmsh_41_binary(std::endian::big),
-                                     gmsh_22_binary(std::endian::little), gmsh_22_binary(std::endian::big)}) {
+  for (const std::string& content :
+       {std::string(kGmsh41), gmsh_40(), std::string(kGmsh22), std::string(kGmsh1),
+        gmsh_40_binary(std::endian::little), gmsh_40_binary(std::endian::big),
+        gmsh_41_binary(std::endian::little), gmsh_41_binary(std::endian::big),
+        gmsh_22_binary(std::endian::little), gmsh_22_binary(std::endian::big)}) {
     Notes notes;
     const std::string again = written(read_text(content), &notes);
     EXPECT_TRUE(again == content) << content.substr(0, 20) << "\n" << again;
@@ -204,7 +267,8 @@ TEST(Gmsh, WritesAgainWhatItReadByteForByte) {
 TEST(Gmsh, OrdersEveryKindOfFileAndBack) {
   const TemporaryFolder folder;
   for (const std::string& content :
-       {std::string(kGmsh41), std::string(kGmsh22), gmsh_41_binary(std::endian::little),
+       {std::string(kGmsh41), std::string(kGmsh22), std::string(kGmsh1), gmsh_40(),
+        gmsh_40_binary(std::endian::big), gmsh_41_binary(std::endian::little),
         gmsh_41_binary(std::endian::big), gmsh_22_binary(std::endian::little)}) {
     expect_order_and_back(folder.file("mesh.msh", content));
   }

@@ -257,7 +257,7 @@ void read_view(ReadContext& reading, std::string_view section) {
   array.name = *view.array;
   array.association = view.association;
   std::vector<double> values = even_rows(reading, entries, view, array.components);
-  expect_end(reading.source, section);
+  expect_end(reading, section);
   reading.metadata.sections.push_back({SectionKind::view, view.section, "", reading.metadata.views.size()});
   reading.view_arrays.push_back(reading.mesh.data.size());
   if (entries.rows.empty()) {  // an array without rows would mean all

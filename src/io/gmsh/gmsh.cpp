@@ -13,9 +13,10 @@
 #include <set>
 #include <span>
 
-// Specification: https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format. This file walks the
-// sections; v2.cpp and v4.cpp read and write nodes and elements, data.cpp and links.cpp their data and links,
-// groups.cpp makes groups and entities.
+// Specification: https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format; 4.0 is described in the manual of
+// Gmsh 4.0, and what its binary files hold in GModelIO_MSH4.cpp there. This file walks the sections; v2.cpp
+// and v4.cpp read and write nodes and elements, data.cpp and links.cpp their data and links, groups.cpp makes
+// groups and entities.
 
 namespace meshorder {
 namespace gmsh {
@@ -29,17 +30,21 @@ const std::set<std::string_view> kDataSections{"NodeData", "ElementData", "Eleme
 /// of its own.
 const std::set<std::string_view> kVerbatimSections{"Comments", "InterpolationScheme", "Parametrizations"};
 
-/// Moves to the line $EndName and returns the text before it.
-std::string_view body(NumberReader& source, std::string_view section) {
+/// Moves to the line $EndName, $ENDName in version 1, and returns the text before it.
+std::string_view body(ReadContext& reading, std::string_view section) {
+  NumberReader& source = reading.source;
   const std::string_view all = source.scanner.all();
   const std::string end = "$End" + std::string(section);
+  const std::string end_1 = "$END" + std::string(section);
   const auto begin = static_cast<std::size_t>(source.scanner.byte());
-  for (std::size_t at = all.find(end, begin); at != std::string_view::npos; at = all.find(end, at + 1)) {
+  for (std::size_t at = all.find("$E", begin); at != std::string_view::npos; at = all.find("$E", at + 1)) {
+    const std::string_view line = all.substr(at);
     const char before = at == 0 ? '\n' : all[at - 1];
-    const std::size_t behind = at + end.size();
+    const std::size_t after = at + end.size();
     const bool ends =
-        behind == all.size() || std::string_view(" \t\r\n").find(all[behind]) != std::string_view::npos;
-    if ((before != '\n' && before != '\r') || !ends) continue;
+        after == all.size() || std::string_view(" \t\r\n").find(all[after]) != std::string_view::npos;
+    const bool named = line.starts_with(end) || (reading.metadata.is_version_1() && line.starts_with(end_1));
+    if ((before != '\n' && before != '\r') || !named || !ends) continue;
     source.scanner.seek(static_cast<std::int64_t>(at));
     return all.substr(begin, at - begin);
   }
@@ -48,9 +53,9 @@ std::string_view body(NumberReader& source, std::string_view section) {
 
 /// Fails unless the version is supported.
 void check_version(const NumberReader& source, double version) {
-  if ((version >= 2 && version < 2.3) || (version > 4.05 && version < 4.15)) return;
+  if ((version >= 2 && version < 2.3) || (version >= 4 && version < 4.15)) return;
   source.fail(fmt::format("version {:.1f} of Gmsh's format is not supported", version),
-              "2.2 and 4.1 are; convert the file with gmsh OLD.msh -save -format msh41 -o NEW.msh");
+              "1, 2.2, 4.0 and 4.1 are; convert the file with gmsh OLD.msh -save -format msh41 -o NEW.msh");
 }
 
 void read_format(ReadContext& reading) {
@@ -78,7 +83,7 @@ void read_format(ReadContext& reading) {
     const auto other = std::endian::native == std::endian::little ? std::endian::big : std::endian::little;
     source.order = reading.metadata.order = one == 1 ? std::endian::native : other;
   }
-  expect_end(source, "MeshFormat");
+  expect_end(reading, "MeshFormat");
   reading.metadata.sections.push_back({SectionKind::format, "MeshFormat", "", 0});
 }
 
@@ -86,8 +91,8 @@ void read_format(ReadContext& reading) {
 /// names are not interpreted.
 void read_names(ReadContext& reading) {
   NumberReader& source = reading.source;
+  const std::int64_t begin = source.scanner.byte();
   if (reading.metadata.version > 2.05) {
-    const std::int64_t begin = source.scanner.byte();
     const Index count =
         source.checked_count(source.text_integer("the number of names"), "the number of names", 4);
     for (Index i = 0; i < count; ++i) {
@@ -95,18 +100,22 @@ void read_names(ReadContext& reading) {
       name.dimension = static_cast<std::int32_t>(source.text_integer("the dimension of a physical group"));
       name.tag = static_cast<std::int32_t>(source.text_integer("the tag of a physical group"));
       const std::string_view text = source.scanner.rest_of_line();
-      if (text.size() < 2 || text.front() != '"' || text.back() != '"') {
+      // as for Gmsh, the second quote ends the name; the text after it, by which libMesh marks blocks, is
+      // kept
+      const std::size_t end = text.find('"', 1);
+      if (!text.starts_with('"') || end == std::string_view::npos) {
         source.fail("the name of the physical group " + std::to_string(name.tag) + " has no quotes",
                     "write it as \"name\"");
       }
-      name.name = text.substr(1, text.size() - 2);
+      name.name = text.substr(1, end - 1);
       reading.metadata.names.push_back(std::move(name));
     }
-    expect_end(source, "PhysicalNames");
-    source.scanner.seek(begin);
+    (void)source.scanner.at_end();
+  } else {
+    (void)body(reading, "PhysicalNames");
   }
-  const std::string_view text = body(source, "PhysicalNames");
-  expect_end(source, "PhysicalNames");
+  const std::string_view text = source.scanner.all().substr(begin, source.scanner.byte() - begin);
+  expect_end(reading, "PhysicalNames");
   reading.metadata.sections.push_back({SectionKind::verbatim, "PhysicalNames", std::string(text), 0});
 }
 
@@ -117,7 +126,7 @@ void read_entities(ReadContext& reading, const std::string& section) {
   read_entities_4(reading, section == "PartitionedEntities");
   (void)source.scanner.at_end();
   const std::string_view text = source.scanner.all().substr(begin, source.scanner.byte() - begin);
-  expect_end(source, section);
+  expect_end(reading, section);
   reading.metadata.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
 }
 
@@ -143,7 +152,7 @@ bool is_text(std::string_view text) {
 void read_verbatim(ReadContext& reading, const std::string& section) {
   NumberReader& source = reading.source;
   const std::int64_t line = source.scanner.line();
-  const std::string_view text = body(source, section);
+  const std::string_view text = body(reading, section);
   if (!kVerbatimSections.contains(section) && (has_numbers(text) || !is_text(text))) {
     source.fail(
         fmt::format("the section ${} from line {} on holds numbers of unknown meaning, which reordering "
@@ -151,7 +160,7 @@ void read_verbatim(ReadContext& reading, const std::string& section) {
                     section, line - 1),
         "take it out of the file, or keep it as $Comments");
   }
-  expect_end(source, section);
+  expect_end(reading, section);
   reading.metadata.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
 }
 
@@ -161,13 +170,13 @@ void read_nodes(ReadContext& reading) {
 
 void read_parametric_nodes(ReadContext& reading) {
   if (!reading.metadata.is_version_2()) {
-    reading.source.fail("a section $ParametricNodes", "in version 4.1 it is called $Nodes");
+    reading.source.fail("a section $ParametricNodes", "in version 4 it is called $Nodes");
   }
   read_nodes_2(reading, "ParametricNodes");
 }
 
 void read_elements(ReadContext& reading) {
-  reading.metadata.is_version_2() ? read_elements_2(reading) : read_elements_4(reading);
+  reading.metadata.is_version_2() ? read_elements_2(reading, "Elements") : read_elements_4(reading);
 }
 
 void read_periodic_or_ghosts(ReadContext& reading, SectionKind kind) {
@@ -189,6 +198,12 @@ struct Single {
 
 constexpr std::array kSingles{
     Single{"Nodes", SectionKind::nodes, SectionKind::format, read_nodes},
+    Single{"NOD", SectionKind::nodes, SectionKind::format,
+           [](ReadContext& reading) { read_nodes_2(reading, "NOD"); }},
+    Single{"NOE", SectionKind::nodes, SectionKind::format,
+           [](ReadContext& reading) { read_nodes_2(reading, "NOE"); }},
+    Single{"ELM", SectionKind::elements, SectionKind::nodes,
+           [](ReadContext& reading) { read_elements_2(reading, "ELM"); }},
     Single{"ParametricNodes", SectionKind::nodes, SectionKind::format, read_parametric_nodes},
     Single{"Elements", SectionKind::elements, SectionKind::nodes, read_elements},
     Single{"Periodic", SectionKind::periodic, SectionKind::nodes,
@@ -212,11 +227,11 @@ void read_single(ReadContext& reading, const Single& single) {
 /// Reads the section `name` after its first line.
 void read_section(ReadContext& reading, const std::string& name) {
   NumberReader& source = reading.source;
-  const bool has_format = has_section(reading.metadata, SectionKind::format);
-  if (name == "NOD") {
-    source.fail("version 1 of Gmsh's format is not supported",
-                "convert the file with gmsh OLD.msh -save -format msh41 -o NEW.msh");
+  if ((name == "NOD" || name == "NOE") && reading.metadata.sections.empty()) {
+    reading.metadata.version = 1;  // which has no $MeshFormat
+    reading.metadata.sections.push_back({SectionKind::format, "", "", 0});
   }
+  const bool has_format = has_section(reading.metadata, SectionKind::format);
   if (name == "MeshFormat") {
     if (has_format) source.fail("a second section $MeshFormat", "a file has one");
     return read_format(reading);
@@ -341,6 +356,7 @@ void take_layout(const Metadata& layout, WriteContext& output) {
   place(kCellEntity, Association::cells);
   if (layout.is_version_2()) {
     if (!integers_of(mesh, kLabel, Association::cells).empty()) place(kLabel, Association::cells);
+    if (layout.is_version_1()) return;
     place(kCellPartitions, Association::cells);
     place(kCellTagCount, Association::cells);
     if (!is_parametric_2(layout)) return;
@@ -406,6 +422,7 @@ void write_format(NumberWriter& sink, const Metadata& layout) {
 }
 
 void write_section(NumberWriter& sink, const WriteContext& output, const Section& section) {
+  if (section.name.empty()) return;  // the format of version 1
   const bool version_2 = output.layout.is_version_2();
   sink.out.print("${}\n", section.name);
   switch (section.kind) {
@@ -434,7 +451,7 @@ void write_section(NumberWriter& sink, const WriteContext& output, const Section
                           !(version_2 && section.kind == SectionKind::periodic);
   if (sink.binary && has_binary) sink.out.write("\n");
   sink.out.write(section.text);
-  sink.out.print("$End{}\n", section.name);
+  sink.out.print("{}{}\n", output.layout.is_version_1() ? "$END" : "$End", section.name);
 }
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
@@ -501,10 +518,7 @@ void add_cell(Mesh& mesh, const ElementType& type, std::span<const Index> nodes)
 void write_cell_nodes(NumberWriter& sink, const WriteContext& output, Index c, bool wide) {
   const auto nodes = output.mesh.cells[c];
   const std::span<const int> order = vtk_order(output.types[c]->shape, output.types[c]->nodes);
-  const auto put = [&](Index vertex) {
-    const std::int64_t id = output.node_id(vertex);
-    wide ? sink.size(id) : sink.int32(id);
-  };
+  const auto put = [&](Index vertex) { sink.number(output.node_id(vertex), wide); };
   if (order.empty()) {
     for (const Index vertex : nodes) put(vertex);
     return;

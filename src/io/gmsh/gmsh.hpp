@@ -118,7 +118,12 @@ struct Metadata : FormatMetadata {
   std::vector<EmptyBlock> empty_element_blocks;
 
   [[nodiscard]] std::vector<std::string> contents() const override;
+  [[nodiscard]] bool is_version_1() const { return version < 2; }
+  /// Whether elements have tags of their own: versions 1 and 2.
   [[nodiscard]] bool is_version_2() const { return version < 3; }
+  [[nodiscard]] bool is_version_40() const { return version >= 4 && version < 4.05; }
+  /// Whether numbers of nodes and elements have 64 bits; in binary files of 4.0 they have 32.
+  [[nodiscard]] bool has_wide_numbers() const { return !binary || !is_version_40(); }
 };
 
 // ---- reading
@@ -126,9 +131,6 @@ struct Metadata : FormatMetadata {
 /// Maps the numbers of nodes or elements to their positions. Fails for negative numbers and for numbers that
 /// are given twice; `what` is "node" or "element".
 IdMap number_ids(const NumberReader& source, const std::vector<std::int64_t>& ids, std::string_view what);
-
-/// Reads the line $EndSECTION.
-void expect_end(NumberReader& source, std::string_view section);
 
 /// The state of the reader.
 struct ReadContext {
@@ -142,6 +144,21 @@ struct ReadContext {
   std::vector<std::size_t> view_arrays;  ///< index of each view's array in `mesh.data`, if it has one
   Notes& notes;
 };
+
+/// Reads the line $EndSECTION ($ENDSECTION in version 1). Any other word that begins with $End ends the
+/// section, too, with a note.
+void expect_end(ReadContext& reading, std::string_view section);
+
+/// Reads the number of a node or element, or a count that has the same width (see `has_wide_numbers`).
+inline std::int64_t read_number(ReadContext& reading, std::string_view what) {
+  return reading.metadata.has_wide_numbers() ? reading.source.int64(what) : reading.source.int32(what);
+}
+/// Reads such a count of items that take at least that many bytes each.
+inline Index read_count(ReadContext& reading, std::string_view what, std::int64_t text_bytes,
+                        std::int64_t binary_bytes) {
+  const std::int64_t count = read_number(reading, what);
+  return reading.source.checked_count(count, what, reading.source.binary ? binary_bytes : text_bytes);
+}
 
 /// Returns the element type of that number; fails if it is not supported.
 const ElementType& known_type(const NumberReader& source, std::int64_t number);
@@ -169,9 +186,9 @@ void keep_parameters(Mesh& mesh, std::vector<double> values);
 /// Fails if a row is given twice.
 void check_distinct(const NumberReader& source, std::vector<Index> rows, std::string_view section);
 
-/// `section` is $Nodes or $ParametricNodes, without the $.
+/// `section` is the name without the $: Nodes or ParametricNodes, Elements; in version 1 NOD or NOE, ELM.
 void read_nodes_2(ReadContext& reading, std::string_view section);
-void read_elements_2(ReadContext& reading);
+void read_elements_2(ReadContext& reading, std::string_view section);
 void read_entities_4(ReadContext& reading, bool partitioned);
 void read_nodes_4(ReadContext& reading);
 void read_elements_4(ReadContext& reading);
@@ -193,6 +210,7 @@ std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const Metadata& m
 struct NumberWriter {
   void int32(std::int64_t value);
   void size(std::int64_t value);
+  void number(std::int64_t value, bool wide) { wide ? size(value) : int32(value); }
   void real(double value);
   /// Ends the line in text; does nothing in binary.
   void end_line();

@@ -16,30 +16,41 @@ const EntitySet* find_set(const Mesh& mesh, const std::string& name) {
   return found == mesh.sets.end() ? nullptr : &*found;
 }
 
-/// Reads the affine map: in version 2.2 an optional line "Affine …" of 16 numbers, in 4.1 a count and
-/// numbers.
-void read_affine(ReadContext& reading, PeriodicLink& link) {
+constexpr std::int64_t kAffine = -1;  // in binary files of 4.0, before the coefficients
+
+bool has_affine_line(const Metadata& metadata) { return metadata.is_version_2() || metadata.is_version_40(); }
+
+/// Reads the affine map and the number of pairs. In versions 2.2 and 4.0 an optional line "Affine …" has the
+/// 16 numbers, in 4.1 a count comes before them.
+Index read_affine(ReadContext& reading, PeriodicLink& link) {
   NumberReader& source = reading.source;
-  if (!reading.metadata.is_version_2()) {
-    link.affine.resize(source.count("the number of affine coefficients", 2, 8));
+  constexpr std::string_view kCount = "the number of periodic nodes";
+  const auto read_coefficients = [&](Index count) {
+    link.affine.resize(count);
+    for (double& value : link.affine) value = source.real("an affine coefficient");
+  };
+  if (!has_affine_line(reading.metadata)) {
+    read_coefficients(source.count("the number of affine coefficients", 2, 8));
+  } else if (source.binary) {
+    const std::int64_t count = source.int64(kCount);
+    if (count != kAffine) return source.checked_count(count, kCount, 8);
+    read_coefficients(16);
   } else if (source.scanner.peek_word() == "Affine") {
     (void)source.scanner.word("Affine");
-    link.affine.resize(16);
+    read_coefficients(16);
   }
-  for (double& value : link.affine) value = source.real("an affine coefficient");
+  return source.count(kCount, 4, reading.metadata.has_wide_numbers() ? 16 : 8);
 }
 
 /// Reads pairs of nodes; returns how many name a node that the file lacks, as in meshes saved in part.
-Index read_pairs(ReadContext& reading, PeriodicLink& link) {
-  NumberReader& source = reading.source;
-  const Index count = source.count("the number of periodic nodes", 4, 16);
+Index read_pairs(ReadContext& reading, PeriodicLink& link, Index count) {
   const std::string name = "gmsh:periodic " + std::to_string(link.dimension) + " " + std::to_string(link.tag);
   EntitySet nodes{name, Association::vertices, {}};
   EntitySet masters{name + " master", Association::vertices, {}};
   Index missing = 0;
   for (Index i = 0; i < count; ++i) {
-    const Index node = reading.nodes.find(source.int64("a periodic node"));
-    const Index master = reading.nodes.find(source.int64("a periodic node"));
+    const Index node = reading.nodes.find(read_number(reading, "a periodic node"));
+    const Index master = reading.nodes.find(read_number(reading, "a periodic node"));
     if (node < 0 || master < 0) {
       ++missing;
       continue;
@@ -61,7 +72,7 @@ void read_periodic(ReadContext& reading) {
   // version 2.2 writes this section as text in binary files, too
   const bool binary = source.binary;
   if (reading.metadata.is_version_2()) source.binary = false;
-  const Index links = source.count("the number of periodic entities", 8, 28);
+  const Index links = read_count(reading, "the number of periodic entities", 8, 20);
   Index missing = 0;
   std::set<Entity> entities;
   for (Index i = 0; i < links; ++i) {
@@ -74,11 +85,11 @@ void read_periodic(ReadContext& reading) {
                       std::to_string(link.dimension) + " is given twice",
                   "each has one master");
     }
-    read_affine(reading, link);
-    missing += read_pairs(reading, link);
+    const Index pairs = read_affine(reading, link);
+    missing += read_pairs(reading, link, pairs);
     reading.metadata.periodic.push_back(std::move(link));
   }
-  expect_end(source, "Periodic");
+  expect_end(reading, "Periodic");
   source.binary = binary;
   if (missing > 0) {
     reading.notes.push_back(std::to_string(missing) +
@@ -87,21 +98,27 @@ void read_periodic(ReadContext& reading) {
 }
 
 void write_periodic(NumberWriter& sink, const WriteContext& output) {
-  const bool version_2 = output.layout.is_version_2();
+  const bool affine_line = has_affine_line(output.layout);
+  const bool wide = output.layout.has_wide_numbers();
   NumberWriter text{sink.out, sink.file};
-  NumberWriter& to = version_2 ? text : sink;
-  to.size(index_size(output.layout.periodic));
+  NumberWriter& to = output.layout.is_version_2() ? text : sink;
+  to.number(index_size(output.layout.periodic), wide);
   to.end_line();
   for (const PeriodicLink& link : output.layout.periodic) {
     to.int32(link.dimension);
     to.int32(link.tag);
     to.int32(link.master);
     to.end_line();
-    if (!version_2) to.size(index_size(link.affine));
-    if (version_2 && !link.affine.empty()) sink.out.write("Affine");
-    if (version_2) to.at_line_start = link.affine.empty();
+    if (!affine_line) {
+      to.size(index_size(link.affine));
+    } else if (!link.affine.empty() && to.binary) {
+      to.size(kAffine);
+    } else if (!link.affine.empty()) {
+      to.out.write("Affine");
+      to.at_line_start = false;
+    }
     for (const double value : link.affine) to.real(value);
-    if (!version_2 || !link.affine.empty()) to.end_line();
+    if (!affine_line || !link.affine.empty()) to.end_line();
     // the sets may have been taken out of the mesh
     const EntitySet* nodes = find_set(output.mesh, link.nodes);
     const EntitySet* masters = find_set(output.mesh, link.master_nodes);
@@ -110,8 +127,8 @@ void write_periodic(NumberWriter& sink, const WriteContext& output) {
     to.size(count);
     to.end_line();
     for (Index i = 0; i < count; ++i) {
-      to.size(output.node_id(nodes->members[i]));
-      to.size(output.node_id(masters->members[i]));
+      to.number(output.node_id(nodes->members[i]), wide);
+      to.number(output.node_id(masters->members[i]), wide);
       to.end_line();
     }
   }
@@ -121,7 +138,7 @@ void write_periodic(NumberWriter& sink, const WriteContext& output) {
 
 void read_ghosts(ReadContext& reading) {
   NumberReader& source = reading.source;
-  const Index count = source.count("the number of ghost elements", 6, 20);
+  const Index count = read_count(reading, "the number of ghost elements", 6, 12);
   DataArray array;
   array.name = kCellGhosts;
   array.association = Association::cells;
@@ -130,7 +147,7 @@ void read_ghosts(ReadContext& reading) {
   std::size_t most = 0;
   std::size_t total = 0;
   for (Index i = 0; i < count; ++i) {
-    const std::int64_t id = source.int64("the number of a ghost element");
+    const std::int64_t id = read_number(reading, "the number of a ghost element");
     const Index place = reading.elements.find(id);
     if (place < 0) {
       source.fail("$GhostElements names element " + std::to_string(id) + ", which $Elements does not have",
@@ -138,12 +155,12 @@ void read_ghosts(ReadContext& reading) {
     }
     array.indices.push_back(place);
     owners.push_back(source.int32("a partition"));
-    auto& partitions = ghosts.emplace_back(source.count("the number of ghost partitions", 2, 4));
+    auto& partitions = ghosts.emplace_back(read_count(reading, "the number of ghost partitions", 2, 4));
     for (std::int32_t& partition : partitions) partition = source.int32("a ghost partition");
     most = std::max(most, partitions.size());
     total += partitions.size();
   }
-  expect_end(source, "GhostElements");
+  expect_end(reading, "GhostElements");
   check_distinct(source, array.indices, "GhostElements");
   if (count == 0) return;
   const std::size_t width = 2 + most;
@@ -166,15 +183,16 @@ void write_ghosts(NumberWriter& sink, const WriteContext& output) {
   const DataArray* array = find_array(output.mesh, kCellGhosts, Association::cells);
   const auto* values = array ? std::get_if<std::vector<std::int32_t>>(&array->values) : nullptr;
   const Index rows = values ? row_count(*array) : 0;
-  sink.size(rows);
+  const bool wide = output.layout.has_wide_numbers();
+  sink.number(rows, wide);
   sink.end_line();
   for (Index row = 0; row < rows; ++row) {
     const auto width = static_cast<std::size_t>(array->components);
     const auto* of_row = values->data() + row * width;
     const auto count = std::clamp<std::int64_t>(of_row[1], 0, static_cast<std::int64_t>(width) - 2);
-    sink.size(output.cell_id(array->is_dense() ? row : array->indices[row]));
+    sink.number(output.cell_id(array->is_dense() ? row : array->indices[row]), wide);
     sink.int32(of_row[0]);
-    sink.size(count);
+    sink.number(count, wide);
     for (std::int64_t k = 0; k < count; ++k) sink.int32(of_row[2 + k]);
     sink.end_line();
   }

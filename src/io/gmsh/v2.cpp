@@ -1,10 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/gmsh/gmsh.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
-// Versions 2.0 to 2.2: one list of nodes, one list of elements, each with tags of its own: first the physical
-// group, then the entity, then partitions.
+// Versions 1 to 2.2: one list of nodes, one list of elements, each with tags of its own: first the physical
+// group, then the entity, then partitions. In version 1, which is always text, an element has the first two
+// tags and the number of its nodes.
 
 namespace meshorder::gmsh {
 namespace {
@@ -37,9 +40,19 @@ void refuse_element_tags(const NumberReader& source, double version, std::span<c
   }
 }
 
+/// Reads how many nodes an element of version 1 has.
+void check_node_count(NumberReader& source, const Element& element) {
+  const std::int32_t count = source.int32("an element's number of nodes");
+  if (count != element.type->nodes) {
+    source.fail(fmt::format("element {} has {} nodes", element.id, count),
+                fmt::format("elements of type {} have {}", element.type->number, element.type->nodes));
+  }
+}
+
 void read_element_body(ReadContext& reading, const Element& element, Tags& tags, std::vector<Index>& nodes) {
   NumberReader& source = reading.source;
   for (Index t = 0; t < element.tag_count; ++t) tags.values.push_back(source.int32("a tag"));
+  if (reading.metadata.is_version_1()) check_node_count(source, element);
   tags.offsets.push_back(static_cast<Offset>(tags.values.size()));
   refuse_element_tags(source, reading.metadata.version, tags[tags.size() - 1]);
   nodes.clear();
@@ -142,7 +155,7 @@ void read_nodes_2(ReadContext& reading, std::string_view section) {
       parameters.push_back(k < parameters_2(dimension) ? source.real("a parametric coordinate") : 0.0);
     }
   }
-  expect_end(source, section);
+  expect_end(reading, section);
   reading.nodes = number_ids(source, ids, "node");
   if (!reading.nodes.runs_from(1)) reading.mesh.vertex_ids = std::move(ids);
   if (!parametric) return;
@@ -151,7 +164,7 @@ void read_nodes_2(ReadContext& reading, std::string_view section) {
   keep_parameters(reading.mesh, std::move(parameters));
 }
 
-void read_elements_2(ReadContext& reading) {
+void read_elements_2(ReadContext& reading, std::string_view section) {
   NumberReader& source = reading.source;
   const Index count =
       source.checked_count(source.text_integer("the number of elements"), "the number of elements", 8);
@@ -170,9 +183,10 @@ void read_elements_2(ReadContext& reading) {
     element.type = &known_type(source, source.int32("an element's type"));
     if (source.binary)
       run = source.checked_count(source.int32("the length of a run"), "the length of a run", 8);
-    element.tag_count = read_tag_count(source);
+    element.tag_count = reading.metadata.is_version_1() ? 2 : read_tag_count(source);
     if (run > count - index_size(ids)) {
-      source.fail("$Elements has more elements than the " + std::to_string(count) + " in its header",
+      source.fail("$" + std::string(section) + " has more elements than the " + std::to_string(count) +
+                      " in its header",
                   "the count is wrong or the file is damaged");
     }
     for (Index i = 0; i < run; ++i) {
@@ -182,7 +196,7 @@ void read_elements_2(ReadContext& reading) {
       types.push_back(element.type->number);
     }
   }
-  expect_end(source, "Elements");
+  expect_end(reading, section);
   reading.elements = number_ids(source, ids, "element");
   if (!reading.elements.runs_from(1)) reading.mesh.cell_ids = std::move(ids);
   keep_tags(source, reading.mesh, tags);
@@ -213,11 +227,12 @@ void write_elements_2(NumberWriter& sink, const WriteContext& output) {
   const DataArray* labels = find_array(mesh, kLabel, Association::cells);
   const TagsOfMesh tags(mesh,
                         std::find(output.placed.begin(), output.placed.end(), labels) != output.placed.end());
+  const bool version_1 = output.layout.is_version_1();
   sink.text_line(mesh.cell_count());
   Index run_end = 0;
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const ElementType& type = *output.types[c];
-    const std::size_t tag_count = tags.count(c);
+    const std::size_t tag_count = version_1 ? 2 : tags.count(c);
     if (sink.binary && c == run_end) {
       while (run_end < mesh.cell_count() && output.types[run_end] == &type &&
              tags.count(run_end) == tag_count) {
@@ -230,9 +245,10 @@ void write_elements_2(NumberWriter& sink, const WriteContext& output) {
     sink.int32(output.cell_id(c));
     if (!sink.binary) {
       sink.int32(type.number);
-      sink.int32(static_cast<std::int64_t>(tag_count));
+      if (!version_1) sink.int32(static_cast<std::int64_t>(tag_count));
     }
     for (std::size_t k = 0; k < tag_count; ++k) sink.int32(tags.tag(c, k));
+    if (version_1) sink.int32(type.nodes);
     write_cell_nodes(sink, output, c, false);
     sink.end_line();
   }

@@ -9,8 +9,9 @@
 #include <set>
 #include <span>
 
-// Version 4.1: nodes and elements are in blocks, each of which belongs to an entity of the geometry;
-// entities have physical groups. An entity may have several blocks.
+// Versions 4.0 and 4.1: nodes and elements are in blocks, each of which belongs to an entity of the geometry;
+// entities have physical groups. An entity may have several blocks. In 4.0 an entity's tag comes before its
+// dimension, a node's number before its coordinates, and numbers in binary files have 32 bits.
 
 namespace meshorder::gmsh {
 namespace {
@@ -34,13 +35,31 @@ std::int32_t read_dimension(NumberReader& source) {
   return dimension;
 }
 
-/// Reads one block of nodes behind its head; `parameters` gets four numbers for each.
+/// Reads dimension and tag of a block's entity.
+Entity read_entity(ReadContext& reading) {
+  NumberReader& source = reading.source;
+  if (!reading.metadata.is_version_40()) {
+    const std::int32_t dimension = read_dimension(source);
+    return {dimension, source.int32("an entity's tag")};
+  }
+  const std::int32_t tag = source.int32("an entity's tag");
+  return {read_dimension(source), tag};
+}
+
+/// Returns how many parametric coordinates a node of a parametric block has.
+int parameters_4(const Metadata& metadata, std::int32_t dimension) {
+  return metadata.is_version_40() && dimension == 3 ? 0 : dimension;
+}
+
+/// Reads one block of nodes after its head; `parameters` gets four numbers for each.
 void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
                      std::vector<std::int64_t>& ids, std::vector<double>& parameters) {
   NumberReader& source = reading.source;
   const bool parametric = head[2] == 1;
-  for (Index i = 0; i < count; ++i) ids.push_back(source.int64("the number of a node"));
-  if (!parametric) {
+  const int given = parameters_4(reading.metadata, head[0]);
+  const bool number_with_point = reading.metadata.is_version_40();
+  for (Index i = 0; i < count && !number_with_point; ++i) ids.push_back(source.int64("the number of a node"));
+  if (!parametric && !number_with_point) {
     const std::size_t first = reading.mesh.points.size();
     reading.mesh.points.resize(first + static_cast<std::size_t>(count));
     for (Point& point : std::span(reading.mesh.points).subspan(first)) {
@@ -49,21 +68,26 @@ void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
     return;
   }
   for (Index i = 0; i < count; ++i) {
+    if (number_with_point) ids.push_back(read_number(reading, "the number of a node"));
     Point& point = reading.mesh.points.emplace_back();
     for (double& x : point) x = source.finite("a coordinate");
+    if (!parametric) continue;
     // nodes before, of which none had any
     parameters.resize(4 * (reading.mesh.points.size() - 1), 0.0);
     parameters.push_back(1);
     for (int k = 0; k < 3; ++k) {
-      parameters.push_back(k < head[0] ? source.real("a parametric coordinate") : 0.0);
+      parameters.push_back(k < given ? source.real("a parametric coordinate") : 0.0);
     }
   }
 }
 
-/// Reads the elements of one block behind its head.
+/// Reads the elements of one block after its head.
 void read_element_block(ReadContext& reading, const ElementType& type, Index count,
                         std::vector<std::int64_t>& ids) {
   NumberReader& source = reading.source;
+  const auto number = [&source, wide = reading.metadata.has_wide_numbers()](std::string_view what) {
+    return wide ? source.int64(what) : source.int32(what);
+  };
   Cells& cells = reading.mesh.cells;
   const std::span<const int> order = vtk_order(type.shape, type.nodes);
   const auto nodes = static_cast<std::size_t>(type.nodes);
@@ -75,11 +99,11 @@ void read_element_block(ReadContext& reading, const ElementType& type, Index cou
   Index* target = cells.vertices.data() + first;
   std::array<Index, 27> of_file{};  // only cells of second order are sorted
   for (std::size_t c = 0; c < rows; ++c, target += nodes) {
-    const std::int64_t id = source.int64("the number of an element");
+    const std::int64_t id = number("the number of an element");
     ids.push_back(id);
     Index* const read = order.empty() ? target : of_file.data();
     for (std::size_t k = 0; k < nodes; ++k)
-      read[k] = place_of_node(reading, source.int64("a node of an element"), "element", id);
+      read[k] = place_of_node(reading, number("a node of an element"), "element", id);
     for (std::size_t k = 0; k < order.size(); ++k) target[k] = of_file[static_cast<std::size_t>(order[k])];
     cells.offsets.push_back(cells.offsets.back() + type.nodes);
   }
@@ -91,11 +115,13 @@ struct Head {
   Index count;
 };
 
-Head read_head(NumberReader& source, std::string_view what, std::int64_t text_bytes,
+Head read_head(ReadContext& reading, std::string_view what, std::int64_t text_bytes,
                std::int64_t binary_bytes) {
+  NumberReader& source = reading.source;
   Head head{};
   head.blocks = source.count("the number of blocks", 8, 20);
   head.count = source.count("the number of " + std::string(what), text_bytes, binary_bytes);
+  if (reading.metadata.is_version_40()) return head;
   // the smallest and largest number, on which Gmsh itself does not rely
   (void)source.int64("the smallest number of " + std::string(what));
   (void)source.int64("the largest number of " + std::string(what));
@@ -117,17 +143,23 @@ std::pair<std::int64_t, std::int64_t> range_of(const std::vector<std::int64_t>& 
   return {*least, *greatest};
 }
 
-void write_head(NumberWriter& sink, std::size_t blocks, Index count, const std::vector<std::int64_t>& ids) {
-  const auto [least, greatest] = range_of(ids, count);
+void write_head(NumberWriter& sink, const WriteContext& output, std::size_t blocks, Index count,
+                const std::vector<std::int64_t>& ids) {
   sink.size(static_cast<std::int64_t>(blocks));
   sink.size(count);
-  sink.size(least);
-  sink.size(greatest);
+  if (!output.layout.is_version_40()) {
+    const auto [least, greatest] = range_of(ids, count);
+    sink.size(least);
+    sink.size(greatest);
+  }
   sink.end_line();
 }
 
-void write_block_head(NumberWriter& sink, const EmptyBlock& head, Index count) {
-  for (const std::int32_t number : head) sink.int32(number);
+void write_block_head(NumberWriter& sink, const WriteContext& output, const EmptyBlock& head, Index count) {
+  const bool tag_first = output.layout.is_version_40();
+  sink.int32(head[tag_first ? 1 : 0]);
+  sink.int32(head[tag_first ? 0 : 1]);
+  sink.int32(head[2]);
   sink.size(count);
   sink.end_line();
 }
@@ -135,10 +167,11 @@ void write_block_head(NumberWriter& sink, const EmptyBlock& head, Index count) {
 /// Writes the elements of one block, all of one type.
 void write_rows(NumberWriter& sink, const WriteContext& output, Index begin, Index end) {
   const ElementType& type = *output.types[begin];
-  if (!sink.binary || !vtk_order(type.shape, type.nodes).empty()) {
+  const bool wide = output.layout.has_wide_numbers();
+  if (!sink.binary || !wide || !vtk_order(type.shape, type.nodes).empty()) {
     for (Index c = begin; c < end; ++c) {
-      sink.size(output.cell_id(c));
-      write_cell_nodes(sink, output, c, true);
+      sink.number(output.cell_id(c), wide);
+      write_cell_nodes(sink, output, c, wide);
       sink.end_line();
     }
     return;
@@ -171,9 +204,10 @@ std::vector<Index> runs(Index count, const Head& head, const Breaks& breaks) {
 
 void read_entities_4(ReadContext& reading, bool partitioned) {
   NumberReader& source = reading.source;
+  const bool version_40 = reading.metadata.is_version_40();
   if (partitioned) {
-    (void)source.int64("the number of partitions");
-    const Index ghosts = source.count("the number of ghost entities", 4, 8);
+    (void)read_number(reading, "the number of partitions");
+    const Index ghosts = read_count(reading, "the number of ghost entities", 4, 8);
     for (Index i = 0; i < ghosts; ++i) {
       (void)source.int32("the tag of a ghost entity");
       (void)source.int32("the partition of a ghost entity");
@@ -187,9 +221,10 @@ void read_entities_4(ReadContext& reading, bool partitioned) {
       if (partitioned) {
         (void)source.int32("the dimension of a parent entity");
         (void)source.int32("the tag of a parent entity");
-        (void)read_ints(source, "an entity's partitions");
+        const Index partitions = read_count(reading, "an entity's partitions", 2, 4);
+        for (Index k = 0; k < partitions; ++k) (void)source.int32("an entity's partition");
       }
-      skip_reals(source, dimension == 0 ? 3 : 6, "an entity's extent");
+      skip_reals(source, dimension == 0 && !version_40 ? 3 : 6, "an entity's extent");
       auto physicals = read_ints(source, "an entity's physical groups");
       if (dimension > 0) (void)read_ints(source, "an entity's boundary");
       // the sign is an orientation
@@ -204,7 +239,8 @@ void read_entities_4(ReadContext& reading, bool partitioned) {
 void read_nodes_4(ReadContext& reading) {
   NumberReader& source = reading.source;
   Mesh& mesh = reading.mesh;
-  const Head head = read_head(source, "nodes", 8, 32);
+  const std::int64_t bytes = reading.metadata.has_wide_numbers() ? 32 : 28;
+  const Head head = read_head(reading, "nodes", 8, bytes);
   std::vector<std::int64_t> ids;
   std::vector<std::int32_t> entities;
   std::vector<double> parameters;
@@ -212,14 +248,12 @@ void read_nodes_4(ReadContext& reading) {
   reserve_large(mesh.points, static_cast<std::size_t>(head.count));
   reserve_large(entities, 2 * static_cast<std::size_t>(head.count));
   for (Index b = 0; b < head.blocks; ++b) {
-    EmptyBlock block{};
-    block[0] = read_dimension(source);
-    block[1] = source.int32("an entity's tag");
-    block[2] = source.int32("whether nodes have parametric coordinates");
+    const auto [dimension, tag] = read_entity(reading);
+    const EmptyBlock block{dimension, tag, source.int32("whether nodes have parametric coordinates")};
     if (block[2] != 0 && block[2] != 1) {
       source.fail("'parametric' is " + std::to_string(block[2]), "0 and 1 are possible");
     }
-    const Index count = source.count("the number of nodes in a block", 8, 32);
+    const Index count = source.count("the number of nodes in a block", 8, bytes);
     if (count > head.count - index_size(ids)) {
       fail_count(source, "Nodes", Offset{count} + index_size(ids), head.count);
     }
@@ -228,7 +262,7 @@ void read_nodes_4(ReadContext& reading) {
     read_node_block(reading, block, count, ids, parameters);
   }
   if (index_size(ids) != head.count) fail_count(source, "Nodes", index_size(ids), head.count);
-  expect_end(source, "Nodes");
+  expect_end(reading, "Nodes");
   reading.nodes = number_ids(source, ids, "node");
   if (!reading.nodes.runs_from(1)) mesh.vertex_ids = std::move(ids);
   mesh.data.push_back({std::string(kNodeEntity), Association::vertices, 2, std::move(entities), {}, {}});
@@ -238,7 +272,8 @@ void read_nodes_4(ReadContext& reading) {
 void read_elements_4(ReadContext& reading) {
   NumberReader& source = reading.source;
   Mesh& mesh = reading.mesh;
-  const Head head = read_head(source, "elements", 4, 16);
+  const std::int64_t bytes = reading.metadata.has_wide_numbers() ? 8 : 4;  // of a number
+  const Head head = read_head(reading, "elements", 4, 2 * bytes);
   std::vector<std::int64_t> ids;
   std::vector<std::int32_t> tags;
   std::vector<std::int32_t> dimensions;
@@ -249,11 +284,10 @@ void read_elements_4(ReadContext& reading) {
   bool repeated = false;
   reserve_large(ids, static_cast<std::size_t>(head.count));
   for (Index b = 0; b < head.blocks; ++b) {
-    const std::int32_t dimension = read_dimension(source);
-    const std::int32_t tag = source.int32("an entity's tag");
+    const auto [dimension, tag] = read_entity(reading);
     const ElementType& type = known_type(source, source.int32("a block's element type"));
     const Index count =
-        source.count("the number of elements in a block", 2 + 2 * type.nodes, 8 + 8 * type.nodes);
+        source.count("the number of elements in a block", 2 + 2 * type.nodes, bytes * (1 + type.nodes));
     if (count > head.count - index_size(ids)) {
       fail_count(source, "Elements", Offset{count} + index_size(ids), head.count);
     }
@@ -274,7 +308,7 @@ void read_elements_4(ReadContext& reading) {
     types.insert(types.end(), count, type.number);
   }
   if (index_size(ids) != head.count) fail_count(source, "Elements", index_size(ids), head.count);
-  expect_end(source, "Elements");
+  expect_end(reading, "Elements");
   reading.elements = number_ids(source, ids, "element");
   if (!reading.elements.runs_from(1)) mesh.cell_ids = std::move(ids);
 
@@ -298,13 +332,27 @@ void write_nodes_4(NumberWriter& sink, const WriteContext& output) {
   };
 
   // successive nodes of one entity make a block, which keeps the order of the mesh
+  const auto write_point = [&](const EmptyBlock& block, Index v) {
+    for (const double x : mesh.points[v]) sink.real(x);
+    const int given = block[2] == 1 ? parameters_4(output.layout, block[0]) : 0;
+    for (int k = 0; k < given; ++k) sink.real((*parameters)[4 * static_cast<std::size_t>(v) + 1 + k]);
+    sink.end_line();
+  };
   const std::vector<Index> starts = runs(mesh.vertex_count(), head, [](Index) { return false; });
   const auto& empty = output.layout.empty_node_blocks;
-  write_head(sink, starts.size() - 1 + empty.size(), mesh.vertex_count(), output.node_ids);
-  for (const EmptyBlock& block : empty) write_block_head(sink, block, 0);
+  const bool number_with_point = output.layout.is_version_40();
+  write_head(sink, output, starts.size() - 1 + empty.size(), mesh.vertex_count(), output.node_ids);
+  for (const EmptyBlock& block : empty) write_block_head(sink, output, block, 0);
   for (std::size_t b = 0; b + 1 < starts.size(); ++b) {
     const EmptyBlock block = head(starts[b]);
-    write_block_head(sink, block, starts[b + 1] - starts[b]);
+    write_block_head(sink, output, block, starts[b + 1] - starts[b]);
+    if (number_with_point) {
+      for (Index v = starts[b]; v < starts[b + 1]; ++v) {
+        sink.number(output.node_id(v), output.layout.has_wide_numbers());
+        write_point(block, v);
+      }
+      continue;
+    }
     for (Index v = starts[b]; v < starts[b + 1]; ++v) {
       sink.size(output.node_id(v));
       sink.end_line();
@@ -318,13 +366,7 @@ void write_nodes_4(NumberWriter& sink, const WriteContext& output) {
       }
       continue;
     }
-    for (Index v = starts[b]; v < starts[b + 1]; ++v) {
-      for (const double x : mesh.points[v]) sink.real(x);
-      for (int k = 0; block[2] == 1 && k < block[0]; ++k) {
-        sink.real((*parameters)[4 * static_cast<std::size_t>(v) + 1 + k]);
-      }
-      sink.end_line();
-    }
+    for (Index v = starts[b]; v < starts[b + 1]; ++v) write_point(block, v);
   }
 }
 
@@ -338,10 +380,10 @@ void write_elements_4(NumberWriter& sink, const WriteContext& output) {
   };
   const std::vector<Index> starts = runs(mesh.cell_count(), head, begins_block);
   const auto& empty = output.layout.empty_element_blocks;
-  write_head(sink, starts.size() - 1 + empty.size(), mesh.cell_count(), output.cell_ids);
-  for (const EmptyBlock& block : empty) write_block_head(sink, block, 0);
+  write_head(sink, output, starts.size() - 1 + empty.size(), mesh.cell_count(), output.cell_ids);
+  for (const EmptyBlock& block : empty) write_block_head(sink, output, block, 0);
   for (std::size_t b = 0; b + 1 < starts.size(); ++b) {
-    write_block_head(sink, head(starts[b]), starts[b + 1] - starts[b]);
+    write_block_head(sink, output, head(starts[b]), starts[b + 1] - starts[b]);
     write_rows(sink, output, starts[b], starts[b + 1]);
   }
 }
