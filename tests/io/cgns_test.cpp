@@ -36,6 +36,40 @@ std::string adf_file() {
   return test::content_of(path);
 }
 
+/// Returns an ADF file as a libcgns configured for 64 bits writes it: pointers and dimensions are binary.
+std::string with_binary_pointers(std::string file) {
+  const auto dimension = [&](std::size_t at) {
+    const std::uint64_t number = std::stoull(file.substr(at, 8), nullptr, 16);
+    std::memcpy(file.data() + at, &number, sizeof number);
+  };
+  const auto pointers = [&](std::size_t at, int count) {
+    for (; count > 0; --count, at += 12) {
+      dimension(at);
+      const auto byte = static_cast<std::uint32_t>(std::stoul(file.substr(at + 8, 4), nullptr, 16));
+      std::memcpy(file.data() + at + 8, &byte, sizeof byte);
+    }
+  };
+  const auto each = [&](std::string_view tag, const auto& convert) {
+    for (std::size_t at = file.find(tag); at != std::string::npos; at = file.find(tag, at + 4)) convert(at);
+  };
+  each("NoDe", [&](std::size_t at) {
+    for (std::size_t k = 0; k < 12; ++k) dimension(at + 130 + 8 * k);
+    pointers(at + 84, 1);
+    pointers(at + 230, 1);
+  });
+  each("SNTb", [&](std::size_t at) {
+    pointers(at + 4, 1);
+    for (std::size_t entry = at + 16; file.compare(entry, 4, "snTE") != 0; entry += 44)
+      pointers(entry + 32, 1);
+  });
+  each("DaTa", [&](std::size_t at) { pointers(at + 4, 1); });
+  each("fCbt", [&](std::size_t at) { pointers(at + 4, 6); });
+  each("FreE", [&](std::size_t at) { pointers(at + 4, 2); });
+  pointers(134, 4);
+  file[25] = 'B';
+  return file;
+}
+
 TEST(Cgns, MakesTheSameSetsOfSectionsInAnyOrder) {
   const TemporaryFolder folder;
   // sections of which a set has one cell: the first in the file, or another
@@ -106,6 +140,28 @@ TEST(Cgns, ReadsFilesOfAdf) {
   write_mesh(test::tetrahedral_bar(1), folder.path() / "a.cgns");
   const Mesh expected = read_mesh(folder.path() / "a.cgns");
   test::expect_same(read_mesh(folder.file("b.cgns", adf_file())), expected);
+  test::expect_same(read_mesh(folder.file("c.cgns", with_binary_pointers(adf_file()))), expected);
+}
+
+TEST(Cgns, RefusesBinaryPointersOfAdfThatLeadElsewhere) {
+  const std::string file = with_binary_pointers(adf_file());
+  const TemporaryFolder folder;
+  const std::string far(8, '\x7f');
+  const std::string beyond = "lies beyond the end of the file";
+  for (const auto& [what, at, fresh, expected] :
+       std::vector<std::tuple<std::string, std::size_t, std::string, std::string>>{
+           {"the root", 134, far, beyond},
+           {"a byte in a block", 134 + 8, far.substr(4), beyond},
+           {"children", file.find("NoDe") + 84, far, beyond},
+           {"a child", file.find("SNTb") + 48, far, beyond},
+           {"the end of values", file.find("DaTa") + 4, std::string(12, '\0'),
+            "values end before they begin"},
+           {"the byte order", 100, "N", "the byte order is unknown"}}) {
+    std::string broken = file;
+    broken.replace(at, fresh.size(), fresh);
+    const std::string message = test::read_error(folder.file("b.cgns", broken));
+    EXPECT_NE(message.find(expected), std::string::npos) << what << ": " << message;
+  }
 }
 
 TEST(Cgns, RefusesPolyhedraThatAreNotThoseOfTheirFile) {
@@ -150,11 +206,13 @@ TEST(Cgns, RefusesAnAdfFileInWhichANodeIsItsOwnChild) {
 }
 
 TEST(Cgns, ReadsOrRefusesDamagedFilesOfAdf) {
-  const std::string file = adf_file();
+  const std::string text = adf_file();
+  const std::string binary = with_binary_pointers(text);
   const TemporaryFolder folder;
   std::mt19937 random(3);
-  for (int k = 0; k < 300; ++k) {
-    std::string broken = k % 8 == 0 ? file.substr(0, random() % file.size()) : file;
+  for (int k = 0; k < 600; ++k) {
+    const std::string& file = k % 2 == 0 ? text : binary;
+    std::string broken = k % 16 < 2 ? file.substr(0, random() % file.size()) : file;
     for (std::size_t changes = random() % 4; changes > 0; --changes) {
       if (!broken.empty()) broken[random() % broken.size()] = static_cast<char>(random() % 256);
     }

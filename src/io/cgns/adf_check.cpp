@@ -1,11 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/run_scope.hpp"
 #include "io/cgns/tree.hpp"
+#include "io/stream/byte_order.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <charconv>
+#include <cstdint>
 #include <fstream>
 #include <set>
 #include <system_error>
@@ -13,7 +16,9 @@
 
 // Checks a file of ADF before libcgns reads it, which follows the pointers in it. The layout: Advanced Data
 // Format software library, "ADF file layout" (NASA, https://cgns.github.io/CGNS_docs_current/adf/). Numbers
-// are hexadecimal digits; a pointer is 8 digits of a block of 4,096 bytes and 4 of a byte in it.
+// are hexadecimal digits; a pointer is 8 digits of a block of 4,096 bytes and 4 of a byte in it. In files of
+// version B…, which libcgns writes where it was configured for 64 bits, pointers and dimensions are binary
+// numbers of as many bytes (ADF_internals.c of libcgns).
 
 namespace meshorder::cgns {
 namespace {
@@ -24,8 +29,10 @@ constexpr std::size_t kTag = 4;
 constexpr std::size_t kPointer = 12;
 constexpr std::size_t kName = 32;
 constexpr std::size_t kMostLengths = 12;
-constexpr std::size_t kDigits = 8;  // of a count and a dimension
-constexpr std::uint64_t kRootPointerAt = 0x86;
+constexpr std::size_t kDigits = 8;  // of a count, a dimension and a block
+constexpr std::uint64_t kVersionAt = 25;
+constexpr std::uint64_t kByteOrderAt = 100;
+constexpr std::uint64_t kRootPointerAt = 134;
 
 // offsets in a node
 constexpr std::size_t kChildrenAt = kTag + 2 * kName;
@@ -43,7 +50,13 @@ class AdfCheck {
     if (code) size_ = 0;
   }
 
-  void run() { check_node(pointer(kRootPointerAt), 0); }
+  void run() {
+    binary_ = bytes(kVersionAt, 1) == "B";
+    const std::string order = bytes(kByteOrderAt, 1);
+    if (binary_ && order != "L" && order != "B") fail(kByteOrderAt, "the byte order is unknown");
+    order_ = order == "L" ? std::endian::little : std::endian::big;
+    check_node(pointer(kRootPointerAt), 0);
+  }
 
  private:
   [[noreturn]] void fail(std::uint64_t at, std::string_view what) const {
@@ -68,8 +81,18 @@ class AdfCheck {
     return value;
   }
 
+  /// Returns a number that is binary in files of version B….
+  template <class T>
+  std::uint64_t wide(std::uint64_t at) {
+    return binary_ ? number_at<T>(bytes(at, sizeof(T)).data(), order_) : number(at, sizeof(T));
+  }
+
   std::uint64_t pointer(std::uint64_t at) {
-    return number(at, kDigits) * kBlock + number(at + kDigits, kPointer - kDigits);
+    const std::uint64_t block = wide<std::uint64_t>(at);
+    const std::uint64_t byte = wide<std::uint32_t>(at + kDigits);
+    if (block > size_ / kBlock || byte > kBlock)
+      fail(at, "the target of a pointer lies beyond the end of the file");
+    return block * kBlock + byte;
   }
 
   void expect_tag(std::uint64_t at, std::string_view tag) {
@@ -109,7 +132,7 @@ class AdfCheck {
     if (rank > kMostLengths) fail(node, fmt::format("a node has {} dimensions", rank));
     std::uint64_t wanted = width;
     for (std::uint64_t k = 0; k < rank; ++k) {
-      const std::uint64_t length = number(node + kRankAt + 2 + k * kDigits, kDigits);
+      const std::uint64_t length = wide<std::uint64_t>(node + kRankAt + 2 + k * kDigits);
       if (wanted > 0 && length > size_ / wanted)
         fail(node, "a node claims more values than the file can hold");
       wanted *= length;
@@ -144,7 +167,9 @@ class AdfCheck {
   std::string name_;
   std::ifstream stream_;
   std::uint64_t size_ = 0;
-  std::set<std::uint64_t> seen_;  // nodes
+  bool binary_ = false;
+  std::endian order_ = std::endian::little;  // of binary numbers
+  std::set<std::uint64_t> seen_;             // nodes
 };
 
 }  // namespace
