@@ -591,6 +591,33 @@ def test_damaged_hdf5_files_end_in_one_line(command, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.h5", "a.xdmf"]
 
 
+def test_entities_mean_what_an_xml_reader_says(command, tmp_path):
+    # PETSc writes the name of the HDF5 file as an entity; Python's XML reader says what the file means
+    points, tetrahedra, _ = box(3)
+    files = {kind: tmp_path / kind for kind in ("entity", "plain")}
+    for folder in files.values():
+        folder.mkdir()
+        with h5py.File(folder / "a.h5", "w") as file:
+            file["/viz/topology/cells"] = tetrahedra
+            file["/geometry/vertices"] = points
+    text = xdmf('<Grid Name="&name;">' + topology("&HeavyData;", "/viz/topology/cells", "Tetrahedron", tetrahedra.shape)
+                + f'<Geometry GeometryType="XYZ">{item("&HeavyData;", "/geometry/vertices", points.shape)}</Geometry></Grid>')
+    text = text.replace("[]", '[\n<!ENTITY HeavyData "a.h5">\n<!ENTITY name \'"&#38;HeavyData;" &#169;\'>\n]')
+    (files["entity"] / "a.xmf").write_text(text)
+    meaning = ElementTree.fromstring(text)
+    assert meaning.find("Domain/Grid").get("Name") == '"a.h5" \xa9'
+    (files["plain"] / "a.xmf").write_bytes(ElementTree.tostring(meaning, encoding="utf-8"))
+    for folder in files.values():
+        command.ok("order", folder / "a.xmf", "-o", folder / "b.xmf", "--vertices", "rcm", "--elements", "min")
+    mark = re.compile("<.meshorder .*?>")
+    first, second = [ElementTree.canonicalize(mark.sub("", (folder / "b.xmf").read_text()), strip_text=True)
+                     for folder in files.values()]
+    assert first == second
+    with h5py.File(files["entity"] / "b.h5") as one, h5py.File(files["plain"] / "b.h5") as other:
+        for name in ("/viz/topology/cells", "/geometry/vertices"):
+            assert numpy.array_equal(one[name][:], other[name][:])
+
+
 def test_data_in_another_folder_are_read(command, tmp_path):
     points, tetrahedra, triangles = box(2)
     (tmp_path / "in").mkdir()

@@ -305,6 +305,58 @@ TEST(Xdmf, FaultsNameTheLine) {
   EXPECT_THAT(fault_of("<VTKFile/>"), HasSubstr("the file is a <VTKFile>"));
 }
 
+/// kMixed with declarations in its DOCTYPE, and one change.
+std::string declared(const std::string& declarations, std::string_view what = "", std::string_view by = "") {
+  return with(with(std::string(kMixed), "[]", "[" + declarations + "]"), what, by);
+}
+
+TEST(Xdmf, EntitiesOfTheDoctypeStandForTheirText) {
+  const Mesh plain = read_xdmf(kMixed);
+  for (const auto& [declarations, what, by] : std::vector<std::array<std::string, 3>>{
+           {"<!ENTITY u \"mm\">", "\"mm\"", "\"&u;\""},
+           {"<!-- <!ENTITY u \"cm\"> --><?x ]?><!ELEMENT g ANY>\n<!ENTITY u 'mm'><!ENTITY u 'cm'>", "\"mm\"",
+            "\"&u;\""},
+           {"<!ENTITY all '4 1 &rest; '>\n<!ENTITY rest '2 3'>", "4 1 2 3", "&all;"},
+           {"<!ENTITY i '<DataItem Dimensions=\"2\" NumberType=\"Int\">2 0&#60;/DataItem>'>",
+            "<DataItem Dimensions=\"2\" NumberType=\"Int\">2 0</DataItem>", "&i;"},
+           {"<!ENTITY % unused 'x'><!ENTITY far SYSTEM \"/etc/passwd\">", "", ""},
+           {"<!ENTITY e 'x'>", "made by hand", "&e; &none;"},
+           {"<!ENTITY point '4&#x20;1'>", "4 1 2 3", "&point; 2 3"}}) {
+    test::expect_same(read_xdmf(declared(declarations, what, by)), plain);
+  }
+  const Mesh named = read_xdmf(declared("<!ENTITY q '\"&#38;amp;&apos;'>", "\"some\"", "\"a&q;\""));
+  EXPECT_EQ(named.sets.front().name, "a\"&'");
+}
+
+TEST(Xdmf, FaultsOfEntitiesNameTheLine) {
+  std::string nested = "<!ENTITY e0 '0123456789'>";
+  std::string deep = nested;
+  for (int k = 1; k < 1000; ++k) {
+    const std::string before = fmt::format("&e{};", k - 1);
+    nested += fmt::format("<!ENTITY e{} '{}{}{}{}'>", k, before, before, before, before);
+    deep += fmt::format("<!ENTITY e{} '{}'>", k, before);
+  }
+  const std::string large = "<!ENTITY e '" + std::string(1 << 20, ' ') + "'>";
+  std::string often;
+  for (int k = 0; k < 20; ++k) often += "&e;";
+  for (const auto& [declarations, by, fault] : std::vector<std::array<std::string, 3>>{
+           {"<!ENTITY e 'x'>", "&f;", "m.xdmf:9: the entity 'f' is not declared"},
+           {"<!ENTITY e SYSTEM \"/etc/passwd\">", "&e;", "m.xdmf:9: the entity 'e' is in another file"},
+           {"<!ENTITY e 'a&e;'>", "&e;", "m.xdmf:9: the entity 'e' refers to itself"},
+           {"<!ENTITY e '&f;'><!ENTITY f '&e;'>", "&e;", "refers to itself"},
+           {nested, "&e25;", "more than 16 MiB longer"},
+           {large, often, "more than 16 MiB longer"},
+           {deep, "&e999;", "too deep"},
+           {"<!ENTITY e '&#0;'>", "&e;", "m.xdmf:2: an entity has a character"},
+           {"<!ENTITY % p \"<!ENTITY e 'x'>\">\n%p;", "&e;", "m.xdmf:3: the DOCTYPE uses a parameter entity"},
+           {"<!ATTLIST Grid Name CDATA 'g'>", "4", "m.xdmf:2: the DOCTYPE gives attributes defaults"},
+           {"<!ENTITY e>", "4", "m.xdmf:2: the DOCTYPE is malformed"},
+           {"<!ENTITY e 'x", "4", "m.xdmf:"}}) {
+    EXPECT_THAT(fault_of(declared(declarations, "4 1 2 3", by + " 1 2 3")), HasSubstr(fault));
+  }
+  EXPECT_THAT(fault_of(declared("<!ENTITY e 'a&#60;b'>", "\"mm\"", "\"&e;\"")), HasSubstr("has a <"));
+}
+
 TEST(Xdmf, ATruncatedFileIsAFaultOrTheSameMesh) {
   const Files files = files_of(test::mixed_mesh());
   const Mesh whole = read_files(files);

@@ -3,6 +3,7 @@
 
 #include "base/large_pages.hpp"
 #include "base/text.hpp"
+#include "io/xdmf/entities.hpp"
 
 #include <fmt/format.h>
 
@@ -123,7 +124,8 @@ void print_indented(const pugi::xml_document& xml, const TakeText& take) {
   xml.save(writer, "  ", pugi::format_indent, pugi::encoding_utf8);
 }
 
-Document::Document(const FilePath& path) : file_(path.string()), source_(path.read()) {
+Document::Document(const FilePath& path)
+    : file_(path.string()), source_(with_entities_expanded(path.read(), file_)) {
   // parsed in a copy on large pages, as `source_` tells the lines of errors
   auto* const text = static_cast<char*>(pugi::get_memory_allocation_function()(source_.size()));
   if (text == nullptr) throw std::bad_alloc();
