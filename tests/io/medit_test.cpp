@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::TemporaryFolder;
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -129,6 +130,66 @@ TEST(Medit, PositionsFollowTheNewOrder) {
   EXPECT_THAT(text, HasSubstr("\nRidges\n1\n1\n"));
   EXPECT_THAT(text, HasSubstr("\nRequiredTriangles\n2\n1\n2\n"));
   EXPECT_THAT(text, HasSubstr("\nNormalAtVertices\n3\n2 1\n4 2\n1 1\n"));
+}
+
+// a square of two triangles, as BAMG writes it
+constexpr std::string_view kBamg =
+    "MeshVersionFormatted 0\nDimension 2\nIdentifier\n\"G=x.mesh\"\nGeometry\n\"x.mesh\"\n"
+    "Vertices\n4\n0 0 1\n1 0 2\n1 1 3\n0 1 4\n"
+    "hVertices\n0.5 1 1.5 2\n"
+    "Edges\n4\n1 2 1\n2 3 2\n3 4 3\n4 1 4\n"
+    "Triangles\n2\n1 2 3 7\n1 3 4 8\n"
+    "SubDomainFromMesh\n3\n3 2 1 8\n3 1 1 7\n3 2 -1 9\n"
+    "SubDomainFromGeom 1\n2 1 1 1\n"
+    "VertexOnGeometricVertex\n4\n1 1\n2 2\n3 3\n4 4\n"
+    "VertexOnGeometricEdge\n3\n2 1 0.25\n3 1 0.5\n2 2 0\n"
+    "EdgeOnGeometricEdge\n2\n1 1\n4 2\n"
+    "CrackedEdges\n1\n1 3\n"
+    "PeriodicVertices\n2\n1 2\n4 3\n"
+    "TangentAtEdgeVertices\n2\n2 1 1\n2 2 1\n"
+    "VertexOnSupportVertex\n1\n4 9\n"
+    "MeshSupportOfVertices\n\"y.mesh\"\n"
+    "End\n";
+
+TEST(Medit, NumbersInSectionsOfBamgFollowTheNewOrder) {
+  const TemporaryFolder folder;
+  test::expect_order_and_back(folder.file("m.mesh", kBamg));
+  Notes notes;
+  Mesh mesh = read(kBamg, &notes);
+  EXPECT_THAT(notes, IsEmpty());
+  EXPECT_EQ(written(read(written(mesh))), written(mesh));
+  apply_reordering(mesh, Permutation::from_old_to_new({3, 1, 0, 2}),
+                   Permutation::from_old_to_new({2, 0, 3, 1, 5, 4}));
+  const std::string text = written(mesh, &notes);
+  EXPECT_THAT(notes, IsEmpty());
+  for (const char* const section :
+       {"\nVertices\n4\n1 1 3\n1 0 2\n0 1 4\n0 0 1\n", "\nhVertices\n 1.5\n 1\n 2\n 0.5\n",
+        "\nEdges\n4\n2 1 2\n3 4 4\n4 2 1\n1 3 3\n", "\nTriangles\n2\n4 1 3 8\n4 2 1 7\n",
+        "\nSubDomainFromMesh\n3\n3 1 1 8\n3 2 1 7\n3 1 -1 9\n", "\nSubDomainFromGeom 1\n2 1 1 1\n",
+        "\nVertexOnGeometricVertex\n4\n4 1\n2 2\n1 3\n3 4\n",
+        "\nVertexOnGeometricEdge\n3\n2 1 0.25\n1 1 0.5\n2 2 0\n", "\nEdgeOnGeometricEdge\n2\n3 1\n2 2\n",
+        "\nCrackedEdges\n1\n3 4\n", "\nPeriodicVertices\n2\n4 2\n3 1\n",
+        "\nTangentAtEdgeVertices\n2\n1 1 1\n1 2 1\n", "\nVertexOnSupportVertex\n1\n3 9\n",
+        "\nMeshSupportOfVertices\n\"y.mesh\"\n"}) {
+    EXPECT_THAT(text, HasSubstr(section));
+  }
+}
+
+TEST(Medit, LeavesOutLinesWithCellsThatAreGone) {
+  Mesh mesh = read(kBamg);
+  const std::vector<Index> cells{-1, 0, 1, 2, -1, 3};  // without the first edge and triangle
+  mesh.format_metadata = mesh.format_metadata->moved({}, cells);
+  Cells rest;
+  for (const Index c : {1, 2, 3, 5}) rest.push_back(mesh.cells.shapes[c], mesh.cells[c]);
+  mesh.cells = rest;
+  mesh.cell_blocks.clear();
+  std::erase_if(mesh.data, [](const DataArray& array) { return array.association == Association::cells; });
+  Notes notes;
+  const std::string text = written(mesh, &notes);
+  EXPECT_THAT(text, HasSubstr("\nSubDomainFromMesh\n2\n3 1 1 8\n3 1 -1 9\n"));
+  EXPECT_THAT(text, HasSubstr("\nCrackedEdges\n0\n"));
+  EXPECT_THAT(notes, AllOf(Contains("1 lines of SubDomainFromMesh are left out with their cells"),
+                           Contains("1 lines of CrackedEdges are left out with their cells")));
 }
 
 TEST(Medit, ReadsSectionsInAnyOrderAndKeywordsInAnyCase) {
@@ -406,15 +467,22 @@ TEST(Medit, SaysWhatIsWrongAndWhere) {
         "Ridges counts cells of type line"},
        {"absurd list", vertices + cell + "Corners\n1000000000000\n5\nEnd\n",
         ":13: the count of Corners is 1"},
-       {"table twice", vertices + cell + "NormalAtVertices\n2\n1 1\n1 2\nEnd\n",
-        ":15: NormalAtVertices names 1 twice"},
        {"table beyond", vertices + cell + "NormalAtVertices\n1\n9 1\nEnd\n",
         ":14: a number of NormalAtVertices is 9"},
        {"short normals", vertices + cell + "Normals\n2\n0 0 1\n1 0\nEnd\n",
         ":16: a number of Normals is 'End'"},
        {"ordering of another size", vertices + cell + "TetrahedraP2Ordering\n4\n2 0 0 0\n", "10 are needed"},
-       {"section with numbers of triangles", vertices + cell + "SubDomainFromMesh\n1\n3 1 1 0\nEnd\n",
-        ":12: the section SubDomainFromMesh is not understood"},
+       {"domain without triangles", vertices + cell + "SubDomainFromMesh\n1\n3 1 1 0\nEnd\n",
+        ":14: SubDomainFromMesh counts cells of type triangle, and there are none"},
+       {"domain of tetrahedra", vertices + cell + "SubDomainFromMesh\n1\n4 1 1 0\nEnd\n",
+        ":14: a line of SubDomainFromMesh begins with '4'; 3, for a triangle"},
+       {"periodic vertex beyond", vertices + cell + "PeriodicVertices\n1\n1 5\nEnd\n",
+        ":14: a number of PeriodicVertices is 5; 1 to 4"},
+       {"sizes first", head + "hVertices\n1 1 1 1\nVertices 0\n", ":3: hVertices comes before Vertices"},
+       {"too few sizes", vertices + "hVertices\n1 1 1\n" + cell,
+        ":11: a number of hVertices is 'Tetrahedra'"},
+       {"unknown section", vertices + cell + "Fault_SmallTri\n1\n1\nEnd\n",
+        ":12: the section Fault_SmallTri is not understood"},
        {"section of cubic cells", vertices + "TetrahedraP3\n0\nEnd\n",
         "the section TetrahedraP3 is not understood"}});
 }

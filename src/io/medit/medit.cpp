@@ -153,10 +153,56 @@ void print_value(OutputFile& out, const Values& values, Offset at) {
       values);
 }
 
+/// Writes a section without the lines that name cells which were left out.
+void write_rows(OutputFile& out, const WriteContext& from, const Metadata::Rows& section, Notes& notes) {
+  const std::string_view columns = section.columns;
+  const auto others = static_cast<std::size_t>(std::count(columns.begin(), columns.end(), '.'));
+  const std::size_t named = columns.size() - others;
+  std::vector<std::string> lines;
+  const std::size_t rows = section.items.size() / named;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const Index* item = section.items.data() + row * named;
+    const double* kept = section.kept.data() + row * others;
+    std::string line;
+    bool whole = true;
+    for (const char column : columns) {
+      if (!line.empty()) line += ' ';
+      if (column == '.') {
+        line += fmt::format("{}", *kept++);
+        continue;
+      }
+      const Index place = *item < 0 ? -1 : position_in(from, target_of(column), *item);
+      ++item;
+      whole = whole && place >= 0;
+      line += std::to_string(place + 1);
+    }
+    if (whole) lines.push_back(std::move(line));
+  }
+  out.print("\n{}\n{}\n", section.keyword, lines.size());
+  for (const std::string& line : lines) out.print("{}\n", line);
+  if (lines.size() < rows) {
+    notes.push_back(
+        fmt::format("{} lines of {} are left out with their cells", rows - lines.size(), section.keyword));
+  }
+}
+
+/// Writes the sizes that a mesh of this format has at its vertices.
+void write_sizes(OutputFile& out, const DataArray& array) {
+  out.print("\n{}\n", kSizes);
+  for (Index v = 0; v < row_count(array); ++v) {
+    print_value(out, array.values, v);
+    out.write("\n");
+  }
+}
+
 /// Writes an array as the table of its name, if the mesh came from this format.
 void write_array(OutputFile& out, const WriteContext& from, const DataArray& array, Notes& notes) {
   const ListKind* kind = nullptr;
   const bool numbers = !are_texts(array.values);
+  if (from.own && numbers && array.is_dense() && array.name == kSizes && array.components == 1 &&
+      array.association == Association::vertices) {
+    return write_sizes(out, array);
+  }
   if (from.own && numbers && !array.is_dense()) {
     kind = fitting_kind(kTableKinds, from, array.name, array.association, array.indices);
   }
@@ -216,6 +262,9 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   for (const EntitySet& set : mesh.sets) write_set(out, from, set, notes);
   for (const DataArray& array : mesh.data) {
     if (&array != label_array(mesh, array.association)) write_array(out, from, array, notes);
+  }
+  if (from.own) {
+    for (const Metadata::Rows& section : from.own->rows) write_rows(out, from, section, notes);
   }
   write_sections(out, from, false);
   out.print("\nEnd{}\n", from.own ? from.own->after_end : "");

@@ -11,6 +11,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -62,6 +63,8 @@ inline constexpr std::array kListKinds{
     ListKind{"RequiredTriangles", Shape::triangle},
     ListKind{"RequiredQuadrilaterals", Shape::quad},
     ListKind{"RequiredTetrahedra", Shape::tetrahedron},
+    ListKind{"ParallelTriangles", Shape::triangle},  // the last two are ParMmg's
+    ListKind{"ParallelQuadrilaterals", Shape::quad},
 };
 
 /// Lines of a position and numbers that refer to normals, tangents or a geometry in another file, which are
@@ -78,10 +81,51 @@ inline constexpr std::array kTableKinds{
     ListKind{"TrianglesOnGeometricQuadrilaterals", Shape::triangle},
     ListKind{"QuadrilateralsOnGeometricTriangles", Shape::quad},
     ListKind{"QuadrilateralsOnGeometricQuadrilaterals", Shape::quad},
-    ListKind{"VertexOnGeometricVertex", {}},  // the last three are BAMG's
+    ListKind{"VertexOnGeometricVertex", {}},  // from here on BAMG's and those of libMesh 3
     ListKind{"VertexOnGeometricEdge", {}},
+    ListKind{"VertexOnGeometricTriangle", {}},
+    ListKind{"VertexOnGeometricQuadrilateral", {}},
     ListKind{"EdgeOnGeometricEdge", Shape::line},
+    ListKind{"TriangleOnGeometricTriangle", Shape::triangle},
+    ListKind{"TriangleOnGeometricQuadrilateral", Shape::triangle},
+    ListKind{"QuadrilateralOnGeometricTriangle", Shape::quad},
+    ListKind{"QuadrilateralOnGeometricQuadrilateral", Shape::quad},
+    ListKind{"VertexOnSupportVertex", {}},
+    ListKind{"VertexOnSupportEdge", {}},
+    ListKind{"VertexOnSupportTriangle", {}},
+    ListKind{"VertexOnSupportQuadrilateral", {}},
+    ListKind{"VertexOnSupportTetrahedron", {}},
+    ListKind{"VertexOnSupportPentahedron", {}},
+    ListKind{"VertexOnSupportHexahedron", {}},
 };
+
+/// A section whose lines have positions in some columns. A letter for each column says which: v of a vertex,
+/// e, t, q of a cell in Edges, Triangles, Quadrilaterals, k in Tetrahedra; other columns are kept.
+struct RowKind {
+  std::string_view keyword;
+  std::string_view columns;
+};
+
+inline constexpr std::array kRowKinds{
+    RowKind{"SubDomainFromMesh", ".t.."},  // BAMG's: 3, a triangle of the domain, orientation, reference
+    RowKind{"SubDomain", ".t.."},
+    RowKind{"CrackedEdges", "ee"},
+    RowKind{"CrackedTriangles", "tt"},
+    RowKind{"CrackedQuadrilaterals", "qq"},
+    RowKind{"EquivalentEdges", "ee"},
+    RowKind{"EquivalentTriangles", "tt"},
+    RowKind{"EquivalentQuadrilaterals", "qq"},
+    RowKind{"PeriodicVertices", "vv"},
+    RowKind{"PeriodicEdges", "ee"},
+    RowKind{"PeriodicTriangles", "tt"},
+    RowKind{"PeriodicQuadrilaterals", "qq"},
+    RowKind{"TangentAtEdgeVertices", "e.."},  // a cell, which of its vertices, a tangent or normal
+    RowKind{"NormalAtTriangleVertices", "t.."},
+    RowKind{"NormalAtQuadrilateralVertices", "q.."},
+};
+
+/// BAMG's sizes of the mesh at all vertices, a section without a count: an array of that name.
+inline constexpr std::string_view kSizes = "hVertices";
 
 /// Data of Medit files beyond the mesh.
 struct Metadata final : FormatMetadata {
@@ -90,16 +134,29 @@ struct Metadata final : FormatMetadata {
     std::string text;  ///< verbatim, from the keyword on
     bool before_vertices;
   };
+  /// A section of a RowKind, or of a table that has a position twice.
+  struct Rows {
+    std::string keyword;
+    std::string columns;
+    std::vector<Index> items;  ///< vertices and cells of the mesh, line by line; −1: left out
+    std::vector<double> kept;  ///< the numbers in other columns
+  };
   std::int64_t version = 2;
   std::string comments_before;
   std::string after_end;
-  std::vector<Section> sections;            ///< independent of the order
+  std::vector<Section> sections;  ///< independent of the order
+  std::vector<Rows> rows;
   std::vector<std::size_t> empty_sections;  ///< kinds of cells whose section is empty
   /// Positions in the file of a cell's nodes in VTK's order, for the kinds that the file describes.
   std::map<std::size_t, std::vector<int>> places;
 
   [[nodiscard]] std::vector<std::string> contents() const override;
+  [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> vertices,
+                                                            std::span<const Index> cells) const override;
 };
+
+/// Returns what a column of a RowKind refers to; the column must have a letter.
+Target target_of(char column);
 
 /// Returns the kind of a cell type, or the number of kinds if there is none.
 std::size_t kind_of(Shape shape, int nodes);

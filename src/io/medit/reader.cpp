@@ -30,6 +30,7 @@ struct PlainKind {
 constexpr std::array kPlainKinds{
     PlainKind{"Normals", PlainKind::rows, 0, 1},
     PlainKind{"Tangents", PlainKind::rows, 0, 1},
+    PlainKind{"SubDomainFromGeom", PlainKind::rows, 0, 0},  // as many words as its first line has
     PlainKind{"BoundingBox", PlainKind::words, 0, 2},
     PlainKind{"AngleOfCornerBound", PlainKind::words, 1, 0},
     PlainKind{"MaximalAngleOfCorner", PlainKind::words, 1, 0},
@@ -46,6 +47,9 @@ constexpr std::array kPlainKinds{
     PlainKind{"HexahedronReferenceElement", PlainKind::words, 24, 0},
     PlainKind{"Identifier", PlainKind::line, 0, 0},
     PlainKind{"Geometry", PlainKind::line, 0, 0},
+    PlainKind{"IdentityOfGeometry", PlainKind::line, 0, 0},
+    PlainKind{"MeshSupportOfVertices", PlainKind::line, 0, 0},
+    PlainKind{"IdentityOfMeshSupport", PlainKind::line, 0, 0},
     PlainKind{"Comments", PlainKind::lines, 0, 0},
     PlainKind{"ReferenceStrings", PlainKind::lines, 0, 0},
 };
@@ -157,6 +161,10 @@ class Reader {
     if (const std::size_t kind = find_kind(kTableKinds, keyword); kind < kTableKinds.size()) {
       return skip_rows(pending_tables_, kind, 0);
     }
+    if (const std::size_t kind = find_kind(kRowKinds, keyword); kind < kRowKinds.size()) {
+      return skip_rows(pending_rows_, kind, static_cast<int>(kRowKinds[kind].columns.size()));
+    }
+    if (same_but_for_case(keyword, kSizes)) return read_sizes();
     if (const std::size_t kind = kind_of_ordering(keyword); kind < kCellKinds.size()) {
       read_ordering(kind);
       return keep_section(keyword);
@@ -188,7 +196,8 @@ class Reader {
   void skip_plain(const PlainKind& kind) {
     const bool has_count = kind.form == PlainKind::rows || kind.form == PlainKind::lines;
     const Index count = has_count ? in_.count(what_count(), 2) : 1;
-    const int words = kind.words_per_row + kind.words_per_dimension * mesh_.dimension;
+    int words = kind.words_per_row + kind.words_per_dimension * mesh_.dimension;
+    if (words == 0 && kind.form == PlainKind::rows) words = words_of_line();
     const std::string what = what_number();
     for (Index row = 0; row < count; ++row) {
       if (kind.form == PlainKind::line || kind.form == PlainKind::lines) {
@@ -306,6 +315,10 @@ class Reader {
       go_to(byte, kTableKinds[kind].keyword);
       read_table(kTableKinds[kind]);
     }
+    for (const auto& [kind, byte] : pending_rows_) {
+      go_to(byte, kRowKinds[kind].keyword);
+      read_rows(kRowKinds[kind].columns);
+    }
   }
 
   void go_to(std::int64_t byte, std::string_view keyword) {
@@ -335,7 +348,38 @@ class Reader {
     mesh_.sets.push_back(std::move(set));
   }
 
+  /// Reads a section of lines with positions in some columns.
+  void read_rows(std::string_view columns) {
+    const Index rows = in_.count(what_count(), 2 * static_cast<std::int64_t>(columns.size()));
+    Metadata::Rows section{last_keyword_, std::string(columns), {}, {}};
+    const std::string what = what_number();
+    for (Index row = 0; row < rows; ++row) {
+      if (columns.starts_with(".t") && in_.peek_word() != "3") {
+        in_.fail(fmt::format("a line of {} begins with '{}'", last_keyword_, shown(in_.peek_word())),
+                 "3, for a triangle, is known");
+      }
+      for (const char column : columns) {
+        if (column == '.') {
+          section.kept.push_back(in_.real(what));
+          continue;
+        }
+        const auto [first, count] = range_of(target_of(column), rows);
+        section.items.push_back(first + position(count, what));
+      }
+    }
+    metadata_->rows.push_back(std::move(section));
+  }
+
+  /// Reads a size for each vertex.
+  void read_sizes() {
+    if (!has_vertices_) in_.fail("hVertices comes before Vertices", "put it after them");
+    std::vector<double> sizes(mesh_.points.size());
+    for (double& size : sizes) size = in_.real("a number of hVertices");
+    mesh_.data.push_back({std::string(kSizes), Association::vertices, 1, std::move(sizes), {}, {}});
+  }
+
   void read_table(const ListKind& kind) {
+    const std::int64_t begin = in_.byte();
     DataArray array{
         std::string(kind.keyword), kind.target ? Association::cells : Association::vertices, 1, {}, {}, {}};
     const Index rows = in_.count(what_count(), 2);
@@ -353,9 +397,9 @@ class Reader {
     std::vector<bool> seen(count, false);
     for (Index row = 0; row < rows; ++row) {
       const Index item = position(count, what);
-      if (seen[item]) {
-        in_.fail(fmt::format("{} names {} twice, which cannot be kept", array.name, item + 1),
-                 "remove the section or one of the lines");
+      if (seen[item]) {  // an array has one row for each
+        in_.seek(begin);
+        return read_rows(kind_columns(kind, array.components));
       }
       seen[item] = true;
       array.indices.push_back(first + item);
@@ -363,6 +407,15 @@ class Reader {
     }
     array.values = std::move(values);
     mesh_.data.push_back(std::move(array));
+  }
+
+  /// Returns the columns of a table as a RowKind has them.
+  static std::string kind_columns(const ListKind& kind, Index others) {
+    const char first = !kind.target                     ? 'v'
+                       : kind.target == Shape::line     ? 'e'
+                       : kind.target == Shape::triangle ? 't'
+                                                        : 'q';
+    return first + std::string(static_cast<std::size_t>(others), '.');
   }
 
   // ---- the end
@@ -427,6 +480,7 @@ class Reader {
   std::vector<Pending> pending_cells_;
   std::vector<Pending> pending_lists_;
   std::vector<Pending> pending_tables_;
+  std::vector<Pending> pending_rows_;
   std::array<Index, kCellKinds.size()> first_{};
   std::array<Index, kCellKinds.size()> counts_{};
   std::vector<std::int64_t> references_;

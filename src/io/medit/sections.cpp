@@ -63,7 +63,41 @@ Reference reference(Shape shape) {
 std::vector<std::string> Metadata::contents() const {
   std::vector<std::string> result;
   for (const Section& section : sections) result.push_back("Medit's " + section.keyword);
+  for (const Rows& section : rows) result.push_back("Medit's " + section.keyword);
   return result;
+}
+
+std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> vertices,
+                                                      std::span<const Index> cells) const {
+  if (rows.empty()) return nullptr;
+  auto result = std::make_shared<Metadata>(*this);
+  for (Rows& section : result->rows) {
+    std::size_t next = 0;
+    while (next < section.items.size()) {
+      for (const char column : section.columns) {
+        if (column == '.') continue;
+        const std::span<const Index> new_places = target_of(column) ? cells : vertices;
+        Index& item = section.items[next++];
+        if (!new_places.empty() && item >= 0) item = new_places[item];
+      }
+    }
+  }
+  return result;
+}
+
+Target target_of(char column) {
+  switch (column) {
+    case 'e':
+      return Shape::line;
+    case 't':
+      return Shape::triangle;
+    case 'q':
+      return Shape::quad;
+    case 'k':
+      return Shape::tetrahedron;
+    default:
+      return {};
+  }
 }
 
 std::size_t kind_of(Shape shape, int nodes) {
