@@ -7,6 +7,7 @@
 #include "machines.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
+#include "mesh_files.hpp"
 #include "metrics/edge_span.hpp"
 #include "payoff/band.hpp"
 #include "payoff/kernel_timing.hpp"
@@ -93,14 +94,14 @@ void run(const CompareArguments& arguments) {
   Comparison comparison;
   comparison.caches = arguments.caches.empty() ? choose_machine(arguments.machine).model.caches
                                                : parse_caches(arguments.caches);
+  comparison.orders = orders_of(arguments.methods.empty() ? default_methods() : arguments.methods);
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.05);
   Notes notes;
-  Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
+  Mesh mesh = read_to_work_on(arguments.input, notes, kBytesToMeasure * (comparison.orders.size() + 2));
   mesh.cell_blocks.clear();  // orders are compared, not a file's layout
   const CsrGraph graph = vertex_graph(mesh);
 
-  comparison.orders = orders_of(arguments.methods.empty() ? default_methods() : arguments.methods);
   const bool predicted = !arguments.caches.empty() || is_quick_to_predict(mesh);
   const double share = 0.35 / static_cast<double>(comparison.orders.size());
   for (std::size_t i = 0; i < comparison.orders.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "machines.hpp"
 #include "mesh/degenerate.hpp"
 #include "mesh/graphs.hpp"
+#include "mesh_files.hpp"
 #include "metrics/edge_span.hpp"
 #include "payoff/advice.hpp"
 #include "payoff/machine.hpp"
@@ -158,7 +159,8 @@ void run(const InfoArguments& arguments) {
   MachineChoice machine = choose_machine(arguments.machine, arguments.all_threads && !arguments.measure);
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.3);
-  const Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
+  const Mesh mesh =
+      read_to_work_on(arguments.input, notes, arguments.measure ? 3 * kBytesToMeasure : kBytesToPredict);
 
   const CellSimplices simplices(mesh);
   // who asks for measured times does not wait for what they would be predicted by

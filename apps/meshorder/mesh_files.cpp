@@ -5,6 +5,7 @@
 #include "io/kept_cells.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/output_set.hpp"
+#include "io/stream/read_limits.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -21,16 +22,22 @@ void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids
           more_maps);
 }
 
+Mesh read_to_work_on(const std::string& path, Notes& notes, std::uint64_t bytes_of_entry) {
+  Mesh mesh = read_mesh(path, {.notes = &notes});
+  limit_joins(left_by_last_reading(), bytes_of_entry);
+  return mesh;
+}
+
 void check_can_write(const MeshFiles& files) {
   (void)OutputFile(files.output);
   if (!files.maps.empty()) check_can_write_maps(files.maps);
 }
 
-MeshToOrder read_to_order(const MeshFiles& files, Notes& notes) {
+MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t bytes_of_entry) {
   const Format& format = output_format_of(files.output);
   MeshToOrder result;
   Mesh& mesh = result.mesh;
-  mesh = read_mesh(files.input, {.notes = &notes});
+  mesh = read_to_work_on(files.input, notes, bytes_of_entry);
   const Index cells_read = mesh.cell_count();
   const std::vector<Index> wanted = keep_cells(mesh, {.dimension = files.keeping.dimension, .notes = &notes});
   const std::vector<Index> held = files.keeping.strict ? all_cells(mesh) : cells_for(mesh, format, notes);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "command.hpp"
+#include "graph/join_limit.hpp"
 #include "maps.hpp"
 #include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -32,12 +34,25 @@ struct MeshToOrder {
 void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids,
                         const std::string& more_maps = "");
 
+/// Reads a mesh to compute with. Its graphs may take what it leaves of the limit on memory, for the rest of
+/// the process.
+///
+/// @param bytes_of_entry  as of `limit_joins`
+Mesh read_to_work_on(const std::string& path, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
+
+/// As kBytesToOrder, for commands that predict times, and for those that run kernels, on so many orders at a
+/// time.
+inline constexpr std::uint64_t kBytesToPredict = 64;
+inline constexpr std::uint64_t kBytesToMeasure = 100;
+
 /// Fails, before the work, if the output or its maps cannot be written.
 void check_can_write(const MeshFiles& files);
 
 /// Reads a mesh with the cells that the output can hold. Throws Error for a faulty file and for cells that
 /// the output must hold and cannot.
-MeshToOrder read_to_order(const MeshFiles& files, Notes& notes);
+///
+/// @param bytes_of_entry  as of `limit_joins`
+MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
 /// Writes a mesh that is in its new order, with its maps, whose permutations are known by now; returns the
 /// paths of the maps. All files take their places together, or none does.

@@ -21,6 +21,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -133,7 +134,8 @@ void run(const OrderArguments& arguments) {
   progress.stage("reading " + arguments.input, 0, 0.4);
   const Stopwatch reading;
   Notes notes;
-  MeshToOrder job = read_to_order(arguments, notes);
+  const std::uint64_t bytes_of_race = arguments.measure ? 3 * kBytesToMeasure : kBytesToPredict;
+  MeshToOrder job = read_to_order(arguments, notes, in_race ? bytes_of_race : kBytesToOrder);
   Mesh& mesh = job.mesh;
   const double read_seconds = reading.seconds();
 

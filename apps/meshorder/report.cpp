@@ -10,6 +10,7 @@
 #include "lab/study/mesh_study.hpp"
 #include "lab/study/results_json.hpp"
 #include "lab/support/machine.hpp"
+#include "mesh_files.hpp"
 #include "payoff/advice.hpp"
 #include "progress.hpp"
 #include "wording.hpp"
@@ -99,7 +100,7 @@ std::string unique_name(const std::string& file, const std::vector<MeshRecord>& 
 void add_mesh(Page& page, const std::string& file, const ReportArguments& arguments, Progress& progress,
               double from, double to, Notes& notes) {
   progress.stage("reading " + file, from, from + 0.1 * (to - from));
-  const Mesh mesh = read_mesh(file, {.notes = &notes});
+  const Mesh mesh = read_to_work_on(file, notes);
   if (mesh.cells.highest_dimension() < 2)
     throw InputError(file, "has neither volume cells nor a surface to show",
                      "give a mesh with cells of two or three dimensions");

@@ -9,6 +9,7 @@
 #include "lab/scenario/frames.hpp"
 #include "lab/scenario/motion_metrics.hpp"
 #include "lab/scenario/simulation.hpp"
+#include "mesh_files.hpp"
 #include "progress.hpp"
 #include "simulate_report.hpp"
 #include <meshorder/error.hpp>
@@ -173,7 +174,7 @@ void run(const SimulateArguments& arguments) {
   progress.stage("reading " + path, 0.5, 0.7);
   const Stopwatch reading;
   Notes notes;
-  Mesh mesh = read_mesh(path, {.notes = &notes});
+  Mesh mesh = read_to_work_on(path, notes);
   const double read_seconds = reading.seconds();
   progress.stage("setting up", 0.7, 1);
   Simulation simulation = set_up(std::move(scenario), std::move(mesh), path, arguments.ordering);

@@ -3,6 +3,7 @@
 
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
+#include "cells/vertex_joins.hpp"
 #include "distributed/bisection.hpp"
 #include "distributed/cell_order.hpp"
 #include "distributed/curve.hpp"
@@ -42,7 +43,7 @@ class Stages {
   Stopwatch stopwatch_;
 };
 
-/// Elements of a slice, by the numbers of their vertices in the file.
+/// Elements of a slice, or the pieces that join their vertices, by the numbers of their vertices in the file.
 Rows elements_of(const Communicator& communicator, const MeshSlice& slice) {
   const std::vector<char> is_element = are_elements(communicator, slice.shapes);
   return communicator.together([&] {
@@ -51,9 +52,11 @@ Rows elements_of(const Communicator& communicator, const MeshSlice& slice) {
     elements.offsets.reserve(slice.cell_vertices.offsets.size());
     for (Offset c = 0; c < slice.cell_vertices.size(); ++c) {
       if (is_element[static_cast<std::size_t>(c)] == 0) continue;
-      const auto vertices = slice.cell_vertices[c];
-      elements.entries.insert(elements.entries.end(), vertices.begin(), vertices.end());
-      elements.end_row();
+      for_each_piece(slice.shapes[static_cast<std::size_t>(c)], slice.cell_vertices[c],
+                     [&](std::span<const GlobalIndex> piece) {
+                       elements.entries.insert(elements.entries.end(), piece.begin(), piece.end());
+                       elements.end_row();
+                     });
     }
     return elements;
   });

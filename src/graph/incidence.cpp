@@ -6,6 +6,7 @@
 #include "base/parallel.hpp"
 #include "base/resize_in_steps.hpp"
 #include "base/run_scope.hpp"
+#include "graph/join_limit.hpp"
 #include <meshorder/error.hpp>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -152,6 +153,7 @@ void append_row(Elements<Size> elements, const Incidence& at_vertex, Index v, st
   constexpr Offset kAhead = 12;  // elements lie anywhere in memory: ask for them early
   Offset most = 0;
   for (const Index e : at_vertex[v]) most += elements.size(e);
+  most = std::min(most, Offset{elements.incidence.vertex_count});
   if (rows.end + most >= static_cast<Offset>(rows.neighbours.size())) {
     rows.neighbours.resize(3 * rows.neighbours.size() / 2 + static_cast<std::size_t>(most) + 1);
   }
@@ -227,33 +229,68 @@ CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::vector<Rows> parts, 
   return graph;
 }
 
-/// Throws TooLarge where elements of many vertices would make a graph beyond the limit on memory.
-void require_memory(IncidenceRef elements) {
-  constexpr Offset kMany = 64;              // vertices of an element
-  constexpr std::uint64_t kBytesEach = 16;  // of an entry, with what orders keep beside the graph
-  std::uint64_t entries = 0;
-  for (Index e = 0; e < elements.size(); ++e) {
-    const Offset size = elements.offsets[e + 1] - elements.offsets[e];
-    if (size > kMany) entries += static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(size - 1);
+/// See `limit_joins`.
+struct LimitOnJoins {
+  std::uint64_t bytes = UINT64_MAX;
+  std::uint64_t bytes_of_entry = kBytesToOrder;
+};
+
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process
+LimitOnJoins limit_on_joins;
+
+/// The most entries that long rows give the graph: a member has no more neighbours than there are others.
+std::uint64_t entries_of_long_rows(IncidenceRef rows) {
+  std::vector<Offset> neighbours(static_cast<std::size_t>(rows.vertex_count), 0);
+  for (Index e = 0; e < rows.size(); ++e) {
+    const std::span<const Index> row = rows[e];
+    if (row.size() <= kManyJoined) continue;
+    for (const Index v : row) neighbours[v] += std::ssize(row) - 1;
   }
-  const std::uint64_t bytes = bytes_for(entries, kBytesEach);
-  if (bytes <= memory_limit().bytes) return;
-  throw TooLarge("the graph of all vertices would have " + std::to_string(entries) +
-                 " entries, as each cell joins all of its vertices, and take " + size_text(bytes) +
-                 ", more than the limit of " + size_text(memory_limit().bytes) +
-                 "; cut the cells of many vertices, or raise the limit on memory (--limit-memory)");
+  std::uint64_t entries = 0;
+  for (const Offset most : neighbours)
+    entries += static_cast<std::uint64_t>(std::min(most, Offset{rows.vertex_count} - 1));
+  return entries;
 }
 
 }  // namespace
 
+void limit_joins(std::uint64_t bytes, std::uint64_t bytes_of_entry) {
+  limit_on_joins = {bytes, bytes_of_entry};
+}
+
+void require_memory_to_join(IncidenceRef rows, const JoinNames& names) {
+  Index longest = -1;
+  std::size_t most = kManyJoined;
+  for (Index e = 0; e < rows.size(); ++e) {
+    if (rows[e].size() <= most) continue;
+    most = rows[e].size();
+    longest = e;
+  }
+  if (longest < 0) return;
+  const std::uint64_t bytes = bytes_for(entries_of_long_rows(rows), limit_on_joins.bytes_of_entry);
+  const std::uint64_t limit = std::min(limit_on_joins.bytes, memory_limit().bytes);
+  if (bytes <= limit) return;
+  throw TooLarge(
+      std::string(names.row) + " " + std::to_string(names.number_of ? names.number_of(longest) : longest) +
+      " has " + std::to_string(most) + " " + names.members +
+      ", each joined to all others: the graph would take " + size_text(bytes) + ", more than the limit of " +
+      size_text(limit) + "; " + names.remedy + ", or raise the limit on memory (--limit-memory)");
+}
+
 CsrGraph joined_vertices(IncidenceRef elements) {
-  require_memory(elements);
+  require_memory_to_join(elements);
   std::vector<Offset> offsets(Offset{elements.vertex_count} + 1, 0);
   std::vector<Rows> rows = find_rows(elements, offsets);
   std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
   return with_sorted_rows(std::move(offsets), std::move(rows), is_scattered(elements));
 }
 
-CsrGraph joined_by_vertex(IncidenceRef elements) { return joined_vertices(transposed(elements)); }
+CsrGraph joined_by_vertex(IncidenceRef elements) {
+  const Incidence at_vertex = transposed(elements);
+  require_memory_to_join(at_vertex, {.row = "vertex",
+                                     .members = "elements",
+                                     .remedy = "join elements by facets (--elements fiedler-facet)"});
+  return joined_vertices(at_vertex);
+}
 
 }  // namespace meshorder

@@ -44,8 +44,8 @@ struct IncidenceRef {
 Incidence transposed(IncidenceRef incidence);
 
 /// Joins any two vertices of a common element: the vertex graph of a mesh (the paper, section 3). Vertices
-/// that an element repeats make no loop. Throws TooLarge where elements of more than 64 vertices would take
-/// more than `memory_limit`. O(sum of element sizes squared).
+/// that an element repeats make no loop. Throws TooLarge as `require_memory_to_join`, where elements of many
+/// vertices would make it too large. O(sum of element sizes squared).
 CsrGraph joined_vertices(IncidenceRef elements);
 
 /// Joins any two elements that share a vertex: the dual graph of the paper, section 4.1. This is

@@ -13,6 +13,7 @@
 #include <meshorder/io.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <istream>
 #include <ostream>
 #include <string>
@@ -50,11 +51,14 @@ class MemoryStore : public FileStore {
   std::function<std::string(std::string_view)> companion_;
 };
 
-Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions& options) {
+/// @param stored  bytes of a file in memory before it was decompressed; 0: as many as are read
+Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions& options,
+                  std::uint64_t stored = 0) {
   Notes ignored;
   Notes& notes = options.notes != nullptr ? *options.notes : ignored;
   return in_arena(options.run, [&] {
     const ReadScope scope(path, options.memory_limit, options.include_folders);
+    if (stored > 0) count_file(path, stored);
     if (path.store() == nullptr) finish_interrupted(path.path());
     Mesh mesh = format.read(path, notes);
     mesh.format = format.key();
@@ -76,6 +80,7 @@ std::string name_in_memory(const ReadOptions& options) {
 
 Mesh read_from_memory(std::string bytes, const ReadOptions& options) {
   const std::string name = name_in_memory(options);
+  const std::uint64_t stored = bytes.size();
   {
     const FilePath file(name);
     const ReadScope scope(file, options.memory_limit);
@@ -86,8 +91,9 @@ Mesh read_from_memory(std::string bytes, const ReadOptions& options) {
   if (format == nullptr) {
     throw InputError(name, "does not look like a mesh of a known format", "name its format");
   }
+  const bool is_as_stored = bytes.size() == stored;
   MemoryStore store(name, std::move(bytes), options.companion);
-  return read_checked({name, store}, *format, options);
+  return read_checked({name, store}, *format, options, is_as_stored ? 0 : stored);
 }
 
 /// Returns the places of all cells: of those that were kept as `of_kept` says, then of the others.

@@ -2,6 +2,7 @@
 #include "mesh/graphs.hpp"
 
 #include "cells/facets.hpp"
+#include "cells/vertex_joins.hpp"
 
 namespace meshorder {
 
@@ -15,9 +16,7 @@ CellArrays cell_arrays(const Mesh& mesh) {
   return arrays;
 }
 
-CsrGraph vertex_graph(const Mesh& mesh) {
-  return joined_vertices(CellSelection::elements(cell_arrays(mesh)).incidence());
-}
+CsrGraph vertex_graph(const Mesh& mesh) { return vertex_graph(cell_arrays(mesh)); }
 
 CsrGraph facet_graph(const Mesh& mesh) {
   const CellArrays cells = cell_arrays(mesh);

@@ -9,8 +9,8 @@ namespace meshorder {
 /// Returns the cells of a mesh as the orderings take them. Refers to the mesh. O(blocks).
 CellArrays cell_arrays(const Mesh& mesh);
 
-/// Returns the graph that joins any two vertices of a common element (the paper, section 3). Vertices
-/// without elements have no neighbours. O(sum of element sizes squared · log degree).
+/// Returns the graph that joins any two vertices of a common element, or of a piece of it (vertex_joins.hpp).
+/// Vertices without elements have no neighbours. O(sum of piece sizes squared · log degree).
 CsrGraph vertex_graph(const Mesh& mesh);
 
 /// Returns the graph of elements that share a facet, numbered in the order of cells: a face for volumes, an

@@ -4,6 +4,7 @@
 #include "base/arena.hpp"
 #include "base/stopwatch.hpp"
 #include "cells/facets.hpp"
+#include "cells/vertex_joins.hpp"
 #include "graph/clean_graph.hpp"
 #include "ordering/method.hpp"
 #include "ordering/order_cells.hpp"
@@ -86,7 +87,7 @@ MeshOrder order_mesh(const MeshView& mesh, const MeshMethods& methods, const Ord
     MeshOrder result;
     {
       report("graph");
-      const CsrGraph graph = joined_vertices(CellSelection::elements(arrays).incidence());
+      const CsrGraph graph = vertex_graph(arrays);
       result.vertices = order_vertices_by_options(methods.vertices, {graph, mesh.points}, options);
       result.vertices.seconds = vertex_time.seconds();
     }
@@ -103,7 +104,7 @@ Graph vertex_graph(const CellsView& cells, std::size_t vertex_count, const Run& 
   return in_call(run, [&] {
     report("graph");
     const CellArrays arrays = cell_arrays(cells, vertex_count, Check::full);
-    return adopted(joined_vertices(CellSelection::elements(arrays).incidence()));
+    return adopted(vertex_graph(arrays));
   });
 }
 

@@ -1,15 +1,22 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/graphs.hpp"
 
+#include "graph/join_limit.hpp"
 #include "mesh/procedural.hpp"
+#include "mesh/simplices.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 #include <meshorder/mesh.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <numeric>
 #include <set>
+#include <span>
+#include <string>
 #include <utility>
 
 namespace meshorder {
@@ -99,6 +106,81 @@ TEST(MeshVertexGraph, OfNoCellsHasNoEdges) {
   EXPECT_EQ(vertex_graph(mesh).edge_count(), 0);
   EXPECT_EQ(facet_graph(mesh).size(), 0);
   EXPECT_EQ(vertex_graph(Mesh{}).size(), 0);
+}
+
+TEST(MeshVertexGraph, JoinsConsecutivePointsOfAPolyline) {
+  EXPECT_EQ(edges_of(vertex_graph(mesh_of({{Shape::polyline, {3, 0, 2, 1}}, {Shape::line, {1, 4}}}))),
+            (Pairs{{0, 3}, {0, 2}, {1, 2}, {1, 4}}));
+}
+
+TEST(MeshVertexGraph, JoinsTheCornersOfTheTrianglesOfAStrip) {
+  EXPECT_EQ(edges_of(vertex_graph(mesh_of({{Shape::triangle_strip, {0, 1, 2, 3, 4}}}))),
+            (Pairs{{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}, {2, 4}, {3, 4}}));
+}
+
+TEST(MeshVertexGraph, JoinsNoPointsOfACloud) {
+  EXPECT_EQ(edges_of(vertex_graph(mesh_of({{Shape::poly_vertex, {0, 1, 2}}}))), Pairs{});
+}
+
+TEST(MeshVertexGraph, JoinsAllVerticesOfACellOrThoseOfItsSimplices) {
+  for (const Shape shape : {Shape::polygon, Shape::polyhedron}) {
+    for (const Index size : {5, 64, 65, 1000}) {
+      std::vector<Index> vertices(static_cast<std::size_t>(size));
+      std::iota(vertices.begin(), vertices.end(), 0);
+      const Mesh mesh = mesh_of({{shape, vertices}});
+      const Simplices cut = cut_into_simplices(mesh);
+      Pairs of_cut;
+      for (Offset s = 0; s < cut.size(); ++s) {
+        const std::span corners = std::span(cut.vertices).subspan((cut.dimension + 1) * s, cut.dimension + 1);
+        for (const Index a : corners) {
+          for (const Index b : corners) {
+            if (a < b) of_cut.emplace(a, b);
+          }
+        }
+      }
+      const Pairs joined = edges_of(vertex_graph(mesh));
+      if (size <= 64) {
+        EXPECT_EQ(std::ssize(joined), size * (size - 1) / 2) << to_string(shape) << size;
+      } else {
+        EXPECT_EQ(joined, of_cut) << to_string(shape) << size;
+      }
+    }
+  }
+}
+
+TEST(MeshVertexGraph, OfTooManyPairsIsRefusedWithTheCellThatHasThem) {
+  std::vector<Index> nodes(1000);
+  std::iota(nodes.begin(), nodes.end(), 0);
+  const Mesh mesh = mesh_of({{Shape::line, {0, 1}}, {Shape::hexahedron, nodes}});
+  limit_joins(1000 * 999 * kBytesToOrder);
+  EXPECT_EQ(vertex_graph(mesh).edge_count(), 1000 * 999 / 2);
+  limit_joins(1000 * 999 * kBytesToOrder - 1);
+  try {
+    (void)vertex_graph(mesh);
+    ADD_FAILURE();
+  } catch (const TooLarge& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "cell 1 has 1000 vertices, each joined to all others: the graph would take 22.87 MiB, more "
+        "than the limit of 22.87 MiB; cut such cells, or raise the limit on memory (--limit-memory)");
+  }
+  limit_joins(UINT64_MAX);
+}
+
+TEST(ElementGraph, OfTooManyPairsIsRefusedWithTheVertexThatHasThem) {
+  std::vector<Cell> fan;
+  for (Index k = 1; k < 100; ++k) fan.push_back({Shape::triangle, {0, k, k + 1}});
+  const Mesh mesh = mesh_of(fan);
+  const CellArrays cells = cell_arrays(mesh);
+  EXPECT_EQ(joined_by_vertex(cells.incidence()).edge_count(), 99 * 98 / 2);
+  limit_joins(1000);
+  try {
+    (void)joined_by_vertex(cells.incidence());
+    ADD_FAILURE();
+  } catch (const TooLarge& error) {
+    EXPECT_EQ(std::string(error.what()).substr(0, 26), "vertex 0 has 99 elements, ");
+  }
+  limit_joins(UINT64_MAX);
 }
 
 TEST(Elements, AreTheCellsOfTheHighestDimensionAndLowerCellsTheRest) {

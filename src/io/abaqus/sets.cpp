@@ -9,22 +9,41 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace meshorder::abaqus {
 namespace {
-
-/// Removes all but the first of members that are given several times. `last_set` has for each item the last
-/// set, counted from 1, that it was seen in.
-void keep_first(EntitySet& set, Index number, std::vector<Index>& last_set) {
-  std::erase_if(set.members, [&](Index member) { return std::exchange(last_set[member], number) == number; });
-}
 
 std::string_view name_of_sets(Association association) {
   return association == Association::vertices ? "node set" : "element set";
 }
 
 }  // namespace
+
+/// Keeps sets of vertices or of cells from growing by members that they have.
+class SetReader::Repeats {
+ public:
+  /// @param items  vertices or cells of the mesh
+  explicit Repeats(Index items) : last_turn_(static_cast<std::size_t>(items), 0) {}
+
+  /// Appends members; some of them may repeat others until the next `drop`. Amortised O(members).
+  void append(EntitySet& set, std::span<const Index> members) {
+    set.members.insert(set.members.end(), members.begin(), members.end());
+    if (set.members.size() > 2 * last_turn_.size()) drop(set);
+  }
+
+  /// Removes all but the first of members that are given several times. O(members).
+  void drop(EntitySet& set) {
+    ++turn_;
+    std::erase_if(set.members,
+                  [&](Index member) { return std::exchange(last_turn_[member], turn_) == turn_; });
+  }
+
+ private:
+  Index turn_ = 0;
+  std::vector<Index> last_turn_;  ///< of each item, the last call of `drop` that saw it, from 1
+};
 
 std::size_t SetReader::set_named(Association association, std::string_view name) {
   const auto [found, is_new] =
@@ -103,7 +122,7 @@ std::string SetReader::add_line(std::string_view line) {
 
 void SetReader::add_members(const Addition& addition, const IdMap& items,
                             const std::unordered_set<std::int64_t>& others, const Cells& cells,
-                            Notes& notes) {
+                            Repeats& repeats, Notes& notes) {
   const auto claim = [&](std::size_t count) {
     claim_memory(count * sizeof(Index), "the set", {addition.place.file, addition.place.line});
   };
@@ -120,32 +139,30 @@ void SetReader::add_members(const Addition& addition, const IdMap& items,
       first_missing = number;
     }
   }
-  for (const auto& [from, to, step] : addition.ranges) {
-    const std::vector<Index> found = items_in_range(items, from, to, step);
-    members.insert(members.end(), found.begin(), found.end());
-  }
+  EntitySet& set = sets_[addition.set];
+  repeats.append(set, members);
+  for (const auto& [from, to, step] : addition.ranges)
+    repeats.append(set, items_in_range(items, from, to, step));
   std::vector<std::string> unknown;
   for (const std::string& name : addition.names) {
-    if (const EntitySet* const set = find(addition.association, addition, name)) {
-      claim(set->members.size());
-      members.insert(members.end(), set->members.begin(), set->members.end());
+    if (const EntitySet* const named = find(addition.association, addition, name)) {
+      claim(named->members.size());
+      members = named->members;  // a set may name itself
+      repeats.append(set, members);
     } else {
       unknown.push_back(name);
     }
   }
   if (!addition.nodes_of.empty()) {
-    if (const EntitySet* const set = find(Association::cells, addition, addition.nodes_of)) {
-      for (const Index c : set->members) {
-        const auto cell = cells[c];
-        claim(cell.size());
-        members.insert(members.end(), cell.begin(), cell.end());
+    if (const EntitySet* const of_cells = find(Association::cells, addition, addition.nodes_of)) {
+      for (const Index c : of_cells->members) {
+        claim(cells[c].size());
+        repeats.append(set, cells[c]);
       }
     } else {
       unknown.push_back(addition.nodes_of);
     }
   }
-  EntitySet& set = sets_[addition.set];
-  set.members.insert(set.members.end(), members.begin(), members.end());
 
   const std::string which = fmt::format("{}:{}: the {} '{}' names", addition.place.file, addition.place.line,
                                         name_of_sets(addition.association), set.name);
@@ -163,16 +180,14 @@ std::vector<EntitySet> SetReader::members(const IdMap& nodes, const IdMap& eleme
                                           const std::unordered_set<std::int64_t>& others, const Cells& cells,
                                           Notes& notes) {
   const std::unordered_set<std::int64_t> none;
+  Repeats of_vertices(nodes.size());
+  Repeats of_cells(elements.size());
   for (const Addition& addition : additions_) {
     const bool of_nodes = addition.association == Association::vertices;
-    add_members(addition, of_nodes ? nodes : elements, of_nodes ? none : others, cells, notes);
+    add_members(addition, of_nodes ? nodes : elements, of_nodes ? none : others, cells,
+                of_nodes ? of_vertices : of_cells, notes);
   }
-  std::vector<Index> of_vertices(static_cast<std::size_t>(nodes.size()), 0);
-  std::vector<Index> of_cells(static_cast<std::size_t>(elements.size()), 0);
-  for (std::size_t i = 0; i < sets_.size(); ++i) {
-    keep_first(sets_[i], static_cast<Index>(i) + 1,
-               sets_[i].association == Association::vertices ? of_vertices : of_cells);
-  }
+  for (EntitySet& set : sets_) (set.association == Association::vertices ? of_vertices : of_cells).drop(set);
   additions_.clear();
   return std::move(sets_);
 }

@@ -58,13 +58,15 @@ class SetReader {
     std::vector<std::string> names;
     std::string nodes_of;  ///< an element set
   };
+  class Repeats;
   using Key = std::tuple<Association, bool, std::string>;  ///< bool: of the assembly
 
   std::size_t set_named(Association association, std::string_view name);
   [[nodiscard]] const EntitySet* find(Association association, const Addition& from,
                                       std::string_view name) const;
   void add_members(const Addition& addition, const IdMap& items,
-                   const std::unordered_set<std::int64_t>& others, const Cells& cells, Notes& notes);
+                   const std::unordered_set<std::int64_t>& others, const Cells& cells, Repeats& repeats,
+                   Notes& notes);
 
   bool in_assembly_ = false;
   std::vector<EntitySet> sets_;

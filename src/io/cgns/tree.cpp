@@ -261,6 +261,9 @@ Tree read_from_disk(const fs::path& path, const std::string& name) {
   if (cgio_check_file(path.c_str(), &type) != CGIO_ERR_NONE || type == CGIO_FILE_NONE) {
     throw InputError(name, "is neither a file of HDF5 nor of ADF, as CGNS's are", "check the file");
   }
+  std::error_code code;
+  const std::uintmax_t bytes = fs::file_size(path, code);
+  count_file(path, code ? 0 : bytes);
   Tree tree;
   tree.storage = type == CGIO_FILE_HDF5 ? Storage::hdf5 : Storage::adf;
   if (tree.storage == Storage::hdf5) {
@@ -270,9 +273,6 @@ Tree read_from_disk(const fs::path& path, const std::string& name) {
   }
   const CgioFile file(path, name, CGIO_MODE_READ, type);
   session.watch();
-  std::error_code code;
-  const std::uintmax_t bytes = fs::file_size(path, code);
-  count_file(path, code ? 0 : bytes);
   TreeReader reader(file, code ? 0 : bytes, tree.storage == Storage::hdf5);
   tree.root = reader.read(file.root(), "", 0);
   session.require_no_fault(name);

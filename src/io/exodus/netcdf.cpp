@@ -189,9 +189,22 @@ void NcInput::inquire() {
     check(nc_inq_var(id_, id, name.data(), &variable.type, nullptr, variable.dimensions.data(), nullptr), "");
     variable.name = name.data();
     for (int& dimension : variable.dimensions) dimension = place_of.at(dimension);
+    check_chunks(variable);
     by_name_.emplace(variable.name, variables_.size());
     variables_.push_back(std::move(variable));
   }
+}
+
+void NcInput::check_chunks(const Variable& variable) const {
+  int storage = NC_CONTIGUOUS;
+  std::vector<std::size_t> lengths(variable.dimensions.size());
+  if (nc_inq_var_chunking(id_, variable.id, &storage, lengths.data()) != NC_NOERR || storage != NC_CHUNKED)
+    return;
+  // as it is stored, and as it is read
+  std::uint64_t bytes = 2 * std::max<std::size_t>(1, size_of(variable.type));
+  for (const std::size_t length : lengths) bytes = bytes_for(bytes, length);
+  const std::string fault = refused_for_a_while(bytes, "a chunk of " + variable.name);
+  if (!fault.empty()) fail(fault, kClaimRemedy);
 }
 
 const Variable* NcInput::find(const std::string& name) const {

@@ -142,6 +142,8 @@ class NcInput {
  private:
   void check(int status, const std::string& what) const;
   void inquire();
+  /// Throws InputError where the library would take more memory for a chunk than the file may claim.
+  void check_chunks(const Variable& variable) const;
 
   hdf5::LibraryLock lock_;
   std::string name_;

@@ -4,6 +4,7 @@
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/parts.hpp"
 #include "io/hdf5/session.hpp"
+#include "io/stream/read_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -31,6 +32,15 @@ std::string lacking_filter(hid_t creation) {
     }
   }
   return {};
+}
+
+/// Returns the bytes of a chunk, less than 4 GiB in files that the library has written.
+std::uint64_t bytes_of_chunk(hid_t creation, hid_t type) {
+  std::array<hsize_t, H5S_MAX_RANK> lengths{};
+  const int rank = H5Pget_chunk(creation, H5S_MAX_RANK, lengths.data());
+  std::uint64_t bytes = H5Tget_size(type);
+  for (int k = 0; k < rank; ++k) bytes = bytes_for(bytes, lengths.at(static_cast<std::size_t>(k)));
+  return bytes;
 }
 
 }  // namespace
@@ -71,6 +81,12 @@ DatasetInfo File::info(const std::string& path) const {
   if (const std::string filter = lacking_filter(creation.id()); !filter.empty()) {
     fail(path, fmt::format("is compressed by the filter '{}', which this HDF5 lacks", filter),
          "decompress it (h5repack -f NONE)");
+  }
+  if (layout == H5D_CHUNKED) {
+    // as it is stored, and as it is read
+    const std::string fault =
+        refused_for_a_while(2 * bytes_of_chunk(creation.id(), type.id()), "a chunk of it");
+    if (!fault.empty()) fail(path, "cannot be read: " + fault, kClaimRemedy);
   }
   const std::uint64_t possible = most_bytes(dataset.id());
   if (info.size() > possible / std::min<std::size_t>(H5Tget_size(type.id()), 8) && info.size() > 0) {

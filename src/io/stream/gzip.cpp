@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/gzip.hpp"
 
+#include "base/large_pages.hpp"
 #include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
@@ -12,6 +13,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <span>
 #include <vector>
 #endif
 #include <utility>
@@ -23,7 +26,36 @@ bool is_gzip(const std::string& bytes) { return bytes.starts_with("\x1f\x8b"); }
 
 #ifdef MESHORDER_HAS_ZLIB
 
-constexpr std::size_t kGzipChunk = std::size_t{1} << 20;
+constexpr std::size_t kInflateStep = std::size_t{1} << 20;
+/// Above what the C library keeps for later when it is freed.
+constexpr std::size_t kInflateBlock = 33 * kInflateStep;
+
+/// Bytes in blocks, which do not move while there comes more.
+class InflatedBlocks {
+ public:
+  /// Returns the place of the next bytes, at most `kInflateStep` of them.
+  std::span<char> next() {
+    if (used_ == kInflateBlock * blocks_.size())
+      blocks_.push_back(std::make_unique_for_overwrite<char[]>(kInflateBlock));
+    return {blocks_.back().get() + used_ % kInflateBlock, kInflateStep - used_ % kInflateStep};
+  }
+  void use(std::size_t bytes) { used_ += bytes; }
+
+  /// Returns all bytes as one text. Takes memory for one block more, as each is freed once it is copied.
+  std::string joined() && {
+    std::string result;
+    reserve_large(result, used_);
+    for (std::unique_ptr<char[]>& block : blocks_) {
+      result.append(block.get(), std::min(kInflateBlock, used_ - result.size()));
+      block.reset();
+    }
+    return result;
+  }
+
+ private:
+  std::vector<std::unique_ptr<char[]>> blocks_;
+  std::size_t used_ = 0;
+};
 
 /// A running decompression. Several members, as `cat a.gz b.gz` makes them, follow each other.
 class Inflation {
@@ -39,18 +71,19 @@ class Inflation {
   Inflation& operator=(Inflation&&) = delete;
 
   std::string run() {
-    std::string result;
-    std::vector<char> chunk(kGzipChunk);
+    InflatedBlocks blocks;
     for (;;) {
       feed();
-      stream_.next_out = reinterpret_cast<Bytef*>(chunk.data());
-      stream_.avail_out = static_cast<uInt>(chunk.size());
+      const std::span<char> place = blocks.next();
+      stream_.next_out = reinterpret_cast<Bytef*>(place.data());
+      stream_.avail_out = static_cast<uInt>(place.size());
       const int status = inflate(&stream_, Z_NO_FLUSH);
-      const std::size_t made = chunk.size() - stream_.avail_out;
-      claim_memory(made, "what is compressed in it", {.file = file_});
-      result.append(chunk.data(), made);
+      // twice: most numbers take more memory in a mesh than in text
+      const std::size_t made = place.size() - stream_.avail_out;
+      claim_memory(2 * made, "what is compressed in it", {.file = file_});
+      blocks.use(made);
       if (status == Z_STREAM_END) {
-        if (bytes_left() == 0) return result;
+        if (bytes_left() == 0) return std::move(blocks).joined();
         if (inflateReset(&stream_) != Z_OK) fail("is damaged");
       } else if (status == Z_BUF_ERROR || (status == Z_OK && bytes_left() == 0 && stream_.avail_out > 0)) {
         fail("ends within its compressed data");

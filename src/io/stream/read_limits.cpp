@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <system_error>
 #include <utility>
 
@@ -19,6 +20,8 @@ constexpr std::uint64_t kMultiple = 100;  // of the files' size
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of each thread
 thread_local ReadScope* current_reading = nullptr;
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process
+std::atomic<std::uint64_t> left_by_last = UINT64_MAX;
 
 std::vector<fs::path>& folders_of_process() {
   static std::vector<fs::path> folders;
@@ -53,7 +56,13 @@ ReadScope::ReadScope(const FilePath& file, std::optional<std::uint64_t> memory,
       include_folders_(std::move(include_folders)),
       outer_(std::exchange(current_reading, this)) {}
 
-ReadScope::~ReadScope() { current_reading = outer_; }
+ReadScope::~ReadScope() {
+  current_reading = outer_;
+  const std::uint64_t all = limit();
+  left_by_last = all - std::min(all, claimed_);
+}
+
+std::uint64_t left_by_last_reading() { return left_by_last; }
 
 std::uint64_t ReadScope::limit() const {
   if (memory_) return *memory_;
@@ -69,18 +78,24 @@ void count_file(const FilePath& file, std::uint64_t bytes) {
   if (reading->counted_.insert(file.path().lexically_normal().string()).second) {
     reading->stored_ += bytes;
   } else {
-    claim_memory(bytes, "the file, which is read again,", {.file = file.string()});
+    const std::string fault = refused_for_a_while(bytes, "the file, which is read again,");
+    if (!fault.empty()) throw InputError(file.string(), fault, kClaimRemedy);
+    reading->claimed_ += bytes;
   }
 }
 
 std::string refused_claim(std::uint64_t bytes, std::string_view what) {
-  ReadScope* const reading = current_reading;
+  bytes = bytes_for(bytes, kCopiesOfClaim);
+  std::string fault = refused_for_a_while(bytes, what);
+  if (fault.empty() && current_reading != nullptr) current_reading->claimed_ += bytes;
+  return fault;
+}
+
+std::string refused_for_a_while(std::uint64_t bytes, std::string_view what) {
+  const ReadScope* const reading = current_reading;
   const std::uint64_t limit = reading != nullptr ? reading->limit() : memory_limit().bytes;
   const std::uint64_t before = reading != nullptr ? reading->claimed_ : 0;
-  if (bytes <= limit && before <= limit - bytes) {
-    if (reading != nullptr) reading->claimed_ += bytes;
-    return {};
-  }
+  if (bytes <= limit && before <= limit - bytes) return {};
   return fmt::format("{} would take {}{}, more than the limit of {}", what, size_text(bytes),
                      before > 0 ? fmt::format(" beside {}", size_text(before)) : "", size_text(limit));
 }

@@ -37,6 +37,7 @@ class ReadScope {
  private:
   friend void count_file(const FilePath& file, std::uint64_t bytes);
   friend std::string refused_claim(std::uint64_t bytes, std::string_view what);
+  friend std::string refused_for_a_while(std::uint64_t bytes, std::string_view what);
   friend void claim_memory(std::uint64_t bytes, std::string_view what, Location where);
   friend std::uint64_t limit_on_unknown_sizes();
   friend bool may_include(const FilePath& from, const FilePath& file);
@@ -55,10 +56,20 @@ class ReadScope {
 /// Adds a file that was read to those of the mesh. One that is read again is a claim.
 void count_file(const FilePath& file, std::uint64_t bytes);
 
+/// How often what a file claims is in memory at a time: as it is read, in the mesh, as it moves to its new
+/// order, and in the output.
+inline constexpr std::uint64_t kCopiesOfClaim = 4;
+
 /// Asks whether so many bytes more may be allocated for what a file claims rather than holds, to be called
-/// before the allocation. Returns an empty text if so, else the fault, "WHAT would take 64 GiB …": all claims
-/// of the mesh together would exceed its limit.
+/// before the allocation. They count `kCopiesOfClaim` times. Returns an empty text if so, else the fault,
+/// "WHAT would take 64 GiB …": all claims of the mesh together would exceed its limit.
 [[nodiscard]] std::string refused_claim(std::uint64_t bytes, std::string_view what);
+
+/// The same for memory that a library takes while it reads: it counts once, and not for later claims.
+[[nodiscard]] std::string refused_for_a_while(std::uint64_t bytes, std::string_view what);
+
+/// Returns the bytes of the limit that the claims of the mesh which was read last have left.
+std::uint64_t left_by_last_reading();
 
 /// What messages advise where a claim is refused.
 inline constexpr const char* kClaimRemedy =
