@@ -158,9 +158,9 @@ class MESHORDER_API Graph {
   std::vector<double> weights_;
 };
 
-/// Builds the graph that joins any two vertices of a common element (a cell of the highest dimension).
+/// Builds the graph that joins any two vertices of a common element, or of a piece of it (docs/limits.md).
 ///
-/// @param cells         the cells; those of lower dimension are ignored
+/// @param cells         the cells; elements are those of the highest dimension, others are ignored
 /// @param vertex_count  n; vertices that no element uses have no neighbours
 /// @param run           threads, progress
 /// @throws InvalidArgument for faulty cells: sizes that do not match, a vertex out of range

@@ -3,6 +3,7 @@
 import contextlib
 import gzip
 import os
+import random
 import resource
 import struct
 import subprocess
@@ -58,7 +59,7 @@ def test_arrays_that_share_a_compressed_block(command, tmp_path):
     (tmp_path / "a.vtu").write_bytes(file)
     assert len(file) < 100_000
     line = refused(tmp_path, "info", "a.vtu")
-    assert line.startswith("meshorder: a.vtu:") and "would take 64 MiB beside 256 MiB, more than the limit of 26" in line
+    assert line.startswith("meshorder: a.vtu:") and "would take 256 MiB beside 256 MiB, more than the limit of 26" in line
     assert line.endswith(REMEDY)
     done = run_within(1, tmp_path, "info", "a.vtu", "--limit-memory", "none")
     assert done.returncode == 1 and "out of memory" in done.stderr
@@ -71,7 +72,7 @@ def test_a_gzip_file_of_blanks(tmp_path):
     packed = gzip.compress(b"OFF\n" + b" " * (300 << 20), 9)
     (tmp_path / "a.off.gz").write_bytes(packed)
     line = refused(tmp_path, "info", "a.off.gz")
-    assert line.startswith("meshorder: a.off.gz: what is compressed in it would take 1 MiB beside ")
+    assert line.startswith("meshorder: a.off.gz: what is compressed in it would take 8 MiB beside ")
     assert line.endswith(REMEDY)
 
 
@@ -93,7 +94,7 @@ def test_datasets_of_values_that_are_not_there(tmp_path):
     arrays = "".join(array.format(k, points) for k in range(400))
     (tmp_path / "b.xdmf").write_text(XDMF.format(points, "HDF", "a.h5:/p", arrays))
     line = refused(tmp_path, "info", "b.xdmf")
-    assert line.startswith("meshorder: a.h5: the dataset '/u' would take 8 MiB beside ") and line.endswith(REMEDY)
+    assert line.startswith("meshorder: a.h5: the dataset '/u' ") and " beside 256 MiB, more than " in line and line.endswith(REMEDY)
 
 
 def test_dimensions_of_netcdf(tmp_path):
@@ -107,15 +108,34 @@ def test_dimensions_of_netcdf(tmp_path):
     assert "coord claims more values than a file of" in refused(tmp_path, "info", "a.exo")
 
 
-def test_polygons_of_many_vertices(tmp_path):
+def test_cells_of_many_vertices(command, tmp_path):
     """A graph that joins all vertices of a cell is as large as their number squared."""
     count = 20_000
-    points = "".join(f"{k} {k * k % 7} 0\n" for k in range(count))
-    polygon = f"{count} " + " ".join(map(str, range(count))) + "\n"
-    (tmp_path / "a.off").write_text(f"OFF\n{count} 2 0\n{points}{polygon}{polygon}")
-    line = refused(tmp_path, "order", "a.off", "-o", "b.off", "--vertices", "rcm")
-    assert "the graph of all vertices would have 799960000 entries" in line and "(--limit-memory)" in line
-    assert not (tmp_path / "b.off").exists()
+    numbers = " ".join(map(str, range(count)))
+    (tmp_path / "a.vtk").write_text(f"# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {count} float\n"
+                                    + "0 0 0\n" * count + f"CELLS 2 {count + 4}\n2 0 1\n{count} {numbers}\nCELL_TYPES 2\n3\n68\n")
+    for arguments in (("info", "a.vtk"), ("compare", "a.vtk"), ("order", "a.vtk", "-o", "b.vtk", "--vertices", "rcm")):
+        line = refused(tmp_path, *arguments)
+        assert line.startswith("meshorder: cell 1 has 20000 vertices, each joined to all others: the graph would take ")
+        assert "more than the limit of 2" in line and line.endswith("(--limit-memory)")
+    assert not (tmp_path / "b.vtk").exists()
+    count = 3000
+    rim = "".join(f"3 0 {k} {k + 1}\n" for k in range(1, count))
+    (tmp_path / "fan.off").write_text(f"OFF\n{count + 1} {count - 1} 0\n" + "0 0 0\n" * (count + 1) + rim)
+    command.ok("order", "fan.off", "-o", "c.off", "--elements", "fiedler")
+    line = command.fails("order", "fan.off", "-o", "c.off", "--elements", "fiedler", "--limit-memory", "100M")
+    assert "vertex 0 has 2999 elements, each joined to all others: " in line and "fiedler-facet" in line
+
+
+def test_a_polyline_joins_consecutive_points(command, tmp_path):
+    """Shuffled points of a line: each order that is better than the file's follows the line."""
+    order = list(range(600))
+    random.Random(1).shuffle(order)
+    points = "".join(f"{order.index(k)} 0 0\n" for k in range(600))
+    (tmp_path / "a.vtk").write_text("# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 600 float\n"
+                                    + points + "CELLS 1 601\n600 " + " ".join(map(str, order)) + "\nCELL_TYPES 1\n4\n")
+    spans = command.json("order", "a.vtk", "-o", "b.vtk", "--vertices", "fiedler")["edge_span"]
+    assert spans["before"]["mean"] > 100 and spans["after"]["mean"] == 1
 
 
 def test_pipes_end_at_the_limit(command, tmp_path):

@@ -19,13 +19,19 @@ _, status, usage = os.wait4(os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ
 print(status, usage.ru_maxrss)"""
 
 
-def peak(*arguments):
-    """The most memory in bytes that a run of the command has at a time."""
-    done = subprocess.run([sys.executable, "-S", "-c", RUNNER, MESHORDER, *map(str, arguments)],
+def peak_and_status(folder, *arguments):
+    """The exit status of a run of the command, the most memory in bytes that it has at a time, and its errors."""
+    done = subprocess.run([sys.executable, "-S", "-c", RUNNER, MESHORDER, *map(str, arguments)], cwd=folder,
                           capture_output=True, text=True, check=True)
     status, most = map(int, done.stdout.split()[-2:])
-    assert status == 0, done.stderr
-    return most * 1024
+    return os.waitstatus_to_exitcode(status), most * 1024, done.stderr
+
+
+def peak(*arguments):
+    """The most memory in bytes that a run of the command has at a time."""
+    status, most, error = peak_and_status(None, *arguments)
+    assert status == 0, error
+    return most
 
 
 @pytest.fixture(scope="module")
