@@ -52,6 +52,9 @@ FILES = {
     "points.obj.gz": lambda: gzip.compress(b"v 0 0 0\n" * 20_000_000 + b"f 1 2 3\n", 9),
     "blanks.vtk.gz": lambda: gzip.compress(b"# vtk DataFile Version 3.0\n" + b"\n" * (300 * MEBIBYTE), 9),
     "blanks.inp.gz": lambda: gzip.compress(b"*NODE\n" + b"**\n" * (100 * MEBIBYTE), 9),
+    "empty-lines.graph.gz": lambda: gzip.compress(b"20000000 1\n2\n1\n" + b"\n" * 20_000_000, 9),
+    "empty-lines.mtx.gz": lambda: gzip.compress(
+        b"%%MatrixMarket matrix coordinate pattern symmetric\n20000000 20000000 1\n2 1\n" + b"\n" * 20_000_000, 9),
     "arrays.vtu": compressed_arrays,
     "one-set.inp": lambda: (NODES + "*NSET,NSET=N,GENERATE\n" + "1,4000,1\n" * 4000).encode(),
     "sets.inp": lambda: (NODES + "".join(f"*NSET,NSET=N{k},GENERATE\n1,4000,1\n" for k in range(9000))).encode(),

@@ -1,12 +1,15 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/matrix/matrix.hpp"
 
+#include "base/memory.hpp"
+#include "io/stream/read_limits.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <type_traits>
 
@@ -14,6 +17,11 @@ namespace meshorder::matrix {
 
 bool is_entry(const Mesh& /*mesh*/, Shape shape, int vertices) {
   return (shape == Shape::line && vertices == 2) || (shape == Shape::vertex && vertices == 1);
+}
+
+void claim_vertices(Index count) {
+  constexpr std::uint64_t kBytes = 12;  // each counts kCopiesOfClaim times
+  claim_memory(bytes_for(static_cast<std::uint64_t>(count), kBytes), "the vertices");
 }
 
 const DataArray* dense_array(const Mesh& mesh, std::string_view name, Association association) {

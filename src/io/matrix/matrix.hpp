@@ -18,6 +18,10 @@ inline constexpr std::string_view kSize = "size";      ///< array on vertices: s
 /// Returns whether a cell is an entry: a line or a vertex.
 bool is_entry(const Mesh& mesh, Shape shape, int vertices);
 
+/// Claims the memory of vertices that have at most a line end in the file. Throws InputError beyond the
+/// limit.
+void claim_vertices(Index count);
+
 /// Returns the array of that name if it has a row for every vertex or cell; null otherwise.
 const DataArray* dense_array(const Mesh& mesh, std::string_view name, Association association);
 

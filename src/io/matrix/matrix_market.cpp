@@ -142,6 +142,7 @@ class MatrixReader {
     // a large matrix has an entry in most rows
     constexpr std::int64_t kFewRows = 1 << 20;
     if (rows < 0 || rows > kFewRows) (void)in_.checked_count(rows, "the number of rows", 1);
+    claim_vertices(static_cast<Index>(rows));
     mesh_.points.resize(rows, {0, 0, 0});
   }
 

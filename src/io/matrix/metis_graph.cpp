@@ -87,7 +87,9 @@ class GraphReader {
     }
     if (!in_.at_line_end()) in_.fail("the first line has too many numbers", "two to four are needed");
     edges_ = in_.checked_count(edges, "the number of edges", 4);
-    mesh_.points.resize(in_.checked_count(vertices, "the number of vertices", 1), {0, 0, 0});
+    const Index count = in_.checked_count(vertices, "the number of vertices", 1);
+    claim_vertices(count);
+    mesh_.points.resize(count, {0, 0, 0});
     (void)in_.raw_line();
   }
 
