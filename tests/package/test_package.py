@@ -5,6 +5,7 @@ MESHORDER_BUILD names the build folder that is installed; without, build/ is tak
 folder in which the subproject is built and kept, for the next time; without, build-package/ is taken.
 """
 import gzip
+import json
 import os
 import pathlib
 import re
@@ -62,6 +63,24 @@ def environment(prefix):
     folder = next(prefix.glob("**/pkgconfig")).parent
     assert folder.is_relative_to(prefix / "lib")
     return {**os.environ, "PKG_CONFIG_PATH": str(folder / "pkgconfig"), "LD_LIBRARY_PATH": str(folder)}
+
+
+# ---- what can be chosen
+
+CHOICES = [
+    *(["--preset", preset["name"]] for preset in json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]
+      if not preset.get("hidden")),
+    ["-DMESHORDER_CLI=OFF", "-DMESHORDER_TESTS=OFF"],
+    ["-DMESHORDER_CLI=OFF", "-DMESHORDER_TESTS=OFF", "-DMESHORDER_COMPONENTS=core;c"],
+    ["-DMESHORDER_LAB=OFF", "-DMESHORDER_TESTS=OFF"],
+    ["-DMESHORDER_HDF5=OFF", "-DMESHORDER_NETCDF=OFF", "-DMESHORDER_CGNS=OFF", "-DMESHORDER_TESTS=OFF"],
+]
+
+
+@pytest.mark.parametrize("options", CHOICES, ids=" ".join)
+def test_all_that_is_chosen_can_be_built(tmp_path, options):
+    run("cmake", "-S", ROOT, "-B", tmp_path, "-G", "Ninja", *options, cwd=ROOT)
+    run("ninja", "-C", tmp_path, "-n")  # fails where a file is needed that nothing makes
 
 
 # ---- what is installed
