@@ -19,8 +19,21 @@ from .._permutation import Permutation
 from .host import Host, parts
 
 
+#: what meshio's reader of Gmsh 4.1 keeps among the sets of cells: tags of the entities that bound each block, signed by
+#: their orientation
+_ENTITY_TAGS = "gmsh:bounding_entities"
+
+
 class MeshioMesh(Host):
-    """A meshio.Mesh. Cells stay within their block, so blocks keep their sizes."""
+    """A meshio.Mesh. Cells stay within their block, so blocks keep their sizes.
+
+    A set of cells has an array for each block, with numbers within this block, or None; arrays may be missing at the
+    end. Some readers of meshio 5.3 make other sets, which keep their form and meaning:
+
+    - Gmsh 4.1: tags of entities among the sets;
+    - Abaqus: a set that names other sets is a list of these, each with an array for each block;
+    - FLAC3D: the numbers count the cells of all blocks.
+    """
 
     def __init__(self, mesh: Any) -> None:
         self.given = mesh
@@ -43,21 +56,37 @@ class MeshioMesh(Host):
         return sets
 
     def cell_sets(self) -> Mapping[str, Any]:
+        sets = {name: blocks for name, blocks in self.given.cell_sets.items() if name != _ENTITY_TAGS}
+        starts = np.zeros_like(self._starts) if self._counts_all_cells() else self._starts
         return {
             name: np.concatenate(
                 [
                     integers(members, f"set '{name}'").astype(np.int64) + start
-                    for members, start in zip(blocks, self._starts)
+                    for part in (blocks if _names_sets(blocks) else [blocks])
+                    for members, start in zip(part, starts)
                     if members is not None
                 ]
                 or [np.zeros(0, dtype=np.int64)]
             )
-            for name, blocks in self.given.cell_sets.items()
+            for name, blocks in sets.items()
         }
+
+    def _counts_all_cells(self) -> bool:
+        """Returns whether the sets are those of meshio's reader of FLAC3D, whose numbers count the cells of all blocks."""
+        sets = self.given.cell_sets
+        if "cell_ids" not in self.given.cell_data or not all(name.startswith(("zone:", "face:")) for name in sets):
+            return False
+        return all(
+            members is None or np.all((start <= np.asarray(members)) & (np.asarray(members) < end))
+            for blocks in sets.values()
+            for members, start, end in zip(blocks, self._starts[:-1], self._starts[1:])
+        )
 
     def mesh(self) -> Mesh:
         made = super().mesh()
         made.notes += [f"field data '{name}' was left out: a meshorder.Mesh has none" for name in self.given.field_data]
+        if _ENTITY_TAGS in self.given.cell_sets:
+            made.notes.append(f"'{_ENTITY_TAGS}' was left out: it holds tags of Gmsh, not cells")
         if self.given.gmsh_periodic:
             made.notes.append("Gmsh's periodic points were left out")
         if self.given.info is not None:
@@ -77,21 +106,38 @@ class MeshioMesh(Host):
                 name: [part.move(np.asanyarray(values)) for values, part in zip(blocks, by_cell)]
                 for name, blocks in mesh.cell_data.items()
             },
-            "cell_sets": {
-                name: [
-                    None if members is None else _renumbered(part.old_to_new, members, name)
-                    for members, part in zip(blocks, by_cell)
-                ]
-                for name, blocks in mesh.cell_sets.items()
-            },
+            "cell_sets": self._moved_cell_sets(by_cell),
             "gmsh_periodic": self._periodic(by_vertex.old_to_new),
         }
+        # the ids that meshio's reader of Nastran leaves
+        if hasattr(mesh, "points_id"):
+            new["points_id"] = by_vertex.move(np.asarray(mesh.points_id))
+        if hasattr(mesh, "cells_id"):
+            new["cells_id"] = [part.move(np.asarray(ids)) for ids, part in zip(mesh.cells_id, by_cell)]
         moved = mesh if inplace else copy.copy(mesh)
         for name, value in new.items():
             setattr(moved, name, value)
         if not inplace:
             moved.field_data = dict(mesh.field_data)
         return moved
+
+    def _moved_cell_sets(self, by_cell: list[Permutation]) -> dict[str, Any]:
+        starts = self._starts[:-1] if self._counts_all_cells() else np.zeros(len(by_cell), dtype=np.int64)
+
+        def moved(blocks: Any, name: str) -> list[Any]:
+            if _names_sets(blocks):
+                return [moved(part, name) for part in blocks]
+            if len(blocks) > len(by_cell):
+                raise InvalidArgument(f"set '{name}' has {len(blocks)} arrays for {len(by_cell)} blocks of cells")
+            return [
+                None if members is None else _renumbered(part.old_to_new, members, name, start)
+                for members, part, start in zip(blocks, by_cell, starts)
+            ]
+
+        return {
+            name: blocks if name == _ENTITY_TAGS else moved(blocks, name)
+            for name, blocks in self.given.cell_sets.items()
+        }
 
     def _periodic(self, old_to_new: NDArray[Any]) -> Any:
         """Returns Gmsh's periodic points with new numbers: [dimension, entities, transformation, pairs] an entity."""
@@ -115,16 +161,23 @@ def _joined(blocks: Any) -> Any:
     return library.concatenate(blocks)
 
 
-def _renumbered(new_places: NDArray[Any], members: Any, name: str) -> NDArray[Any]:
-    """Returns the new numbers of the members of a set, in the type of the old ones.
+def _names_sets(blocks: Any) -> bool:
+    """Returns whether a set of cells is a list of sets."""
+    lists = [part for part in blocks if isinstance(part, (list, tuple))]
+    return any(isinstance(members, (list, tuple, np.ndarray)) for part in lists for members in part)
+
+
+def _renumbered(new_places: NDArray[Any], members: Any, name: str, first: int = 0) -> NDArray[Any]:
+    """Returns the new numbers of the members of a set, in the type of the old ones; both count from ``first``.
 
     Raises:
         InvalidArgument: a member that does not exist.
     """
-    numbers = integers(members, f"set '{name}'", rank=None)
+    given = integers(members, f"set '{name}'", rank=None)
+    numbers = given.astype(np.int64) - first
     if numbers.size and (numbers.min() < 0 or numbers.max() >= len(new_places)):
-        raise InvalidArgument(f"set '{name}' has a member outside 0 … {len(new_places) - 1}")
-    renumbered: NDArray[Any] = new_places[numbers].astype(numbers.dtype)
+        raise InvalidArgument(f"set '{name}' has a member outside {first} … {first + len(new_places) - 1}")
+    renumbered: NDArray[Any] = (new_places[numbers] + first).astype(given.dtype)
     return renumbered
 
 
