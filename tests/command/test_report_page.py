@@ -93,6 +93,14 @@ def test_it_opens_from_disk_alone(page, path):
     assert page.requests() == [path.resolve().as_uri()]
 
 
+def test_it_can_send_nothing(page):
+    refused = page.driver.execute_async_script("""
+        document.addEventListener("securitypolicyviolation", (event) => arguments[0](event.effectiveDirective));
+        fetch("http://127.0.0.1:9/").catch(() => {});""")
+    assert refused == "connect-src"
+    assert page.complaints()  # the browser's, of that
+
+
 def test_each_tab_shows_what_it_says_and_nothing_else(page):
     for part, selectors in PARTS.items():
         page.tab(part)
