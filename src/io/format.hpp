@@ -33,6 +33,10 @@ struct Format {
   /// Returns the places that the cells of a mesh of another format have in a file, where types do not decide
   /// them; `blocks` receives the first cell of each part that stays together. Null: cells keep their order.
   Permutation (*places)(const Mesh&, std::vector<Index>& blocks) = nullptr;
+  /// Brings the cells of a mesh into the form in which a file of this format has them where that follows from
+  /// the numbers of vertices: an entry below the diagonal, the edges of a graph by their vertices. Returns
+  /// the applied permutation of cells. Null: files keep the cells as they are.
+  Permutation (*settle_cells)(Mesh&) = nullptr;
   bool single_file = true;  ///< whether a mesh is one file; others do not fit one stream
   int first_number = 0;     ///< that vertices and cells have by their places where the mesh has no ids
 

@@ -61,6 +61,12 @@ void move_with_ids(Mesh& mesh, const Permutation& vertices, const Permutation& c
   }
 }
 
+/// Returns the format in which the mesh will be written: its own if none is named, null without any.
+const Format* format_to_write(const Mesh& mesh, const std::string& name) {
+  if (!name.empty()) return &format_named(name);
+  return mesh.format.empty() ? nullptr : &format_named(mesh.format);
+}
+
 /// Returns the numbers of cells in the order in which these were arranged.
 std::vector<std::int64_t> in_new_order(const IndexView& numbers, const Permutation& arranged) {
   std::vector<std::int64_t> moved;
@@ -93,12 +99,17 @@ void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices,
                       Ids ids) {
   const Permutation arranged = arrange_cells(mesh, to);
   apply_reordering(mesh, vertices, arranged.inverse().then(cells), ids);
+  if (to.settle_cells != nullptr) (void)to.settle_cells(mesh);
 }
 
 void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells) {
-  if (mesh.format == to.key()) return apply_reordering(mesh, vertices.inverse(), cells.inverse());
-  restore_cells(mesh, cells, {});  // the old places may mix what this file keeps apart
-  apply_reordering(mesh, vertices.inverse(), Permutation::identity(mesh.cell_count()));
+  if (mesh.format == to.key()) {
+    apply_reordering(mesh, vertices.inverse(), cells.inverse());
+  } else {
+    restore_cells(mesh, cells, {});  // the old places may mix what this file keeps apart
+    apply_reordering(mesh, vertices.inverse(), Permutation::identity(mesh.cell_count()));
+  }
+  if (to.settle_cells != nullptr) (void)to.settle_cells(mesh);
 }
 
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph>& graph) {
@@ -119,6 +130,9 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGr
       MeshOrder order = compute_reordering(mesh, *graph, of_arranged);
       move_with_ids(mesh, order.vertices.permutation, order.cells.permutation, options.ids);
       order.cells.permutation = arranged.then(order.cells.permutation);
+      if (const Format* const to = format_to_write(mesh, options.format);
+          to != nullptr && to->settle_cells != nullptr)
+        order.cells.permutation = order.cells.permutation.then(to->settle_cells(mesh));
       return order;
     } catch (...) {
       restore_cells(mesh, arranged, blocks);

@@ -91,3 +91,42 @@ def test_a_graph_is_ordered(command, tmp_path):
     command.ok("order", "a.graph", "-o", "c.mtx", "--vertices", "original")
     pattern = scipy.io.mmread(tmp_path / "c.mtx")
     assert (pattern.tocsr() != before).nnz == 0
+
+
+def halves(symmetry):
+    """Entries on and below the diagonal, in random order, of a matrix of that symmetry."""
+    random = numpy.random.default_rng(5)
+    rows, columns = numpy.tril_indices(12, -1 if symmetry == "skew-symmetric" else 0)
+    chosen = random.permutation(len(rows))[:40]
+    values = random.integers(1, 100, (40, 2))
+    field = "complex" if symmetry == "hermitian" else "integer"
+    lines = [
+        f"{rows[k] + 1} {columns[k] + 1} {a}" + (f" {0 if rows[k] == columns[k] else b}" if field == "complex" else "")
+        for k, (a, b) in zip(chosen, values)
+    ]
+    return f"%%MatrixMarket matrix coordinate {field} {symmetry}\n12 12 40\n" + "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize("method", ["scrambled", "rcm"])
+@pytest.mark.parametrize("name, text", [
+    *((f"{symmetry}.mtx", halves(symmetry)) for symmetry in ("symmetric", "skew-symmetric", "hermitian")),
+    ("weighted.graph", "4 4 001\n2 5 4 1\n1 5 3 6\n2 6 4 7\n1 1 3 7\n"),
+    ("both.graph", "4 4 011\n9 2 5 4 1\n8 1 5 3 6\n7 2 6 4 7\n6 1 1 3 7\n"),
+])
+def test_the_old_order_is_restored(command, tmp_path, name, text, method):
+    (tmp_path / name).write_text(text)
+    again, ordered = "again" + name, "ordered" + name
+    command.ok("order", name, "-o", ordered, "--vertices", method, "--elements", "lexmax", "--maps", "m")
+    command.ok("apply", "m", name, "-o", "applied" + name)
+    assert (tmp_path / ("applied" + name)).read_bytes() == (tmp_path / ordered).read_bytes()
+    command.ok("apply", "m", ordered, "-o", again, "--inverse")
+    assert (tmp_path / again).read_bytes() == (tmp_path / name).read_bytes()
+    assert "in its old order already" in command.fails("apply", "m", name, "-o", again, "--inverse")
+    if name.endswith(".mtx"):
+        places = numpy.load(tmp_path / "m.vertices.old_to_new.npy")
+        before, after = (scipy.io.mmread(tmp_path / file).tocsr() for file in (name, ordered))
+        assert abs(after - moved(before, places)).nnz == 0
+        # the cells' map is that of the entries as the files have them
+        rows = [[line.split() for line in (tmp_path / file).read_text().splitlines()[2:]] for file in (name, ordered)]
+        cells = numpy.load(tmp_path / "m.cells.new_to_old.npy")
+        assert [row[2].lstrip("-") for row in rows[1]] == [rows[0][old][2].lstrip("-") for old in cells]

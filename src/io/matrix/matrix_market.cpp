@@ -15,8 +15,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <memory>
+#include <span>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 namespace meshorder {
 namespace matrix {
@@ -200,6 +204,10 @@ Mesh read_matrix(const FilePath& path, Notes& notes) { return MatrixReader(path,
 
 // ---- writing
 
+const MatrixMetadata* metadata_of(const Mesh& mesh) {
+  return dynamic_cast<const MatrixMetadata*>(mesh.format_metadata.get());
+}
+
 /// Returns whether no two lines join the same vertices.
 bool joins_once(const Mesh& mesh) {
   std::vector<std::pair<Index, Index>> ends;
@@ -217,31 +225,85 @@ Field field_of(const DataArray* values) {
   return is_whole(*values) ? Field::integer : Field::real;
 }
 
-void write_value(OutputFile& out, const DataArray& values, Field field, Index entry, Symmetry turned) {
-  const double sign = turned == Symmetry::skew_symmetric ? -1 : 1;
-  if (field == Field::integer) {
-    const std::int64_t value = whole_value(values, entry);
-    out.integer(" ", turned == Symmetry::skew_symmetric ? -value : value);
-  } else if (field == Field::real) {
-    out.print(" {}", sign * real_value(values, entry));
-  } else {
-    const double imaginary =
-        (turned == Symmetry::hermitian ? -1 : sign) * real_value(values, 2 * Offset{entry} + 1);
-    out.print(" {} {}", sign * real_value(values, 2 * Offset{entry}), imaginary);
+/// Returns the array of a mesh that its file has as values; null for a pattern.
+const DataArray* values_of(const Mesh& mesh) {
+  const DataArray* values = dense_array(mesh, kValue, Association::cells);
+  if (values == nullptr && metadata_of(mesh) == nullptr)
+    values = dense_array(mesh, kWeight, Association::cells);
+  return values != nullptr && values->components <= 2 ? values : nullptr;
+}
+
+/// Returns the symmetry of the file of a mesh with these values.
+Symmetry symmetry_of(const Mesh& mesh, const DataArray* values) {
+  if (const MatrixMetadata* const own = metadata_of(mesh)) return own->symmetry;
+  const bool may_be = values == nullptr || values->name == kWeight;
+  return may_be && joins_once(mesh) ? Symmetry::symmetric : Symmetry::general;
+}
+
+/// Returns whether a file with one half of the matrix, that below the diagonal, has this entry transposed.
+bool is_transposed(std::span<const Index> entry, Symmetry symmetry) {
+  return symmetry != Symmetry::general && entry.front() < entry.back();
+}
+
+/// Returns whether a component of a value changes its sign where the entry is transposed.
+bool changes_sign(Symmetry symmetry, Offset component) {
+  return symmetry == Symmetry::skew_symmetric || (symmetry == Symmetry::hermitian && component == 1);
+}
+
+template <class Number>
+Number negative(Number value) {
+  // no sum of its own: the least integer stays as it is
+  if constexpr (std::is_integral_v<Number>)
+    return static_cast<Number>(0 - static_cast<std::uint64_t>(value));
+  else
+    return -value;
+}
+
+void write_value(OutputFile& out, const DataArray& values, Field field, Index entry, Symmetry transposed) {
+  for (Offset k = 0; k < values.components; ++k) {
+    const Offset at = Offset{entry} * values.components + k;
+    const bool turned = changes_sign(transposed, k);
+    if (field == Field::integer) {
+      const std::int64_t value = whole_value(values, at);
+      out.integer(" ", turned ? negative(value) : value);
+    } else {
+      const double value = real_value(values, at);
+      out.real(" ", turned ? -value : value);
+    }
   }
 }
 
-void write_matrix(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  const auto* const own = dynamic_cast<const MatrixMetadata*>(mesh.format_metadata.get());
-  const DataArray* values = dense_array(mesh, kValue, Association::cells);
-  if (values == nullptr && own == nullptr) values = dense_array(mesh, kWeight, Association::cells);
-  if (values != nullptr && values->components > 2) values = nullptr;
-  Symmetry symmetry = own != nullptr ? own->symmetry : Symmetry::general;
-  if (own == nullptr && (values == nullptr || values->name == kWeight) && joins_once(mesh)) {
-    symmetry = Symmetry::symmetric;
-  } else if (own == nullptr) {
-    notes.emplace_back("each line is one entry of the matrix, which is written as 'general'");
+/// Transposes the entries above the diagonal where a file has one half of the matrix.
+Permutation settle_entries(Mesh& mesh) {
+  const DataArray* const written = values_of(mesh);
+  const Symmetry symmetry = symmetry_of(mesh, written);
+  DataArray* const values = written == nullptr ? nullptr : &mesh.data[written - mesh.data.data()];
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const std::span<Index> entry = mesh.cells[c];
+    if (!is_transposed(entry, symmetry)) continue;
+    std::swap(entry.front(), entry.back());
+    for (Offset k = 0; values != nullptr && k < values->components; ++k) {
+      if (!changes_sign(symmetry, k)) continue;
+      std::visit(
+          [&](auto& numbers) {
+            using Value = typename std::decay_t<decltype(numbers)>::value_type;
+            if constexpr (std::is_arithmetic_v<Value>) {
+              Value& number = numbers[Offset{c} * values->components + k];
+              number = negative(number);
+            }
+          },
+          values->values);
+    }
   }
+  return Permutation::identity(mesh.cell_count());
+}
+
+void write_matrix(const Mesh& mesh, const FilePath& path, Notes& notes) {
+  const MatrixMetadata* const own = metadata_of(mesh);
+  const DataArray* const values = values_of(mesh);
+  const Symmetry symmetry = symmetry_of(mesh, values);
+  if (own == nullptr && symmetry == Symmetry::general)
+    notes.emplace_back("each line is one entry of the matrix, which is written as 'general'");
   const Field field = field_of(values);
 
   OutputFile out(path);
@@ -249,14 +311,11 @@ void write_matrix(const Mesh& mesh, const FilePath& path, Notes& notes) {
   if (own != nullptr) out.write(own->comments);
   out.print("{} {} {}\n", mesh.vertex_count(), mesh.vertex_count(), mesh.cell_count());
   for (Index c = 0; c < mesh.cell_count(); ++c) {
-    Index row = mesh.cells[c].front();
-    Index column = mesh.cells[c].back();
-    // one half is stored: that below the diagonal
-    const bool turn = symmetry != Symmetry::general && row < column;
-    if (turn) std::swap(row, column);
-    out.integer("", Offset{row} + 1);
-    out.integer(" ", Offset{column} + 1);
-    if (values != nullptr) write_value(out, *values, field, c, turn ? symmetry : Symmetry::general);
+    const std::span<const Index> entry = mesh.cells[c];
+    const bool transposed = is_transposed(entry, symmetry);
+    out.integer("", Offset{transposed ? entry.back() : entry.front()} + 1);
+    out.integer(" ", Offset{transposed ? entry.front() : entry.back()} + 1);
+    if (values != nullptr) write_value(out, *values, field, c, transposed ? symmetry : Symmetry::general);
     out.write("\n");
   }
   out.commit();
@@ -268,7 +327,9 @@ void write_matrix(const Mesh& mesh, const FilePath& path, Notes& notes) {
 }  // namespace matrix
 
 Format matrix_market_format() {
-  return {matrix::kName, {".mtx"}, false, matrix::read_matrix, matrix::write_matrix, matrix::is_entry};
+  Format format{matrix::kName, {".mtx"}, false, matrix::read_matrix, matrix::write_matrix, matrix::is_entry};
+  format.settle_cells = matrix::settle_entries;
+  return format;
 }
 
 }  // namespace meshorder

@@ -9,6 +9,7 @@
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/reorder.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 namespace meshorder {
@@ -262,6 +264,22 @@ bool is_edge(const Mesh& /*mesh*/, Shape shape, int vertices) {
   return shape == Shape::line && vertices == 2;
 }
 
+/// Puts the edges in the order of a file: by their smaller vertex, then by the other.
+Permutation settle_edges(Mesh& mesh) {
+  const bool are_lines =
+      std::ranges::all_of(mesh.cells.shapes, [](Shape shape) { return shape == Shape::line; });
+  if (!are_lines) return Permutation::identity(mesh.cell_count());  // no graph; the writer refuses it
+  for (Index c = 0; c < mesh.cell_count(); ++c) std::ranges::sort(mesh.cells[c]);
+  std::vector<Index> edges(mesh.cells.shapes.size());
+  std::iota(edges.begin(), edges.end(), 0);
+  std::stable_sort(edges.begin(), edges.end(), [&](Index a, Index b) {
+    return std::ranges::lexicographical_compare(std::as_const(mesh.cells)[a], std::as_const(mesh.cells)[b]);
+  });
+  Permutation order = Permutation::from_new_to_old(std::move(edges));
+  move_mesh(mesh, Permutation::identity(mesh.vertex_count()), order, Ids::keep);
+  return order;
+}
+
 void write_graph(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const DataArray* edge_weights = weights(mesh, kWeight, Association::cells, 1);
   const DataArray* sizes = weights(mesh, kSize, Association::vertices, 0);
@@ -318,7 +336,9 @@ void write_graph(const Mesh& mesh, const FilePath& path, Notes& notes) {
 }  // namespace matrix
 
 Format metis_graph_format() {
-  return {"METIS", {".graph"}, false, matrix::read_graph, matrix::write_graph, matrix::is_edge};
+  Format format{"METIS", {".graph"}, false, matrix::read_graph, matrix::write_graph, matrix::is_edge};
+  format.settle_cells = matrix::settle_edges;
+  return format;
 }
 
 }  // namespace meshorder
