@@ -1,10 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "surface.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -153,14 +155,21 @@ void write_off(const std::filesystem::path& file, const Surface& surface) {
   for (const auto& [a, b, c] : surface.triangles) fmt::format_to(out, "3 {} {} {}\n", a, b, c);
 
   const std::filesystem::path partial = fmt::format("{}.{}.partial", file.string(), ::getpid());
-  std::ofstream stream(partial, std::ios::binary | std::ios::trunc);
-  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  stream.close();
+  // a new file: whoever may write into the folder may have put a link there
+  const int opened = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  std::string_view rest(text.data(), text.size());
+  for (ssize_t written = 0; opened >= 0 && !rest.empty();
+       rest.remove_prefix(static_cast<std::size_t>(written))) {
+    written = ::write(opened, rest.data(), rest.size());
+    if (written < 0 && errno == EINTR) written = 0;
+    if (written < 0) break;
+  }
+  const bool is_complete = opened >= 0 && ::close(opened) == 0 && rest.empty();
   std::error_code error;
-  if (stream) std::filesystem::rename(partial, file, error);
-  if (!stream || error) {
+  if (is_complete) std::filesystem::rename(partial, file, error);
+  if (!is_complete || error) {
     std::error_code ignored;
-    std::filesystem::remove(partial, ignored);
+    if (opened >= 0) std::filesystem::remove(partial, ignored);
     throw std::runtime_error(
         fmt::format("{}: cannot be written; check the room and rights of its folder", file.string()));
   }

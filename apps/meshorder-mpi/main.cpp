@@ -56,6 +56,8 @@ int run(const Communicator& communicator, std::vector<std::string> arguments) {
     if (communicator.is_root()) meshorder::command::write_stderr(app.help());
     return kBadInput;
   }
+  if (const auto fault = meshorder::command::option_without_value(arguments))
+    return tell(communicator, *fault, kBadInput);
   arguments = meshorder::command::with_words_as_options(std::move(arguments));
   const std::string first = arguments.front();
   std::reverse(arguments.begin(), arguments.end());  // as the parser takes them

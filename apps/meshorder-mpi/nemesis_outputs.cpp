@@ -9,6 +9,7 @@
 #include <meshorder/error.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -67,7 +68,7 @@ std::vector<std::string> NemesisOutputs::open(Index parts) {
   std::vector<std::string> paths;
   for (Index part = 0; part < parts; ++part) {
     names_.push_back(distributed::nemesis_name(name_, parts, part));
-    OutputFile& file = files_.emplace_back(names_.back());
+    OutputFile& file = files_.emplace_back(FilePath::derived(names_.back()));
     file.close();
     paths.push_back(file.temporary().string());
   }
@@ -75,10 +76,14 @@ std::vector<std::string> NemesisOutputs::open(Index parts) {
 }
 
 void NemesisOutputs::add_to(OutputSet& set) {
+  // no other program notices pieces of two runs
+  set.remove_first(FilePath::derived(names_.front()));
   for (const fs::path& old : old_pieces()) {
-    if (std::find(names_.begin(), names_.end(), old.string()) == names_.end()) set.remove(old);
+    if (std::find(names_.begin(), names_.end(), old.string()) == names_.end())
+      set.remove(FilePath::derived(old));
   }
-  for (OutputFile& file : files_) set.add(std::move(file));
+  for (std::size_t k = 1; k <= files_.size(); ++k)  // the first one last
+    set.add(std::move(files_[k % files_.size()]));
   files_.clear();
 }
 

@@ -89,7 +89,7 @@ void OrderOutputs::write(const distributed::FileSlices& slices, const distribute
     SharedOutput file(communicator_, set_, files_.output);
     std::optional<SharedOutput> data;
     if (const std::string name = slices.new_data(communicator_, files_.output); !name.empty())
-      data.emplace(communicator_, set_, name);
+      data.emplace(communicator_, set_, FilePath::derived(name));
     const distributed::SliceFile target{file.path(), files_.output, data ? data->path() : ""};
     const std::vector<distributed::GlobalIndex> new_cells = slices.write(communicator_, target, order);
     file.commit();

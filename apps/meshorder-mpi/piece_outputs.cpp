@@ -56,7 +56,7 @@ PieceOutputs::PieceOutputs(fs::path folder, std::string name)
   }
   if (!fs::is_directory(folder_, code))
     throw InputError(folder_.string(), "is not a folder", "--pieces needs one, or makes it");
-  (void)OutputFile(index());
+  (void)OutputFile(FilePath::derived(index()));
   (void)old_pieces();
 }
 
@@ -94,7 +94,7 @@ std::vector<std::string> PieceOutputs::open(Index pieces) {
   std::vector<std::string> paths;
   for (Index k = 0; k < pieces; ++k) {
     names_.push_back(fmt::format("{}_{:0{}}.vtu", name_, k, kDigits));
-    OutputFile& file = files_.emplace_back(folder_ / names_.back());
+    OutputFile& file = files_.emplace_back(FilePath::derived(folder_ / names_.back()));
     file.close();
     paths.push_back(file.temporary().string());
   }
@@ -102,12 +102,15 @@ std::vector<std::string> PieceOutputs::open(Index pieces) {
 }
 
 void PieceOutputs::add_to(OutputSet& set, const std::string& index_text) {
+  // no other program notices pieces of two runs
+  set.remove_first(FilePath::derived(index()));
   for (const fs::path& old : old_pieces()) {
-    if (std::find(names_.begin(), names_.end(), old.filename().string()) == names_.end()) set.remove(old);
+    if (std::find(names_.begin(), names_.end(), old.filename().string()) == names_.end())
+      set.remove(FilePath::derived(old));
   }
   for (OutputFile& file : files_) set.add(std::move(file));
   files_.clear();
-  OutputFile file(index());
+  OutputFile file(FilePath::derived(index()));
   file.write(index_text);
   set.add(std::move(file));
 }

@@ -8,11 +8,11 @@
 namespace meshorder::command {
 
 SharedOutput::SharedOutput(const distributed::Communicator& communicator, OutputSet& outputs,
-                           const std::string& name, std::string_view start)
+                           const FilePath& target, std::string_view start)
     : communicator_(communicator) {
   path_ = communicator
               .broadcast(communicator.at_root([&] {
-                file_.emplace(FilePath(name, outputs));
+                file_.emplace(FilePath(target, outputs));
                 file_->write(start);
                 file_->close();
                 return std::vector<std::string>{file_->temporary().string()};

@@ -16,9 +16,8 @@ namespace meshorder::command {
 class SharedOutput {
  public:
   /// @param outputs  the root's
-  /// @param name     of the file
   /// @param start    first bytes, which the root writes
-  SharedOutput(const distributed::Communicator& communicator, OutputSet& outputs, const std::string& name,
+  SharedOutput(const distributed::Communicator& communicator, OutputSet& outputs, const FilePath& target,
                std::string_view start = {});
 
   /// Returns the path by which the ranks write.

@@ -66,7 +66,7 @@ class MapWriter {
              bool is_narrow) {
     const Offset width = is_narrow ? sizeof(std::int32_t) : sizeof(std::int64_t);
     const std::string header = npy_header(is_narrow ? "<i4" : "<i8", std::array{layout.size()});
-    SharedOutput file(communicator_, outputs_, name, header);
+    SharedOutput file(communicator_, outputs_, FilePath::derived(name), header);
     const std::vector<char> bytes = communicator_.together([&] {
       std::vector<char> result(own.size() * static_cast<std::size_t>(width));
       char* at = result.data();
@@ -144,8 +144,15 @@ std::vector<std::string> write_sliced_maps(const Communicator& communicator, con
     parts.push_back(distributed::part_of_cell(after.cell_vertices[c], order.part_starts));
   maps.write(cells.parts, after.cells, parts);
 
+  Checksum none;
+  none.add(0);
+  const auto checksum_of_ids = [&](const Layout& layout, const std::vector<std::int64_t>* ids) {
+    return ids == nullptr ? none.value() : checksum_of(communicator, layout, *ids);
+  };
   const MapChecksums of_maps{checksum_of(communicator, after.vertices, order.new_vertices),
-                             checksum_of(communicator, after.cells, order.new_cells)};
+                             checksum_of(communicator, after.cells, order.new_cells),
+                             checksum_of_ids(after.vertices, order.vertex_ids),
+                             checksum_of_ids(after.cells, order.cell_ids), none.value()};
   const MeshChecksums of_mesh = checksums_of(communicator, after);
   communicator.at_root([&] {
     remove_other_maps(prefix, outputs);

@@ -96,6 +96,8 @@ int run(std::vector<std::string> arguments) {
     meshorder::command::write_stderr(app.help());
     return kBadInput;
   }
+  if (const auto fault = meshorder::command::option_without_value(arguments))
+    return report_failure(*fault, kBadInput);
   arguments = meshorder::command::with_words_as_options(std::move(arguments));
   std::reverse(arguments.begin(), arguments.end());  // as the parser takes them
   try {

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <exception>
 #include <filesystem>
@@ -19,6 +20,7 @@
 #include <optional>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 namespace meshorder::command {
 namespace {
@@ -43,16 +45,18 @@ template <class Number>
 void write_or_remove(const std::vector<Number>& numbers, const std::string& path, OutputSet& files,
                      std::vector<std::string>& written) {
   if (numbers.empty()) {
-    files.remove(path);
+    files.remove(FilePath::derived(path));
   } else {
-    write_npy(numbers, {written.emplace_back(path), files});
+    write_npy(numbers, {FilePath::derived(written.emplace_back(path)), files});
   }
 }
 
 void write_map(const Permutation& map, const std::vector<std::int64_t>& ids, const std::string& prefix,
                const std::string& what, OutputSet& files, std::vector<std::string>& written) {
-  write_npy(map.old_to_new(), {written.emplace_back(old_to_new_path(prefix, what)), files});
-  write_npy(map.new_to_old(), {written.emplace_back(new_to_old_path(prefix, what)), files});
+  write_npy(map.old_to_new(),
+            {FilePath::derived(written.emplace_back(old_to_new_path(prefix, what))), files});
+  write_npy(map.new_to_old(),
+            {FilePath::derived(written.emplace_back(new_to_old_path(prefix, what))), files});
   write_or_remove(ids, ids_path(prefix, what), files, written);
 }
 
@@ -81,9 +85,10 @@ Maps read_permutations(const std::string& prefix, const Mesh& mesh) {
 
 /// Removes maps of cells that an earlier version wrote with this prefix, so that nobody takes them for these.
 void remove_old_maps(const std::string& prefix, OutputSet& files) {
-  files.remove(old_to_new_path(prefix, kOldNameOfCells));
-  files.remove(new_to_old_path(prefix, kOldNameOfCells));
-  files.remove(ids_path(prefix, kOldNameOfCells));
+  for (const std::string& path :
+       {old_to_new_path(prefix, kOldNameOfCells), new_to_old_path(prefix, kOldNameOfCells),
+        ids_path(prefix, kOldNameOfCells)})
+    files.remove(FilePath::derived(path));
 }
 
 /// Throws Error if a file of the maps is named instead of their prefix.
@@ -111,20 +116,31 @@ std::uint64_t checksum_from(const nlohmann::json& json) {
   return value;
 }
 
-MapChecksums checksums_of_maps(const Maps& maps) {
-  Checksum vertices;
-  vertices.add_all(maps.vertices.old_to_new());
-  Checksum cells;
-  cells.add_all(maps.cells.old_to_new());
-  return {vertices.value(), cells.value()};
+std::uint64_t checksum_of(const auto& numbers) {
+  Checksum checksum;
+  checksum.add_all(numbers);
+  return checksum.value();
 }
+
+MapChecksums checksums_of_maps(const Maps& maps) {
+  return {checksum_of(maps.vertices.old_to_new()), checksum_of(maps.cells.old_to_new()),
+          checksum_of(maps.vertex_ids), checksum_of(maps.cell_ids), checksum_of(maps.kept)};
+}
+
+/// The names of the checksums of maps in PREFIX.maps.json.
+constexpr std::array<std::pair<const char*, std::uint64_t MapChecksums::*>, 5> kOfMaps{
+    {{"vertices", &MapChecksums::vertices},
+     {"cells", &MapChecksums::cells},
+     {"vertex_ids", &MapChecksums::vertex_ids},
+     {"cell_ids", &MapChecksums::cell_ids},
+     {"kept", &MapChecksums::kept}}};
 
 /// The checksums of the mesh before and after, unknown where another program wrote the mesh; those of the
 /// maps, unknown where another program wrote these or an earlier version of this one.
 struct Identity {
   std::optional<MeshChecksums> before;
   std::optional<MeshChecksums> after;
-  std::optional<MapChecksums> maps;
+  std::vector<std::pair<std::uint64_t MapChecksums::*, std::uint64_t>> maps;
 };
 
 std::optional<MeshChecksums> checksums_from(const nlohmann::json& json) {
@@ -136,9 +152,12 @@ Identity read_identity(const std::string& path) {
   std::ifstream file(path);
   try {
     const nlohmann::json json = nlohmann::json::parse(file);
-    Identity identity{checksums_from(json.at("before")), checksums_from(json.at("after")), std::nullopt};
-    if (const auto maps = json.find("maps"); maps != json.end())
-      identity.maps = {checksum_from(maps->at("vertices")), checksum_from(maps->at("cells"))};
+    Identity identity{checksums_from(json.at("before")), checksums_from(json.at("after")), {}};
+    if (const auto maps = json.find("maps"); maps != json.end()) {
+      for (const auto& [name, checksum] : kOfMaps) {
+        if (maps->contains(name)) identity.maps.emplace_back(checksum, checksum_from(maps->at(name)));
+      }
+    }
     return identity;
   } catch (const std::exception&) {
     throw InputError(path, "is not what `order --maps` wrote",
@@ -188,7 +207,9 @@ MapPaths map_paths(const std::string& prefix, const std::string& what) {
           prefix + "." + what + ".parts.npy"};
 }
 
-void check_can_write_maps(const std::string& prefix) { (void)OutputFile(identity_path(prefix)); }
+void check_can_write_maps(const std::string& prefix) {
+  (void)OutputFile(FilePath::derived(identity_path(prefix)));
+}
 
 std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& before, const MeshChecksums& after,
                                     const std::string& prefix, OutputSet& files) {
@@ -205,26 +226,24 @@ std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& befor
 
 std::string write_identity(const MeshChecksums& before, const MeshChecksums& after,
                            const MapChecksums& of_maps, const std::string& prefix, OutputSet& files) {
-  const nlohmann::ordered_json identity{
-      {"version", MESHORDER_VERSION},
-      {"before", checksums_json(before)},
-      {"after", checksums_json(after)},
-      {"maps", {{"vertices", digits_of(of_maps.vertices)}, {"cells", digits_of(of_maps.cells)}}}};
+  nlohmann::ordered_json identity{
+      {"version", MESHORDER_VERSION}, {"before", checksums_json(before)}, {"after", checksums_json(after)}};
+  for (const auto& [name, checksum] : kOfMaps) identity["maps"][name] = digits_of(of_maps.*checksum);
   std::string path = identity_path(prefix);
-  OutputFile file({path, files});
+  OutputFile file({FilePath::derived(path), files});
   file.write(identity.dump(2) + "\n");
   file.commit();
   return path;
 }
 
 void remove_other_maps(const std::string& prefix, OutputSet& files) {
-  for (const char* const what : {"vertices", "cells"}) files.remove(ids_path(prefix, what));
-  files.remove(kept_path(prefix));
+  for (const char* const what : {"vertices", "cells"})
+    files.remove(FilePath::derived(ids_path(prefix, what)));
+  files.remove(FilePath::derived(kept_path(prefix)));
   remove_old_maps(prefix, files);
 }
 
 void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& notes) {
-  finish_interrupted(identity_path(prefix));
   const std::string path = kept_path(prefix);
   if (!std::filesystem::exists(path)) return;
   const std::vector<std::int64_t> positions = read_npy(path);
@@ -242,13 +261,16 @@ void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& note
 
 Maps read_maps(const std::string& prefix, const Mesh& mesh, const std::string& mesh_path, bool inverse) {
   require_prefix(prefix);
-  finish_interrupted(identity_path(prefix));
   Maps maps = read_permutations(prefix, mesh);
   const std::string path = identity_path(prefix);
   if (!std::filesystem::exists(path)) return maps;
   const Identity identity = read_identity(path);
   require_order(identity, maps, mesh, mesh_path, path, inverse);
-  if (identity.maps && *identity.maps != checksums_of_maps(maps))
+  MapChecksums found = checksums_of_maps(maps);
+  if (std::filesystem::exists(kept_path(prefix))) found.kept = checksum_of(read_npy(kept_path(prefix)));
+  const bool fits = std::all_of(identity.maps.begin(), identity.maps.end(),
+                                [&](const auto& known) { return found.*known.first == known.second; });
+  if (!fits)
     throw InputError(path, "was not written together with these maps",
                      "give all files of one run of `order`");
   return maps;

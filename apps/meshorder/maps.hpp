@@ -37,10 +37,14 @@ struct MeshChecksums {
   bool operator==(const MeshChecksums&) const = default;
 };
 
-/// Checksums of the maps themselves: of the new places of all vertices and of all cells.
+/// Checksums of the maps themselves, by which those of two runs are told apart: of the new places of all
+/// vertices and of all cells, and of what not every mesh has, which are empty lists then.
 struct MapChecksums {
   std::uint64_t vertices = 0;
   std::uint64_t cells = 0;
+  std::uint64_t vertex_ids = 0;
+  std::uint64_t cell_ids = 0;
+  std::uint64_t kept = 0;
 
   bool operator==(const MapChecksums&) const = default;
 };

@@ -86,6 +86,8 @@ class Case {
   }
   [[nodiscard]] fs::path dictionary() const { return folder_ / "system" / region_ / "renumberMeshDict"; }
   [[nodiscard]] std::string path() const { return folder_.string(); }
+  /// Returns a file to be written in the case.
+  [[nodiscard]] FilePath output(const fs::path& file) const { return FilePath::in(folder_, file); }
 
   /// Returns the command that moves the cells.
   [[nodiscard]] std::string next() const {
@@ -257,12 +259,12 @@ class Outputs {
  public:
   /// Fails, before the work, if the files cannot be written.
   Outputs(const Case& meshes, bool force) {
-    for (const std::string& mesh : meshes.meshes()) maps_.push_back(meshes.cell_order(mesh));
+    for (const std::string& mesh : meshes.meshes()) maps_.push_back(meshes.output(meshes.cell_order(mesh)));
     const fs::path dictionary = meshes.dictionary();
     const bool is_there = fs::exists(dictionary) && !force;
-    if (!is_there) dictionary_ = dictionary;
+    if (!is_there) dictionary_ = meshes.output(dictionary);
     keeps_other_ = is_there && !openfoam::takes_cell_order(dictionary);
-    for (const fs::path& map : maps_) (void)OutputFile(map);
+    for (const FilePath& map : maps_) (void)OutputFile(map);
     if (dictionary_) (void)OutputFile(*dictionary_);
   }
 
@@ -285,8 +287,8 @@ class Outputs {
   }
 
  private:
-  std::vector<fs::path> maps_;
-  std::optional<fs::path> dictionary_;
+  std::vector<FilePath> maps_;
+  std::optional<FilePath> dictionary_;
   bool keeps_other_ = false;
 };
 

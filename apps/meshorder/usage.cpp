@@ -67,6 +67,14 @@ std::vector<std::string> with_words_as_options(std::vector<std::string> argument
   return arguments;
 }
 
+std::optional<std::string> option_without_value(const std::vector<std::string>& arguments) {
+  const auto found = std::find_if(arguments.begin(), arguments.end(), [](const std::string& argument) {
+    return argument.starts_with("--") && argument.find('=') == argument.size() - 1;
+  });
+  if (found == arguments.end()) return std::nullopt;
+  return *found + " has no value; give one right after the =";
+}
+
 void refuse_empty_values(CLI::App& command) {
   const CLI::Validator not_empty(
       [](const std::string& text) {

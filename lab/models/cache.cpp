@@ -55,8 +55,8 @@ void make_folder(const fs::path& folder) {
 }
 
 MakingLock::MakingLock(const fs::path& folder, std::string_view name)
-    : file_(::open((folder / ("." + std::string(name) + ".lock")).c_str(), O_RDWR | O_CREAT | O_CLOEXEC,
-                   0644)) {
+    : file_(::open((folder / ("." + std::string(name) + ".lock")).c_str(),
+                   O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644)) {
   if (file_ < 0) refuse(folder, "cannot be written: " + std::generic_category().message(errno));
   // on a file system without locks (ENOLCK) there is none
   while (::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
@@ -85,7 +85,9 @@ Counts counts_of(const fs::path& node_file) {
 }
 
 void publish(const fs::path& from, const fs::path& to) {
-  // the .node file comes last: without it the model does not exist
+  // the .node file comes last: without it the model does not exist, also where an older one was replaced
+  std::error_code ignored;
+  fs::remove(fs::path(to) += ".node", ignored);
   for (const std::string_view extension : {".ele", ".node"}) {
     fs::path source = from;
     fs::path target = to;

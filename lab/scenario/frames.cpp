@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/frames.hpp"
 
+#include "io/format.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/vtk/vtk.hpp"
 #include "lab/scenario/scenario_obstacles.hpp"
@@ -67,7 +68,7 @@ FrameWriter::FrameWriter(const Simulation& simulation, fs::path folder, Index ev
   fs::create_directories(folder_, code);
   if (code)
     throw InputError(folder_.string(), "cannot be made: " + code.message(), "name a folder for the frames");
-  (void)OutputFile(collection_);  // fail before the work if it cannot be written
+  (void)OutputFile(FilePath::derived(collection_));  // fail before the work if it cannot be written
   std::vector<DataArray> arrays = own_arrays(frame_, simulation.order);
   arrays.insert(arrays.end(), std::make_move_iterator(frame_.data.begin()),
                 std::make_move_iterator(frame_.data.end()));
@@ -81,8 +82,8 @@ FrameWriter::FrameWriter(const Simulation& simulation, fs::path folder, Index ev
 void FrameWriter::write_obstacles(const Simulation& simulation) const {
   if (simulation.scenario.is_implicit() || simulation.scenario.projective().obstacles.empty()) return;
   const double extent = bounding_box(rest_, simulation.vertices).longest_side();
-  write_mesh(surfaces_of(simulation.scenario.projective().obstacles, extent),
-             folder_ / (name_ + "-obstacles.vtu"));
+  write_mesh_to(surfaces_of(simulation.scenario.projective().obstacles, extent),
+                FilePath::derived(folder_ / (name_ + "-obstacles.vtu")), {});
 }
 
 std::string FrameWriter::file_name(Index step) const { return fmt::format("{}-{:06}.vtu", name_, step); }
@@ -108,10 +109,10 @@ void FrameWriter::write(MotionState state) {
     }
   }
   Notes notes;
-  write_mesh(frame_, folder_ / file_name(state.step), &notes);
+  write_mesh_to(frame_, FilePath::derived(folder_ / file_name(state.step)), {.notes = &notes});
   if (entries_.empty()) notes_ = std::move(notes);
   list(state.step);
-  write_pvd(entries_, collection_);
+  write_pvd(entries_, FilePath::derived(collection_));
 }
 
 }  // namespace meshorder

@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/file_path.hpp"
+
 #include <array>
 #include <ctime>
 #include <filesystem>
@@ -17,6 +19,8 @@ class StudyFolder {
   explicit StudyFolder(std::filesystem::path root) : root_(std::move(root)) {}
 
   [[nodiscard]] const std::filesystem::path& root() const noexcept { return root_; }
+  /// Returns one of the paths below as that of an output, whose name is not the user's.
+  [[nodiscard]] FilePath output(const std::filesystem::path& path) const { return FilePath::in(root_, path); }
   [[nodiscard]] std::filesystem::path results() const { return root_ / "results.json"; }
   [[nodiscard]] std::filesystem::path data() const { return root_ / "data"; }
   [[nodiscard]] std::filesystem::path page() const { return root_ / "report.html"; }

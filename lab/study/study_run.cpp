@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "io/format.hpp"
 #include "io/stream/output_set.hpp"
+#include "io/stream/scratch.hpp"
 #include "lab/models/catalogue.hpp"
 #include "lab/scenario/motion_metrics.hpp"
 #include "lab/scenario/scenario_obstacles.hpp"
@@ -172,9 +173,12 @@ class Study {
 
   bool run_once(const Subject& subject, int run, const Share& share) {
     Round round{program_, plan_.threads, {}, {}, subject.turns, run};
+    std::vector<Scratch> motions;
     for (const OrderingSpec& ordering : plan_.orderings) {
       round.tasks.push_back(task_of(subject, ordering.name));
-      if (run == 0) round.motions.push_back(unfinished_motion(subject, ordering.name));
+      if (run > 0) continue;
+      motions.emplace_back(store_.folder().motion(subject.scenario.name));
+      round.motions.push_back(motions.back().file().string());
     }
     const std::string what = fmt::format("{}, run {} of {}", subject.scenario.name, run + 1, plan_.runs);
     stage(what, share);
@@ -183,18 +187,13 @@ class Study {
       return !observer_.stop();
     });
     if (!runs) return false;
-    if (run == 0) store_.begin(record_of(subject));
+    if (run == 0) store_.begin(record_of(subject, motions));
     store_.keep(subject.scenario.name, *runs);
     return true;
   }
 
-  [[nodiscard]] std::string unfinished_motion(const Subject& subject, const std::string& ordering) const {
-    const fs::path motion = store_.folder().motion(subject.scenario.name);
-    return (motion.parent_path() / ("." + ordering + "-" + motion.filename().string())).string();
-  }
-
-  /// Returns the record of a scenario after its first run, without times.
-  [[nodiscard]] ScenarioRecord record_of(const Subject& subject) const {
+  /// Returns the record of a scenario after its first run, without times, from the motions in each order.
+  [[nodiscard]] ScenarioRecord record_of(const Subject& subject, const std::vector<Scratch>& motions) const {
     ScenarioRecord record = store_.new_record(subject.scenario);
     record.mesh = subject.mesh;
     record.fingerprint = subject.body.fingerprint;
@@ -205,23 +204,23 @@ class Study {
     record.fixed_addresses = subject.body.fixed_addresses;
     for (Index step = 0; step <= subject.turns.steps; step += subject.turns.frame_every)
       record.frame_steps.push_back(step);
-    compare_motions(subject, record);
+    compare_motions(subject, motions, record);
     return record;
   }
 
   /// Compares the motions and keeps the first order's, for the page.
-  void compare_motions(const Subject& subject, ScenarioRecord& record) const {
-    const std::string kept = unfinished_motion(subject, plan_.orderings.front().name);
-    const Motion reference = read_motion(kept);
-    for (ScenarioOrderRecord& order : record.orders) {
-      const std::string file = unfinished_motion(subject, order.ordering);
-      order.motion = difference_of(read_motion(file), reference, subject.body.longest_side);
-      if (file != kept) fs::remove(file);
-    }
-    move_into_place(kept, store_.folder().motion(subject.scenario.name));
+  void compare_motions(const Subject& subject, const std::vector<Scratch>& motions,
+                       ScenarioRecord& record) const {
+    const StudyFolder& folder = store_.folder();
+    const Motion reference = read_motion(motions.front().file());
+    for (std::size_t i = 0; i < motions.size(); ++i)
+      record.orders[i].motion =
+          difference_of(read_motion(motions[i].file()), reference, subject.body.longest_side);
+    const FinishedFile kept{motions.front().path(), folder.output(folder.motion(subject.scenario.name))};
+    put_in_place({&kept, 1});
     if (subject.scenario.is_implicit() || subject.scenario.projective().obstacles.empty()) return;
-    write_mesh(surfaces_of(subject.scenario.projective().obstacles, subject.body.longest_side),
-               store_.folder().obstacles(subject.scenario.name));
+    write_mesh_to(surfaces_of(subject.scenario.projective().obstacles, subject.body.longest_side),
+                  folder.output(folder.obstacles(subject.scenario.name)), {});
   }
 
   const StudyPlan& plan_;

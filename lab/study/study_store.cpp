@@ -28,15 +28,6 @@ void make_folders(const StudyFolder& folder) {
                      "name a folder for the results");
 }
 
-/// Removes unfinished motions of an interrupted study.
-void remove_unfinished(const StudyFolder& folder) {
-  std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder.data())) {
-    if (entry.path().filename().string().front() == '.' && entry.is_regular_file(code))
-      fs::remove(entry.path(), code);
-  }
-}
-
 /// Returns the rank of a scenario in the paper; other scenarios come last.
 std::ptrdiff_t place_of(const ScenarioRecord& record) {
   const auto known = built_in_scenarios();
@@ -50,7 +41,7 @@ std::ptrdiff_t place_of(const ScenarioRecord& record) {
 StudyStore::StudyStore(const StudyPlan& plan, const StudyFolder& folder) : folder_(folder) {
   make_folders(folder);
   lock_.emplace(folder.root());
-  remove_unfinished(folder);
+  (void)OutputFile(folder.output(folder.mesh("any")));  // fail before the work if it cannot be written
   MachineRecord machine = describe_machine();
   std::error_code code;
   if (fs::exists(folder.results(), code)) {
@@ -90,7 +81,7 @@ void StudyStore::resume(const StudyPlan& plan, const MachineRecord& machine) {
        "other orderings");
   results_.runs = std::max(results_.runs, plan.runs);
   summarise(results_);
-  write_results(results_, folder_.results());
+  write_results(results_, folder_.output(folder_.results()));
 }
 
 bool StudyStore::has_mesh(std::string_view name) const {
@@ -129,16 +120,17 @@ void StudyStore::keep(const Mesh& mesh, OrderedMesh studied) {
   for (std::size_t i = 0; i < studied.orders.size(); ++i) {
     const std::string& ordering = studied.record.orders[i].ordering;
     write_npy(studied.orders[i].vertices.permutation.old_to_new(),
-              {folder_.vertex_order(name, ordering), files});
-    write_npy(studied.orders[i].cells.permutation.old_to_new(), {folder_.cell_order(name, ordering), files});
+              {folder_.output(folder_.vertex_order(name, ordering)), files});
+    write_npy(studied.orders[i].cells.permutation.old_to_new(),
+              {folder_.output(folder_.cell_order(name, ordering)), files});
   }
   Mesh bare;
   bare.points = mesh.points;
   bare.cells = mesh.cells;
-  write_mesh_to(bare, {folder_.mesh(name), files}, {});
+  write_mesh_to(bare, {folder_.output(folder_.mesh(name)), files}, {});
   studied.record.file = fs::relative(folder_.mesh(name), folder_.root()).string();
   results_.meshes.push_back(std::move(studied.record));
-  write_results(results_, {folder_.results(), files});
+  write_results(results_, {folder_.output(folder_.results()), files});
   files.commit();
 }
 
@@ -155,7 +147,7 @@ void StudyStore::keep(std::string_view scenario, const std::vector<RunRecord>& r
     for (std::size_t i = 0; i < runs.size(); ++i) record.orders[i].runs.push_back(runs[i]);
   }
   summarise(results_);
-  write_results(results_, folder_.results());
+  write_results(results_, folder_.output(folder_.results()));
 }
 
 }  // namespace meshorder

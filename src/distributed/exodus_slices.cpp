@@ -3,7 +3,6 @@
 
 #include "io/stream/file_path.hpp"
 #include "io/stream/gzip.hpp"
-#include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/vtk/vtk.hpp"
 #include "mesh/degenerate.hpp"
@@ -36,7 +35,6 @@ std::vector<GlobalIndex> counts_of(const std::string& path) {
       !std::filesystem::is_regular_file(path, code)) {
     return {};
   }
-  finish_interrupted(path);
   const FilePath file(path);
   const ReadScope scope(file);
   const exodus::Header header = exodus::read_header(file);

@@ -5,7 +5,6 @@
 #include "distributed/number_types.hpp"
 #include "distributed/raw_arrays.hpp"
 #include "io/stream/file_path.hpp"
-#include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
 #ifdef MESHORDER_HAS_HDF5
 #include "io/vtkhdf/vtkhdf.hpp"
@@ -88,7 +87,6 @@ std::string mold_of_grid(const RawGrid& grid) {
 }  // namespace
 
 std::optional<FileHead> read_vtkhdf_head(const std::string& path) {
-  finish_interrupted(path);
   const FilePath file(path);
   const ReadScope scope(file);
   std::optional<RawGrid> grid = vtkhdf::find_raw(file);

@@ -5,7 +5,6 @@
 #include "distributed/number_types.hpp"
 #include "distributed/text_store.hpp"
 #include "io/stream/file_path.hpp"
-#include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
@@ -49,7 +48,6 @@ class HeadReader {
   HeadReader(const std::string& path, int ranks) : path_(path), ranks_(ranks) {}
 
   std::optional<FileHead> read() {
-    finish_interrupted(path_);
     std::string text = head_of(path_);
     if (text.empty()) return std::nullopt;
     head_.facts.first_byte = static_cast<Offset>(text.size());

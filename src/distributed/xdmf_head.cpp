@@ -3,7 +3,6 @@
 
 #include "distributed/raw_arrays.hpp"
 #include "io/stream/file_path.hpp"
-#include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
 #ifdef MESHORDER_HAS_XDMF
 #include "io/xdmf/raw.hpp"
@@ -37,7 +36,6 @@ FileArray::Role role_in_xdmf(xdmf::RawDataset::Role role) {
 }  // namespace
 
 std::optional<FileHead> read_xdmf_head(const std::string& path) {
-  finish_interrupted(path);
   const FilePath file(path);
   const ReadScope scope(file);
   const std::optional<xdmf::RawGrid> grid = xdmf::find_raw(file);

@@ -4,6 +4,7 @@
 #include "base/arena.hpp"
 #include "io/format.hpp"
 #include "io/kept_cells.hpp"
+#include "io/not_together.hpp"
 #include "io/stream/gzip.hpp"
 #include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
@@ -13,10 +14,14 @@
 #include <meshorder/io.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <istream>
 #include <ostream>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <utility>
 
 namespace meshorder {
@@ -51,6 +56,32 @@ class MemoryStore : public FileStore {
   std::function<std::string(std::string_view)> companion_;
 };
 
+/// Returns whether files were renamed in the folder of a path since then, or a moment before.
+bool is_written_to(const FilePath& path, std::chrono::file_clock::time_point since) {
+  std::error_code code;
+  const std::filesystem::path folder = path.path().parent_path();
+  const auto last = std::filesystem::last_write_time(folder.empty() ? "." : folder, code);
+  return path.store() == nullptr && !code && last > since - std::chrono::seconds(1);
+}
+
+/// Reads a mesh; again where another process was just putting its files in place.
+Mesh read_together(const FilePath& path, const Format& format, Notes& notes) {
+  constexpr int kAttempts = 20;
+  constexpr std::chrono::milliseconds kPause{50};
+  for (int attempt = 1;; ++attempt) {
+    const auto began = std::chrono::file_clock::now();
+    Notes found;
+    try {
+      Mesh mesh = format.read(path, found);
+      notes.insert(notes.end(), found.begin(), found.end());
+      return mesh;
+    } catch (const NotTogether&) {
+      if (attempt == kAttempts || !is_written_to(path, began)) throw;
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
 /// @param stored  bytes of a file in memory before it was decompressed; 0: as many as are read
 Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions& options,
                   std::uint64_t stored = 0) {
@@ -59,8 +90,7 @@ Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions&
   return in_arena(options.run, [&] {
     const ReadScope scope(path, options.memory_limit, options.include_folders);
     if (stored > 0) count_file(path, stored);
-    if (path.store() == nullptr) finish_interrupted(path.path());
-    Mesh mesh = format.read(path, notes);
+    Mesh mesh = read_together(path, format, notes);
     mesh.format = format.key();
     if (mesh.cell_count() == 0) throw InputError(path.string(), "has no cells", "a mesh needs at least one");
     try {
@@ -137,7 +167,7 @@ Permutation write_checked(const Mesh& mesh, const FilePath& path, const Format& 
     notes.insert(notes.end(), left_out.begin(), left_out.end());
     if (path.store() != nullptr || path.set() != nullptr) return format.write(written, path, notes);
     OutputSet files;
-    format.write(written, {path.path(), files}, notes);
+    format.write(written, {path, files}, notes);
     files.commit();
     notes.insert(notes.end(), files.notes().begin(), files.notes().end());
   };

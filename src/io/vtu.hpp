@@ -1,9 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/file_path.hpp"
+
 #include <bit>
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 
@@ -28,6 +29,6 @@ struct PvdEntry {
 /// Writes a collection of files of several times (.pvd), which ParaView opens as an animation. Throws Error
 /// if it cannot be written, InvalidArgument for a time that is not finite; leaves no partial file.
 /// O(entries). https://www.paraview.org/Wiki/ParaView/Data_formats
-void write_pvd(std::span<const PvdEntry> entries, const std::filesystem::path& path);
+void write_pvd(std::span<const PvdEntry> entries, const FilePath& path);
 
 }  // namespace meshorder

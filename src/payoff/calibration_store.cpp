@@ -4,12 +4,12 @@
 #include "base/checksum.hpp"
 #include "base/processor.hpp"
 #include "base/user_folder.hpp"
+#include "io/stream/output_file.hpp"
 #include "payoff/machine.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include <cctype>
 #include <cmath>
@@ -216,20 +216,16 @@ fs::path save_calibration(const Calibration& calibration) {
                             "to keep it in; ") +
                     kRemedy);
   }
-  std::error_code code;
-  fs::create_directories(file.parent_path(), code);
-  fs::path beside = file;
-  beside += fmt::format(".{}.unfinished", ::getpid());
-  std::ofstream out(beside, std::ios::binary);
-  out << to_json_text(calibration);
-  out.close();
-  if (out) {
-    fs::rename(beside, file, code);
-    if (!code) return file;
+  std::error_code ignored;  // the output says what is wrong
+  fs::create_directories(file.parent_path(), ignored);
+  try {
+    OutputFile out(FilePath::in(user_cache_folder(), file));
+    out.write(to_json_text(calibration));
+    out.commit();
+  } catch (const InputError& error) {
+    throw Error(Code::io, fmt::format("calibration: {}; or {}", error.what(), kRemedy));
   }
-  std::error_code ignored;
-  fs::remove(beside, ignored);
-  throw Error(Code::io, "calibration: " + file.string() + " cannot be written; " + kRemedy);
+  return file;
 }
 
 }  // namespace meshorder

@@ -183,6 +183,14 @@ def test_empty_values_are_refused(command, mesh, words, option):
     assert sorted(os.listdir(command.folder)) == sorted(["mesh.node", "mesh.ele"])
 
 
+@pytest.mark.parametrize("option", ["--maps", "--output", "--seed", "--plugin"])
+def test_an_option_without_a_value_takes_no_other_for_it(command, mesh, tmp_path, option):
+    before = sorted(tmp_path.iterdir())
+    line = command.fails("order", mesh, "-o", "out.vtu", f"{option}=", "-q")
+    assert line == f"meshorder: {option}= has no value; give one right after the ="
+    assert sorted(tmp_path.iterdir()) == before
+
+
 def widths(text):
     return [len(line) for line in text.splitlines() if not line.startswith(("Verdict", "auto takes"))]
 

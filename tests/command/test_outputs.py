@@ -1,5 +1,6 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Outputs are whole or not there, and those of one command belong together, whatever ends the command."""
+import fcntl
 import json
 import os
 import resource
@@ -120,42 +121,103 @@ def test_maps_that_cannot_be_written_leave_the_mesh(command, tmp_path, mesh):
     assert content_of(tmp_path) == before
 
 
-@pytest.mark.parametrize(("call", "maps"), [("rename", "m"), ("rename", "maps/m"), ("unlink", "maps/m")])
-def test_files_of_a_killed_command_are_all_old_or_all_new(command, faulty, tmp_path, mesh, maps, call):
-    """Killed before each rename and each removal of a name, and then used again."""
-    (tmp_path / "maps").mkdir()
-    command.ok("order", mesh, "-o", "old.node", "--vertices", "original", "--elements", "original", "--maps", maps)
-    old = {**content_of(tmp_path), **content_of(tmp_path / "maps")}
-    arguments = ("order", "old.node", "-o", "old.node", *ORDER[:-3], "--maps", maps, "-q")
-    command.ok(*arguments)
-    new = {**content_of(tmp_path), **content_of(tmp_path / "maps")}
+def states_of(folder, old, new):
+    """What the files of a set are, "old" or "new" each; a file that is in neither state is an error."""
+    now = content_of(folder)
+    assert set(now) <= set(old) | set(new)
+    assert all(content in (old.get(name), new.get(name)) for name, content in now.items())
+    return {"new" if now.get(name) == new.get(name) else "old" for name in set(old) | set(new)
+            if old.get(name) != new.get(name)}
+
+
+def snapshot(folder):
+    """All that is in a folder: names, kinds, modes, times and contents."""
+    return {str(path.relative_to(folder)): (path.lstat().st_mode, path.lstat().st_mtime_ns, path.lstat().st_ino,
+                                            path.read_bytes() if stat.S_ISREG(path.lstat().st_mode) else None)
+            for path in sorted(folder.rglob("*"))}
+
+
+# a set of files, the command that writes it, and one that reads it
+SETS = {
+    "tetgen": ("out.node", (), ("info", "set/out.node")),
+    "xdmf": ("out.xdmf", (), ("info", "set/out.xdmf")),
+    "maps": ("../out.vtu", ("--maps", "set/m"), ("apply", "set/m", "from.vtu", "-o", "applied.vtu")),
+}
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_files_of_a_killed_command_are_all_old_or_all_new_or_refused(command, faulty, tmp_path, mesh, name):
+    """Killed before each rename: files of two runs are never taken for one set, and the next run ends well."""
+    target, options, reader = SETS[name]
+    folder = tmp_path / "set"
+    folder.mkdir()
+    command.ok("order", mesh, "-o", "from.vtu", "-q")
+
+    def order(seed):
+        return ("order", "from.vtu", "-o", f"set/{target}", "--vertices", "scrambled", "--elements", "scrambled", "--seed",
+                str(seed), *options, "-q")
+
+    command.ok(*order(3))
+    old = content_of(folder)
+    command.ok(*order(4))
+    new = content_of(folder)
     assert set(old) == set(new) and old != new
-    folders = [tmp_path, tmp_path / "maps"]
-    kills = 0
-    while True:
-        for folder in folders:
-            for name in content_of(folder):
-                (folder / name).write_bytes(old[name])
-        child = faulty("kill", call, kills + 1, *arguments)
+    mixtures = 0
+    for number in range(1, 100):
+        for path in folder.iterdir():
+            path.unlink()
+        for file, content in old.items():
+            (folder / file).write_bytes(content)
+        child = faulty("kill", "rename", number, *order(4))
         child.communicate()
         if child.returncode == 0:
             break
         assert child.returncode == -signal.SIGKILL
-        kills += 1
-        files = {**content_of(tmp_path), **content_of(tmp_path / "maps")}
-        assert all(content in (old[name], new[name]) for name, content in files.items())
-        command.ok("info", "old.node")  # finishes or gives up
-        if any(path.name.startswith(".meshorder-") for folder in folders for path in folder.iterdir()):
-            command.ok("order", "mesh.node", "-o", "other.node", "-q")
-            command.ok("order", "mesh.node", "-o", "maps/other.node", "-q")
-            for folder in folders:
-                for extension in ("node", "ele"):
-                    (folder / f"other.{extension}").unlink()
-        files = {**content_of(tmp_path), **content_of(tmp_path / "maps")}
-        assert files in (old, new), f"a mixture after {kills} kills"
-        leftovers = [path.name for folder in folders for path in folder.iterdir() if path.name.startswith(".")]
-        assert leftovers == []
-    assert kills > 8
+        before = snapshot(folder)
+        if len(states_of(folder, old, new)) > 1:
+            mixtures += 1
+            assert "was not written together" in command.fails(*reader)
+        else:
+            command.ok(*reader)
+        assert snapshot(folder) == before
+        command.ok(*order(4))
+        assert content_of(folder) == new and len(list(folder.iterdir())) == len(new)
+    assert mixtures > 0
+
+
+def test_maps_of_an_earlier_run_that_are_left_over_are_refused(command, tmp_path, mesh):
+    """What not every mesh has: the numbers of its vertices and cells, and which cells were kept."""
+    command.ok("order", mesh, "-o", "out.vtu", "--maps", "m", "-q")
+    np = pytest.importorskip("numpy")
+    for kind in ("vertices.ids", "cells.ids", "cells.kept"):
+        count = len(np.load(tmp_path / f"m.{kind.split('.')[0]}.old_to_new.npy"))
+        left = tmp_path / f"m.{kind}.npy"
+        np.save(left, np.arange(count, dtype=np.int64))
+        assert "was not written together with these maps" in command.fails("apply", "m", mesh, "-o", "applied.vtu")
+        left.unlink()
+    command.ok("apply", "m", mesh, "-o", "applied.vtu")
+
+
+@pytest.mark.parametrize("same", [False, True], ids=["other output", "in place"])
+def test_many_commands_write_one_set_at_once(tmp_path, command, mesh, same):
+    target = mesh if same else "out.node"
+    children = [subprocess.Popen([conftest.MESHORDER, "order", mesh, "-o", target, "--vertices", "scrambled", "--elements",
+                                  "scrambled", "--seed", str(seed), "-q"], cwd=tmp_path, text=True,
+                                 stdin=subprocess.DEVNULL, stderr=subprocess.PIPE) for seed in range(20)]
+    assert [child.communicate()[1] for child in children] == [""] * len(children)
+    assert all(child.returncode == 0 for child in children)
+    command.ok("info", target)
+    assert not [path for path in tmp_path.iterdir() if path.name.startswith(".")]
+
+
+def test_a_folder_that_somebody_holds_locked_is_written_all_the_same(command, tmp_path, mesh):
+    """For some seconds the command waits."""
+    holder = os.open(tmp_path, os.O_RDONLY)
+    fcntl.flock(holder, fcntl.LOCK_EX)
+    try:
+        command.ok("order", mesh, "-o", "out.node", "-q")
+    finally:
+        os.close(holder)
 
 
 @pytest.mark.parametrize("call", ["rename", "fsync"])
@@ -170,20 +232,7 @@ def test_an_error_rolls_all_files_back(command, faulty, tmp_path, mesh, call):
         assert "input/output error" in stderr and len(stderr.splitlines()) == 1, stderr
         assert content_of(tmp_path) == before
         assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []
-    assert number > 8
-
-
-def test_files_that_do_not_fit_are_refused_where_they_cannot_be_finished(command, faulty, tmp_path, mesh):
-    """The owner of the rest is another user."""
-    if os.geteuid() != 0:
-        pytest.skip("needs root, who may give files away")
-    faulty("kill", "rename", 12, "order", mesh, "-o", mesh, *ORDER).communicate()
-    left = [path for path in tmp_path.iterdir() if path.suffix == ".set"]
-    assert left
-    for path in [*left, tmp_path / "mesh.node", tmp_path / "mesh.ele"]:
-        os.chown(path, 4321, -1)
-    line = command.fails("info", mesh)
-    assert "was being replaced together with other files" in line and "owner" in line
+    assert number > 7
 
 
 def test_maps_of_two_runs_are_refused(command, tmp_path, mesh):

@@ -115,14 +115,35 @@ def test_files_of_two_runs_are_refused(command, tmp_path):
     shutil.copy(tmp_path / "rcm.h5", tmp_path / "b.h5")
     line = command.fails("info", "b.xdmf")
     assert "'b.h5' was not written together with this file" in line and "b.xdmf:" in line
-    # who says that they belong together may have them; so do those who write one of them anew
+    # who says that they belong together may have them
     xml = (tmp_path / "b.xdmf").read_text()
     (tmp_path / "b.xdmf").write_text(re.sub(r"<\?meshorder .*?\?>", "", xml))
     command.ok("info", "b.xdmf")
     (tmp_path / "b.xdmf").write_text(xml)
     with h5py.File(tmp_path / "b.h5", "r+") as file:
         del file.attrs["meshorder"]
+    assert "'b.h5' was not written together with this file" in command.fails("info", "b.xdmf")
+
+
+def test_plain_binary_files_of_two_runs_are_refused(command, tmp_path):
+    points, cells, _ = box(2)
+    points.astype("<f8").tofile(tmp_path / "points.bin")
+    text = "\n".join(" ".join(map(str, cell)) for cell in cells)
+    (tmp_path / "a.xdmf").write_text(f"""<Xdmf Version="3.0"><Domain><Grid>
+<Topology TopologyType="Tetrahedron" NumberOfElements="{len(cells)}"><DataItem Dimensions="{len(cells)} 4">{text}</DataItem>
+</Topology><Geometry><DataItem Format="Binary" Endian="Little" Precision="8" Dimensions="{len(points)} 3">points.bin</DataItem>
+</Geometry></Grid></Domain></Xdmf>""")
+    for method in ("rcm", "hilbert"):
+        command.ok("order", "a.xdmf", "-o", "b.xdmf", "--vertices", method)
+        shutil.copy(tmp_path / "b0.bin", tmp_path / f"{method}.bin")
     command.ok("info", "b.xdmf")
+    shutil.copy(tmp_path / "rcm.bin", tmp_path / "b0.bin")
+    line = command.fails("info", "b.xdmf")
+    assert "'b0.bin' was not written together with this file" in line and "b.xdmf:" in line
+    # it keeps the checksum of what it holds in another order
+    shutil.copy(tmp_path / "hilbert.bin", tmp_path / "b0.bin")
+    command.ok("order", "b.xdmf", "-o", "c.xdmf", "--vertices", "scrambled")
+    command.ok("info", "c.xdmf")
 
 
 def test_fenicsx_mesh_tags_and_functions_move_together(command, tmp_path):

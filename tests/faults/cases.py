@@ -22,7 +22,7 @@ class Line:
     before: typing.Callable  # makes the files that it finds, in a folder
     varies: tuple = ()  # outputs with times in them, judged by their being there
     together: bool = True  # its outputs are to be all old or all new
-    reader: tuple = ()  # the arguments of a command that reads the output
+    reader: tuple = ()  # the arguments of a command that reads the output; it may write read.msh
     most: int = 10000  # how many faults of a kind it is to have, where a run takes seconds
 
 
@@ -129,7 +129,7 @@ def over(extension):
 
 COMMANDS = {
     "order with maps": Line(("order", "mesh.node", "-o", "out.msh", "--maps", "sub/m", *SCRAMBLED), with_old_output,
-                            reader=("info", "out.msh")),
+                            reader=("apply", "sub/m", "out.msh", "--inverse", "-o", "read.msh")),
     "order by spectral": Line(("order", "mesh.node", "-o", "out.vtu", "--vertices", "spectral", "--threads", 2), bigger),
     "order by itself": Line(("order", "mesh.node", "-o", "out.vtu", "--json"), solid("node")),
     "apply": Line(("apply", "sub/m", "mesh.node", "-o", "out.msh"), with_other_output, reader=("info", "out.msh")),

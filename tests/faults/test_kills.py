@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The command is killed: each file is the old or the new one, no mixture is taken for good, and the next run ends well."""
+"""The command is killed: each file is the old or the new one, a mixture is refused, and the next run ends well."""
 import random
 import signal
 import statistics
@@ -20,6 +20,7 @@ def faults_after(case):
     yield from case.faults_of_files()
     if case.line.reader and case.without_fault(case.line.reader) == 0:
         yield from case.faults_of_set()
+    (case.folder / "read.msh").unlink(missing_ok=True)
     if (status := case.without_fault()) != 0:
         yield f"the next run ends with status {status}"
     yield from case.faults_of_set("new")

@@ -1,9 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/output_file.hpp"
 
-#include "io/stream/output_journal.hpp"
-#include "io/stream/output_place.hpp"
 #include "io/stream/output_set.hpp"
+#include "io/stream/scratch.hpp"
 #include "io/stream/system_fault.hpp"
 #include "support/files.hpp"
 #include <meshorder/error.hpp>
@@ -12,13 +11,16 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <bit>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <string>
 #include <thread>
 
@@ -37,6 +39,8 @@ void write(const FilePath& path, std::string_view content) {
   file.write(content);
   file.commit();
 }
+
+void put(const fs::path& path, std::string_view content) { std::ofstream(path) << content; }
 
 std::string write_fault(const FilePath& path) {
   try {
@@ -200,18 +204,92 @@ TEST(OutputFile, TakesNamesOfAnyLengthThatTheSystemTakes) {
               HasSubstr("its name is too long; choose a shorter name"));
 }
 
+TEST(OutputFile, FollowsNoLinksInNamesThatItDerives) {
+  const TemporaryFolder folder;
+  const fs::path precious = folder.file("precious", "old");
+  fs::create_directories(folder.path() / "case/constant");
+  fs::create_directories(folder.path() / "elsewhere");
+  const fs::path link = folder.path() / "mesh.ele";
+  fs::create_symlink("precious", link);
+  fs::create_symlink("../elsewhere", folder.path() / "case/system");
+  const std::string fault =
+      "is a symbolic link, and links are followed only in names that you give; remove it";
+  EXPECT_THAT(write_fault(FilePath(folder.path() / "mesh.node").companion(".ele")), HasSubstr(fault));
+  EXPECT_THAT(write_fault(FilePath(folder.path() / "mesh.xdmf").beside("mesh.ele")), HasSubstr(fault));
+  EXPECT_THAT(write_fault(FilePath::derived(link)), HasSubstr("mesh.ele: " + fault));
+  EXPECT_THAT(write_fault(FilePath::in(folder.path() / "case", folder.path() / "case/system/dict")),
+              HasSubstr("case/system: " + fault));
+  EXPECT_EQ(content_of(precious), "old");
+  EXPECT_TRUE(fs::is_empty(folder.path() / "elsewhere"));
+  write(FilePath::in(folder.path() / "case", folder.path() / "case/constant/order"), "new");
+  EXPECT_EQ(content_of(folder.path() / "case/constant/order"), "new");
+  // the user's own links are followed, also where names below them are derived
+  fs::create_symlink("case", folder.path() / "my case");
+  write(FilePath::in(folder.path() / "my case/", folder.path() / "my case/constant/order"), "newer");
+  EXPECT_EQ(content_of(folder.path() / "case/constant/order"), "newer");
+  write(link, "newest");
+  EXPECT_EQ(content_of(precious), "newest");
+}
+
+TEST(OutputFile, WritesThroughNoPipeThatItDerives) {
+  const TemporaryFolder folder;
+  const fs::path pipe = folder.path() / "mesh.ele";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(write_fault(FilePath::derived(pipe)), HasSubstr("mesh.ele: is no ordinary file; remove it"));
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
 TEST(OutputFile, RemovesWhatDeadProcessesLeftAndNothingElse) {
   const TemporaryFolder folder;
   const fs::path dead = folder.path() / ".meshorder-0123456789abcdef.new";
-  fs::create_directory(dead);
-  for (const char* const name : {"lock", "new"}) (void)folder.file(dead.filename() / name, "half");
-  const fs::path other = folder.path() / ".meshorder-notes.new";
+  const fs::path inner = dead / ".meshorder-fedcba9876543210.new";  // of a process that wrote there
+  fs::create_directories(inner);
+  for (const fs::path& left : {dead, inner}) {
+    for (const char* const name : {"lock", "new", "old"}) put(left / name, "half");
+  }
+  const fs::path other = folder.path() / ".meshorder-notes-of-mine0.new";
   fs::create_directory(other);
   const Scratch alive(folder.path() / "b.txt");
   write(folder.path() / "a.txt", "new");
   EXPECT_FALSE(fs::exists(dead));
   EXPECT_TRUE(fs::exists(other));
   EXPECT_TRUE(fs::exists(alive.path()));
+}
+
+TEST(OutputFile, RemovesNothingOfOthersWhereTheirNamesAreItsOwn) {
+  const TemporaryFolder folder;
+  const auto scratch = [&](char digit) {
+    return folder.path() / (".meshorder-" + std::string(16, digit) + ".new");
+  };
+  fs::create_directories(folder.path() / "precious/new");
+  for (const char* const name : {"lock", "old", "thesis.tex"}) put(folder.path() / "precious" / name, "mine");
+  fs::create_symlink("precious", scratch('1'));  // a folder with a file called lock
+  fs::create_directory(scratch('2'));            // other files in a folder of that name
+  put(scratch('2') / "lock", "");
+  put(scratch('2') / "thesis.tex", "mine");
+  fs::create_directory(scratch('3'));  // links in it, and a pipe that nobody reads
+  fs::create_symlink("../precious/thesis.tex", scratch('3') / "new");
+  fs::create_symlink("../precious", scratch('3') / "old");
+  ASSERT_EQ(::mkfifo((scratch('3') / "lock").c_str(), 0600), 0);
+  put(scratch('4'), "a file");
+  fs::create_directories(scratch('5') / "new");  // a folder where a file is expected
+  put(scratch('5') / "lock", "");
+  write(folder.path() / "a.txt", "new");
+  for (const char* const name : {"lock", "old", "thesis.tex"})
+    EXPECT_EQ(content_of(folder.path() / "precious" / name), "mine");
+  EXPECT_TRUE(fs::is_directory(folder.path() / "precious/new"));
+  EXPECT_EQ(content_of(scratch('2') / "thesis.tex"), "mine");
+  EXPECT_EQ(content_of(scratch('4')), "a file");
+  EXPECT_TRUE(fs::is_directory(scratch('5') / "new"));
+}
+
+TEST(OutputFile, ReadingLeavesWhatIsUnfinished) {
+  const TemporaryFolder folder;
+  const fs::path dead = folder.path() / ".meshorder-0123456789abcdef.new";
+  fs::create_directory(dead);
+  put(dead / "lock", "");
+  EXPECT_EQ(FilePath(folder.file("a.txt", "content")).read(), "content");
+  EXPECT_TRUE(fs::exists(dead / "lock"));
 }
 
 TEST(OutputSet, PutsAllFilesInPlaceOrNone) {
@@ -263,71 +341,53 @@ TEST(OutputSet, RefusesOneNameForTwoFiles) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"link"});
 }
 
-/// Leaves what a process leaves that is stopped after it has put the first `done` of two files in place; with
-/// `journal` as the name of what says so.
-void leave_interrupted(const TemporaryFolder& folder, const char* journal, int done) {
-  std::vector<JournalEntry> entries;
-  for (const char* const name : {"a.txt", "b.txt"}) {
-    const fs::path target = folder.file(name, "old");
-    const fs::path scratch = scratch_in_set(target);
-    fs::create_directory(scratch);
-    fs::create_hard_link(target, scratch / kOldFile);
-    entries.push_back({Step::replace, scratch, target});
-    const auto put = [&](const char* file, const std::string& content) {
-      (void)folder.file(scratch.filename() / file, content);
-    };
-    put("lock", "");
-    put("new", "new");
-    put(kSetFile, entries.front().scratch.filename());
-  }
-  if (journal != nullptr)
-    (void)folder.file(entries.front().scratch.filename() / journal, journal_text(entries, folder.path()));
-  for (int k = 0; k < done; ++k) ASSERT_EQ(apply(entries[static_cast<std::size_t>(k)]), 0);
-}
-
-TEST(OutputSet, FinishesWhatAKilledProcessLeft) {
-  for (const int done : {0, 1, 2}) {
-    for (const char* const first_read : {"a.txt", "b.txt"}) {
-      SCOPED_TRACE(fmt::format("{} {}", done, first_read));
-      const TemporaryFolder folder;
-      leave_interrupted(folder, kJournal, done);
-      EXPECT_EQ(FilePath(folder.path() / first_read).read(), "new");
-      for (const char* const name : {"a.txt", "b.txt"}) EXPECT_EQ(content_of(folder.path() / name), "new");
-      EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.txt", "b.txt"}));
-    }
-  }
-}
-
-TEST(OutputSet, UndoesWhatAKilledProcessHadBegunToUndo) {
-  for (const int done : {0, 1, 2}) {
-    SCOPED_TRACE(done);
-    const TemporaryFolder folder;
-    leave_interrupted(folder, kUndo, done);
-    write(folder.path() / "b.txt", "newest");
-    EXPECT_EQ(content_of(folder.path() / "a.txt"), "old");
-    EXPECT_EQ(content_of(folder.path() / "b.txt"), "newest");
-    EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.txt", "b.txt"}));
-  }
-}
-
-TEST(OutputSet, GivesUpWhatAKilledProcessHadNotDecided) {
+TEST(OutputSet, TakesTheFileThatNamesTheOthersAwayFirst) {
   const TemporaryFolder folder;
-  leave_interrupted(folder, nullptr, 0);
-  for (const char* const name : {"b.txt", "a.txt"}) EXPECT_EQ(FilePath(folder.path() / name).read(), "old");
-  EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.txt", "b.txt"}));
+  const fs::path index = folder.file("index", "old");
+  const fs::path piece = folder.file("piece", "old");
+  OutputSet files;
+  files.remove_first(FilePath::derived(index));
+  write({piece, files}, "new");
+  write({index, files}, "new");
+  files.commit();
+  EXPECT_EQ(content_of(index), "new");
+  EXPECT_EQ(content_of(piece), "new");
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"index", "piece"}));
 }
 
-TEST(OutputSet, RefusesFilesThatAnotherProcessPutsInPlace) {
+TEST(OutputSet, PutsTheOldFilesBackIfARenameFails) {
   const TemporaryFolder folder;
-  leave_interrupted(folder, kJournal, 1);
-  const DeadScratch held(scratch_in_set(folder.path() / "a.txt"));
-  ASSERT_EQ(held.state(), DeadScratch::State::dead);
-  try {
-    (void)FilePath(folder.path() / "b.txt").read();
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("is being replaced by another process; try again"));
-  }
+  const fs::path index = folder.file("index", "old");
+  const fs::path piece = folder.file("piece", "old");
+  const fs::path last = folder.file("last", "old");
+  const Scratch of_piece(piece);
+  const Scratch of_new(piece);
+  const Scratch of_last(last);
+  put(of_piece.file(), "new");
+  put(of_new.file(), "new");
+  fs::create_directory(of_last.file());  // replaces no file
+  const std::vector<FinishedFile> files{
+      {of_piece.path(), piece}, {of_new.path(), folder.path() / "new"}, {of_last.path(), last}};
+  const std::vector<FilePath> first{FilePath::derived(index)};
+  const std::vector<FilePath> removed{FilePath::derived(folder.file("removed", "old"))};
+  EXPECT_THROW(put_in_place(files, first, removed), InputError);
+  for (const char* const name : {"index", "piece", "last", "removed"})
+    EXPECT_EQ(content_of(folder.path() / name), "old");
+  EXPECT_FALSE(fs::exists(folder.path() / "new"));
+}
+
+TEST(OutputSet, WaitsWhileAnotherProcessRenamesThere) {
+  const TemporaryFolder folder;
+  Descriptor held(folder.path(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(::flock(held.get(), LOCK_EX), 0);
+  OutputSet files;
+  write({folder.path() / "a.txt", files}, "new");
+  std::thread committing([&] { files.commit(); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_FALSE(fs::exists(folder.path() / "a.txt"));
+  held.close();
+  committing.join();
+  EXPECT_EQ(content_of(folder.path() / "a.txt"), "new");
 }
 
 TEST(SystemFault, HasWordsForFullAndBrokenDisks) {

@@ -21,7 +21,7 @@ LAYERS = {
     "mesh": set(CORE),
     "io": {*CORE, "mesh"},
     "kernels": {*CORE, "mesh"},
-    "payoff": {*CORE, "mesh", "kernels"},
+    "payoff": {*CORE, "mesh", "io", "kernels"},
     "distributed": {*CORE, "mesh", "io"},
 }
 # libraries, by the first word of their headers, and the folders that may include them
@@ -48,7 +48,7 @@ HOSTS = {"petsc": ("petsc",), "dealii": ("deal.II/",), "dolfinx": ("dolfinx", "b
 OF_PLUGINS = {"meshorder/dealii.hpp", "meshorder/dolfinx.hpp"}
 #: a communicator is MPI's
 OF_MANY_RANKS = {("distributed.hpp", "mpi.h"), ("distributed.hpp", "meshorder_mpi.h"), ("meshorder_mpi.h", "meshorder.h")}
-SYSTEM = re.compile(r"(dlfcn|fcntl|sched|spawn|unistd|sys/\w+)\.h")
+SYSTEM = re.compile(r"(dirent|dlfcn|fcntl|sched|spawn|unistd|sys/\w+)\.h")
 
 
 def files(folder):

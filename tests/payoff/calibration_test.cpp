@@ -411,7 +411,7 @@ TEST(CalibrationStore, AFolderThatCannotBeMadeIsAnErrorWithARemedy) {
     (void)save_calibration(made_up());
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("cannot be written; set MESHORDER_CACHE"));
+    EXPECT_THAT(error.what(), HasSubstr("; or set MESHORDER_CACHE to a folder"));
     EXPECT_EQ(error.code(), Code::io);
   }
 }

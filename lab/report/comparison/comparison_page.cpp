@@ -34,12 +34,12 @@ WrittenComparison write_comparison(const ComparedStudy& a, const ComparedStudy& 
 
   WrittenComparison written;
   std::vector<OutputFile> files;
-  const auto add = [&](std::filesystem::path path, const std::string& text) {
+  const auto add = [&](const FilePath& path, const std::string& text) {
     files.emplace_back(path).write(text);
-    written.files.push_back(std::move(path));
+    written.files.push_back(path.path());
   };
-  add(std::filesystem::path(page).replace_extension(".md"), markdown);
-  add(std::filesystem::path(page).replace_extension(".csv"), to_csv(content.tables));
+  add(FilePath(page).companion(".md"), markdown);
+  add(FilePath(page).companion(".csv"), to_csv(content.tables));
   add(page, fill_page(viewer_sources().comparison, content));
   OutputFile::commit_all(files);
   written.tables = std::move(content.tables);

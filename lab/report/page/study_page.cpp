@@ -147,7 +147,7 @@ WrittenReport write_report(const StudyFolder& folder, const ReportProgress& prog
     throw InputError(folder.root().string(), "cannot be written: " + code.message(), "check the folder");
   std::vector<OutputFile> files;
   const auto add = [&](const fs::path& path, const std::string& content) {
-    files.emplace_back(path).write(content);
+    files.emplace_back(folder.output(path)).write(content);
     report.files.push_back(path);
   };
   add(folder.tables(".md"), markdown_of(page));

@@ -5,7 +5,6 @@
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/stream/gzip.hpp"
-#include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
@@ -59,7 +58,6 @@ std::string read_sized(std::istream& stream, const std::string& name, std::uintm
 
 /// Returns the bytes of a file, at most `most` of them; of a pipe all.
 std::string read_from_disk(const fs::path& path, std::uintmax_t most) {
-  finish_interrupted(path);
   const std::string name = path.string();
   std::error_code code;
   const auto status = fs::status(path, code);
@@ -136,8 +134,15 @@ std::string FilePath::read_first(std::size_t most) const {
   return bytes;
 }
 
+FilePath FilePath::in(fs::path folder, fs::path path) {
+  FilePath result(std::move(path));
+  result.folder_ = std::move(folder);
+  return result;
+}
+
 FilePath FilePath::at(fs::path path) const {
   FilePath result = *this;
+  if (!folder_) result.folder_ = path_.parent_path();
   result.path_ = std::move(path);
   return result;
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -36,7 +37,8 @@ class FileStore {
 
 class OutputSet;
 
-/// A file on disk or in a store, whether it exists or not.
+/// A file on disk or in a store, whether it exists or not. Says who named it: symbolic links are followed in
+/// what the user named, and not in what this program derived from that, such as mesh.ele beside mesh.node.
 class FilePath {
  public:
   // NOLINTBEGIN(google-explicit-constructor): a file on disk is what a path says
@@ -48,7 +50,12 @@ class FilePath {
   /// A file in a store, which must outlive this object.
   FilePath(std::filesystem::path path, FileStore& store) : path_(std::move(path)), store_(&store) {}
   /// A file on disk that, if it is written, is put in place by the set, which must outlive this object.
-  FilePath(std::filesystem::path path, OutputSet& set) : path_(std::move(path)), set_(&set) {}
+  FilePath(FilePath path, OutputSet& set) : FilePath(std::move(path)) { set_ = &set; }
+
+  /// A file on disk below a folder that the user named; the rest of the path this program made, or a file.
+  static FilePath in(std::filesystem::path folder, std::filesystem::path path);
+  /// The same in the path's own folder: this program made the last name.
+  static FilePath derived(const std::filesystem::path& path) { return in(path.parent_path(), path); }
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   /// Returns the path as text, for messages.
@@ -57,6 +64,9 @@ class FilePath {
   [[nodiscard]] FileStore* store() const noexcept { return store_; }
   /// Returns the set of outputs that the file belongs to, null if it stands alone.
   [[nodiscard]] OutputSet* set() const noexcept { return set_; }
+  /// Returns the folder that the user named where the rest of the path is derived; nothing if the user gave
+  /// the whole path.
+  [[nodiscard]] const std::optional<std::filesystem::path>& folder() const noexcept { return folder_; }
 
   /// Returns whether the file exists; false also if the system denies access.
   [[nodiscard]] bool exists() const;
@@ -83,6 +93,7 @@ class FilePath {
   [[nodiscard]] FilePath at(std::filesystem::path path) const;
 
   std::filesystem::path path_;
+  std::optional<std::filesystem::path> folder_;  ///< of the path that this one was made of
   FileStore* store_ = nullptr;
   OutputSet* set_ = nullptr;
 };

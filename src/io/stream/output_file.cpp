@@ -43,7 +43,7 @@ struct OutputFile::Stream {
 OutputFile::OutputFile(FilePath target) : target_(std::move(target)), stream_(std::make_unique<Stream>()) {
   if (target_.store() != nullptr) return;
   const fs::path& path = target_.path();
-  stream_->place = output_place(path);
+  stream_->place = output_place(target_);
   const OutputPlace& place = stream_->place;
   if (place.is_through) {
     if (place.own_descriptor < 0 && ::access(place.path.c_str(), W_OK) != 0)
@@ -59,8 +59,7 @@ OutputFile::OutputFile(FilePath target) : target_(std::move(target)), stream_(st
   if (!fs::is_directory(folder, code)) {
     throw InputError(path.string(), "its folder does not exist", "make " + folder.string() + " first");
   }
-  finish_interrupted(place.path);
-  clean_up_outputs(folder);
+  remove_dead_scratches(folder);
   stream_->scratch.emplace(place.path);
   stream_->file = Descriptor(stream_->scratch->file(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW,
                              place.exists ? kPrivateMode : kMode);
@@ -137,21 +136,6 @@ void OutputFile::close() {
     throw_system_fault(target_.string(), "cannot be written to the end", error);
 }
 
-void OutputFile::complete() {
-  auto& [buffer, place, scratch, file] = *stream_;
-  if (!scratch) return;
-  if (file.is_open()) {
-    flush();
-  } else {
-    file = Descriptor(scratch->file(), O_RDONLY | O_NOFOLLOW);
-  }
-  int error = file.is_open() ? 0 : errno;
-  if (error == 0 && place.exists) error = copy_attributes(place.path, file);
-  if (error == 0) error = file.sync();
-  if (const int closing = file.close(); error == 0) error = closing;
-  if (error != 0) throw_system_fault(target_.string(), "cannot be written to the end", error);
-}
-
 void OutputFile::write_directly() {
   const auto& [buffer, place, scratch, file] = *stream_;
   if (FileStore* const store = target_.store()) return store->write(target(), fmt::to_string(buffer));
@@ -163,12 +147,8 @@ void OutputFile::write_directly() {
   if (error != 0) throw_system_fault(target_.string(), "cannot be written to the end", error);
 }
 
-const OutputPlace& OutputFile::place() const noexcept { return stream_->place; }
-
-Scratch* OutputFile::scratch() noexcept { return stream_->scratch ? &*stream_->scratch : nullptr; }
-
-unsigned OutputFile::other_names() const noexcept {
-  return stream_->place.is_through ? 0 : stream_->place.other_names;
+const Scratch* OutputFile::scratch() const noexcept {
+  return stream_->scratch ? &*stream_->scratch : nullptr;
 }
 
 void OutputFile::commit_all(std::span<OutputFile> files) {

@@ -17,16 +17,16 @@
 
 namespace meshorder {
 
-struct OutputPlace;
 class Scratch;
 
 /// A file that appears complete or not at all: written in a scratch folder beside its target, from where
 /// `commit` renames it into place, or to memory, from where `commit` gives it to the target's store. Without
 /// a commit the target stays unchanged. The protocol is in output_set.hpp.
 ///
-/// Symbolic links are followed. The new file gets the owner, the group, the mode and the extended attributes
-/// of the old one as far as the system allows; further hard links of the old one keep the old content. What
-/// cannot be replaced (a device, a pipe, /dev/stdout) is kept in memory and written at `commit`.
+/// Symbolic links are followed as `FilePath` says. The new file gets the owner, the group, the mode and the
+/// extended attributes of the old one as far as the system allows; further hard links of the old one keep the
+/// old content. What cannot be replaced (a device, a pipe, /dev/stdout) is kept in memory and written at
+/// `commit`.
 class OutputFile {
  public:
   /// Throws InputError if the folder does not exist or cannot be written, or the target is a folder.
@@ -98,14 +98,10 @@ class OutputFile {
   void flush();
 
   // for the set
-  /// Writes what is buffered, gives the file the attributes of the old one and syncs it.
-  void complete();
   /// Writes a target that cannot be replaced, or one in a store.
   void write_directly();
-  [[nodiscard]] const OutputPlace& place() const noexcept;
   /// Returns null for a target that is written directly.
-  [[nodiscard]] Scratch* scratch() noexcept;
-  [[nodiscard]] unsigned other_names() const noexcept;
+  [[nodiscard]] const Scratch* scratch() const noexcept;
 
   FilePath target_;
   std::unique_ptr<Stream> stream_;

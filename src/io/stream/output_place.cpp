@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -50,6 +51,24 @@ void refuse_link_of_others(const fs::path& link) {
   if (!is_open_to_all || own.st_uid == ::geteuid() || own.st_uid == folder.st_uid) return;
   throw InputError(link.string(), "is a symbolic link of another user in a folder open to all",
                    "name the file itself");
+}
+
+/// Throws InputError if one of the folders or the file that this program named is a symbolic link: whoever
+/// made the folder above may have put it there to have another file replaced.
+void refuse_links_in_derived(const FilePath& file) {
+  if (!file.folder()) return;
+  fs::path path = file.path();
+  const fs::path folder = file.folder()->empty() ? fs::path(".") : file.folder()->lexically_normal();
+  const fs::path derived = path.lexically_normal().lexically_relative(folder);
+  for (auto names = std::distance(derived.begin(), derived.end()); names > 0; --names) {
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) == 0 && S_ISLNK(status.st_mode)) {
+      throw InputError(path.string(),
+                       "is a symbolic link, and links are followed only in names that you give",
+                       "remove it or choose another name");
+    }
+    path = path.parent_path();
+  }
 }
 
 /// Returns what a link holds, as a path from where the link's own path starts; nothing if it is no link.
@@ -93,7 +112,9 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-OutputPlace output_place(const fs::path& path) {
+OutputPlace output_place(const FilePath& file) {
+  const fs::path& path = file.path();
+  refuse_links_in_derived(file);
   OutputPlace place;
   place.path = path;
   for (int links = 0; own_descriptor(place.path) < 0; ++links) {
@@ -117,18 +138,10 @@ OutputPlace output_place(const fs::path& path) {
     throw InputError(path.string(), "is a folder", "give a file name for the output");
   place.exists = true;
   place.is_through = !S_ISREG(status.st_mode);
+  if (place.is_through && file.folder())
+    throw InputError(path.string(), "is no ordinary file", "remove it or choose another name");
   place.other_names = static_cast<unsigned>(status.st_nlink) - 1;
   return place;
-}
-
-fs::path behind_links(const fs::path& path) {
-  fs::path result = path;
-  for (int links = 0; links < kMostLinks; ++links) {
-    std::optional<fs::path> next = link_content(result);
-    if (!next) break;
-    result = std::move(*next);
-  }
-  return result;
 }
 
 int copy_attributes(const fs::path& from, const Descriptor& to) {

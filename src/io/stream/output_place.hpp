@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/stream/descriptor.hpp"
+#include "io/stream/file_path.hpp"
 
 #include <filesystem>
 
@@ -19,12 +20,10 @@ struct OutputPlace {
 /// Returns the folder of a path, "." for a plain name.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
-/// Returns where a path leads. Throws InputError for a folder, links in a circle, a name that the file system
-/// refuses and a link that another user left in a folder open to all.
-OutputPlace output_place(const std::filesystem::path& path);
-
-/// Returns the path behind all symbolic links, also where there is no file; throws for nothing.
-std::filesystem::path behind_links(const std::filesystem::path& path);
+/// Returns where a path leads: behind all symbolic links, but for those in what this program named. Throws
+/// InputError for these, for a folder, links in a circle, a name that the file system refuses and a link that
+/// another user left in a folder open to all; where this program named the file, for a device or a pipe.
+OutputPlace output_place(const FilePath& file);
 
 /// Gives an open file the owner, the group, the mode and the extended attributes, ACLs among them, of the
 /// file that it is to replace; what the system does not allow is left out, and so is the access of a group

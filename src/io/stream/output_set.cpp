@@ -1,8 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/output_set.hpp"
 
-#include "io/stream/output_journal.hpp"
+#include "io/stream/folder_locks.hpp"
 #include "io/stream/output_place.hpp"
+#include "io/stream/scratch.hpp"
 #include "io/stream/system_fault.hpp"
 #include <meshorder/error.hpp>
 
@@ -11,16 +12,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
-#include <fstream>
 #include <iterator>
-#include <optional>
 #include <set>
-#include <system_error>
-#include <thread>
 #include <tuple>
 #include <utility>
 
@@ -30,259 +25,138 @@ namespace {
 
 constexpr const char* kCannotReplace = "cannot be replaced";
 
-void require(int error, const fs::path& target) {
-  if (error != 0) throw_system_fault(target.string(), kCannotReplace, error);
+bool is_there(const fs::path& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0;
 }
 
-/// Writes a small file of a scratch folder.
-void write_small(const fs::path& path, const std::string& text, const fs::path& target) {
-  Descriptor file(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW, S_IRUSR | S_IWUSR);
-  require(file.is_open() ? 0 : errno, target);
-  require(file.write(text), target);
-  require(file.sync(), target);
-  require(file.close(), target);
-}
-
-std::optional<std::string> content_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(file), {});
-}
-
-int rename_path(const fs::path& from, const fs::path& to) {
+int renamed(const fs::path& from, const fs::path& to) {
   return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
 
-/// Several files whose scratch folders are complete.
-class Commit {
+/// A file that takes its place, or goes.
+class Move {
  public:
-  Commit(std::vector<JournalEntry> entries, std::vector<Scratch*> scratches)
-      : entries_(std::move(entries)), scratches_(std::move(scratches)) {}
+  /// @param fresh  the new file; empty: the target is taken away
+  /// @param old    where the old file is kept meanwhile
+  Move(fs::path fresh, fs::path target, fs::path old)
+      : fresh_(std::move(fresh)), target_(std::move(target)), old_(std::move(old)) {}
 
-  void run() {
-    for (std::size_t k = 0; k < entries_.size(); ++k) prepare(k);
-    require(sync_targets(entries_), entries_.front().target);
-    for (Scratch* const scratch : scratches_) scratch->keep();
-    write_journal();
-    for (const JournalEntry& entry : entries_) {
-      if (const int error = apply(entry); error != 0) roll_back(entry.target, error);
-    }
-    if (const int error = sync_targets(entries_); error != 0) roll_back(entries_.front().target, error);
-    finish(kJournal);
+  /// Returns 0 or an `errno`.
+  [[nodiscard]] int apply() {
+    existed_ = is_there(target_);
+    if (fresh_.empty()) return existed_ ? renamed(target_, old_) : 0;
+    // where the file system has no hard links, the old file cannot be put back
+    if (existed_) std::ignore = ::link(target_.c_str(), old_.c_str());
+    return renamed(fresh_, target_);
   }
+
+  /// Puts the old file back, also where `apply` failed. Returns 0 or an `errno`.
+  [[nodiscard]] int take_back() const {
+    if (existed_ && is_there(old_)) return renamed(old_, target_);
+    if (fresh_.empty() || is_there(fresh_)) return 0;  // nothing was done
+    if (existed_) return ENOTSUP;
+    return ::unlink(target_.c_str()) == 0 ? 0 : errno;
+  }
+
+  [[nodiscard]] const fs::path& target() const noexcept { return target_; }
 
  private:
-  void prepare(std::size_t k) {
-    JournalEntry& entry = entries_[k];
-    Scratch& scratch = *scratches_[k];
-    const fs::path folder = folder_of(entry.target);
-    // without hard links, `apply` renames the old file
-    if (entry.step != Step::create)
-      std::ignore = ::link(entry.target.c_str(), scratch.file(kOldFile).c_str());
-    write_small(scratch.file(kSetFile), stored_path(scratch_in_set(entries_.front().target), folder),
-                entry.target);
-    require(sync_folder(scratch.path()), entry.target);
-    const fs::path name = scratch_in_set(entry.target);
-    int error = scratch.rename(name);
-    if (error == EEXIST || error == ENOTEMPTY) {
-      finish_interrupted(entry.target);
-      error = scratch.rename(name);
-    }
-    require(error, entry.target);
-    entry.scratch = name;
-  }
-
-  void write_journal() {
-    const JournalEntry& first = entries_.front();
-    const fs::path part = first.scratch / "journal.part";
-    try {
-      write_small(part, journal_text(entries_, folder_of(first.target)), first.target);
-      require(rename_path(part, first.scratch / kJournal), first.target);
-      require(sync_folder(first.scratch), first.target);
-    } catch (...) {
-      finish(kJournal);
-      throw;
-    }
-  }
-
-  [[noreturn]] void roll_back(const fs::path& target, int error) {
-    const fs::path& first = entries_.front().scratch;
-    int failed = rename_path(first / kJournal, first / kUndo);
-    if (failed == 0) failed = sync_folder(first);
-    for (const JournalEntry& entry : entries_) {
-      if (failed == 0) failed = take_back(entry);
-    }
-    if (failed == 0) failed = sync_targets(entries_);
-    if (failed != 0) {
-      throw InputError(target.string(),
-                       fmt::format("{}: {}; nor could the other files be put back: {}", kCannotReplace,
-                                   system_fault(error).reason, system_fault(failed).reason),
-                       "mend that, then run meshorder on it, which goes on");
-    }
-    finish(kUndo);
-    throw_system_fault(target.string(), kCannotReplace, error);
-  }
-
-  /// Removes what says that there is something left to do, then all else.
-  void finish(const char* journal) {
-    ::unlink((entries_.front().scratch / journal).c_str());
-    for (Scratch* const scratch : scratches_) scratch->remove();
-  }
-
-  std::vector<JournalEntry> entries_;
-  std::vector<Scratch*> scratches_;
+  fs::path fresh_;
+  fs::path target_;
+  fs::path old_;
+  bool existed_ = false;
 };
 
-// ---- what another process left
-
-[[noreturn]] void throw_unfinished(const fs::path& path, const std::string& remedy) {
-  throw InputError(
-      path.string(),
-      "was being replaced together with other files when meshorder was stopped, and may not fit them",
-      remedy);
+/// Gives a file the attributes of the one that it replaces and syncs it.
+void complete(const FinishedFile& file, const OutputPlace& place) {
+  if (place.is_through || folder_of(place.path) != file.scratch.parent_path())
+    throw InputError(file.target.string(), "was replaced by something else meanwhile",
+                     "run the command again");
+  Descriptor opened(file.scratch / Scratch::kNew, O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
+  int error = opened.is_open() ? 0 : errno;
+  if (error == 0 && place.exists) error = copy_attributes(place.path, opened);
+  if (error == 0) error = opened.sync();
+  if (const int closing = opened.close(); error == 0) error = closing;
+  if (error != 0) throw_system_fault(file.target.string(), "cannot be written to the end", error);
 }
 
-/// Does all that the journal of a set in its first scratch folder says, and removes the folders.
-void finish_set(const fs::path& first, const DeadScratch& dead) {
-  const fs::path folder = folder_of(first);
-  std::vector<JournalEntry> entries;
-  for (const char* const journal : {kJournal, kUndo}) {
-    const std::optional<std::string> text = content_of(first / journal);
-    if (!text) continue;
-    entries = journal_from(*text, folder);
-    for (const JournalEntry& entry : entries) {
-      if (const int error = journal == kJournal ? apply(entry) : take_back(entry); error != 0) {
-        const SystemFault fault = system_fault(error);
-        throw_unfinished(entry.target, fault.remedy + ": the rest cannot be done, as " + fault.reason);
-      }
-    }
-    if (const int error = sync_targets(entries); error != 0) require(error, entries.front().target);
-    ::unlink((first / journal).c_str());
-    break;
+/// Applies all moves. Throws InputError, with the old files put back, if one cannot be applied.
+void apply_all(std::vector<Move>& moves) {
+  std::set<fs::path> folders;
+  for (const Move& move : moves) folders.insert(folder_of(move.target()));
+  const FolderLocks locked(folders);
+  int error = 0;
+  std::size_t begun = 0;
+  while (error == 0 && begun < moves.size()) error = moves[begun++].apply();
+  const fs::path failed = moves[begun - 1].target();
+  for (const fs::path& folder : folders) {
+    if (error == 0) error = sync_folder(folder);
   }
-  for (const JournalEntry& entry : entries) {
-    const DeadScratch other(entry.scratch);
-    if (other.state() == DeadScratch::State::dead) other.remove();
+  if (error == 0) return;
+  std::string fresh;
+  while (begun > 0) {
+    const Move& move = moves[--begun];
+    if (move.take_back() != 0) fresh += (fresh.empty() ? "" : ", ") + move.target().string();
   }
-  dead.remove();
-}
-
-/// Finishes the set that a scratch folder belongs to. Returns false while another process does so.
-bool finish_set_of(const fs::path& scratch, const DeadScratch& dead) {
-  const std::string first_name = content_of(scratch / kSetFile).value_or("");
-  const fs::path first = path_from(first_name, folder_of(scratch));
-  if (first == scratch) {
-    finish_set(scratch, dead);
-    return true;
-  }
-  if (!first_name.empty()) {
-    const DeadScratch of_first(first);
-    if (of_first.state() == DeadScratch::State::alive || of_first.state() == DeadScratch::State::foreign)
-      return false;
-    if (of_first.state() == DeadScratch::State::dead) finish_set(first, of_first);
-  }
-  dead.remove();  // the set is in place, or was given up
-  return true;
-}
-
-/// Returns whether a scratch folder was made by the owner of the file that it is for, rather than by somebody
-/// who wants others to trip over it.
-bool is_of_owner(const fs::path& scratch, const fs::path& target) {
-  struct stat folder {};
-  struct stat file {};
-  if (::lstat(scratch.c_str(), &folder) != 0) return false;
-  return folder.st_uid == ::geteuid() || ::stat(target.c_str(), &file) != 0 || file.st_uid == folder.st_uid;
+  const SystemFault fault = system_fault(error);
+  const std::string rest = fresh.empty() ? "" : "; the old file could not be put back of " + fresh;
+  throw InputError(failed.string(), fmt::format("{}: {}{}", kCannotReplace, fault.reason, rest),
+                   fault.remedy);
 }
 
 }  // namespace
 
 void OutputSet::add(OutputFile&& file) {
-  file.complete();
-  if (file.other_names() > 0) {
-    notes_.push_back(fmt::format("{} has {} further name{} (hard links), which keep{} the old content",
-                                 file.target().string(), file.other_names(),
-                                 file.other_names() == 1 ? "" : "s", file.other_names() == 1 ? "s" : ""));
-  }
+  file.close();
   files_.push_back(std::move(file));
 }
 
 void OutputSet::commit() {
   std::vector<OutputFile> files = std::exchange(files_, {});
-  std::vector<JournalEntry> entries;
-  std::vector<Scratch*> scratches;
-  std::set<fs::path> targets;
+  std::vector<FinishedFile> finished;
   for (OutputFile& file : files) {
-    Scratch* const scratch = file.scratch();
-    if (scratch == nullptr) continue;
-    const OutputPlace& place = file.place();
-    if (!targets.insert(place.path).second)
-      throw InputError(file.target().string(), "is the name of two outputs", "give each its own name");
-    entries.push_back({place.exists ? Step::replace : Step::create, scratch->path(), place.path});
-    scratches.push_back(scratch);
-  }
-  std::vector<Scratch> of_removed;
-  of_removed.reserve(removals_.size());
-  for (const fs::path& removed : std::exchange(removals_, {})) {
-    std::error_code ignored;
-    if (!fs::is_symlink(removed, ignored) && !fs::is_regular_file(removed, ignored)) continue;
-    if (!targets.insert(removed).second) continue;
-    scratches.push_back(&of_removed.emplace_back(removed));
-    entries.push_back({Step::remove, scratches.back()->path(), removed});
+    if (file.scratch() != nullptr) finished.push_back({file.scratch()->path(), file.target_});
   }
   for (OutputFile& file : files) file.write_directly();
-  if (entries.size() == 1 && entries.front().step != Step::remove) {
-    move_into_place(scratches.front()->file(), entries.front().target);
-  } else if (!entries.empty()) {
-    Commit(std::move(entries), std::move(scratches)).run();
-  }
+  std::vector<std::string> notes =
+      put_in_place(finished, std::exchange(removals_first_, {}), std::exchange(removals_, {}));
+  notes_.insert(notes_.end(), std::make_move_iterator(notes.begin()), std::make_move_iterator(notes.end()));
 }
 
-void move_into_place(const fs::path& from, const fs::path& to) {
-  require(rename_path(from, to), to);
-  if (const int error = sync_folder(folder_of(to)); error != 0)
-    throw_system_fault(to.string(), "is written, but its folder cannot be synced", error);
-}
-
-void clean_up_outputs(const fs::path& folder) {
-  for (const fs::path& scratch : scratches_not_seen(folder)) {
-    const DeadScratch found(scratch);
-    if (found.state() != DeadScratch::State::dead) continue;
-    try {
-      if (scratch.extension() == Scratch::kSuffix) {
-        found.remove();
-      } else {
-        (void)finish_set_of(scratch, found);
-      }
-    } catch (const InputError&) {  // who reads or writes these files learns of it
-      continue;
+std::vector<std::string> put_in_place(std::span<const FinishedFile> files,
+                                      std::span<const FilePath> removed_first,
+                                      std::span<const FilePath> removed) {
+  std::vector<std::string> notes;
+  std::set<fs::path> targets;
+  std::vector<Move> fresh;
+  for (const FinishedFile& file : files) {
+    const OutputPlace place = output_place(file.target);
+    complete(file, place);
+    if (!targets.insert(place.path).second)
+      throw InputError(file.target.string(), "is the name of two outputs", "give each its own name");
+    if (place.other_names > 0) {
+      notes.push_back(fmt::format("{} has {} further name{} (hard links), which keep{} the old content",
+                                  file.target.string(), place.other_names, place.other_names == 1 ? "" : "s",
+                                  place.other_names == 1 ? "s" : ""));
     }
+    fresh.emplace_back(file.scratch / Scratch::kNew, place.path, file.scratch / Scratch::kOld);
   }
-}
-
-void finish_interrupted(const fs::path& path) {
-  const fs::path target = behind_links(path);
-  const fs::path scratch = scratch_in_set(target);
-  struct stat status {};
-  if (::lstat(scratch.c_str(), &status) != 0) return;
-  constexpr int kAttempts = 200;
-  constexpr std::chrono::milliseconds kPause{10};
-  for (int k = 0; k < kAttempts; ++k) {
-    const DeadScratch dead(scratch);
-    switch (dead.state()) {
-      case DeadScratch::State::none:
-        return;
-      case DeadScratch::State::foreign:
-        if (!is_of_owner(scratch, target)) return;
-        throw_unfinished(path, "let its owner run meshorder on it, or remove " + scratch.string());
-      case DeadScratch::State::dead:
-        if (finish_set_of(scratch, dead)) return;
-        break;
-      case DeadScratch::State::alive:
-        break;
-    }
-    std::this_thread::sleep_for(kPause);
+  std::vector<Scratch> scratches;  // of what is taken away
+  std::vector<Move> moves;
+  const auto take_away = [&](const FilePath& file) {
+    if (!is_there(file.path())) return;
+    const OutputPlace place = output_place(file);
+    scratches.emplace_back(place.path);
+    moves.emplace_back(fs::path(), place.path, scratches.back().file(Scratch::kOld));
+  };
+  for (const FilePath& file : removed_first) take_away(file);
+  moves.insert(moves.end(), std::make_move_iterator(fresh.begin()), std::make_move_iterator(fresh.end()));
+  for (const FilePath& file : removed) {
+    if (!targets.contains(file.path())) take_away(file);
   }
-  throw InputError(path.string(), "is being replaced by another process", "try again when that has ended");
+  if (!moves.empty()) apply_all(moves);
+  return notes;
 }
 
 }  // namespace meshorder

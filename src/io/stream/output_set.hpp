@@ -4,26 +4,13 @@
 #include "io/stream/output_file.hpp"
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace meshorder {
 
-/// Output files that belong together: those written to a `FilePath` of this set. All take their places at
-/// `commit` or none does, whenever the process or the machine stops.
-///
-/// A file alone: written to a scratch folder beside its target, synced, renamed over the target; then the
-/// folder is synced. Several files:
-///
-/// 1. each is complete and synced in its scratch folder, with a hard link to the old file as `old`;
-/// 2. each scratch folder gets the name `.meshorder-HASH.set`, by which a reader of the target finds it, and
-///    the file `set` names that of the first target;
-/// 3. that one gets the file `journal`, which lists all targets: from here on the new files count;
-/// 4. each file is renamed over its target, the folders are synced, and the scratch folders removed.
-///
-/// What stops before 3 leaves the old files; `finish_interrupted`, which readers and writers call, removes
-/// the scratch folders or, after 3, does the rest of 4. An error in 4 makes `journal` into `undo`, and puts
-/// the old files back.
+/// Output files that belong together: those written to a `FilePath` of this set. `commit` puts all in place.
 class OutputSet {
  public:
   OutputSet() = default;
@@ -34,13 +21,18 @@ class OutputSet {
   OutputSet& operator=(OutputSet&&) = delete;
 
   /// Adds a file that is written to its end; `OutputFile::commit` calls this. Throws InputError if it cannot
-  /// be completed.
+  /// be closed.
   void add(OutputFile&& file);
 
   /// Has `commit` remove a file, if it exists, that an earlier run left and that is not part of these.
-  void remove(const std::filesystem::path& path) { removals_.push_back(path); }
+  void remove(FilePath path) { removals_.push_back(std::move(path)); }
 
-  /// Puts all files in place. Throws InputError, with the old files as they were, if one cannot be.
+  /// Has `commit` take away the old file that names the others, or one that no reader does without, before it
+  /// puts the others in place: a process that is killed in between leaves a set that cannot be read. For
+  /// outputs without a mark (see `put_in_place`). The new one is to be added last.
+  void remove_first(FilePath path) { removals_first_.push_back(std::move(path)); }
+
+  /// Puts all files in place. Throws InputError as `put_in_place`.
   void commit();
 
   /// Returns notes on files that were replaced: those with further hard links, which keep the old content.
@@ -48,20 +40,36 @@ class OutputSet {
 
  private:
   std::vector<OutputFile> files_;
-  std::vector<std::filesystem::path> removals_;
+  std::vector<FilePath> removals_first_;
+  std::vector<FilePath> removals_;
   std::vector<std::string> notes_;
 };
 
-/// Completes or undoes what a process that was stopped left of a set of files, if the file was one of them.
-/// Two system calls where there is nothing to do. Throws InputError while another process puts the files in
-/// place, and if the rest is another user's or cannot be done: the file may not fit the others.
-void finish_interrupted(const std::filesystem::path& path);
+/// An output that is written to its end.
+struct FinishedFile {
+  std::filesystem::path scratch;  ///< scratch folder beside the target, with the output as `new`
+  FilePath target;
+};
 
-/// Removes what stopped processes of this user left in a folder, and completes sets of files: at the first
-/// call for the folder in a process. What cannot be done stays.
-void clean_up_outputs(const std::filesystem::path& folder);
-
-/// Renames a complete file and syncs the folder. Throws InputError.
-void move_into_place(const std::filesystem::path& from, const std::filesystem::path& to);
+/// Puts files in place of their targets, and takes others away. Every output of the program goes through
+/// here:
+///
+/// 1. each file gets the attributes of the one that it replaces, and is synced;
+/// 2. the folders are locked (`flock`), so that sets of two processes do not mix;
+/// 3. `removed_first` are moved into scratch folders; each file is renamed over its target, in this order;
+///    `removed` are moved away;
+/// 4. the folders are synced and unlocked.
+///
+/// Until 3 the old files are there. An error in 3 or 4 puts them back. A process that is killed in 3 leaves
+/// some files new and others old, each whole. The readers of TetGen, XDMF and maps refuse such a mixture by a
+/// mark in each file; sets without marks name a file as `removed_first`. Nobody can hold up an output by
+/// holding the lock: after some seconds it is done without.
+///
+/// @return notes on files with further hard links, which keep the old content
+/// @throws InputError if a file cannot be completed or replaced, two have one target, or a target is no
+///         longer beside its scratch folder; names the files that could not be put back
+std::vector<std::string> put_in_place(std::span<const FinishedFile> files,
+                                      std::span<const FilePath> removed_first = {},
+                                      std::span<const FilePath> removed = {});
 
 }  // namespace meshorder

@@ -4,6 +4,7 @@
 #include "io/stream/output_place.hpp"
 #include "io/stream/system_fault.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
@@ -18,7 +19,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <mutex>
+#include <new>
 #include <random>
 #include <set>
 #include <system_error>
@@ -29,7 +32,7 @@ namespace meshorder {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view kLock = "lock";
+constexpr const char* kLock = "lock";
 constexpr std::size_t kDigits = 16;
 
 /// Returns how many folders are locked at a time, each of which takes a descriptor. Further ones are not
@@ -69,16 +72,19 @@ void forget(int slot) noexcept {
 
 // ---- folders
 
+constexpr std::string_view kPrefix = ".meshorder-";
+constexpr std::string_view kSuffix = ".new";
+
 std::string random_name() {
   std::random_device device;
   const std::uint64_t number = (std::uint64_t{device()} << 32U) | device();
-  return fmt::format("{}{:0{}x}{}", Scratch::kPrefix, number, kDigits, Scratch::kSuffix);
+  return fmt::format("{}{:0{}x}{}", kPrefix, number, kDigits, kSuffix);
 }
 
 bool is_scratch_name(std::string_view name) {
-  return name.size() == Scratch::kPrefix.size() + kDigits + Scratch::kSuffix.size() &&
-         name.starts_with(Scratch::kPrefix) &&
-         (name.ends_with(Scratch::kSuffix) || name.ends_with(Scratch::kSuffixInSet));
+  if (name.size() != kPrefix.size() + kDigits + kSuffix.size()) return false;
+  return name.starts_with(kPrefix) && name.ends_with(kSuffix) &&
+         name.substr(kPrefix.size(), kDigits).find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
 /// Makes `lock` in a folder and locks it. Returns false if a run that cleans up has taken the folder away.
@@ -88,32 +94,52 @@ bool lock_new(const fs::path& folder, Descriptor& lock) {
   return ::flock(lock.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
-/// Returns whether the folder is gone: without memory it may not be.
-bool remove_all_in(const fs::path& folder) {
-  std::error_code ignored;
-  std::vector<fs::path> files;
-  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end; entry.increment(ignored))
-    files.push_back(entry->path());
-  // the lock last: until then the folder is not taken for that of a process that has just begun
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return (a.filename() == kLock) < (b.filename() == kLock);
-  });
-  for (const fs::path& file : files) fs::remove(file, ignored);
-  return fs::remove(folder, ignored);
+/// Removes what this program puts into a scratch folder, by system functions alone, which a signal handler
+/// may call. The lock goes last: until then the folder is not taken for that of a process that has just
+/// begun.
+void remove_files_of(const Descriptor& folder) noexcept {
+  for (const char* const name : {"new", "old", "lock"}) ::unlinkat(folder.get(), name, 0);
 }
 
-/// Removes what this program puts into a scratch folder, and the folder, by system functions alone, which a
-/// signal handler may call.
-void remove_known_in(const char* folder) noexcept {
-  std::array<char, 4096 + 16> file{};
-  const std::size_t length = std::strlen(folder);
-  for (const char* const name : {"/new", "/old", "/set", "/journal.part", "/lock"}) {
-    if (length + std::strlen(name) >= file.size()) continue;
-    std::memcpy(file.data(), folder, length);
-    std::strcpy(file.data() + length, name);
-    ::unlink(file.data());
+Descriptor opened_folder(const Descriptor& parent, const char* name) noexcept {
+  return Descriptor(::openat(parent.get(), name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+}
+
+std::vector<std::string> scratches_in(const Descriptor& folder) {
+  std::vector<std::string> names;
+  // opened again: what was read of a folder is remembered with its descriptor
+  const int again = ::openat(folder.get(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const std::unique_ptr<DIR, int (*)(DIR*)> list(again < 0 ? nullptr : ::fdopendir(again), ::closedir);
+  if (!list) return names;
+  while (const dirent* const entry = ::readdir(list.get())) {
+    if (is_scratch_name(entry->d_name)) names.emplace_back(entry->d_name);
   }
-  ::rmdir(folder);
+  return names;
+}
+
+/// Removes a scratch folder if it is this user's and its owner is dead, and what another process that wrote
+/// into it left there.
+void remove_if_dead(const Descriptor& parent, const std::string& name, bool is_inner = false) {
+  const Descriptor folder = opened_folder(parent, name.c_str());
+  struct stat status {};
+  if (!folder.is_open() || ::fstat(folder.get(), &status) != 0 || status.st_uid != ::geteuid()) return;
+  const Descriptor lock(::openat(folder.get(), kLock, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  if (lock.is_open()) {
+    if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) return;
+    for (const std::string& inner : is_inner ? std::vector<std::string>() : scratches_in(folder))
+      remove_if_dead(folder, inner, true);
+    remove_files_of(folder);
+  } else if (errno != ENOENT) {
+    return;
+  }
+  // without a lock a process has just begun, or died then: only an empty folder can be removed
+  ::unlinkat(parent.get(), name.c_str(), AT_REMOVEDIR);
+}
+
+/// Removes a scratch folder of this process, as a signal handler may. Returns whether it is gone.
+bool remove_own(const char* path) noexcept {
+  remove_files_of(Descriptor(::open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)));
+  return ::rmdir(path) == 0;
 }
 
 }  // namespace
@@ -132,7 +158,7 @@ Scratch::Scratch(const fs::path& target) {
       return;
     }
     forget(std::exchange(slot_, -1));
-    remove_all_in(path_);
+    remove_own(path_.c_str());
   }
   throw_system_fault(target.string(), "cannot be written", EEXIST);
 }
@@ -140,77 +166,40 @@ Scratch::Scratch(const fs::path& target) {
 Scratch::Scratch(Scratch&& other) noexcept
     : path_(std::exchange(other.path_, {})),
       lock_(std::move(other.lock_)),
-      slot_(std::exchange(other.slot_, -1)),
-      is_kept_(other.is_kept_) {}
+      slot_(std::exchange(other.slot_, -1)) {}
 
 Scratch::~Scratch() {
   if (lock_.is_open()) --locks_held;
   if (path_.empty()) return;
-  if (!is_kept_ && !remove_all_in(path_)) remove_known_in(path_.c_str());
+  if (!remove_own(path_.c_str())) {
+    try {
+      const Descriptor folder(path_, O_RDONLY | O_DIRECTORY | O_NOFOLLOW);
+      for (const std::string& inner : scratches_in(folder)) remove_if_dead(folder, inner, true);
+      ::rmdir(path_.c_str());
+    } catch (const std::bad_alloc&) {
+      return forget(slot_);  // it stays
+    }
+  }
   forget(slot_);
 }
 
-void Scratch::keep() noexcept {
-  is_kept_ = true;
-  forget(std::exchange(slot_, -1));
-}
-
-void Scratch::remove() {
-  remove_all_in(path_);
-  path_.clear();
-}
-
-int Scratch::rename(const fs::path& path) {
-  fs::path renamed = path;
-  const int slot = remember(path.string());
-  if (::rename(path_.c_str(), path.c_str()) != 0) {
-    const int error = errno;
-    forget(slot);
-    return error;
-  }
-  forget(std::exchange(slot_, slot));
-  path_.swap(renamed);
-  return 0;
-}
-
-DeadScratch::DeadScratch(fs::path path) : path_(std::move(path)) {
-  struct stat status {};
-  if (::lstat(path_.c_str(), &status) != 0 || !S_ISDIR(status.st_mode)) return;
-  state_ = State::foreign;
-  if (status.st_uid != ::geteuid()) return;
-  lock_ = Descriptor(path_ / kLock, O_RDWR | O_NOFOLLOW);
-  if (!lock_.is_open()) {
-    // a process has just begun, or died then; only an empty folder can be removed
-    state_ = errno == ENOENT ? State::alive : State::foreign;
-    (void)::rmdir(path_.c_str());
-  } else if (::flock(lock_.get(), LOCK_EX | LOCK_NB) == 0) {
-    state_ = State::dead;
-  } else if (errno == EWOULDBLOCK) {
-    state_ = State::alive;
-  }
-}
-
-void DeadScratch::remove() const { remove_all_in(path_); }
-
-std::vector<fs::path> scratches_not_seen(const fs::path& folder) {
+void remove_dead_scratches(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> seen;
-  std::vector<fs::path> found;
   std::error_code code;
   {
     const std::lock_guard lock(mutex);
     const fs::path full = fs::absolute(folder, code);
-    if (code || !seen.insert(full).second) return found;
+    if (code || !seen.insert(full).second) return;
   }
-  for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
-    if (is_scratch_name(entry->path().filename().string())) found.push_back(entry->path());
-  }
-  return found;
+  const Descriptor opened(folder, O_RDONLY | O_DIRECTORY);
+  if (!opened.is_open()) return;
+  for (const std::string& name : scratches_in(opened)) remove_if_dead(opened, name);
 }
 
 void remove_unfinished_outputs() noexcept {
   for (std::atomic<char*>& slot : unfinished) {
-    if (const char* const folder = slot.exchange(nullptr); folder != nullptr) remove_known_in(folder);
+    if (const char* const folder = slot.exchange(nullptr); folder != nullptr) remove_own(folder);
   }
 }
 

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "io/labels.hpp"
+#include "io/not_together.hpp"
 #include "io/stream/id_map.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
@@ -408,7 +409,7 @@ void read_cell_file(const FilePath& path, File file, ReadContext& to, Notes& not
     read_boundary(in, file, to);
   }
   if (end_file(in, to.metadata->parts[file], notes) != to.mark) {
-    throw InputError(
+    throw NotTogether(
         path.string(),
         fmt::format("was not written together with its .node file: the last lines, which begin with "
                     "'{}', differ",

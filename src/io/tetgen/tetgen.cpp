@@ -291,7 +291,7 @@ void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes&
   write_cells(out, file, from, {}, marked);
 }
 
-/// Returns a line that two meshes, or one in two orders, hardly share.
+/// Returns a line that two meshes, or one in two orders or with other data, hardly share.
 std::string mark_of(const WriteContext& from) {
   Checksum sum;
   sum.add_all(from.mesh.points);
@@ -301,6 +301,14 @@ std::string mark_of(const WriteContext& from) {
       sum.add(from.cell_number(cells[k], static_cast<Index>(k)));
       for (const Index v : from.mesh.cells[cells[k]]) sum.add(v);
     }
+  }
+  for (const DataArray& array : from.mesh.data) {
+    std::visit(
+        [&](const auto& numbers) {
+          using Number = typename std::decay_t<decltype(numbers)>::value_type;
+          if constexpr (std::is_arithmetic_v<Number>) sum.add_all(numbers);
+        },
+        array.values);
   }
   return fmt::format("{}{:0{}x}\n", kMarkBefore, sum.value(), kMarkDigits);
 }

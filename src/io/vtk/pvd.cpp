@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-void write_pvd(std::span<const PvdEntry> entries, const std::filesystem::path& path) {
+void write_pvd(std::span<const PvdEntry> entries, const FilePath& path) {
   OutputFile out(path);
   out.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n");
   for (const PvdEntry& entry : entries) {

@@ -1,12 +1,15 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/xdmf/data_item.hpp"
 
+#include "base/checksum.hpp"
 #include "base/index.hpp"
 #include "base/large_pages.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
+#include "io/not_together.hpp"
 #include "io/stream/digits.hpp"
 #include "io/stream/read_limits.hpp"
+#include "io/xdmf/raw.hpp"
 
 #include <fmt/format.h>
 
@@ -225,10 +228,12 @@ const hdf5::File& DataReader::file(pugi::xml_node item, const std::string& name)
   if (known != files_.end()) return known->second;
   hdf5::File opened = hdf5::File::open(path_of(item, name));
   const std::string mark = opened.text_attribute("/", kMark).value_or("");
-  if (!mark.empty() && !document_.mark().empty() && mark != document_.mark()) {
-    throw document_.error(
+  // the .xdmf file is put in place first: of files of two runs it is the new one, which has a mark
+  if (!document_.mark().empty() && mark != document_.mark()) {
+    throw NotTogether(document_.error(
         item, fmt::format("'{}' was not written together with this file: their marks differ", name),
-        fmt::format("give the files of one mesh, or remove the line <?{}…?> if they belong together", kMark));
+        fmt::format("give the files of one mesh, or remove the line <?{}…?> if they belong together",
+                    kMark)));
   }
   return files_.emplace(name, std::move(opened)).first->second;
 }
@@ -304,6 +309,21 @@ Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const 
   });
 }
 
+/// Throws InputError unless the values of a plain binary file are those that the file was written with.
+template <class Number>
+void DataReader::check_sum(const DataPlace& place, pugi::xml_node item,
+                           const std::vector<Number>& numbers) const {
+  const std::string_view expected = item.attribute(kValueMark).value();
+  if (expected.empty()) return;
+  Checksum sum;
+  sum.add_all(numbers);
+  if (expected == mark_of(sum.value())) return;
+  throw NotTogether(document_.error(
+      item, fmt::format("'{}' was not written together with this file: its checksum differs", place.file),
+      fmt::format("give the files of one mesh, or remove the attribute {} if they belong together",
+                  kValueMark)));
+}
+
 Values DataReader::read_binary(const DataPlace& place, pugi::xml_node item) {
   auto known = binaries_.find(place.file);
   if (known == binaries_.end()) {
@@ -328,6 +348,7 @@ Values DataReader::read_binary(const DataPlace& place, pugi::xml_node item) {
         for (std::size_t i = 0; i < count; ++i)
           std::reverse(raw + i * sizeof(Number), raw + (i + 1) * sizeof(Number));
       }
+      check_sum(place, item, numbers);
     }
   });
 }

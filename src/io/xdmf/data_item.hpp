@@ -87,6 +87,8 @@ class DataReader {
   const hdf5::File& file(pugi::xml_node item, const std::string& name);
   [[nodiscard]] Values read_text(const DataPlace& place, pugi::xml_node item) const;
   [[nodiscard]] Values read_binary(const DataPlace& place, pugi::xml_node item);
+  template <class Number>
+  void check_sum(const DataPlace& place, pugi::xml_node item, const std::vector<Number>& numbers) const;
   /// Throws for values beyond the limit on what the file may claim.
   void claim(pugi::xml_node item, std::uint64_t bytes) const;
 

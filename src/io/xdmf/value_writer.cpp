@@ -1,5 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/checksum.hpp"
 #include "base/large_pages.hpp"
+#include "io/xdmf/raw.hpp"
 #include "io/xdmf/writer.hpp"
 #include "mesh/values.hpp"
 
@@ -8,6 +10,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <new>
 #include <type_traits>
 
 namespace meshorder::xdmf {
@@ -132,15 +135,19 @@ void Writer::name_dataset(const DataPlace& place) {
 void Writer::put_binary(pugi::xml_node item, const DataPlace& place, const Values& values) {
   const std::string name = fmt::format("{}{}.bin", stem_, binaries_.size());
   OutputFile& out = binaries_.emplace_back(path_.beside(name));
+  Checksum sum;
   std::visit(
       [&](const auto& numbers) {
         using Number = typename std::decay_t<decltype(numbers)>::value_type;
         if constexpr (std::is_arithmetic_v<Number>) {
           for (const Number number : numbers) out.binary(number, place.order);
+          sum.add_all(numbers);
         }
       },
       values);
   item.remove_attribute("Seek");
+  item.remove_attribute(kValueMark);
+  if (!item.append_attribute(kValueMark).set_value(mark_of(sum.value()).c_str())) throw std::bad_alloc();
   set_text(item, name);
 }
 

@@ -1,0 +1,49 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/stream/folder_locks.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <thread>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::seconds kLongestWait{10};
+constexpr std::chrono::milliseconds kPause{2};
+constexpr std::size_t kMost = 64;  // each takes a descriptor
+
+void lock(const Descriptor& folder, Clock::time_point last) {
+  while (::flock(folder.get(), LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EINTR) continue;
+    if (errno != EWOULDBLOCK || Clock::now() > last) return;
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
+}  // namespace
+
+FolderLocks::FolderLocks(const std::set<std::filesystem::path>& folders) {
+  std::map<std::pair<dev_t, ino_t>, std::filesystem::path> by_identity;
+  for (const std::filesystem::path& folder : folders) {
+    struct stat status {};
+    if (::stat(folder.c_str(), &status) == 0) by_identity.try_emplace({status.st_dev, status.st_ino}, folder);
+  }
+  const Clock::time_point last = Clock::now() + kLongestWait;
+  for (const auto& [identity, folder] : by_identity) {
+    if (locked_.size() == kMost) return;
+    Descriptor opened(folder, O_RDONLY | O_DIRECTORY);
+    if (!opened.is_open()) continue;
+    lock(opened, last);
+    locked_.push_back(std::move(opened));
+  }
+}
+
+}  // namespace meshorder
