@@ -145,10 +145,15 @@ void check_name_of_page(const std::string& output) {
   throw InvalidArgument("-o " + output + " names the page on meshes: give a name that ends in .html");
 }
 
+FilePath output_or(const ReportArguments& arguments, const char* usual) {
+  return arguments.output.empty() ? FilePath::derived(usual) : FilePath(arguments.output);
+}
+
 void report_on_meshes(Console& console, const ReportArguments& arguments) {
-  const std::string output = arguments.output.empty() ? "report.html" : arguments.output;
+  const FilePath file = output_or(arguments, "report.html");
+  const std::string output = file.string();
   check_name_of_page(output);
-  (void)OutputFile(output);  // fail before the work if it cannot be written
+  (void)OutputFile(file);  // fail before the work if it cannot be written
   Progress progress(!console.quiet());
   Page page;
   page.results.began = timestamp_now();
@@ -166,7 +171,7 @@ void report_on_meshes(Console& console, const ReportArguments& arguments) {
   progress.stage("writing " + output, 0.98, 1);
   page.title = title_of(page);
   fill_from_results(page, notes);
-  write_page(page, output);
+  write_page(page, file);
 
   progress.finish();
   console.warn_of(notes);
@@ -244,7 +249,8 @@ nlohmann::ordered_json savings_json(const ComparedStudy& a, const ComparedStudy&
 }
 
 void compare_studies(Console& console, const ReportArguments& arguments) {
-  const fs::path page = arguments.output.empty() ? "comparison.html" : arguments.output;
+  const FilePath file = output_or(arguments, "comparison.html");
+  const fs::path& page = file.path();
   if (page.extension() != ".html" && page.extension() != ".htm")
     throw InvalidArgument("-o " + page.string() +
                           " names the page on two studies: give a name that ends in .html");
@@ -254,7 +260,7 @@ void compare_studies(Console& console, const ReportArguments& arguments) {
   };
   const ComparedStudy a = read(arguments.inputs.front());
   const ComparedStudy b = read(arguments.inputs.back());
-  const WrittenComparison written = write_comparison(a, b, page);
+  const WrittenComparison written = write_comparison(a, b, file);
   console.print("{}", to_text(written.tables.front()));
   for (const std::string& finding : written.findings) console.print("{}\n", finding);
   auto files = nlohmann::ordered_json::array();

@@ -29,6 +29,7 @@ constexpr double kQuickSeconds = 20;
 
 struct ReproduceArguments : Common {
   std::string folder = "results";
+  bool is_folder_named = false;  ///< by the user
   bool quick = false;
   bool full = false;
   StudyPlan plan;
@@ -78,7 +79,7 @@ void report(Console& console, const StudyFolder& folder, Progress& progress) {
 void run(const ReproduceArguments& arguments) {
   Console console(arguments);
   const StudyPlan plan = plan_of(arguments);
-  const StudyFolder folder(arguments.folder);
+  const StudyFolder folder(arguments.folder, arguments.is_folder_named);
   Progress progress(!console.quiet());
   const Interruption interruption;
   StudyObserver observer;
@@ -110,6 +111,7 @@ void add_reproduce(CLI::App& subcommand) {
   subcommand
       .add_option("-o,--output", arguments->folder,
                   "Folder for the results; an unfinished study in it is resumed")
+      ->each([named = &arguments->is_folder_named](const std::string& /*folder*/) { *named = true; })
       ->capture_default_str();
   CLI::Option* const quick = subcommand.add_flag("--quick", arguments->quick, "One run of a few steps");
   subcommand.add_flag("--full", arguments->full, "All steps, three runs (default)")->excludes(quick);

@@ -16,11 +16,15 @@ namespace meshorder {
 /// and the files in `data`; all other files are made from these.
 class StudyFolder {
  public:
-  explicit StudyFolder(std::filesystem::path root) : root_(std::move(root)) {}
+  /// @param is_named  whether the user gave the folder, so that it may be a symbolic link
+  explicit StudyFolder(std::filesystem::path root, bool is_named = true)
+      : root_(std::move(root)), named_(is_named ? root_ : root_.parent_path()) {}
 
   [[nodiscard]] const std::filesystem::path& root() const noexcept { return root_; }
   /// Returns one of the paths below as that of an output, whose name is not the user's.
-  [[nodiscard]] FilePath output(const std::filesystem::path& path) const { return FilePath::in(root_, path); }
+  [[nodiscard]] FilePath output(const std::filesystem::path& path) const {
+    return FilePath::in(named_, path);
+  }
   [[nodiscard]] std::filesystem::path results() const { return root_ / "results.json"; }
   [[nodiscard]] std::filesystem::path data() const { return root_ / "data"; }
   [[nodiscard]] std::filesystem::path page() const { return root_ / "report.html"; }
@@ -53,6 +57,7 @@ class StudyFolder {
 
  private:
   std::filesystem::path root_;
+  std::filesystem::path named_;
 };
 
 /// Returns the time now, "2026-11-20T17:30:00Z".

@@ -3,6 +3,7 @@
 
 #include "io/format.hpp"
 #include "io/npy.hpp"
+#include "io/stream/output_place.hpp"
 #include "io/stream/output_set.hpp"
 #include "lab/study/folder.hpp"
 #include "lab/study/results_json.hpp"
@@ -39,6 +40,7 @@ std::ptrdiff_t place_of(const ScenarioRecord& record) {
 }  // namespace
 
 StudyStore::StudyStore(const StudyPlan& plan, const StudyFolder& folder) : folder_(folder) {
+  (void)output_place(folder.output(folder.mesh("any")));  // makes no folder behind a link
   make_folders(folder);
   lock_.emplace(folder.root());
   (void)OutputFile(folder.output(folder.mesh("any")));  // fail before the work if it cannot be written

@@ -117,6 +117,8 @@ DERIVED = {
     "a frame": ("frames/fall-000000.vtu", ("simulate", "fall.json", "--vtk", "frames")),
     "report": ("study/report.html", ("report", "study")),
     "tables": ("study/tables.md", ("report", "study")),
+    "report of a mesh": ("report.html", ("report", "mesh.node", "--budget", "0.01")),
+    "comparison of that name": ("comparison.html", ("report", "study", "study")),
     "comparison": ("two.csv", ("report", "study", "study", "-o", "two.html")),
 }
 
@@ -184,6 +186,17 @@ def test_a_study_removes_what_it_made_alone(command, tmp_path, mesh):
         assert (data / name).read_text() == "mine"
     assert not left.exists() and (data / "fall-motion.npy").is_file()
     assert not [path for path in data.iterdir() if path.name.startswith(".meshorder")]
+
+
+def test_a_study_goes_through_a_link_that_the_user_names(command, tmp_path, mesh):
+    (tmp_path / "fall.json").write_text(json.dumps(SCENARIO))
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "results").symlink_to("elsewhere")
+    arguments = ("reproduce", "--scenario", "fall.json", "--runs", "1", "--budget", "0.05", "--no-pin", "-q")
+    assert f"results: {LINK}" in command.fails(*arguments)
+    assert not list((tmp_path / "elsewhere").iterdir())
+    command.ok(*arguments, "-o", "results")
+    assert (tmp_path / "elsewhere/report.html").is_file()
 
 
 def test_a_study_goes_through_no_link(command, tmp_path, mesh, precious):

@@ -19,8 +19,7 @@ std::string machine_of(const StudyResults& results) {
 
 }  // namespace
 
-WrittenComparison write_comparison(const ComparedStudy& a, const ComparedStudy& b,
-                                   const std::filesystem::path& page) {
+WrittenComparison write_comparison(const ComparedStudy& a, const ComparedStudy& b, const FilePath& page) {
   check_comparable(a, b);
   Page content;
   content.title =
@@ -38,8 +37,8 @@ WrittenComparison write_comparison(const ComparedStudy& a, const ComparedStudy& 
     files.emplace_back(path).write(text);
     written.files.push_back(path.path());
   };
-  add(FilePath(page).companion(".md"), markdown);
-  add(FilePath(page).companion(".csv"), to_csv(content.tables));
+  add(page.companion(".md"), markdown);
+  add(page.companion(".csv"), to_csv(content.tables));
   add(page, fill_page(viewer_sources().comparison, content));
   OutputFile::commit_all(files);
   written.tables = std::move(content.tables);

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/file_path.hpp"
 #include "lab/report/comparison/comparison.hpp"
 
 #include <filesystem>
@@ -17,9 +18,8 @@ struct WrittenComparison {
 };
 
 /// Writes a page for the browser, and beside it the tables as Markdown and as CSV, with the page's name and
-/// .md and .csv: all of them or none. Throws Error if the studies cannot be compared or a file cannot be
+/// .md and .csv. Throws Error if the studies cannot be compared or a file cannot be
 /// written.
-WrittenComparison write_comparison(const ComparedStudy& a, const ComparedStudy& b,
-                                   const std::filesystem::path& page);
+WrittenComparison write_comparison(const ComparedStudy& a, const ComparedStudy& b, const FilePath& page);
 
 }  // namespace meshorder

@@ -149,7 +149,7 @@ std::string fill_page(std::string_view frame, const Page& page) {
 
 std::string to_html(const Page& page) { return fill_page(viewer_sources().page, page); }
 
-void write_page(const Page& page, const std::filesystem::path& path) {
+void write_page(const Page& page, const FilePath& path) {
   OutputFile file(path);
   file.write(to_html(page));
   file.commit();

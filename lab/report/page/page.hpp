@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/file_path.hpp"
 #include "lab/report/figures/figures.hpp"
 #include "lab/report/page/view.hpp"
 #include "lab/report/tables/tables.hpp"
 #include <meshorder/quality.hpp>
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +55,6 @@ std::string to_html(const Page& page);
 std::string fill_page(std::string_view frame, const Page& page);
 
 /// Writes the page, completely or not at all. Throws Error if the file cannot be written.
-void write_page(const Page& page, const std::filesystem::path& path);
+void write_page(const Page& page, const FilePath& path);
 
 }  // namespace meshorder

@@ -91,7 +91,9 @@ bool is_scratch_name(std::string_view name) {
 bool lock_new(const fs::path& folder, Descriptor& lock) {
   lock = Descriptor(folder / kLock, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW, 0600);
   if (!lock.is_open()) return errno != ENOENT;
-  return ::flock(lock.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+  if (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
+  struct stat status {};
+  return ::fstat(lock.get(), &status) != 0 || status.st_nlink > 0;
 }
 
 /// Removes what this program puts into a scratch folder, by system functions alone, which a signal handler
