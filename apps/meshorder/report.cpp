@@ -249,18 +249,18 @@ nlohmann::ordered_json savings_json(const ComparedStudy& a, const ComparedStudy&
 }
 
 void compare_studies(Console& console, const ReportArguments& arguments) {
-  const FilePath file = output_or(arguments, "comparison.html");
-  const fs::path& page = file.path();
+  const FilePath output = output_or(arguments, "comparison.html");
+  const fs::path& page = output.path();
   if (page.extension() != ".html" && page.extension() != ".htm")
     throw InvalidArgument("-o " + page.string() +
                           " names the page on two studies: give a name that ends in .html");
   const auto read = [](const std::string& input) {
-    const fs::path file = results_of(input);
-    return ComparedStudy{file.string(), read_results(file)};
+    const fs::path results = results_of(input);
+    return ComparedStudy{results.string(), read_results(results)};
   };
   const ComparedStudy a = read(arguments.inputs.front());
   const ComparedStudy b = read(arguments.inputs.back());
-  const WrittenComparison written = write_comparison(a, b, file);
+  const WrittenComparison written = write_comparison(a, b, output);
   console.print("{}", to_text(written.tables.front()));
   for (const std::string& finding : written.findings) console.print("{}\n", finding);
   auto files = nlohmann::ordered_json::array();

@@ -144,6 +144,18 @@ bool remove_own(const char* path) noexcept {
   return ::rmdir(path) == 0;
 }
 
+/// Removes what dead processes left in a scratch folder of this one, and then the folder; without memory it
+/// stays.
+void remove_inner(const fs::path& path) noexcept {
+  try {
+    const Descriptor folder(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW);
+    for (const std::string& inner : scratches_in(folder)) remove_if_dead(folder, inner, true);
+    ::rmdir(path.c_str());
+  } catch (const std::bad_alloc&) {
+    return;
+  }
+}
+
 }  // namespace
 
 Scratch::Scratch(const fs::path& target) {
@@ -173,15 +185,7 @@ Scratch::Scratch(Scratch&& other) noexcept
 Scratch::~Scratch() {
   if (lock_.is_open()) --locks_held;
   if (path_.empty()) return;
-  if (!remove_own(path_.c_str())) {
-    try {
-      const Descriptor folder(path_, O_RDONLY | O_DIRECTORY | O_NOFOLLOW);
-      for (const std::string& inner : scratches_in(folder)) remove_if_dead(folder, inner, true);
-      ::rmdir(path_.c_str());
-    } catch (const std::bad_alloc&) {
-      return forget(slot_);  // it stays
-    }
-  }
+  if (!remove_own(path_.c_str())) remove_inner(path_);
   forget(slot_);
 }
 
