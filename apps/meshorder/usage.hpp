@@ -12,8 +12,8 @@ class ParseError;
 
 namespace meshorder::command {
 
-/// Returns what is wrong with an argument like `--maps=`, after which the parser would take the next one for the
-/// value; nothing if there is none.
+/// Returns what is wrong with an argument like `--maps=`, after which the parser would take the next one for
+/// the value; nothing if there is none.
 std::optional<std::string> option_without_value(const std::vector<std::string>& arguments);
 
 /// Returns the arguments with `help WORDS…` and `version` as the options that mean the same.

@@ -20,8 +20,8 @@ namespace meshorder::xdmf {
 /// root element, and an attribute of each HDF5 file's root. Both have the same 16 digits; the reader refuses
 /// files with different ones.
 inline constexpr const char* kMark = "meshorder";
-/// A plain binary file has no room for a mark. The DataItem that names it has a checksum of the values instead,
-/// as an attribute of this name.
+/// A plain binary file has no room for a mark. The DataItem that names it has a checksum of the values
+/// instead, as an attribute of this name.
 inline constexpr const char* kValueMark = "MeshorderChecksum";
 
 /// Returns whether a child of the root element is that instruction.
