@@ -183,9 +183,9 @@ void run(const InfoArguments& arguments) {
   const std::array<std::function<void()>, 4> looks{
       [&] { reuse = reuse_of(arguments, graph, simplices); },
       [&] {
-        const auto found = connected_components(graph);
-        components = std::ssize(found);
-        isolated = std::count_if(found.begin(), found.end(), [](const auto& c) { return c.size() == 1; });
+        const ComponentCounts counts = component_counts(graph);
+        components = counts.components;
+        isolated = counts.isolated;
       },
       [&] {
         span = edge_span(graph, order);

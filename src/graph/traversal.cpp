@@ -38,9 +38,8 @@ class Forest {
   std::vector<Index> parents_;
 };
 
-}  // namespace
-
-std::vector<std::vector<Index>> connected_components(GraphRef graph) {
+/// Returns a tree for each component.
+Forest forest_of(GraphRef graph) {
   Forest forest(graph.size());
   for (Index v = 0; v < graph.size(); ++v) {
     poll_in_loop(v);
@@ -48,6 +47,23 @@ std::vector<std::vector<Index>> connected_components(GraphRef graph) {
       if (u < v) forest.join(u, v);
     }
   }
+  return forest;
+}
+
+}  // namespace
+
+ComponentCounts component_counts(GraphRef graph) {
+  const Forest forest = forest_of(graph);
+  ComponentCounts counts;
+  for (Index v = 0; v < graph.size(); ++v) {
+    counts.components += forest.parent(v) == v ? 1 : 0;
+    counts.isolated += graph.degree(v) == 0 ? 1 : 0;
+  }
+  return counts;
+}
+
+std::vector<std::vector<Index>> connected_components(GraphRef graph) {
+  const Forest forest = forest_of(graph);
   std::vector<std::vector<Index>> components;
   std::vector<Index> component_of(static_cast<std::size_t>(graph.size()));
   for (Index v = 0; v < graph.size(); ++v) {

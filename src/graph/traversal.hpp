@@ -11,6 +11,15 @@ namespace meshorder {
 /// vertex, so that isolated vertices come last. O(edges · log n), nearly O(edges).
 std::vector<std::vector<Index>> connected_components(GraphRef graph);
 
+/// How many connected components a graph has.
+struct ComponentCounts {
+  Index components = 0;
+  Index isolated = 0;  ///< of them, those of one vertex
+};
+
+/// Counts as `connected_components` would find them, in four bytes for each vertex. As fast.
+ComponentCounts component_counts(GraphRef graph);
+
 /// The vertices reached from `start` in breadth-first order, neighbours as their rows list them;
 /// `level_start` marks where each level begins and ends with the number of vertices.
 struct BreadthFirst {

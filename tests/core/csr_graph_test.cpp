@@ -121,9 +121,12 @@ TEST(Renumbered, SortsRowsOfFewAndOfManyNeighbours) {
 
 TEST(Components, LargestFirstThenBySmallestVertex) {
   const std::vector<Edge> edges{{1, 2}, {5, 6}, {6, 7}, {3, 4}};
-  const auto components = connected_components(graph_from_edges(9, edges));
+  const CsrGraph graph = graph_from_edges(9, edges);
   const std::vector<std::vector<Index>> expected{{5, 6, 7}, {1, 2}, {3, 4}, {0}, {8}};
-  EXPECT_EQ(components, expected);
+  EXPECT_EQ(connected_components(graph), expected);
+  const ComponentCounts counts = component_counts(graph);
+  EXPECT_EQ(counts.components, 5);
+  EXPECT_EQ(counts.isolated, 2);
 }
 
 TEST(InducedSubgraph, DropsEdgesThatLeave) {
