@@ -326,7 +326,7 @@ bool add_view(Metadata& layout, const DataArray& array, Notes& notes) {
 
 void write_view(NumberWriter& sink, const WriteContext& output, const View& view) {
   const Mesh& mesh = output.mesh;
-  const DataArray* array = view.array ? find_array(mesh, *view.array, view.association) : nullptr;
+  const DataArray* array = view.array ? output.parts.array(*view.array, view.association) : nullptr;
   const Index rows = array ? row_count(*array) : 0;
   const Index components = view.integers[1];
 

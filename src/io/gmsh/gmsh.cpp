@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <map>
 #include <set>
 #include <span>
 
@@ -386,30 +387,31 @@ void take_layout(const Metadata& layout, WriteContext& output) {
 
 /// Notes the sets that differ from the physical groups and periodic nodes of the layout.
 void note_sets(const Mesh& mesh, const Metadata& layout, Notes& notes) {
-  const std::vector<EntitySet> physical = physical_sets(mesh, layout);
+  const std::vector<EntitySet> of_layout = physical_sets(mesh, layout);
+  std::multimap<std::pair<Association, std::string_view>, const EntitySet*> physical;
+  for (const EntitySet& set : of_layout) physical.emplace(std::pair{set.association, set.name}, &set);
   std::set<std::string> periodic;
   for (const PeriodicLink& link : layout.periodic) periodic.insert({link.nodes, link.master_nodes});
   for (const EntitySet& set : mesh.sets) {
     if (set.association == Association::vertices && periodic.contains(set.name)) continue;
     std::vector<Index> members = set.members;
     std::sort(members.begin(), members.end());
-    const bool held = std::any_of(physical.begin(), physical.end(), [&](const EntitySet& other) {
-      return set.association == other.association && set.name == other.name && members == other.members;
-    });
+    const auto [first, last] = physical.equal_range({set.association, set.name});
+    const bool held = std::any_of(first, last, [&](const auto& other) { return members == other.second->members; });
     if (!held) note_set_unsupported(set, "Gmsh", notes);
   }
 }
 
 /// Adds a data section for every array that has no place in the file yet.
 void add_views(Metadata& layout, const WriteContext& output, Notes& notes) {
-  const auto has_view = [&](const DataArray& array) {
-    return std::any_of(layout.views.begin(), layout.views.end(), [&](const View& view) {
-      return view.association == array.association && view.array == array.name;
-    });
-  };
+  std::set<std::pair<Association, std::string>> viewed;
+  for (const View& view : layout.views) {
+    if (view.array) viewed.emplace(view.association, *view.array);
+  }
   for (const DataArray& array : output.mesh.data) {
     const auto& placed = output.placed;
-    if (has_view(array) || std::find(placed.begin(), placed.end(), &array) != placed.end()) continue;
+    const bool has_view = viewed.contains({array.association, array.name});
+    if (has_view || std::find(placed.begin(), placed.end(), &array) != placed.end()) continue;
     add_view(layout, array, notes);
   }
 }
@@ -458,7 +460,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   const bool keeps_layout = own && still_fits(mesh, *own);
   Metadata layout = keeps_layout ? *own : Metadata{};
-  WriteContext output{mesh, layout, types_of_cells(mesh), {}, {}, {}, {}, {}, {}};
+  WriteContext output{mesh, layout, types_of_cells(mesh), {}, {}, {}, {}, {}, {}, NamedParts(mesh)};
   output.placed.push_back(find_array(mesh, kCellType, Association::cells));
   if (keeps_layout) {
     take_layout(layout, output);
@@ -481,8 +483,9 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
 
 std::vector<std::string> Metadata::contents() const {
   std::vector<std::string> result;
+  std::set<std::string> known;
   const auto add = [&](std::string what) {
-    if (std::find(result.begin(), result.end(), what) == result.end()) result.push_back(std::move(what));
+    if (known.insert(what).second) result.push_back(std::move(what));
   };
   for (const Section& section : sections) {
     if (section.kind != SectionKind::verbatim) continue;

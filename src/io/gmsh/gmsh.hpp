@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/format.hpp"
+#include "io/named_parts.hpp"
 #include "io/stream/id_map.hpp"
 #include "io/stream/number_reader.hpp"
 #include "io/stream/output_file.hpp"
@@ -235,6 +236,7 @@ struct WriteContext {
   std::vector<std::int32_t> cell_tags;        ///< 4.1: of each cell's entity
   std::vector<std::int32_t> node_entities;    ///< 4.1, $ParametricNodes: dimension and tag for each node
   std::vector<const DataArray*> placed;       ///< arrays that need no data section
+  NamedParts parts;                           ///< of the mesh
 
   [[nodiscard]] std::int64_t node_id(Index v) const { return node_ids.empty() ? v + 1 : node_ids[v]; }
   [[nodiscard]] std::int64_t cell_id(Index c) const { return cell_ids.empty() ? c + 1 : cell_ids[c]; }

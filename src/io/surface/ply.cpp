@@ -18,7 +18,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <set>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -173,7 +176,7 @@ std::vector<Table> usual_tables(const Mesh& mesh) {
 /// Collects the columns of one table and the arrays that they use.
 class Columns {
  public:
-  Columns(const Mesh& mesh, Table& table, std::vector<const DataArray*>& written, Notes& notes)
+  Columns(const Mesh& mesh, Table& table, std::set<const DataArray*>& written, Notes& notes)
       : mesh_(mesh),
         table_(table),
         written_(written),
@@ -184,6 +187,7 @@ class Columns {
   }
 
   void collect() {
+    for (const DataArray& array : mesh_.data) arrays_.emplace(array.name, &array);
     for (const Property& property : table_.element.properties) add_known(property);
     for (const SurfaceVector* vector : {&kNormal, &kColor, &kTexture}) add_vector(*vector);
     for (const DataArray& array : mesh_.data) {
@@ -200,17 +204,21 @@ class Columns {
   }
 
   [[nodiscard]] bool is_used(const DataArray& array) const {
-    return std::find(used_.begin(), used_.end(), &array) != used_.end();
+    return used_.contains(&array);
   }
 
   void use(const DataArray& array) {
-    used_.push_back(&array);
-    written_.push_back(&array);
+    used_.insert(&array);
+    written_.insert(&array);
   }
 
   [[nodiscard]] bool is_taken(const std::string& name) const {
-    return std::any_of(table_.columns.begin(), table_.columns.end(),
-                       [&](const Column& column) { return column.property.name == name; });
+    return names_.contains(name);
+  }
+
+  void add_column(Column column) {
+    names_.insert(column.property.name);
+    table_.columns.push_back(std::move(column));
   }
 
   [[nodiscard]] bool is_geometry(const Property& property) const {
@@ -227,9 +235,11 @@ class Columns {
   /// Adds a property that the file had, with the arrays of its name.
   void add_known(const Property& property) {
     Column column{property, {}};
-    if (is_geometry(property)) return table_.columns.push_back(widened(std::move(column)));
-    for (const DataArray& array : mesh_.data) {
-      const bool fits = array.association == on_ && array.name == property.name && rows_inside(array) > 0 &&
+    if (is_geometry(property)) return add_column(widened(std::move(column)));
+    const auto [first, last] = arrays_.equal_range(property.name);
+    for (auto found = first; found != last; ++found) {
+      const DataArray& array = *found->second;
+      const bool fits = array.association == on_ && rows_inside(array) > 0 &&
                         word_of(array.values).type == property.type.type && array.values.index() < 8 &&
                         (property.is_list || covers_table(array));
       if (!fits || (!property.is_list && !column.sources.empty())) continue;
@@ -238,7 +248,7 @@ class Columns {
     }
     // only a list can be empty everywhere; other properties without an array were removed
     if (property.is_list || !column.sources.empty() || table_.items.empty()) {
-      table_.columns.push_back(std::move(column));
+      add_column(std::move(column));
     }
   }
 
@@ -278,8 +288,7 @@ class Columns {
                                    [](double x) { return x >= 0 && x <= 255; });
     if (bytes) type = {"uchar", Type::uint8};
     for (Index k = 0; k < array.components; ++k) {
-      table_.columns.push_back(
-          {scalar(std::string(vector.components[k]), type), {source_of(mesh_, array, k)}});
+      add_column({scalar(std::string(vector.components[k]), type), {source_of(mesh_, array, k)}});
     }
     use(array);
   }
@@ -304,7 +313,7 @@ class Columns {
     }
     property.count_type =
         array.components <= 255 ? TypeWord{"uchar", Type::uint8} : TypeWord{"int", Type::int32};
-    table_.columns.push_back({property, {source_of(mesh_, array, 0)}});
+    add_column({property, {source_of(mesh_, array, 0)}});
     use(array);
   }
 
@@ -315,11 +324,13 @@ class Columns {
 
   const Mesh& mesh_;
   Table& table_;
-  std::vector<const DataArray*>& written_;
+  std::set<const DataArray*>& written_;
   Notes& notes_;
   Association on_;
   std::vector<bool> is_item_;
-  std::vector<const DataArray*> used_;
+  std::multimap<std::string_view, const DataArray*> arrays_;  // of the mesh, by name
+  std::set<const DataArray*> used_;
+  std::set<std::string> names_;  // of the columns
 };
 
 // ---- writing
@@ -466,10 +477,9 @@ bool ply_holds(const Mesh& mesh, Shape shape, int vertices) {
          (mesh.format == "ply" && (dimension(shape) < 2 || shape == Shape::tetrahedron));
 }
 
-void note_losses(const Mesh& mesh, const std::vector<const DataArray*>& written, Notes& notes) {
+void note_losses(const Mesh& mesh, const std::set<const DataArray*>& written, Notes& notes) {
   for (const DataArray& array : mesh.data) {
-    if (std::find(written.begin(), written.end(), &array) == written.end())
-      note_array_unsupported(array, "PLY", notes);
+    if (!written.contains(&array)) note_array_unsupported(array, "PLY", notes);
   }
   for (const EntitySet& set : mesh.sets) note_set_unsupported(set, "PLY", notes);
   note_ids_unsupported(mesh, "PLY", notes);
@@ -479,7 +489,7 @@ void write_ply(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const auto* metadata = dynamic_cast<const ply::Metadata*>(mesh.format_metadata.get());
   const bool as_file = metadata && elements_fit(*metadata, mesh);
   std::vector<Table> tables = as_file ? tables_of_file(*metadata) : usual_tables(mesh);
-  std::vector<const DataArray*> written;
+  std::set<const DataArray*> written;
   for (Table& table : tables) {
     if (table.element.role != Role::other) Columns(mesh, table, written, notes).collect();
   }

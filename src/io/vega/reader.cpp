@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
+#include "io/named_parts.hpp"
 #include "io/stream/id_map.hpp"
 #include "io/vega/lines.hpp"
 #include "io/vega/parts.hpp"
@@ -288,6 +289,7 @@ class Reader {
       }
       lines_.take();
     }
+    sets_.insert(set.name);
     mesh_.sets.push_back(std::move(set));
   }
 
@@ -305,9 +307,7 @@ class Reader {
     if (!materials_.contains(section.region_material)) {
       lines_.at().fail("material '" + section.region_material + "' does not exist", "define it before");
     }
-    const auto set = std::find_if(mesh_.sets.begin(), mesh_.sets.end(),
-                                  [&](const EntitySet& s) { return s.name == section.region_set; });
-    if (set == mesh_.sets.end() && section.region_set != kAllElements) {
+    if (!sets_.contains(section.region_set) && section.region_set != kAllElements) {
       lines_.at().fail("set '" + section.region_set + "' does not exist", "define it before");
     }
     lines_.take();
@@ -343,6 +343,7 @@ class Reader {
   IdMap vertices_;
   IdMap elements_;
   std::set<std::string> materials_;
+  std::set<std::string> sets_;
   bool has_vertices_ = false;
   bool has_elements_ = false;
 };
@@ -356,6 +357,7 @@ void Reader::label_by_region() {
 }  // namespace
 
 std::vector<std::int32_t> region_numbers(const Metadata& metadata, const Mesh& mesh) {
+  const NamedParts parts(mesh);
   std::vector<std::int32_t> numbers;
   std::int32_t number = 0;
   for (const Section& section : metadata.sections) {
@@ -366,10 +368,8 @@ std::vector<std::int32_t> region_numbers(const Metadata& metadata, const Mesh& m
       std::fill(numbers.begin(), numbers.end(), number);
       continue;
     }
-    const auto set = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const EntitySet& s) {
-      return s.association == Association::cells && s.name == section.region_set;
-    });
-    if (set == mesh.sets.end()) continue;
+    const EntitySet* const set = parts.set(section.region_set, Association::cells);
+    if (set == nullptr) continue;
     for (const Index member : set->members) numbers[member] = number;
   }
   return numbers;

@@ -5,6 +5,7 @@
 // come in VTK's order.
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
+#include "io/named_parts.hpp"
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
@@ -32,6 +33,7 @@ class VegaWriter {
  public:
   VegaWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
       : mesh_(mesh),
+        parts_(mesh),
         notes_(notes),
         native_(dynamic_cast<const vega::Metadata*>(mesh.format_metadata.get())),
         out_(path) {}
@@ -74,10 +76,7 @@ class VegaWriter {
   }
 
   [[nodiscard]] bool has_set(const std::string& name) const {
-    return name == vega::kAllElements ||
-           std::any_of(mesh_.sets.begin(), mesh_.sets.end(), [&](const EntitySet& set) {
-             return set.association == Association::cells && set.name == name;
-           });
+    return name == vega::kAllElements || parts_.set(name, Association::cells) != nullptr;
   }
 
   [[nodiscard]] bool is_cell_set(std::size_t i) const {
@@ -253,6 +252,7 @@ class VegaWriter {
   }
 
   const Mesh& mesh_;
+  NamedParts parts_;
   Notes& notes_;
   const vega::Metadata* native_;
   OutputFile out_;

@@ -16,7 +16,9 @@
 #include <bit>
 #include <cctype>
 #include <cstring>
+#include <map>
 #include <span>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -76,7 +78,9 @@ class LegacyWriter {
   LegacyWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
       : from_(mesh, notes, NamePlace::legacy),
         layout_(from_.metadata.legacy.value_or(LegacyLayout{})),
-        out_(path) {}
+        out_(path) {
+    for (const ArrayRole& role : from_.metadata.roles) roles_.try_emplace({role.association, role.array}, &role);
+  }
 
   void write() {
     choose_layout();
@@ -115,7 +119,7 @@ class LegacyWriter {
       from_.notes.push_back(fmt::format("the array '{}' loses its role: legacy files have no {}", role.array,
                                         kXmlRoles[static_cast<std::size_t>(role.role)]));
     }
-    for (const ArrayFacts& fact : from_.metadata.facts) {
+    for (const auto& [array, fact] : from_.metadata.facts) {
       if (fact.xml_information.empty()) continue;
       from_.notes.push_back(fmt::format(
           "not written (legacy files store it differently): the information of the array '{}'", fact.array));
@@ -350,10 +354,9 @@ class LegacyWriter {
   [[nodiscard]] std::pair<const LegacyAttribute*, const ArrayRole*> attribute_of(
       const DataArray& array) const {
     if (array.name.empty()) return {};
-    const auto role = std::find_if(
-        from_.metadata.roles.begin(), from_.metadata.roles.end(),
-        [&](const ArrayRole& r) { return r.association == array.association && r.array == array.name; });
-    if (role == from_.metadata.roles.end()) return {};
+    const auto found = roles_.find({array.association, array.name});
+    if (found == roles_.end()) return {};
+    const ArrayRole* const role = found->second;
     const bool text = are_texts(array.values);
     if (text && role->role != Role::pedigree_ids) return {};
     if (role->role == Role::texture_coordinates && array.components > 3) return {};
@@ -367,7 +370,7 @@ class LegacyWriter {
           return a.role == role->role && (a.components == 0 || a.components == array.components);
         });
     if (attribute == kLegacyAttributes.end()) return {};
-    return {&*attribute, &*role};
+    return {&*attribute, role};
   }
 
   bool write_attribute(const DataArray& array) {
@@ -396,6 +399,7 @@ class LegacyWriter {
   WriteContext from_;
   LegacyLayout layout_;
   OutputFile out_;
+  std::map<std::pair<Association, std::string_view>, const ArrayRole*> roles_;  // by their arrays
   bool offsets_ = false;  // cells by their offsets, as from version 5 on
 };
 

@@ -217,11 +217,7 @@ DataArray LegacyInput::array(const std::string& name, std::optional<Association>
 }
 
 ArrayFacts& LegacyInput::facts_of(std::optional<Association> association, const std::string& name) {
-  const auto found = std::find_if(facts.begin(), facts.end(), [&](const ArrayFacts& fact) {
-    return fact.association == association && fact.array == name;
-  });
-  if (found != facts.end()) return *found;
-  return facts.emplace_back(ArrayFacts{association, name, {}, {}, {}});
+  return facts.try_emplace({association, name}, ArrayFacts{association, name, {}, {}, {}}).first->second;
 }
 
 void LegacyInput::metadata(DataArray& array, std::optional<Association> association) {

@@ -42,7 +42,7 @@ class LegacyInput : public NumberReader {
   void metadata(DataArray& array, std::optional<Association> association);
 
   bool finite_only = false;  ///< fail for real numbers in text that are not finite
-  std::vector<ArrayFacts> facts;
+  FactsOfArrays facts;
   Notes notes;
 
  private:

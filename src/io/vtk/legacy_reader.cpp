@@ -211,8 +211,7 @@ class LegacyReader {
         in_.fail(std::string(name) + " is missing in " + key, "it comes before its numbers");
       const std::string type(in_.word("the type of the numbers"));
       DataArray part = in_.array(name, {}, entries, 1, type);
-      std::erase_if(in_.facts,
-                    [&](const ArrayFacts& fact) { return !fact.association && fact.array == name; });
+      in_.facts.erase({std::nullopt, name});
       return part;
     };
     in_.check_room(count, 1, key);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -113,7 +114,7 @@ std::vector<std::string> Metadata::contents() const {
   if (legacy) {
     for (const auto& table : legacy->lookup_tables) result.push_back("the lookup table '" + table.name + "'");
   }
-  for (const ArrayFacts& fact : facts) {
+  for (const auto& [array, fact] : facts) {
     if (!fact.information.empty() || !fact.xml_information.empty())
       result.push_back("the information of the array '" + fact.array + "'");
   }
@@ -122,10 +123,8 @@ std::vector<std::string> Metadata::contents() const {
 
 const ArrayFacts* find_facts(const Metadata& metadata, std::optional<Association> association,
                              std::string_view array) {
-  const auto found = std::find_if(metadata.facts.begin(), metadata.facts.end(), [&](const ArrayFacts& fact) {
-    return fact.association == association && fact.array == array;
-  });
-  return found == metadata.facts.end() ? nullptr : &*found;
+  const auto found = metadata.facts.find({association, std::string(array)});
+  return found == metadata.facts.end() ? nullptr : &found->second;
 }
 
 Values marks_of(const EntitySet& set, Index count) {
@@ -223,12 +222,13 @@ void WriteContext::collect_arrays(NamePlace place) {
 }
 
 const ArrayRole* WriteContext::role(Association association, Role role) const {
+  std::set<std::string_view> written;
+  for (const DataArray* array : arrays) {
+    if (array->association == association) written.insert(array->name);
+  }
   const auto found = std::find_if(metadata.roles.begin(), metadata.roles.end(), [&](const ArrayRole& known) {
     const Role kind = known.role == Role::color_scalars ? Role::scalars : known.role;
-    const bool there = std::any_of(arrays.begin(), arrays.end(), [&](const DataArray* array) {
-      return array->association == association && array->name == known.array;
-    });
-    return known.association == association && kind == role && there;
+    return known.association == association && kind == role && written.contains(known.array);
   });
   return found == metadata.roles.end() ? nullptr : &*found;
 }

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -141,11 +142,14 @@ struct LegacyLayout {
   std::vector<LookupTable> lookup_tables;
 };
 
+/// Facts of arrays by their association and name.
+using FactsOfArrays = std::map<std::pair<std::optional<Association>, std::string>, ArrayFacts>;
+
 /// Data of VTK's files beyond the mesh, kept by both readers for both writers.
 struct Metadata : FormatMetadata {
   std::vector<DataArray> fields;  ///< arrays of the whole mesh; their association and indices mean nothing
   std::vector<ArrayRole> roles;
-  std::vector<ArrayFacts> facts;
+  FactsOfArrays facts;
   bool float_points = false;
   bool inward_wedges = false;  ///< linear wedges in the order of VTK 9.7, see take_cells
   std::optional<VtuEncoding> vtu;
@@ -154,7 +158,7 @@ struct Metadata : FormatMetadata {
   [[nodiscard]] std::vector<std::string> contents() const override;
 };
 
-/// Returns the facts of an array, or nullptr.
+/// Returns the facts of an array, or nullptr. O(log facts).
 const ArrayFacts* find_facts(const Metadata& metadata, std::optional<Association> association,
                              std::string_view array);
 

@@ -91,7 +91,7 @@ class VtuWriter {
       for (const auto& table : from_.metadata.legacy->lookup_tables)
         from_.notes.push_back("not written (VTU has no place for it): the lookup table '" + table.name + "'");
     }
-    for (const ArrayFacts& fact : from_.metadata.facts) {
+    for (const auto& [array, fact] : from_.metadata.facts) {
       if (!fact.information.empty())
         from_.notes.push_back("not written (VTU files store it differently): the information of the array '" +
                               fact.array + "'");

@@ -325,9 +325,8 @@ class VtuReader {
       if (name != nullptr && name->starts_with("L2_NORM")) continue;  // VTK finds it
       facts.xml_information += file_->source(key) + "\n";
     }
-    if ((!facts.type.empty() || !facts.xml_information.empty()) &&
-        find_facts(*metadata_, association, array.name) == nullptr)
-      metadata_->facts.push_back(std::move(facts));
+    if (!facts.type.empty() || !facts.xml_information.empty())
+      metadata_->facts.try_emplace({association, array.name}, std::move(facts));
   }
 
   void read_fields(const VtuElement& fields) {
@@ -337,11 +336,10 @@ class VtuReader {
         continue;
       }
       DataArray field = read_array(element, {}, file_->count(element, "NumberOfTuples"));
-      const auto same = std::find_if(metadata_->fields.begin(), metadata_->fields.end(),
-                                     [&](const DataArray& other) { return other.name == field.name; });
-      if (pieces_ == 0 || same == metadata_->fields.end()) {
+      const auto [known, is_new] = fields_.try_emplace(field.name, metadata_->fields.size());
+      if (pieces_ == 0 || is_new) {
         metadata_->fields.push_back(std::move(field));
-      } else if (same->values != field.values) {
+      } else if (metadata_->fields[known->second].values != field.values) {
         notes_.push_back("left out: the field '" + field.name +
                          "' of pieces where it differs from the first's");
       }
@@ -404,6 +402,7 @@ class VtuReader {
   Notes& notes_;
   const VtuDocument* file_ = nullptr;  ///< that is read
   int version_ = 0;                    ///< of the first file, times ten
+  std::map<std::string, std::size_t> fields_;  ///< places of the fields, by name
   int pieces_ = 0;                     ///< that are not empty
   Mesh mesh_;
   std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();

@@ -36,13 +36,8 @@ std::string_view attribute_type(Index components) {
 
 std::optional<DataArray> Writer::marks_named(const std::string& name, Association association) const {
   if (!name.starts_with(kSetName)) return {};
-  for (const EntitySet& set : mesh_.sets) {
-    if (set.association == association && kSetName.size() + set.name.size() == name.size() &&
-        name.ends_with(set.name)) {
-      return marks_of(set);
-    }
-  }
-  return {};
+  const EntitySet* const set = parts_.set(std::string_view(name).substr(kSetName.size()), association);
+  return set != nullptr ? std::optional(marks_of(*set)) : std::nullopt;
 }
 
 DataArray Writer::marks_of(const EntitySet& set) const {
@@ -57,11 +52,12 @@ void Writer::add_others() {
     if (field.role == Field::Role::array) names_.emplace(field.association, field.name);
   }
   const std::set<std::pair<Association, std::string>> covered = names_;
+  const std::set<std::pair<Association, std::string>> placed = placed_sets();
   for (const DataArray& array : mesh_.data) {
     if (!covered.contains({array.association, array.name})) add_array(array);
   }
   for (const EntitySet& set : mesh_.sets) {
-    if (has_place(set) || covered.contains({set.association, std::string(kSetName) + set.name})) continue;
+    if (placed.contains({set.association, set.name}) || covered.contains({set.association, std::string(kSetName) + set.name})) continue;
     const DataArray marks = marks_of(set);
     notes_.push_back(fmt::format("the set '{}' of {} is written as the array '{}'", set.name,
                                  to_string(set.association), marks.name));
@@ -71,16 +67,16 @@ void Writer::add_others() {
   add_ids(mesh_.cell_ids, "cell_id", Association::cells);
 }
 
-bool Writer::has_place(const EntitySet& set) const {
-  if (layout_.is_made) return false;
-  const bool is_part = set.association == Association::cells &&
-                       std::any_of(layout_.parts.begin(), layout_.parts.end(), [&](const Part& part) {
-                         return part.set == set.name && !part.set.empty();
-                       });
-  return is_part || std::any_of(layout_.fields.begin(), layout_.fields.end(), [&](const Field& field) {
-           return field.role == Field::Role::set && field.association == set.association &&
-                  field.name == set.name;
-         });
+std::set<std::pair<Association, std::string>> Writer::placed_sets() const {
+  std::set<std::pair<Association, std::string>> placed;
+  if (layout_.is_made) return placed;
+  for (const Part& part : layout_.parts) {
+    if (!part.set.empty()) placed.emplace(Association::cells, part.set);
+  }
+  for (const Field& field : layout_.fields) {
+    if (field.role == Field::Role::set) placed.emplace(field.association, field.name);
+  }
+  return placed;
 }
 
 void Writer::add_ids(const std::vector<std::int64_t>& ids, const char* name, Association association) {

@@ -185,7 +185,7 @@ std::vector<Index> Writer::numbers_of(const std::vector<Index>& rows, bool mixed
 }
 
 void Writer::write_array(const Field& field) {
-  const DataArray* array = find_array(mesh_, field.name, field.association);
+  const DataArray* array = parts_.array(field.name, field.association);
   std::optional<DataArray> made;
   if (array == nullptr) {
     made = marks_named(field.name, field.association);
@@ -197,10 +197,8 @@ void Writer::write_array(const Field& field) {
 }
 
 void Writer::write_set(const Field& field) {
-  const auto set = std::find_if(mesh_.sets.begin(), mesh_.sets.end(), [&](const EntitySet& candidate) {
-    return candidate.association == field.association && candidate.name == field.name;
-  });
-  if (set == mesh_.sets.end()) return remove_element(field);
+  const EntitySet* const set = parts_.set(field.name, field.association);
+  if (set == nullptr) return remove_element(field);
   const bool on_cells = field.association == Association::cells;
   std::vector<Index> place;
   if (on_cells) place = places_in(rows_[static_cast<std::size_t>(field.part)]);

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
+#include "io/named_parts.hpp"
 #include "io/xdmf/xdmf.hpp"
 
 #include <fmt/format.h>
@@ -75,11 +76,10 @@ std::vector<std::vector<Index>> cells_of_parts(const Mesh& mesh, const Layout& l
   }
   std::vector<std::vector<Index>> cells(layout.parts.size());
   std::vector<bool> taken(mesh.cells.shapes.size(), false);
+  const NamedParts parts(mesh);
   for (std::size_t p = 1; p < layout.parts.size(); ++p) {
-    const auto set = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const EntitySet& candidate) {
-      return candidate.association == Association::cells && candidate.name == layout.parts[p].set;
-    });
-    if (set == mesh.sets.end()) continue;
+    const EntitySet* const set = parts.set(layout.parts[p].set, Association::cells);
+    if (set == nullptr) continue;
     cells[p] = set->members;
     if (layout.parts[p].is_ascending) std::sort(cells[p].begin(), cells[p].end());
     if (!layout.parts[p].has_own_cells) continue;

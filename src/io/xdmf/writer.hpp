@@ -5,6 +5,7 @@
 // rest is added.
 
 #include "io/hdf5/hdf5_file.hpp"
+#include "io/named_parts.hpp"
 #include "io/stream/file_path.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/xdmf/data_item.hpp"
@@ -124,7 +125,8 @@ class Writer {
   [[nodiscard]] std::optional<DataArray> marks_named(const std::string& name, Association association) const;
   [[nodiscard]] DataArray marks_of(const EntitySet& set) const;
   void add_others();
-  [[nodiscard]] bool has_place(const EntitySet& set) const;
+  /// Returns the sets that the layout has a place for.
+  [[nodiscard]] std::set<std::pair<Association, std::string>> placed_sets() const;
   void add_ids(const std::vector<std::int64_t>& ids, const char* name, Association association);
   /// Returns a name that no other attribute has.
   std::string unused_name(const DataArray& array);
@@ -136,6 +138,7 @@ class Writer {
   [[nodiscard]] pugi::xml_node grid_of(int part) const;
 
   const Mesh& mesh_;
+  const NamedParts parts_{mesh_};
   const Layout& layout_;
   std::vector<Field> fields_;
   FilePath path_;
