@@ -164,6 +164,24 @@ TEST(Cgns, RefusesBinaryPointersOfAdfThatLeadElsewhere) {
   }
 }
 
+TEST(Cgns, RefusesElementTypesByTheirNumbersInVersion30) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "a.cgns";
+  const auto write_as_30 = [&](const Mesh& mesh) {
+    write_mesh(mesh, path);
+    cgns::Tree tree = cgns::read_tree(path);
+    const float version = 3.0F;
+    std::memcpy(tree.root.child_of_label("CGNSLibraryVersion_t")->bytes.data(), &version, sizeof version);
+    cgns::write_tree(tree, path, [](cgns::Node& /*node*/) {});
+  };
+  write_as_30(test::tetrahedral_bar(1));  // whose number was the same
+  EXPECT_EQ(read_mesh(path).cell_count(), test::tetrahedral_bar(1).cell_count());
+  write_as_30(test::cells_of_type(Shape::hexahedron, 8, 2));
+  const std::string message = test::read_error(path);
+  EXPECT_NE(message.find("by its number in CGNS 3.0"), std::string::npos) << message;
+  EXPECT_NE(message.find("`cgnsupdate IN OUT`"), std::string::npos) << message;
+}
+
 TEST(Cgns, RefusesPolyhedraThatAreNotThoseOfTheirFile) {
   for (const Shape shape : {Shape::polygon, Shape::polyhedron}) {
     Mesh mesh = test::cells_of_type(shape, 7, 2);

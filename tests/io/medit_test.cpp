@@ -140,7 +140,7 @@ constexpr std::string_view kBamg =
     "Edges\n4\n1 2 1\n2 3 2\n3 4 3\n4 1 4\n"
     "Triangles\n2\n1 2 3 7\n1 3 4 8\n"
     "SubDomainFromMesh\n3\n3 2 1 8\n3 1 1 7\n3 2 -1 9\n"
-    "SubDomainFromGeom 1\n2 1 1 1\n"
+    "SubDomainFromGeom 1\n2 9 1 1\n"
     "VertexOnGeometricVertex\n4\n1 1\n2 2\n3 3\n4 4\n"
     "VertexOnGeometricEdge\n3\n2 1 0.25\n3 1 0.5\n2 2 0\n"
     "EdgeOnGeometricEdge\n2\n1 1\n4 2\n"
@@ -165,13 +165,33 @@ TEST(Medit, NumbersInSectionsOfBamgFollowTheNewOrder) {
   for (const char* const section :
        {"\nVertices\n4\n1 1 3\n1 0 2\n0 1 4\n0 0 1\n", "\nhVertices\n 1.5\n 1\n 2\n 0.5\n",
         "\nEdges\n4\n2 1 2\n3 4 4\n4 2 1\n1 3 3\n", "\nTriangles\n2\n4 1 3 8\n4 2 1 7\n",
-        "\nSubDomainFromMesh\n3\n3 1 1 8\n3 2 1 7\n3 1 -1 9\n", "\nSubDomainFromGeom 1\n2 1 1 1\n",
+        "\nSubDomainFromMesh\n3\n3 1 1 8\n3 2 1 7\n3 1 -1 9\n", "\nSubDomainFromGeom\n1\n2 9 1 1\n",
         "\nVertexOnGeometricVertex\n4\n4 1\n2 2\n1 3\n3 4\n",
         "\nVertexOnGeometricEdge\n3\n2 1 0.25\n1 1 0.5\n2 2 0\n", "\nEdgeOnGeometricEdge\n2\n3 1\n2 2\n",
         "\nCrackedEdges\n1\n3 4\n", "\nPeriodicVertices\n2\n4 2\n3 1\n",
         "\nTangentAtEdgeVertices\n2\n1 1 1\n1 2 1\n", "\nVertexOnSupportVertex\n1\n3 9\n",
         "\nMeshSupportOfVertices\n\"y.mesh\"\n"}) {
     EXPECT_THAT(text, HasSubstr(section));
+  }
+}
+
+TEST(Medit, NumbersInAGeometryOfBamgFollowTheNewOrder) {
+  const std::string geometry =
+      "MeshVersionFormatted 0\nMaximalAngleOfCorner 46\nDimension 2\nVertices\n3\n0 0 1\n1 0 1\n0 1 1\n"
+      "Edges\n3\n1 2 1\n2 3 1\n3 1 1\nMetricVertices\n1 0 1\n2 0 2\n3 0 3\n"
+      "TangentAtEdges\n1\n2 1 0.5 -0.5\nSubDomain\n1\n2 3 1 0\nEnd\n";
+  for (const auto& [name, text] :
+       {std::pair{"SubDomain", geometry},
+        {"SubDomainFromGeom", replaced(geometry, "SubDomain", "SubDomainFromGeom")}}) {
+    const TemporaryFolder folder;
+    test::expect_order_and_back(folder.file("m.mesh", text));
+    Mesh mesh = read(text);
+    apply_reordering(mesh, Permutation::from_old_to_new({1, 2, 0}), Permutation::from_old_to_new({2, 0, 1}));
+    const std::string out = written(mesh);
+    EXPECT_THAT(out, HasSubstr("\nMaximalAngleOfCorner 46\n"));
+    EXPECT_THAT(out, HasSubstr("\nMetricVertices\n 3 0 3\n 1 0 1\n 2 0 2\n"));
+    EXPECT_THAT(out, HasSubstr("\nTangentAtEdges\n1\n1 1 0.5 -0.5\n"));
+    EXPECT_THAT(out, HasSubstr(std::string("\n") + name + "\n1\n2 2 1 0\n"));
   }
 }
 
@@ -473,9 +493,11 @@ TEST(Medit, SaysWhatIsWrongAndWhere) {
         ":16: a number of Normals is 'End'"},
        {"ordering of another size", vertices + cell + "TetrahedraP2Ordering\n4\n2 0 0 0\n", "10 are needed"},
        {"domain without triangles", vertices + cell + "SubDomainFromMesh\n1\n3 1 1 0\nEnd\n",
-        ":14: SubDomainFromMesh counts cells of type triangle, and there are none"},
-       {"domain of tetrahedra", vertices + cell + "SubDomainFromMesh\n1\n4 1 1 0\nEnd\n",
+        ":14: a line of SubDomainFromMesh begins with '3'; 2, for an edge"},
+       {"domain of tetrahedra", vertices + "Triangles\n1\n1 2 3 1\nSubDomainFromMesh\n1\n4 1 1 0\nEnd\n",
         ":14: a line of SubDomainFromMesh begins with '4'; 3, for a triangle"},
+       {"edge of a domain", vertices + cell + "SubDomain\n1\n2 1 1 0\nEnd\n",
+        ":14: SubDomain counts cells of type line, and there are none"},
        {"periodic vertex beyond", vertices + cell + "PeriodicVertices\n1\n1 5\nEnd\n",
         ":14: a number of PeriodicVertices is 5; 1 to 4"},
        {"sizes first", head + "hVertices\n1 1 1 1\nVertices 0\n", ":3: hVertices comes before Vertices"},

@@ -391,13 +391,41 @@ void keep_ranges(Reading& reading) {
   if (starts.size() > 1) mesh.cell_blocks = std::move(starts);
 }
 
+/// Returns the version that a file gives, 0 for none that is a number of 32 bits.
+float version_of(const Node& node) {
+  float version = 0;
+  if (node.type == "R4" && node.bytes.size() >= sizeof version) {
+    std::memcpy(&version, node.bytes.data(), sizeof version);
+  }
+  return version;
+}
+
+/// Fails for elements of types whose numbers version 3.0 alone had: those after PYRA_5, 12, and before
+/// NGON_n, 22.
+void refuse_types_of_version_30(const Reading& reading, const Node& node, const std::string& path) {
+  std::int32_t type = 0;
+  if (node.label == "Elements_t" && node.type == "I4" && node.bytes.size() >= sizeof type) {
+    std::memcpy(&type, node.bytes.data(), sizeof type);
+    if (type > 12 && type < 22) {
+      reading.fail(path,
+                   "has a type of elements by its number in CGNS 3.0, which stands for another one since 3.1",
+                   "renew the file by `cgnsupdate IN OUT`");
+    }
+  }
+  for (const Node& child : node.children) refuse_types_of_version_30(reading, child, path + "/" + child.name);
+}
+
 }  // namespace
 
 Mesh read(const FilePath& path, Notes& notes) {
   Reading reading(path, notes);
   reading.tree = read_tree(path);
-  if (reading.tree.root.child_of_label("CGNSLibraryVersion_t") == nullptr) {
+  const Node* const version = reading.tree.root.child_of_label("CGNSLibraryVersion_t");
+  if (version == nullptr) {
     reading.fail("", "does not give the version of CGNS", "it may be a file that is not one of CGNS");
+  }
+  if (version_of(*version) > 2.95F && version_of(*version) < 3.05F) {
+    refuse_types_of_version_30(reading, reading.tree.root, "");
   }
   MeshReader(reading).read();
   read_attachments(reading);

@@ -70,8 +70,9 @@ void read_format(ReadContext& reading) {
     source.fail("the file type is " + std::to_string(file_type), "0 (text) and 1 (binary) are possible");
   }
   if (file_type == 1 && data_size != 8) {
-    source.fail("the data size is " + std::to_string(data_size),
-                "only binary files with 8 are read; convert the file with gmsh OLD.msh -save -o NEW.msh");
+    source.fail(
+        "the data size is " + std::to_string(data_size),
+        "only binary files with 8 are read; meshio convert --output-format gmsh OLD.msh NEW.msh makes one");
   }
   reading.metadata.header = source.scanner.all().substr(begin, source.scanner.byte() - begin);
   (void)source.scanner.raw_line();

@@ -159,7 +159,7 @@ void write_rows(OutputFile& out, const WriteContext& from, const Metadata::Rows&
   const auto others = static_cast<std::size_t>(std::count(columns.begin(), columns.end(), '.'));
   const std::size_t named = columns.size() - others;
   std::vector<std::string> lines;
-  const std::size_t rows = section.items.size() / named;
+  const std::size_t rows = named > 0 ? section.items.size() / named : section.kept.size() / others;
   for (std::size_t row = 0; row < rows; ++row) {
     const Index* item = section.items.data() + row * named;
     const double* kept = section.kept.data() + row * others;
@@ -186,23 +186,27 @@ void write_rows(OutputFile& out, const WriteContext& from, const Metadata::Rows&
   }
 }
 
-/// Writes the sizes that a mesh of this format has at its vertices.
-void write_sizes(OutputFile& out, const DataArray& array) {
-  out.print("\n{}\n", kSizes);
+/// Writes an array that covers all vertices as the section of its name; returns whether there is one.
+bool write_sizes(OutputFile& out, const DataArray& array) {
+  const bool known = std::any_of(kSizeKinds.begin(), kSizeKinds.end(), [&](const SizeKind& kind) {
+    return kind.keyword == array.name && kind.components == array.components;
+  });
+  if (!known || !array.is_dense() || array.association != Association::vertices) return false;
+  out.print("\n{}\n", array.name);
   for (Index v = 0; v < row_count(array); ++v) {
-    print_value(out, array.values, v);
+    for (Index k = 0; k < array.components; ++k) {
+      print_value(out, array.values, Offset{v} * array.components + k);
+    }
     out.write("\n");
   }
+  return true;
 }
 
 /// Writes an array as the table of its name, if the mesh came from this format.
 void write_array(OutputFile& out, const WriteContext& from, const DataArray& array, Notes& notes) {
   const ListKind* kind = nullptr;
   const bool numbers = !are_texts(array.values);
-  if (from.own && numbers && array.is_dense() && array.name == kSizes && array.components == 1 &&
-      array.association == Association::vertices) {
-    return write_sizes(out, array);
-  }
+  if (from.own && numbers && write_sizes(out, array)) return;
   if (from.own && numbers && !array.is_dense()) {
     kind = fitting_kind(kTableKinds, from, array.name, array.association, array.indices);
   }

@@ -108,7 +108,9 @@ struct RowKind {
 
 inline constexpr std::array kRowKinds{
     RowKind{"SubDomainFromMesh", ".t.."},  // BAMG's: 3, a triangle of the domain, orientation, reference
-    RowKind{"SubDomain", ".t.."},
+    RowKind{"SubDomain", ".t.."},          // or 2 and an edge in a geometry, as the next
+    RowKind{"SubDomainFromGeom", ".e.."},
+    RowKind{"TangentAtEdges", "e..."},
     RowKind{"CrackedEdges", "ee"},
     RowKind{"CrackedTriangles", "tt"},
     RowKind{"CrackedQuadrilaterals", "qq"},
@@ -125,7 +127,13 @@ inline constexpr std::array kRowKinds{
 };
 
 /// BAMG's sizes of the mesh at all vertices, a section without a count: an array of that name.
-inline constexpr std::string_view kSizes = "hVertices";
+struct SizeKind {
+  std::string_view keyword;
+  Index components;
+};
+
+inline constexpr std::array kSizeKinds{SizeKind{"hVertices", 1}, SizeKind{"MetricVertices", 3},
+                                       SizeKind{"h1h2VpVertices", 4}};
 
 /// Data of Medit files beyond the mesh.
 struct Metadata final : FormatMetadata {

@@ -30,7 +30,6 @@ struct PlainKind {
 constexpr std::array kPlainKinds{
     PlainKind{"Normals", PlainKind::rows, 0, 1},
     PlainKind{"Tangents", PlainKind::rows, 0, 1},
-    PlainKind{"SubDomainFromGeom", PlainKind::rows, 0, 0},  // as many words as its first line has
     PlainKind{"BoundingBox", PlainKind::words, 0, 2},
     PlainKind{"AngleOfCornerBound", PlainKind::words, 1, 0},
     PlainKind{"MaximalAngleOfCorner", PlainKind::words, 1, 0},
@@ -122,7 +121,7 @@ class Reader {
         in_.fail(fmt::format("the dimension is {}", mesh_.dimension), "2 or 3 are possible");
       }
       has_dimension_ = true;
-    } else if (!has_dimension_) {
+    } else if (!has_dimension_ && !comes_before_dimension(keyword)) {
       in_.fail("the section " + keyword + " comes before the Dimension", "Dimension 2 or 3 must come first");
     } else if (same_but_for_case(keyword, "Vertices")) {
       read_vertices();
@@ -130,6 +129,12 @@ class Reader {
       read_other_section(keyword);
     }
     return true;
+  }
+
+  /// Whether a section may come before the dimension, which it does not depend on.
+  static bool comes_before_dimension(std::string_view keyword) {
+    const std::size_t kind = find_kind(kPlainKinds, keyword);
+    return kind < kPlainKinds.size() && kPlainKinds[kind].words_per_dimension == 0;
   }
 
   static std::string lower(std::string text) {
@@ -164,7 +169,9 @@ class Reader {
     if (const std::size_t kind = find_kind(kRowKinds, keyword); kind < kRowKinds.size()) {
       return skip_rows(pending_rows_, kind, static_cast<int>(kRowKinds[kind].columns.size()));
     }
-    if (same_but_for_case(keyword, kSizes)) return read_sizes();
+    if (const std::size_t kind = find_kind(kSizeKinds, keyword); kind < kSizeKinds.size()) {
+      return read_sizes(kSizeKinds[kind]);
+    }
     if (const std::size_t kind = kind_of_ordering(keyword); kind < kCellKinds.size()) {
       read_ordering(kind);
       return keep_section(keyword);
@@ -196,8 +203,7 @@ class Reader {
   void skip_plain(const PlainKind& kind) {
     const bool has_count = kind.form == PlainKind::rows || kind.form == PlainKind::lines;
     const Index count = has_count ? in_.count(what_count(), 2) : 1;
-    int words = kind.words_per_row + kind.words_per_dimension * mesh_.dimension;
-    if (words == 0 && kind.form == PlainKind::rows) words = words_of_line();
+    const int words = kind.words_per_row + kind.words_per_dimension * mesh_.dimension;
     const std::string what = what_number();
     for (Index row = 0; row < count; ++row) {
       if (kind.form == PlainKind::line || kind.form == PlainKind::lines) {
@@ -317,7 +323,7 @@ class Reader {
     }
     for (const auto& [kind, byte] : pending_rows_) {
       go_to(byte, kRowKinds[kind].keyword);
-      read_rows(kRowKinds[kind].columns);
+      read_rows(columns_of(kRowKinds[kind]));
     }
   }
 
@@ -354,9 +360,10 @@ class Reader {
     Metadata::Rows section{last_keyword_, std::string(columns), {}, {}};
     const std::string what = what_number();
     for (Index row = 0; row < rows; ++row) {
-      if (columns.starts_with(".t") && in_.peek_word() != "3") {
+      const bool of_triangle = columns.starts_with(".t");
+      if (columns.starts_with('.') && in_.peek_word() != (of_triangle ? "3" : "2")) {
         in_.fail(fmt::format("a line of {} begins with '{}'", last_keyword_, shown(in_.peek_word())),
-                 "3, for a triangle, is known");
+                 of_triangle ? "3, for a triangle, is known" : "2, for an edge, is known");
       }
       for (const char column : columns) {
         if (column == '.') {
@@ -370,12 +377,25 @@ class Reader {
     metadata_->rows.push_back(std::move(section));
   }
 
-  /// Reads a size for each vertex.
-  void read_sizes() {
-    if (!has_vertices_) in_.fail("hVertices comes before Vertices", "put it after them");
-    std::vector<double> sizes(mesh_.points.size());
-    for (double& size : sizes) size = in_.real("a number of hVertices");
-    mesh_.data.push_back({std::string(kSizes), Association::vertices, 1, std::move(sizes), {}, {}});
+  /// Returns the columns of a section of that kind here: a file without triangles and quadrilaterals is a
+  /// geometry, whose domains name edges of its own; in a mesh domains of the geometry name those of another
+  /// file.
+  [[nodiscard]] std::string_view columns_of(const RowKind& kind) const {
+    const auto cells = [&](Shape shape) { return counted_kind(shape, counts_) < kCellKinds.size(); };
+    const bool is_geometry = !cells(Shape::triangle) && !cells(Shape::quad);
+    if (kind.columns == ".t.." && is_geometry) return ".e..";
+    if (kind.columns == ".e.." && !is_geometry) return "....";
+    return kind.columns;
+  }
+
+  /// Reads numbers for each vertex.
+  void read_sizes(const SizeKind& kind) {
+    if (!has_vertices_) in_.fail(last_keyword_ + " comes before Vertices", "put it after them");
+    const std::string what = what_number();
+    std::vector<double> sizes(mesh_.points.size() * static_cast<std::size_t>(kind.components));
+    for (double& size : sizes) size = in_.real(what);
+    mesh_.data.push_back(
+        {std::string(kind.keyword), Association::vertices, kind.components, std::move(sizes), {}, {}});
   }
 
   void read_table(const ListKind& kind) {
