@@ -86,23 +86,24 @@ void apply_all(std::vector<Move>& moves) {
   std::set<fs::path> folders;
   for (const Move& move : moves) folders.insert(folder_of(move.target()));
   const FolderLocks locked(folders);
+  std::vector<bool> is_back(moves.size(), true);  // made before: without memory nothing could be put back
   int error = 0;
   std::size_t begun = 0;
   while (error == 0 && begun < moves.size()) error = moves[begun++].apply();
-  const fs::path failed = moves[begun - 1].target();
+  const std::size_t failed = begun - 1;
   for (const fs::path& folder : folders) {
     if (error == 0) error = sync_folder(folder);
   }
   if (error == 0) return;
+  while (begun-- > 0) is_back[begun] = moves[begun].take_back() == 0;
   std::string fresh;
-  while (begun > 0) {
-    const Move& move = moves[--begun];
-    if (move.take_back() != 0) fresh += (fresh.empty() ? "" : ", ") + move.target().string();
+  for (std::size_t k = 0; k < is_back.size(); ++k) {
+    if (!is_back[k]) fresh += (fresh.empty() ? "" : ", ") + moves[k].target().string();
   }
   const SystemFault fault = system_fault(error);
   const std::string rest = fresh.empty() ? "" : "; the old file could not be put back of " + fresh;
-  throw InputError(failed.string(), fmt::format("{}: {}{}", kCannotReplace, fault.reason, rest),
-                   fault.remedy);
+  throw InputError(moves[failed].target().string(),
+                   fmt::format("{}: {}{}", kCannotReplace, fault.reason, rest), fault.remedy);
 }
 
 }  // namespace
