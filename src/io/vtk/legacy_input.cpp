@@ -24,13 +24,32 @@ namespace {
 struct TypeName {
   std::string_view name;
   std::size_t alternative;  // of Values
+  bool is_kept = true;      // whether the array is written under this name again
 };
 
 // besides those of kLegacyTypeNames
 constexpr std::array kOtherTypeNames{TypeName{"signed_char", 2},   TypeName{"long", 8},
                                      TypeName{"unsigned_long", 9}, TypeName{"vtkidtype", 8},
                                      TypeName{"long_long", 8},     TypeName{"unsigned_long_long", 9},
-                                     TypeName{"bit", 3},           TypeName{"utf8_string", 10}};
+                                     TypeName{"bit", 3, false},    TypeName{"utf8_string", 10},
+                                     TypeName{"int64", 8, false},  TypeName{"float64", 0, false}};
+
+/// Returns the number type of that name, in lower case.
+std::optional<TypeName> number_type(std::string_view name) {
+  const auto* const usual = std::find(kLegacyTypeNames.begin(), kLegacyTypeNames.end(), name);
+  if (usual != kLegacyTypeNames.end()) {
+    return TypeName{*usual, static_cast<std::size_t>(usual - kLegacyTypeNames.begin()), false};
+  }
+  const auto* const other = std::find_if(kOtherTypeNames.begin(), kOtherTypeNames.end(),
+                                         [&](const TypeName& type) { return type.name == name; });
+  if (other != kOtherTypeNames.end()) return *other;
+  return {};
+}
+
+/// Returns a name without the digits at its end.
+std::string_view without_digits(std::string_view name) {
+  return name.substr(0, name.find_last_not_of("0123456789") + 1);
+}
 
 }  // namespace
 
@@ -176,26 +195,31 @@ DataArray LegacyInput::array(const std::string& name, std::optional<Association>
     fail(what + " has " + std::to_string(components) + " components", "at least 1 is needed");
   result.components = static_cast<Index>(components);
 
-  const std::string type = lower_case(given_type);
-  const auto usual = std::find(kLegacyTypeNames.begin(), kLegacyTypeNames.end(), type);
-  const auto other = std::find_if(kOtherTypeNames.begin(), kOtherTypeNames.end(),
-                                  [&](const TypeName& t) { return t.name == type; });
-  if (usual == kLegacyTypeNames.end() && other == kOtherTypeNames.end()) {
-    fail(what + " is of type '" + shown(given_type) + "'",
+  const std::string lower = lower_case(given_type);
+  std::optional<TypeName> type = number_type(lower);
+  if (!type) {
+    // some writers glue the number of components to the type; VTK reads the beginning of a type alone
+    type = number_type(without_digits(lower));
+    if (type) {
+      notes.push_back(
+          fmt::format("{} is of type '{}', which is read as {}", what, shown(given_type), type->name));
+      type->is_kept = false;
+    }
+  }
+  if (!type) {
+    fail(fmt::format("{} is of type '{}'", what, shown(given_type)),
          "a number type such as float, double or int is needed");
   }
-  result.values = values_of_type(usual != kLegacyTypeNames.end()
-                                     ? static_cast<std::size_t>(usual - kLegacyTypeNames.begin())
-                                     : other->alternative);
+  result.values = values_of_type(type->alternative);
 
   // tuples begin on the next line; in a binary file at its first byte
   const bool text = are_texts(result.values);
   const std::int64_t count = tuples * components;
   if (count > 0 && (binary || text)) scanner.raw_line();
-  if (type == "bit") {
+  if (type->name == "bit") {
     bits(std::get<std::vector<std::uint8_t>>(result.values), count, what);
     notes.push_back(what + " holds bits, which are stored as bytes");
-  } else if (type == "vtkidtype") {
+  } else if (type->name == "vtkidtype") {
     numbers<std::int64_t, std::int32_t>(std::get<std::vector<std::int64_t>>(result.values), count, what);
   } else {
     std::visit(
@@ -208,7 +232,7 @@ DataArray LegacyInput::array(const std::string& name, std::optional<Association>
         },
         result.values);
   }
-  if (usual == kLegacyTypeNames.end() && type != "bit") facts_of(association, name).type = given_type;
+  if (type->is_kept) facts_of(association, name).type = given_type;
   if (upper_case(scanner.peek_word()) == "METADATA") {
     word("METADATA");
     metadata(result, association);
@@ -237,7 +261,7 @@ void LegacyInput::metadata(DataArray& array, std::optional<Association> associat
       information(parsed(next_word(line), "the number of keys"), array, association);
       return;
     } else {
-      fail("METADATA has '" + shown(key) + "'", "COMPONENT_NAMES or INFORMATION is needed");
+      notes.push_back(fmt::format("METADATA has '{}', which is left out", shown(key)));
     }
   }
 }

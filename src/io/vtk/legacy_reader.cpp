@@ -7,6 +7,7 @@
 // when it allocates, cannot read `nan`, and changes the locale of the whole program.
 #include "base/large_pages.hpp"
 #include "base/text.hpp"
+#include "io/unique_names.hpp"
 #include "io/vtk/legacy_input.hpp"
 #include "io/vtk/vtk.hpp"
 
@@ -14,7 +15,6 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
-#include <set>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -39,16 +39,22 @@ class LegacyReader {
 
  private:
   void read_header() {
-    constexpr std::string_view kMagic = "# vtk DataFile Version ";
+    constexpr std::string_view kMagic = "# vtk DataFile Version";
     const std::string_view first = in_.scanner.raw_line();
-    const std::string_view version = first.starts_with(kMagic) ? trimmed(first.substr(kMagic.size())) : "";
+    if (!first.starts_with(kMagic)) {
+      throw InputError(Location{in_.scanner.file(), 1, -1}, "is not a legacy VTK file",
+                       "the first line of one is like '# vtk DataFile Version 4.2'");
+    }
+    const std::string_view version = trimmed(first.substr(kMagic.size()));
     int major = 0;
     int minor = 0;
     const char* const end = version.data() + version.size();
     const auto dot = std::from_chars(version.data(), end, major).ptr;
-    if (version.empty() || dot == end || *dot != '.' || std::from_chars(dot + 1, end, minor).ptr != end) {
-      throw InputError(Location{in_.scanner.file(), 1, -1}, "is not a legacy VTK file",
-                       "the first line of one is like '# vtk DataFile Version 4.2'");
+    if (version.empty() || dot == end || *dot != '.' ||
+        std::from_chars(dot + 1, end, minor).ec != std::errc{}) {
+      major = 3;
+      minor = 0;
+      in_.notes.push_back("the first line gives no version; the file is read as one of version 3.0");
     }
     version_ = major > 9 || minor > 9 || minor < 0 ? kLastVersion + 1 : 10 * major + minor;
     if (version_ > kLastVersion || version_ < 10) {
@@ -292,10 +298,14 @@ class LegacyReader {
     return cells;
   }
 
-  void keep(DataArray array) {
-    if (!names_.emplace(array.association, array.name).second)
-      in_.fail("the array '" + shown(array.name) + "' is given twice", "names must differ");
-    add_array(mesh_, std::move(array));
+  /// Returns a name for an array of points or cells that no other of them has: VTK keeps one of several.
+  std::string own_name(const std::string& wanted) {
+    std::string name = names_.take(*on_, wanted);
+    if (name != wanted) {
+      in_.notes.push_back("the array '" + shown(wanted) + "' is given twice; the second is called '" +
+                          shown(name) + "'");
+    }
+    return name;
   }
 
   /// Reads SCALARS, VECTORS and similar; returns false for another keyword.
@@ -303,7 +313,7 @@ class LegacyReader {
     const auto attribute = std::find_if(kLegacyAttributes.begin(), kLegacyAttributes.end(),
                                         [&](const LegacyAttribute& a) { return a.keyword == key; });
     if (attribute == kLegacyAttributes.end()) return false;
-    const std::string name = percent_decoded(in_.word("the name of " + key));
+    const std::string name = own_name(percent_decoded(in_.word("the name of " + key)));
     std::int64_t components = attribute->components;
     if (attribute->role == Role::texture_coordinates || attribute->role == Role::color_scalars)
       components = in_.text_integer("the components of " + key);
@@ -312,14 +322,15 @@ class LegacyReader {
     std::string type = in_.binary ? "unsigned_char" : "float";
     if (attribute->role != Role::color_scalars) type = in_.word("the type of " + key);
     if (attribute->role == Role::scalars) {
-      components = in_.scanner.at_line_end() ? 1 : in_.text_integer("the components of SCALARS");
+      const bool are_single = upper_case(in_.scanner.peek_word()) == "LOOKUP_TABLE";
+      components = are_single ? 1 : in_.text_integer("the components of SCALARS");
       if (upper_case(in_.word("LOOKUP_TABLE")) != "LOOKUP_TABLE")
         in_.fail("SCALARS '" + shown(name) + "' has no LOOKUP_TABLE",
                  "'LOOKUP_TABLE default' follows its name and type");
       role.lookup_table = in_.word("the name of the lookup table");
     }
     metadata_->roles.push_back(std::move(role));
-    keep(in_.array(name, on_, owner_count(), components, type));
+    add_array(mesh_, in_.array(name, on_, owner_count(), components, type));
     return true;
   }
 
@@ -328,8 +339,9 @@ class LegacyReader {
     in_.word("the name of the FIELD");
     const std::int64_t arrays = in_.count("the number of arrays of the FIELD");
     for (std::int64_t i = 0; i < arrays; ++i) {
-      const std::string name = percent_decoded(in_.word("the name of an array"));
+      std::string name = percent_decoded(in_.word("the name of an array"));
       if (name == "NULL_ARRAY") continue;
+      if (on_) name = own_name(name);
       const std::int64_t components = in_.count("the components of '" + shown(name) + "'");
       const std::int64_t tuples = in_.count("the tuples of '" + shown(name) + "'");
       const std::string type(in_.word("the type of '" + shown(name) + "'"));
@@ -339,7 +351,7 @@ class LegacyReader {
       }
       DataArray array = in_.array(name, on_, tuples, components, type);
       if (on_) {
-        keep(std::move(array));
+        add_array(mesh_, std::move(array));
       } else {
         metadata_->fields.push_back(std::move(array));
       }
@@ -432,7 +444,7 @@ class LegacyReader {
 
   LegacyInput in_;
   Mesh mesh_;
-  std::set<std::pair<Association, std::string>> names_;  // of arrays
+  UniqueNames names_;  // of arrays
   std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   LegacyLayout layout_;
   int version_ = 0;
