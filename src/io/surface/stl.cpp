@@ -130,16 +130,24 @@ std::int64_t promised_bytes(const Scanner& scanner) {
   return static_cast<std::int64_t>(kHeaderBytes) + 4 + kTriangleBytes * std::int64_t{count};
 }
 
+/// Reads the triangles of a binary file up to its end, as VTK does: some programs write a wrong count.
 Mesh read_binary(Scanner& scanner, StlMetadata& metadata, Notes& notes) {
   metadata.binary = true;
   metadata.header = scanner.binary_block(kHeaderBytes, "the header");
-  const auto count = scanner.binary<std::uint32_t>("the number of triangles", kOrder);
+  const auto stated = scanner.binary<std::uint32_t>("the number of triangles", kOrder);
+  const std::int64_t count = scanner.bytes_left() / kTriangleBytes;
+  if (count != stated) {
+    notes.push_back(
+        fmt::format("the file has {} triangles, though its count says {}; all are read", count, stated));
+  }
+  if (const std::int64_t rest = scanner.bytes_left() % kTriangleBytes; rest > 0)
+    notes.push_back(fmt::format("the {} bytes after the last triangle are left out", rest));
   Builder builder;
-  if (count > static_cast<std::uint32_t>(kMaxIndex) / 3) {
+  if (count > kMaxIndex / 3) {
     scanner.fail_at_byte("more than 715827882 triangles", "split the file");
   }
-  std::vector<std::uint16_t> attributes(count);
-  builder.mesh.cells.reserve(count, Offset{3} * count);
+  std::vector<std::uint16_t> attributes(static_cast<std::size_t>(count));
+  builder.mesh.cells.reserve(count, 3 * count);
   for (std::uint16_t& attribute : attributes) {
     std::array<Point, 4> points{};  // the normal and the corners
     for (std::size_t k = 0; k < points.size(); ++k) {
@@ -170,6 +178,13 @@ void expect_word(Scanner& scanner, std::string_view expected) {
   (void)scanner.word("'" + std::string(expected) + "'");
 }
 
+/// Takes "endloop", or "end loop" as some programs write it.
+void expect_end(Scanner& scanner, const std::string& part) {
+  const bool are_two_words = same_but_for_case(scanner.peek_word(), "end");
+  if (are_two_words) (void)scanner.word("'end'");
+  expect_word(scanner, are_two_words ? part : "end" + part);
+}
+
 void read_facet(Scanner& scanner, Builder& builder) {
   expect_word(scanner, "facet");
   Point normal{0, 0, 0};
@@ -188,8 +203,8 @@ void read_facet(Scanner& scanner, Builder& builder) {
     expect_word(scanner, "vertex");
     for (double& x : corner) x = scanner.finite("a coordinate");
   }
-  expect_word(scanner, "endloop");
-  expect_word(scanner, "endfacet");
+  expect_end(scanner, "loop");
+  expect_end(scanner, "facet");
   builder.add(normal, corners);
 }
 
@@ -217,8 +232,12 @@ Mesh read_ascii(Scanner& scanner, StlMetadata& metadata, Notes& notes) {
     expect_word(scanner, "solid");
     metadata.names.emplace_back(scanner.rest_of_line());
     first_cells.push_back(builder.mesh.cells.size());
-    while (!same_but_for_case(scanner.peek_word(), "endsolid")) read_facet(scanner, builder);
-    expect_word(scanner, "endsolid");
+    const auto is_at_end = [&] {
+      const std::string_view word = scanner.peek_word();
+      return same_but_for_case(word, "endsolid") || same_but_for_case(word, "end");
+    };
+    while (!is_at_end()) read_facet(scanner, builder);
+    expect_end(scanner, "solid");
     (void)scanner.rest_of_line();
   }
   Mesh& mesh = builder.mesh;
@@ -244,19 +263,19 @@ Mesh read_stl(const FilePath& path, Notes& notes) {
   const std::int64_t promised = promised_bytes(scanner);
   Mesh mesh;
   // a binary header may begin with "solid" as well, so the size decides
-  if (promised == size) {
-    mesh = read_binary(scanner, *metadata, notes);
-  } else if (same_but_for_case(scanner.peek_word(), "solid") &&
-             scanner.all().find('\0') == std::string_view::npos) {
+  const bool is_text = promised != size && scanner.all().find('\0') == std::string_view::npos;
+  if (is_text && same_but_for_case(scanner.peek_word(), "solid")) {
     mesh = read_ascii(scanner, *metadata, notes);
-  } else if (promised < 0 || scanner.all().find('\0') == std::string_view::npos) {
+  } else if (!is_text && promised >= 0 && promised <= size) {
+    mesh = read_binary(scanner, *metadata, notes);
+  } else if (promised < 0 || is_text) {
     throw InputError(scanner.file(), "is not an STL file: it does not begin with 'solid' and is not binary",
                      "give an ASCII or binary STL file");
   } else {
     throw InputError(Location{scanner.file(), 0, static_cast<std::int64_t>(kHeaderBytes)},
                      fmt::format("a binary STL file of {} triangles has {} bytes, this has {}",
                                  (promised - 84) / kTriangleBytes, promised, size),
-                     "the count is wrong or the file is cut short");
+                     "the file is cut short, or its count is wrong");
   }
   mesh.format_metadata = std::move(metadata);
   return mesh;
