@@ -3,6 +3,7 @@
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
+#include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
@@ -159,6 +160,126 @@ TEST(Ply, WidensIndicesThatReorderingMakesTooLarge) {
   expect_same(read_mesh(folder.path() / "b.ply"), mesh);
 }
 
+constexpr std::string_view kTextured = R"(ply
+format ascii 1.0
+comment TextureFile skin.png
+element vertex 5
+property float x
+property float y
+property float z
+element face 3
+property list uchar int vertex_indices
+element multi_texture_vertex 5
+property uchar tx
+property float u
+property float v
+element multi_texture_face 3
+property uchar tx
+property uint tn
+property list uchar int texture_vertex_indices
+element material 3
+property int ambient_coeff
+element patch 2
+property int size
+end_header
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+2 2 2
+3 0 1 2
+3 0 2 3
+3 2 3 4
+0 0 0
+0 1 0
+0 1 1
+0 0 1
+0 0.5 0.5
+0 0 3 0 1 2
+1 1 3 0 2 3
+2 2 3 2 3 4
+1
+2
+3
+70
+80
+)";
+
+TEST(Ply, RowsOfTexturesFollowTheirFaces) {
+  expect_order_and_back_to("a.ply", kTextured);
+  const TemporaryFolder folder;
+  Mesh mesh = read_mesh(folder.file("a.ply", kTextured));
+  apply_reordering(mesh, Permutation::identity(5), Permutation::from_old_to_new({2, 0, 1}));
+  Notes notes;
+  write_mesh(mesh, folder.path() / "b.ply", &notes);
+  EXPECT_EQ(notes, Notes{});
+  // the second number of a row is that of its face
+  std::string expected(kTextured);
+  const auto swap = [&](const std::string& old, const std::string& fresh) {
+    expected.replace(expected.find(old), old.size(), fresh);
+  };
+  swap("3 0 1 2\n3 0 2 3\n3 2 3 4\n", "3 0 2 3\n3 2 3 4\n3 0 1 2\n");
+  swap("0 0 3 0 1 2\n1 1 3 0 2 3\n2 2 3 2 3 4\n", "1 0 3 0 2 3\n2 1 3 2 3 4\n0 2 3 0 1 2\n");
+  EXPECT_EQ(content_of(folder.path() / "b.ply"), expected);
+}
+
+TEST(Ply, LeavesOutWhatMayNameVerticesOrFaces) {
+  struct Doubt {
+    const char* what;
+    std::string header;  ///< lines of properties and elements after the list of a face's vertices
+    std::string face;    ///< what follows the vertices of the first face
+    std::string rows;    ///< of the elements
+    std::string note;
+  };
+  const TemporaryFolder folder;
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\n";
+  const std::string vertices = "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2";
+  const std::string whole = "holds whole numbers, which could be those of vertices or faces";
+  for (const Doubt& doubt : std::vector<Doubt>{
+           {"a list of faces", "property list uchar int neighbours\n", " 2 7 8", "",
+            "not written: the property 'neighbours' of the element face, which " + whole},
+           {"lists of an element", "element patch 1\nproperty list uchar int corners\n", "", "2 0 1\n",
+            "not written: the element 'patch': its property 'corners' " + whole},
+           {"numbers of vertices", "element pin 2\nproperty int vertex\n", "", "0\n1\n",
+            "not written: the element 'pin': its property 'vertex' " + whole},
+           {"as many rows as vertices", "element quality 3\nproperty float q\n", "", "0.5\n1\n2\n",
+            "not written: the element 'quality': it has as many rows as the element vertex, to which they "
+            "could "
+            "belong"}}) {
+    SCOPED_TRACE(doubt.what);
+    const Mesh mesh =
+        read_mesh(folder.file("a.ply", head + doubt.header + vertices + doubt.face + "\n" + doubt.rows));
+    Notes notes;
+    write_mesh(mesh, folder.path() / "b.ply", &notes);
+    EXPECT_EQ(notes, Notes{doubt.note});
+    EXPECT_EQ(content_of(folder.path() / "b.ply"), head + vertices + "\n");
+    EXPECT_THROW(write_mesh(mesh, folder.path() / "c.ply", WriteOptions{.strict = true}), InputError);
+  }
+}
+
+TEST(Ply, TriangleStripsBecomeTriangles) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n";
+  const TemporaryFolder folder;
+  Notes notes;
+  // two strips; the second has a corner twice, which turns it
+  const Mesh mesh = read_mesh(folder.file("a.ply", head + "10 0 1 2 3 -1 3 2 2 5 4\n"), {.notes = &notes});
+  EXPECT_EQ(notes, (Notes{"the triangle strips became 3 triangles, which are written as faces"}));
+  EXPECT_EQ(mesh.cells.shapes, (std::vector<Shape>(3, Shape::triangle)));
+  EXPECT_EQ(mesh.cells.vertices, (std::vector<Index>{0, 1, 2, 2, 1, 3, 2, 5, 4}));
+  write_mesh(mesh, folder.path() / "b.ply", &notes);
+  EXPECT_NE(
+      content_of(folder.path() / "b.ply").find("element face 3\nproperty list uchar int vertex_indices\n"),
+      std::string::npos);
+  expect_same(read_mesh(folder.path() / "b.ply"), mesh);
+  EXPECT_NE(read_error(folder.file("c.ply", head + "4 0 1 2 9\n")).find(":16: vertex 9 does not exist"),
+            std::string::npos);
+}
+
 TEST(Ply, BrokenFilesStopWithTheirPlace) {
   const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
   const std::string ascii = "ply\nformat ascii 1.0\n";
@@ -169,10 +290,6 @@ TEST(Ply, BrokenFilesStopWithTheirPlace) {
   const auto with_vertex = [&](const std::string& property) {
     return ascii + "element vertex 1\n" + xyz + property + "\nelement face 1\n" + faces +
            "end_header\n0 0 0 0\n1 0\n";
-  };
-  const auto with_face = [&](const std::string& property) {
-    return ascii + "element vertex 1\n" + xyz + "element face 1\n" + faces + property +
-           "\nend_header\n0 0 0\n1 0 0\n";
   };
   const auto with_element = [&](const std::string& element) {
     return ascii + "element vertex 1\n" + xyz + "element face 1\n" + faces + element +
@@ -202,14 +319,11 @@ TEST(Ply, BrokenFilesStopWithTheirPlace) {
        {"edges without ends", with_element("element edge 1\nproperty int vertex1\nproperty float a\n"),
         "the element edge has no whole numbers vertex1"},
        {"property twice", with_vertex("property float x"), "has two properties 'x'"},
-       {"indices on vertices", with_vertex("property list uchar int neighbours"),
-        "the property 'neighbours' of the element vertex holds whole"},
-       {"indices on faces", with_face("property list uchar int edges"),
-        "the property 'edges' of the element face holds whole"},
-       {"indices elsewhere", with_element("element pairs 1\nproperty int a\nproperty int b\n"),
-        "the property 'a' of the element pairs holds whole"},
-       {"tristrips", with_element("element tristrips 1\nproperty list int int vertex_indices\n"),
-        ":9: triangle strips (the element tristrips) are not read"},
+       {"faces and strips", with_element("element tristrips 1\nproperty list int int vertex_indices\n"),
+        ":11: the header has the elements face and tristrips"},
+       {"strip without corners",
+        ascii + "element vertex 1\n" + xyz + "element tristrips 1\nproperty float a\nend_header\n0 0 0\n1\n",
+        "the element tristrips has no list vertex_indices"},
        {"10^12 vertices", ascii + "element vertex 1000000000000\n" + xyz,
         ":3: the number of vertex is 1000000000000"},
        {"negative vertices", ascii + "element vertex -1\n" + xyz, ":3: the number of vertex is -1"},

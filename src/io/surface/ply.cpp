@@ -124,12 +124,16 @@ bool elements_fit(const ply::Metadata& metadata, const Mesh& mesh) {
 std::vector<Table> tables_of_file(const ply::Metadata& metadata) {
   std::vector<Table> tables;
   Index cell = 0;
+  Index first_face = 0;
   for (const Element& element : metadata.elements) {
+    if (!element.why_left_out.empty()) continue;
     Table& table = tables.emplace_back(Table{element, {}, {}});
     if (element.role == Role::other) continue;
     table.items.resize(element.count);
     const bool cells = ply::holds_cells(element);
-    std::iota(table.items.begin(), table.items.end(), cells ? cell : 0);
+    if (element.role == Role::faces) first_face = cell;
+    const Index first = cells ? cell : element.role == Role::rows_of_faces ? first_face : 0;
+    std::iota(table.items.begin(), table.items.end(), first);
     if (cells) cell += element.count;
   }
   return tables;
@@ -188,10 +192,14 @@ class Columns {
 
   void collect() {
     for (const DataArray& array : mesh_.data) arrays_.emplace(array.name, &array);
-    for (const Property& property : table_.element.properties) add_known(property);
+    for (const Property& property : table_.element.properties) {
+      if (property.why_left_out.empty()) add_known(property);
+    }
+    if (table_.element.role == Role::rows_of_faces) return;
     for (const SurfaceVector* vector : {&kNormal, &kColor, &kTexture}) add_vector(*vector);
     for (const DataArray& array : mesh_.data) {
-      if (array.association == on_ && !is_used(array) && rows_inside(array) > 0) add_other(array);
+      const bool is_other = array.association == on_ && !is_used(array) && !is_of_rows(array);
+      if (is_other && rows_inside(array) > 0) add_other(array);
     }
   }
 
@@ -201,6 +209,15 @@ class Columns {
     if (array.is_dense()) return index_size(table_.items);
     return static_cast<Index>(
         std::count_if(array.indices.begin(), array.indices.end(), [&](Index row) { return is_item_[row]; }));
+  }
+
+  /// Whether an element of rows that go with the faces has the array.
+  [[nodiscard]] bool is_of_rows(const DataArray& array) const {
+    const auto* metadata = dynamic_cast<const ply::Metadata*>(mesh_.format_metadata.get());
+    return metadata != nullptr &&
+           std::any_of(metadata->elements.begin(), metadata->elements.end(), [&](const Element& element) {
+             return element.role == Role::rows_of_faces && array.name.starts_with(element.name + ".");
+           });
   }
 
   [[nodiscard]] bool is_used(const DataArray& array) const {
@@ -227,6 +244,8 @@ class Columns {
         return ply::coordinate_of(property) >= 0;
       case Role::edges:
         return ply::end_of(property) >= 0;
+      case Role::rows_of_faces:
+        return false;
       default:
         return ply::is_corner_list(property);
     }
@@ -235,8 +254,9 @@ class Columns {
   /// Adds a property that the file had, with the arrays of its name.
   void add_known(const Property& property) {
     Column column{property, {}};
+    if (property.numbers_rows) return add_column(std::move(column));
     if (is_geometry(property)) return add_column(widened(std::move(column)));
-    const auto [first, last] = arrays_.equal_range(property.name);
+    const auto [first, last] = arrays_.equal_range(ply::array_name(table_.element, property));
     for (auto found = first; found != last; ++found) {
       const DataArray& array = *found->second;
       const bool fits = array.association == on_ && rows_inside(array) > 0 &&
@@ -460,8 +480,10 @@ void write_item(NumberWriter& to, const Mesh& mesh, const Table& table, Index it
       to.coordinate(property.type.type, mesh.points[item][ply::coordinate_of(property)]);
     } else if (role == Role::edges && ply::end_of(property) >= 0) {
       to.number(property.type.type, mesh.cells[item][ply::end_of(property)]);
-    } else if (role != Role::vertices && role != Role::edges && ply::is_corner_list(property)) {
+    } else if (ply::holds_cells(table.element) && role != Role::edges && ply::is_corner_list(property)) {
       write_corners(to, property, mesh.cells[item]);
+    } else if (property.numbers_rows) {
+      to.number(property.type.type, item - table.items.front());
     } else {
       write_attached(to, column, item);
     }
@@ -475,6 +497,19 @@ bool ply_holds(const Mesh& mesh, Shape shape, int vertices) {
   if (vertices != corners(shape, 0)) return false;
   return dimension(shape) == 2 ||
          (mesh.format == "ply" && (dimension(shape) < 2 || shape == Shape::tetrahedron));
+}
+
+/// Notes what the reader did not understand.
+void note_left_out(const ply::Metadata& metadata, Notes& notes) {
+  for (const Element& element : metadata.elements) {
+    if (!element.why_left_out.empty())
+      notes.push_back(fmt::format("not written: the element '{}': {}", element.name, element.why_left_out));
+    for (const Property& property : element.properties) {
+      if (property.why_left_out.empty()) continue;
+      notes.push_back(fmt::format("not written: the property '{}' of the element {}, which {}", property.name,
+                                  element.name, property.why_left_out));
+    }
+  }
 }
 
 void note_losses(const Mesh& mesh, const std::set<const DataArray*>& written, Notes& notes) {
@@ -505,7 +540,11 @@ void write_ply(const Mesh& mesh, const FilePath& path, Notes& notes) {
   out.commit();
   if (to.rounded()) notes.emplace_back("coordinates are rounded to 32 bits, as the file has them");
   note_losses(mesh, written, notes);
-  if (!as_file) note_metadata_unsupported(mesh, "PLY", notes);
+  if (as_file) {
+    note_left_out(*metadata, notes);
+  } else {
+    note_metadata_unsupported(mesh, "PLY", notes);
+  }
 }
 
 }  // namespace

@@ -30,21 +30,31 @@ struct Property {
   TypeWord type;
   bool is_list = false;
   TypeWord count_type;  ///< of a list
+  std::string why_left_out =
+      {};                     ///< of a property of vertices or cells that is read and not kept; else empty
+  bool numbers_rows = false;  ///< of rows of the faces: it is the number of the face
 };
 
-/// Meaning of an element: vertices, a kind of cells, or other (kept verbatim).
-enum class Role : std::uint8_t { vertices, faces, edges, tetrahedra, other };
+/// Meaning of an element: vertices, a kind of cells, strips of triangles, rows that go with the faces, or
+/// other.
+enum class Role : std::uint8_t { vertices, faces, edges, tetrahedra, strips, rows_of_faces, other };
 
 struct Element {
   std::string name;
   Index count = 0;
   std::vector<Property> properties;
   Role role = Role::other;
-  std::string content;  ///< of others: the lines or bytes, verbatim
+  std::string content;            ///< of others: the lines or bytes, verbatim
+  std::string why_left_out = {};  ///< of others that are not written; else empty
 };
 
 inline bool holds_cells(const Element& element) {
-  return element.role != Role::vertices && element.role != Role::other;
+  return element.role != Role::vertices && element.role < Role::rows_of_faces;
+}
+
+/// Returns the name of the array of cells that has a property of rows that go with the faces.
+inline std::string array_name(const Element& element, const Property& property) {
+  return element.role == Role::rows_of_faces ? element.name + "." + property.name : property.name;
 }
 
 struct Metadata : FormatMetadata {
@@ -56,6 +66,10 @@ struct Metadata : FormatMetadata {
     std::vector<std::string> result;
     for (const Element& element : elements) {
       if (element.role == Role::other) result.push_back("the element '" + element.name + "'");
+      for (const Property& property : element.properties) {
+        if (!property.why_left_out.empty())
+          result.push_back("the property '" + property.name + "' of the element " + element.name);
+      }
     }
     return result;
   }

@@ -58,6 +58,8 @@ Role role_of(std::string_view name) {
   if (name == "vertex") return Role::vertices;
   if (name == "face") return Role::faces;
   if (name == "edge") return Role::edges;
+  if (name == "tristrips") return Role::strips;
+  if (name == "multi_texture_face") return Role::rows_of_faces;
   for (const std::string_view word : {"tetra", "tet", "tets", "tetrahedra", "tetrahedron"}) {
     if (name == word) return Role::tetrahedra;
   }
@@ -70,9 +72,6 @@ Element parse_element(const Scanner& scanner, std::string_view line) {
   const auto count = parse_integer<std::int64_t>(scanner, next_word(line), "the number of an element");
   element.count = scanner.checked_count(count, "the number of " + element.name, 1);
   element.role = role_of(element.name);
-  if (element.name == "tristrips") {
-    scanner.fail("triangle strips (the element tristrips) are not read", "convert them to faces");
-  }
   return element;
 }
 
@@ -99,6 +98,10 @@ bool could_be_indices(const Property& property) {
          property.type.type != Type::uint8;
 }
 
+bool has_part(std::string_view name, std::string_view part) {
+  return name.find(part) != std::string_view::npos;
+}
+
 bool has(const Element& element, auto&& predicate) {
   return std::any_of(element.properties.begin(), element.properties.end(), predicate);
 }
@@ -116,20 +119,50 @@ void check_cells_element(const Scanner& scanner, const Element& element) {
   }
 }
 
-/// Fails if a required property is missing, or an unknown one could refer to vertices or faces.
+/// Returns whether the name is like that of a number of a vertex or face: "vertex1", "face_index".
+bool sounds_like_index(const Property& property) {
+  if (!is_integer(property.type.type)) return false;
+  const std::string name = "_" + property.name;
+  return has_part(name, "_vert") || has_part(name, "_face") || has_part(name, "index") ||
+         has_part(name, "indices");
+}
+
+/// Finds out what would depend on the order of vertices or faces in a way that is not known: lists of whole
+/// numbers, and in other elements also numbers of that name, and rows as many as vertices or cells.
+///
+/// @param known  the elements of vertices and cells, by their numbers of rows
+void leave_out_dependent(Element& element, const std::map<Index, std::string>& known) {
+  constexpr std::string_view kWhole = "holds whole numbers, which could be those of vertices or faces";
+  if (element.role != Role::other) {
+    if (element.role == Role::rows_of_faces) return;
+    for (Property& property : element.properties) {
+      if (property.is_list && could_be_indices(property) && !is_corner_list(property))
+        property.why_left_out = kWhole;
+    }
+    return;
+  }
+  for (const std::string_view name : {"camera", "material", "multi_texture_vertex"}) {
+    if (element.name == name) return;
+  }
+  for (const Property& property : element.properties) {
+    if ((property.is_list && could_be_indices(property)) || sounds_like_index(property)) {
+      element.why_left_out = fmt::format("its property '{}' {}", property.name, kWhole);
+      return;
+    }
+  }
+  const auto same = known.find(element.count);
+  if (element.count < 2 || same == known.end()) return;
+  element.why_left_out =
+      fmt::format("it has as many rows as the element {}, to which they could belong", same->second);
+}
+
+/// Fails if a required property is missing.
 void check_element(const Scanner& scanner, const Element& element) {
   std::set<std::string_view> names;
   for (const Property& property : element.properties) {
     if (!names.insert(property.name).second) {
       scanner.fail("the element " + element.name + " has two properties '" + property.name + "'",
                    "names must differ");
-    }
-    const bool may_be_whole = element.role == Role::other ? element.name == "camera"
-                                                          : !property.is_list || is_corner_list(property);
-    if (could_be_indices(property) && !may_be_whole) {
-      scanner.fail("the property '" + property.name + "' of the element " + element.name +
-                       " holds whole numbers, which could be those of vertices or faces",
-                   "remove it from the file");
     }
   }
   if (element.properties.empty() && element.count > 0) {
@@ -141,7 +174,7 @@ void check_element(const Scanner& scanner, const Element& element) {
         scanner.fail("the element vertex lacks x, y or z", "vertices have three coordinates");
       }
     }
-  } else if (element.role != Role::other) {
+  } else if (holds_cells(element)) {
     check_cells_element(scanner, element);
   }
 }
@@ -158,11 +191,46 @@ void leave_header(Scanner& scanner) {
   }
 }
 
-void check_elements(const Scanner& scanner, const Metadata& header) {
-  const auto vertices = std::count_if(header.elements.begin(), header.elements.end(),
-                                      [](const Element& e) { return e.role == Role::vertices; });
-  if (vertices != 1) scanner.fail("the header has no element vertex, or several", "one is needed");
-  for (const Element& element : header.elements) check_element(scanner, element);
+/// Leaves the role to rows of the faces only where they follow the one element of as many faces.
+void check_rows_of_faces(Metadata& header) {
+  const Element* faces = nullptr;
+  Element* rows = nullptr;
+  bool fit = true;
+  for (Element& element : header.elements) {
+    if (element.role == Role::faces) {
+      fit = fit && faces == nullptr;
+      faces = &element;
+    } else if (element.role == Role::rows_of_faces) {
+      fit = fit && rows == nullptr && faces != nullptr && faces->count == element.count;
+      rows = &element;
+    }
+  }
+  for (Element& element : header.elements) {
+    if (element.role == Role::rows_of_faces && !fit) element.role = Role::other;
+  }
+}
+
+void check_elements(const Scanner& scanner, Metadata& header) {
+  const auto count = [&](Role role) {
+    return std::count_if(header.elements.begin(), header.elements.end(),
+                         [&](const Element& element) { return element.role == role; });
+  };
+  if (count(Role::vertices) != 1)
+    scanner.fail("the header has no element vertex, or several", "one is needed");
+  check_rows_of_faces(header);
+  if (count(Role::strips) > 0) {  // they become an element of that name
+    std::erase_if(header.elements, [](const Element& e) { return e.role == Role::faces && e.count == 0; });
+    if (count(Role::faces) > 0)
+      scanner.fail("the header has the elements face and tristrips", "convert the strips to faces");
+  }
+  std::map<Index, std::string> known;
+  for (const Element& element : header.elements) {
+    if (element.role != Role::other) known.try_emplace(element.count, element.name);
+  }
+  for (Element& element : header.elements) {
+    check_element(scanner, element);
+    leave_out_dependent(element, known);
+  }
 }
 
 void read_header(Scanner& scanner, Metadata& header) {
@@ -336,15 +404,17 @@ class Reader {
     }
   }
 
-  Mesh read() {
+  Mesh read(Notes& notes) {
     for (Element& element : header_->elements) {
       (void)body_.scanner.checked_count(element.count, "the number of " + element.name,
                                         min_bytes(element, body_));
+      const Index first_cell = mesh_.cell_count();
       if (element.role == Role::other) {
         read_other(element);
       } else {
         read_element(element);
       }
+      if (element.role == Role::strips) become_faces(element, first_cell, notes);
     }
     const bool more = !body_.binary ? !body_.scanner.at_end() : body_.scanner.bytes_left() > 0;
     if (more) body_.fail("unexpected data after the last element", "the numbers of elements may be wrong");
@@ -354,8 +424,11 @@ class Reader {
   }
 
  private:
-  void read_element(const Element& element) {
-    const Index first = element.role == Role::vertices ? 0 : mesh_.cell_count();
+  void read_element(Element& element) {
+    const Index first = element.role == Role::vertices        ? 0
+                        : element.role == Role::rows_of_faces ? first_face_
+                                                              : mesh_.cell_count();
+    if (element.role == Role::faces) first_face_ = first;
     if (element.role == Role::vertices) mesh_.points.resize(element.count);
     if (holds_cells(element) && cell_elements_ > 1 && element.count > 0) mesh_.cell_blocks.push_back(first);
     std::vector<Column> columns(element.properties.size());
@@ -367,9 +440,49 @@ class Reader {
       }
       if (element.role == Role::edges) mesh_.cells.push_back(Shape::line, ends_);
     }
+    if (element.role == Role::strips) return;
     for (std::size_t k = 0; k < columns.size(); ++k) {
-      add_arrays(element, element.properties[k], std::move(columns[k]), first);
+      Property& property = element.properties[k];
+      property.numbers_rows = element.role == Role::rows_of_faces && property.name == "tn" &&
+                              !property.is_list && counts_up(columns[k]);
+      if (property.why_left_out.empty() && !property.numbers_rows)
+        add_arrays(element, property, std::move(columns[k]), first);
     }
+  }
+
+  /// Whether the values are 0, 1, 2 …
+  static bool counts_up(const Column& column) {
+    return std::all_of(column.by_length.begin(), column.by_length.end(), [](const auto& part) {
+      return std::visit(
+          [](const auto& list) {
+            using T = typename std::decay_t<decltype(list)>::value_type;
+            if constexpr (std::is_integral_v<T>) {
+              for (std::size_t row = 0; row < list.size(); ++row) {
+                if (!std::cmp_equal(list[row], row)) return false;
+              }
+              return true;
+            } else {
+              return false;
+            }
+          },
+          part.second.values);
+    });
+  }
+
+  /// Gives the element of triangle strips the description of the triangles that they became.
+  void become_faces(Element& element, Index first_cell, Notes& notes) {
+    element.name = "face";
+    element.role = Role::faces;
+    element.count = mesh_.cell_count() - first_cell;
+    for (Property& property : element.properties) {
+      if (is_corner_list(property)) {
+        property.count_type = {"uchar", Type::uint8};
+      } else {
+        property.why_left_out = "belongs to whole strips";
+      }
+    }
+    notes.push_back(
+        fmt::format("the triangle strips became {} triangles, which are written as faces", element.count));
   }
 
   /// Reads a coordinate or vertices of a cell; returns false for every other property.
@@ -387,7 +500,8 @@ class Reader {
       if (end >= 0) ends_[end] = vertex(property);
       return end >= 0;
     }
-    if (!is_corner_list(property)) return false;
+    if (element.role == Role::rows_of_faces || !is_corner_list(property)) return false;
+    if (element.role == Role::strips) return read_strip(property);
     const Index length = body_.list_length(property);
     if (length == 0) body_.fail("a " + element.name + " without vertices", "at least one is needed");
     if (element.role == Role::tetrahedra && length != 4) {
@@ -400,13 +514,34 @@ class Reader {
     return true;
   }
 
+  /// Reads a strip, in which −1 begins a new one. Every second triangle of a strip is turned the other way.
+  bool read_strip(const Property& property) {
+    std::array<Index, 3> last{};
+    int known = 0;  // corners of the strip, of which three make a triangle
+    for (Index left = body_.list_length(property); left > 0; --left) {
+      const auto number = body_.number_as<std::int64_t>(property.type.type, "a vertex");
+      if (number == -1) {
+        known = 0;
+        continue;
+      }
+      last = {last[1], last[2], checked_vertex(number)};
+      if (++known < 3 || last[0] == last[1] || last[1] == last[2] || last[0] == last[2]) continue;
+      const bool is_turned = known % 2 == 0;
+      mesh_.cells.push_back(Shape::triangle, is_turned ? std::array{last[1], last[0], last[2]} : last);
+    }
+    return true;
+  }
+
   static Shape face_shape(Index vertices) {
     constexpr std::array kShapesOf{Shape::vertex, Shape::line, Shape::triangle, Shape::quad};
     return vertices <= 4 ? kShapesOf[vertices - 1] : Shape::polygon;
   }
 
   Index vertex(const Property& property) {
-    const auto index = body_.number_as<std::int64_t>(property.type.type, "a vertex");
+    return checked_vertex(body_.number_as<std::int64_t>(property.type.type, "a vertex"));
+  }
+
+  [[nodiscard]] Index checked_vertex(std::int64_t index) const {
     if (index < 0 || index >= vertex_count_) {
       body_.fail("vertex " + std::to_string(index) + " does not exist",
                  "there are " + std::to_string(vertex_count_) + ", counted from 0");
@@ -425,7 +560,8 @@ class Reader {
         for (Index i = 0; i < element.count; ++i) rows.push_back(first + i);
       }
       if (all && index_size(rows) == element.count) rows.clear();
-      mesh_.data.push_back({property.name, association, length, std::move(part.values), std::move(rows), {}});
+      mesh_.data.push_back(
+          {array_name(element, property), association, length, std::move(part.values), std::move(rows), {}});
     }
   }
 
@@ -502,12 +638,13 @@ class Reader {
   Mesh mesh_;
   Index vertex_count_ = 0;
   int cell_elements_ = 0;
+  Index first_face_ = 0;
   std::array<Index, 2> ends_{};
   std::vector<Index> corners_;
 };
 
 }  // namespace
 
-Mesh read(const FilePath& path, Notes&) { return Reader(path).read(); }
+Mesh read(const FilePath& path, Notes& notes) { return Reader(path).read(notes); }
 
 }  // namespace meshorder::ply
