@@ -220,18 +220,14 @@ class Columns {
            });
   }
 
-  [[nodiscard]] bool is_used(const DataArray& array) const {
-    return used_.contains(&array);
-  }
+  [[nodiscard]] bool is_used(const DataArray& array) const { return used_.contains(&array); }
 
   void use(const DataArray& array) {
     used_.insert(&array);
     written_.insert(&array);
   }
 
-  [[nodiscard]] bool is_taken(const std::string& name) const {
-    return names_.contains(name);
-  }
+  [[nodiscard]] bool is_taken(const std::string& name) const { return names_.contains(name); }
 
   void add_column(Column column) {
     names_.insert(column.property.name);

@@ -76,6 +76,7 @@ constexpr std::array kTypes{
     CellType{kPixel, "VTK_PIXEL", Shape::quad, 4, {{{2, 3}}}},
     CellType{kVoxel, "VTK_VOXEL", Shape::hexahedron, 8, {{{2, 3}, {6, 7}}}},
     CellType{36, "VTK_QUADRATIC_POLYGON", Shape::polygon, -3},
+    CellType{kPolyhedron, "VTK_POLYHEDRON", Shape::polyhedron, -1},
     CellType{60, "VTK_HIGHER_ORDER_EDGE", Shape::line, -2},
     CellType{61, "VTK_HIGHER_ORDER_TRIANGLE", Shape::triangle, -3},
     CellType{62, "VTK_HIGHER_ORDER_QUAD", Shape::quad, -4},
@@ -175,10 +176,6 @@ bool wedges_face_inward(const std::vector<Point>& points, const FileCells& cells
 
 InputError unknown_type(int number, Index cell, const ErrorAt& error) {
   std::string what = "cell " + std::to_string(cell) + " (counted from 0) ";
-  if (number == 42) {
-    return error(what + "is a polyhedron (VTK_POLYHEDRON)",
-                 "cut polyhedra into tetrahedra first, in ParaView by Tetrahedralize and Save Data");
-  }
   if (number == 0) {
     what += "is empty (VTK_EMPTY_CELL)";
   } else {
@@ -189,7 +186,7 @@ InputError unknown_type(int number, Index cell, const ErrorAt& error) {
 
 }  // namespace
 
-bool take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes) {
+bool take_cells(Mesh& mesh, FileCells& cells, const ErrorAt& error, Notes& notes) {
   std::array<const CellType*, 256> known{};
   for (const CellType& type : kTypes) known[static_cast<std::size_t>(type.number)] = &type;
 
@@ -226,6 +223,14 @@ bool take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes)
   }
   mesh.cells.offsets = std::move(cells.offsets);
   mesh.cells.vertices = std::move(cells.vertices);
+  const Index unfit = first_unfit_polyhedron(mesh.cells, cells.types, cells.polyhedra, mesh.vertex_count());
+  if (unfit >= 0) {
+    const std::string what = "cell " + std::to_string(unfit) + " (counted from 0) is a polyhedron ";
+    if (cells.polyhedra.empty())
+      throw error(what + "without faces", ".vtu and legacy .vtk files of polyhedra are read");
+    throw error(what + "whose faces are not on its points",
+                "the points of a polyhedron are the corners of its faces");
+  }
   if (converted > 0) {
     notes.push_back(std::to_string(converted) +
                     " cells of type VTK_PIXEL or VTK_VOXEL became quads and hexahedra");
@@ -242,9 +247,35 @@ bool take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes)
   return inward_wedges;
 }
 
+Index first_unfit_polyhedron(const Cells& cells, const std::vector<std::uint8_t>& types,
+                             const Polyhedra& polyhedra, Index vertex_count) {
+  const auto first = std::find(types.begin(), types.end(), kPolyhedron);
+  if (first == types.end()) return -1;
+  if (Offset{cells.size()} + 1 != std::ssize(polyhedra.starts))
+    return static_cast<Index>(first - types.begin());
+  std::vector<Index> cell_of_vertex(static_cast<std::size_t>(vertex_count), -1);
+  for (Index c = 0; c < cells.size(); ++c) {
+    if (types[c] != kPolyhedron) continue;
+    if (!are_faces(polyhedra[c])) return c;
+    for (const Index vertex : cells[c]) cell_of_vertex[vertex] = c;
+    bool fit = true;
+    for_faces(polyhedra[c], [&](std::span<const Index> corners) {
+      for (const Index corner : corners) {
+        fit = fit && corner >= 0 && corner < vertex_count && cell_of_vertex[corner] == c;
+      }
+    });
+    if (!fit) return c;
+  }
+  return -1;
+}
+
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
   const CellType* const type = default_type(shape, vertices);
   if (type == nullptr) return false;
+  if (type->number == kPolyhedron) {
+    const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+    return own != nullptr && !own->polyhedra.empty();
+  }
   const bool lagrange = type->number >= kFirstLagrange && type->number <= kLastLagrange;
   if (!lagrange || is_from_vtk(mesh)) return true;
   return kept_types(mesh) != nullptr;  // which Lagrange type it is, is known then
@@ -307,6 +338,17 @@ const Cells& WriteContext::cells(bool old_hexahedra) {
     swap_vertices(*type, changed_[c].data());
   }
   if (old_hexahedra) swap_hexahedron_edges(mesh, types, changed_);
+  return changed_;
+}
+
+const Cells& WriteContext::cells_with_faces(bool old_hexahedra) {
+  const Cells& plain = cells(old_hexahedra);
+  if (metadata.polyhedra.empty()) return plain;
+  Cells result;
+  for (Index c = 0; c < plain.size(); ++c) {
+    result.push_back(plain.shapes[c], types[c] == kPolyhedron ? metadata.polyhedra[c] : plain[c]);
+  }
+  changed_ = std::move(result);
   return changed_;
 }
 

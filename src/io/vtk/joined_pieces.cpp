@@ -161,7 +161,7 @@ class PieceJoiner {
       const auto place = static_cast<std::size_t>(row);
       if (!is_ghost[place] || is_used[place]) rows.push_back(row);
     }
-    std::vector<Index> new_numbers(is_ghost.size(), -1);
+    new_points_.assign(is_ghost.size(), -1);
     const std::vector<std::int64_t> ids = ids_of(Association::vertices);
     if (ids.empty()) {
       notes_.emplace_back(
@@ -181,9 +181,9 @@ class PieceJoiner {
       } else {
         kept.push_back(row);
       }
-      new_numbers[static_cast<std::size_t>(row)] = index_size(kept) - 1;
+      new_points_[static_cast<std::size_t>(row)] = index_size(kept) - 1;
     }
-    for (Index& vertex : pieces_.cells.vertices) vertex = new_numbers[static_cast<std::size_t>(vertex)];
+    for (Index& vertex : pieces_.cells.vertices) vertex = new_points_[static_cast<std::size_t>(vertex)];
     return kept;
   }
 
@@ -191,6 +191,10 @@ class PieceJoiner {
   void take_cells_of(const RowsKept& rows) {
     const FileCells all = std::move(pieces_.cells);
     FileCells& cells = pieces_.cells = {};
+    std::vector<Index> new_cells(all.types.size(), -1);
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      new_cells[static_cast<std::size_t>(rows[k])] = static_cast<Index>(k);
+    cells.polyhedra = all.polyhedra.moved(new_points_, new_cells);
     cells.types.reserve(rows.size());
     for (const Index row : rows) {
       cells.types.push_back(all.types[row]);
@@ -221,6 +225,7 @@ class PieceJoiner {
   const Pieces& pieces_;
   const ErrorAt& error_;
   Notes& notes_;
+  std::vector<Index> new_points_;  // of all points; −1 for those that go
 };
 
 }  // namespace

@@ -79,7 +79,8 @@ class LegacyWriter {
       : from_(mesh, notes, NamePlace::legacy),
         layout_(from_.metadata.legacy.value_or(LegacyLayout{})),
         out_(path) {
-    for (const ArrayRole& role : from_.metadata.roles) roles_.try_emplace({role.association, role.array}, &role);
+    for (const ArrayRole& role : from_.metadata.roles)
+      roles_.try_emplace({role.association, role.array}, &role);
   }
 
   void write() {
@@ -99,8 +100,9 @@ class LegacyWriter {
 
  private:
   void choose_layout() {
-    const std::int64_t numbers =
-        from_.mesh.cell_count() + static_cast<std::int64_t>(from_.mesh.cells.vertices.size());
+    const auto numbers =
+        from_.mesh.cell_count() +
+        static_cast<std::int64_t>(from_.mesh.cells.vertices.size() + from_.metadata.polyhedra.numbers.size());
     if (numbers > kMaxIndex) layout_.version = "5.1";  // older versions count with 32 bits
     offsets_ = layout_.version.front() == '5';
     layout_.polydata = layout_.polydata && fits_polydata(from_.mesh.cells, from_.types);
@@ -265,8 +267,8 @@ class LegacyWriter {
   void write_cells() {
     // VTK numbered the nodes of some hexahedra differently before version 5.1
     const Cells& cells =
-        from_.cells(layout_.version != "5.1" &&
-                    std::any_of(from_.types.begin(), from_.types.end(), is_higher_order_hexahedron));
+        from_.cells_with_faces(layout_.version != "5.1" && std::any_of(from_.types.begin(), from_.types.end(),
+                                                                       is_higher_order_hexahedron));
     if (!layout_.polydata) {
       write_section("CELLS", cells, 0, cells.size());
       out_.print("CELL_TYPES {}\n", from_.types.size());

@@ -198,14 +198,19 @@ class LegacyReader {
     return has_points_ ? mesh_.vertex_count() : std::int64_t{kMaxIndex};
   }
 
-  [[nodiscard]] Index checked_vertex(std::int64_t vertex, std::int64_t cell) const {
-    if (vertex < 0 || vertex >= point_limit()) fail_at_vertex(vertex, cell);
+  Index checked_vertex(std::int64_t vertex, std::int64_t cell) {
+    if (vertex < 0 || vertex >= point_limit()) keep_fault_at_vertex(vertex, cell);
     return static_cast<Index>(vertex);
   }
 
-  [[noreturn]] void fail_at_vertex(std::int64_t vertex, std::int64_t cell) const {
-    in_.fail("cell " + std::to_string(cell) + " (counted from 0) names the point " + std::to_string(vertex),
-             "points run from 0 to " + std::to_string(point_limit() - 1));
+  /// Keeps the first fault: the numbers of a polyhedron are not all points, and types come later.
+  void keep_fault_at_vertex(std::int64_t vertex, std::int64_t cell) {
+    if (vertex_fault_) return;
+    vertex_fault_ = InputError(
+        Location{in_.scanner.file(), in_.binary ? 0 : in_.scanner.line(),
+                 in_.binary ? in_.scanner.byte() : -1},
+        "cell " + std::to_string(cell) + " (counted from 0) names the point " + std::to_string(vertex),
+        "points run from 0 to " + std::to_string(point_limit() - 1));
   }
 
   /// Reads cells as from version 5 on: offsets, then vertices.
@@ -254,7 +259,7 @@ class LegacyReader {
             const auto cell = std::upper_bound(cells.offsets.begin(), cells.offsets.end(),
                                                static_cast<Offset>(wrong - numbers.begin())) -
                               cells.offsets.begin() - 1;
-            fail_at_vertex(std::in_range<Index>(*wrong) ? static_cast<std::int64_t>(*wrong) : -1, cell);
+            keep_fault_at_vertex(std::in_range<Index>(*wrong) ? static_cast<std::int64_t>(*wrong) : -1, cell);
           } else {
             throw in_.section_error(cells_line_, "the CONNECTIVITY of " + key + " is not a list of integers",
                                     "an integer type is needed");
@@ -387,8 +392,9 @@ class LegacyReader {
                                   std::to_string(all.offsets.size() - 1) + " cells",
                               "each cell has one");
     }
+    take_faces(all);
     for (const Index vertex : all.vertices) {
-      if (vertex >= mesh_.vertex_count())
+      if (vertex < 0 || vertex >= mesh_.vertex_count())
         throw in_.section_error(cells_line_, "a cell names the point " + std::to_string(vertex),
                                 "points run from 0 to " + std::to_string(mesh_.vertex_count() - 1));
     }
@@ -396,17 +402,64 @@ class LegacyReader {
                            std::any_of(all.types.begin(), all.types.end(), is_higher_order_hexahedron);
     const std::vector<std::uint8_t> types = old_order ? all.types : std::vector<std::uint8_t>{};
     metadata_->inward_wedges = take_cells(
-        mesh_, std::move(all),
+        mesh_, all,
         [&](const std::string& what, const std::string& remedy) {
           return in_.section_error(types_line_, what, remedy);
         },
         in_.notes);
+    metadata_->polyhedra = std::move(all.polyhedra);
     if (old_order) swap_hexahedron_edges(mesh_, types, mesh_.cells);
 
     layout_.binary = in_.binary;
     metadata_->facts = std::move(in_.facts);
     metadata_->legacy = std::move(layout_);
     mesh_.format_metadata = metadata_;
+  }
+
+  /// Gives polyhedra, whose numbers are those of their faces, their points, each at its first appearance.
+  void take_faces(FileCells& all) {
+    if (std::find(all.types.begin(), all.types.end(), kPolyhedron) == all.types.end()) {
+      if (vertex_fault_) throw InputError(*vertex_fault_);
+      return;
+    }
+    FileCells taken;
+    taken.vertices.reserve(all.vertices.size());
+    taken.polyhedra.starts.push_back(0);
+    std::vector<Index> cell_of_point(mesh_.points.size(), -1);
+    for (std::size_t c = 0; c < all.types.size(); ++c) {
+      const std::span<const Index> numbers(all.vertices.data() + all.offsets[c],
+                                           all.vertices.data() + all.offsets[c + 1]);
+      if (all.types[c] == kPolyhedron) {
+        take_polyhedron(static_cast<Index>(c), numbers, cell_of_point, taken);
+      } else {
+        taken.vertices.insert(taken.vertices.end(), numbers.begin(), numbers.end());
+      }
+      taken.offsets.push_back(static_cast<Offset>(taken.vertices.size()));
+      taken.polyhedra.starts.push_back(static_cast<Offset>(taken.polyhedra.numbers.size()));
+    }
+    taken.types = std::move(all.types);
+    all = std::move(taken);
+  }
+
+  void take_polyhedron(Index cell, std::span<const Index> numbers, std::vector<Index>& cell_of_point,
+                       FileCells& taken) const {
+    const std::string what = "cell " + std::to_string(cell) + " (counted from 0), a polyhedron, ";
+    if (!are_faces(numbers)) {
+      throw in_.section_error(
+          cells_line_, what + "has faces that do not fit its " + std::to_string(numbers.size()) + " numbers",
+          "the number of its faces is needed, then of each face the number of its corners and these");
+    }
+    for_faces(numbers, [&](std::span<const Index> corners) {
+      for (const Index corner : corners) {
+        if (corner < 0 || corner >= mesh_.vertex_count()) {
+          throw in_.section_error(cells_line_, what + "names the point " + std::to_string(corner),
+                                  "points run from 0 to " + std::to_string(mesh_.vertex_count() - 1));
+        }
+        if (cell_of_point[corner] != cell) taken.vertices.push_back(corner);
+        cell_of_point[corner] = cell;
+      }
+    });
+    taken.polyhedra.numbers.insert(taken.polyhedra.numbers.end(), numbers.begin(), numbers.end());
   }
 
   /// Returns the cells of all sections of a POLYDATA file; each section is a block.
@@ -452,6 +505,7 @@ class LegacyReader {
   std::array<FileCells, 4> sections_;  // an unstructured grid has the first alone
   std::int64_t cells_line_ = 0;
   std::int64_t types_line_ = 0;
+  std::optional<InputError> vertex_fault_;
   std::optional<Association> on_;  // the owner of the arrays that follow
 };
 

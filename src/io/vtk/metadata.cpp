@@ -3,6 +3,7 @@
 #include "io/labels.hpp"
 #include "io/unsupported.hpp"
 #include "io/vtk/vtk.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -121,6 +122,14 @@ std::vector<std::string> Metadata::contents() const {
   return result;
 }
 
+std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> new_vertices,
+                                                      std::span<const Index> new_cells) const {
+  if (polyhedra.empty()) return nullptr;
+  auto result = std::make_shared<Metadata>(*this);
+  result->polyhedra = polyhedra.moved(new_vertices, new_cells);
+  return result;
+}
+
 const ArrayFacts* find_facts(const Metadata& metadata, std::optional<Association> association,
                              std::string_view array) {
   const auto found = metadata.facts.find({association, std::string(array)});
@@ -173,6 +182,11 @@ bool is_from_vtk(const Mesh& mesh) {
 
 WriteContext::WriteContext(const Mesh& written, Notes& warnings, NamePlace names)
     : mesh(written), notes(warnings), metadata(metadata_of(mesh, notes)), types(cell_types(mesh)) {
+  const Index unfit = first_unfit_polyhedron(mesh.cells, types, metadata.polyhedra, mesh.vertex_count());
+  if (unfit >= 0) {
+    throw InvalidArgument("mesh: the faces of cell " + std::to_string(unfit) +
+                          ", a polyhedron, are not on its vertices");
+  }
   collect_arrays(names);
 }
 

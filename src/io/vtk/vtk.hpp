@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/format.hpp"
+#include "io/vtk/polyhedra.hpp"
 #include "io/vtu.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/mesh.hpp>
@@ -154,8 +155,11 @@ struct Metadata : FormatMetadata {
   bool inward_wedges = false;  ///< linear wedges in the order of VTK 9.7, see take_cells
   std::optional<VtuEncoding> vtu;
   std::optional<LegacyLayout> legacy;
+  Polyhedra polyhedra;
 
   [[nodiscard]] std::vector<std::string> contents() const override;
+  [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> new_vertices,
+                                                            std::span<const Index> new_cells) const override;
 };
 
 /// Returns the facts of an array, or nullptr. O(log facts).
@@ -173,6 +177,7 @@ struct FileCells {
   std::vector<std::uint8_t> types;
   std::vector<Offset> offsets{0};
   std::vector<Index> vertices;
+  Polyhedra polyhedra;
 };
 
 /// Makes the Error for a fault of the cell types: (what, remedy).
@@ -180,22 +185,28 @@ using ErrorAt = std::function<InputError(const std::string&, const std::string&)
 
 /// Gives `mesh` these cells, with their vertices in the order of a Mesh. Pixels and voxels become quads and
 /// hexahedra (noted); type numbers that shape and vertices do not determine are kept as the array kCellTypes.
-/// Throws `error` for types without a Shape and for cells with a wrong number of vertices. O(vertex entries).
+/// Throws `error` for types without a Shape, for cells with a wrong number of vertices and for polyhedra
+/// without faces on their vertices. Leaves nothing but the polyhedra in `cells`. O(vertex entries).
 ///
 /// The first triangle of a linear wedge faced outward up to VTK 9.6 and faces inward since, and files do not
 /// say which: the volumes of the file's cells at the mesh's points decide. Returns whether it faces inward,
 /// as in a Mesh.
-bool take_cells(Mesh& mesh, FileCells cells, const ErrorAt& error, Notes& notes);
+bool take_cells(Mesh& mesh, FileCells& cells, const ErrorAt& error, Notes& notes);
 
 /// Returns whether the mesh was read from one of VTK's formats.
 bool is_from_vtk(const Mesh& mesh);
 
 /// Returns whether VTK has a type for these cells. Node orders above second order are known for meshes from
-/// VTK only.
+/// VTK only, and so are the faces of polyhedra.
 bool holds(const Mesh& mesh, Shape shape, int vertices);
 
 /// Returns VTK's type number of every cell; VTK `holds` them.
 std::vector<std::uint8_t> cell_types(const Mesh& mesh);
+
+/// Returns the first polyhedron among the cells that has no faces, or one with a corner that is none of its
+/// vertices; −1 if there is none. O(vertex entries + numbers of the faces).
+Index first_unfit_polyhedron(const Cells& cells, const std::vector<std::uint8_t>& types,
+                             const Polyhedra& polyhedra, Index vertex_count);
 
 /// Returns true for higher-order hexahedra, whose nodes VTK numbered differently before VTK 9 (files before
 /// XML version 2.1 and legacy version 5.1).
@@ -238,12 +249,16 @@ std::string name_in_hdf5(std::string name);
 /// VTK's formats hold full arrays only: partial arrays are filled up, sets become arrays "set:NAME" and ids
 /// arrays "vertex_id" and "cell_id"; all of it noted. O(size of the arrays that are made).
 struct WriteContext {
-  /// Of a mesh whose cells VTK's formats hold.
+  /// Of a mesh whose cells VTK's formats hold. Throws InvalidArgument where the faces of polyhedra, which the
+  /// metadata keep, are not on their vertices: somebody changed the mesh.
   WriteContext(const Mesh& written, Notes& warnings, NamePlace names);
 
   /// Returns the cells in VTK's order of vertices; of VTK before version 9 if `old_hexahedra`. The result
   /// belongs to the mesh or to this object.
   const Cells& cells(bool old_hexahedra = false);
+  /// Returns the cells as above, but with the faces of polyhedra instead of their vertices, as legacy files
+  /// have them. The result belongs to the mesh or to this object.
+  const Cells& cells_with_faces(bool old_hexahedra);
 
   /// Returns the array that is written with that role, null if there is none.
   [[nodiscard]] const ArrayRole* role(Association association, Role role) const;

@@ -201,7 +201,48 @@ class VtuWriter {
     result[0].tag = fmt::format("<DataArray type=\"{}\" Name=\"connectivity\"", type);
     result[1].tag = fmt::format("<DataArray type=\"{}\" Name=\"offsets\"", type);
     result[2].tag = "<DataArray type=\"UInt8\" Name=\"types\"";
+    if (from_.metadata.polyhedra.are_by_face) {
+      add_polyhedra_by_face(result);
+    } else if (!from_.metadata.polyhedra.empty()) {
+      add_streams_of_faces(result);
+    }
     return result;
+  }
+
+  static Array integers(std::string_view name, std::span<const std::int64_t> numbers) {
+    Array array;
+    array.tag = fmt::format("<DataArray type=\"Int64\" Name=\"{}\"", name);
+    array.numbers = numbers;
+    return array;
+  }
+
+  /// Adds the faces of polyhedra as VTK wrote them up to 9.3.
+  void add_streams_of_faces(std::vector<Array>& cells) {
+    const Polyhedra& polyhedra = from_.metadata.polyhedra;
+    for (Index c = 0; c < from_.mesh.cell_count(); ++c) {
+      face_numbers_[1].push_back(from_.types[c] == kPolyhedron ? polyhedra.starts[c + 1] : -1);
+    }
+    Array& faces = cells.emplace_back();
+    faces.tag = "<DataArray type=\"Int32\" Name=\"faces\"";
+    faces.numbers = std::span<const std::int32_t>(polyhedra.numbers);
+    cells.push_back(integers("faceoffsets", face_numbers_[1]));
+  }
+
+  /// Adds them as VTK does since, with the faces of each polyhedron for itself.
+  void add_polyhedra_by_face(std::vector<Array>& cells) {
+    auto& [corners, corner_ends, faces, face_ends] = face_numbers_;
+    for (Index c = 0; c < from_.mesh.cell_count(); ++c) {
+      for_faces(from_.metadata.polyhedra[c], [&](std::span<const Index> face) {
+        corners.insert(corners.end(), face.begin(), face.end());
+        corner_ends.push_back(std::ssize(corners));
+        faces.push_back(std::ssize(faces));
+      });
+      face_ends.push_back(std::ssize(faces));
+    }
+    cells.push_back(integers("face_connectivity", corners));
+    cells.push_back(integers("face_offsets", corner_ends));
+    cells.push_back(integers("polyhedron_to_faces", faces));
+    cells.push_back(integers("polyhedron_offsets", face_ends));
   }
 
   // ---- bytes
@@ -336,14 +377,15 @@ class VtuWriter {
   }
 
   void write_header() {
-    // 2.1 and later imply VTK 9's order of nodes, 1.0 and later allow wide headers
+    // 2.3 and later have polyhedra by face, 2.1 and later VTK 9's order of nodes, 1.0 and later wide headers
     const bool order = std::any_of(from_.types.begin(), from_.types.end(), is_higher_order_hexahedron);
     out_.print(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"{}\" byte_order=\"{}\" "
         "header_type=\"{}\"",
-        order                    ? "2.2"
-        : encoding_.wide_headers ? "1.0"
-                                 : "0.1",
+        from_.metadata.polyhedra.are_by_face ? "2.3"
+        : order                              ? "2.2"
+        : encoding_.wide_headers             ? "1.0"
+                                             : "0.1",
         encoding_.order == std::endian::big ? "BigEndian" : "LittleEndian",
         encoding_.wide_headers ? "UInt64" : "UInt32");
     if (encoding_.compressor != Compressor::none)
@@ -401,6 +443,7 @@ class VtuWriter {
   std::vector<float> float_points_;
   std::vector<std::int32_t> ends_;
   std::vector<std::int64_t> wide_vertices_;
+  std::array<std::vector<std::int64_t>, 4> face_numbers_;  ///< of polyhedra
 };
 
 }  // namespace

@@ -68,6 +68,8 @@ class VtuDocument {
   /// Returns the `count` values of an array in its number type. Throws Error if there are more or fewer;
   /// allocates no more than the size of the file allows.
   [[nodiscard]] Values values(const VtuElement& array, std::int64_t count) const;
+  /// Returns the number of values that an array of numbers has. O(its text, or its bytes in base64).
+  [[nodiscard]] std::int64_t value_count(const VtuElement& array) const;
   /// Returns how that array is stored.
   [[nodiscard]] VtuEncoding::Mode mode(const VtuElement& array) const;
 
@@ -79,6 +81,7 @@ class VtuDocument {
   void read_root();
   std::size_t parse_tag(std::size_t at, VtuElement& element, bool& closed) const;
   void begin_appended(const VtuElement& element, std::size_t end);
+  [[nodiscard]] Values no_values(const VtuElement& array) const;
   template <class Number>
   std::vector<Number> numbers(const VtuElement& array, std::int64_t count) const;
   template <class Number>

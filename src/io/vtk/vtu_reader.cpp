@@ -209,15 +209,22 @@ class VtuReader {
     return array.attribute("NumberOfComponents") == nullptr ? 1 : file_->count(array, "NumberOfComponents");
   }
 
-  [[nodiscard]] const VtuElement& cell_array(const VtuElement& cells, std::string_view name) const {
+  /// Returns the array of that name, null if there is none.
+  [[nodiscard]] static const VtuElement* find_cell_array(const VtuElement& cells, std::string_view name) {
     const auto found =
         std::find_if(cells.children.begin(), cells.children.end(), [&](const VtuElement& element) {
           const std::string* own = element.attribute("Name");
           return is_array(element) && own != nullptr && *own == name;
         });
-    if (found == cells.children.end())
-      throw file_->error(cells, fmt::format("the array {} is missing in <Cells>", name),
-                         "connectivity, offsets and types are needed");
+    return found == cells.children.end() ? nullptr : &*found;
+  }
+
+  [[nodiscard]] const VtuElement& cell_array(
+      const VtuElement& cells, std::string_view name,
+      const char* needed = "connectivity, offsets and types are needed") const {
+    const VtuElement* const found = find_cell_array(cells, name);
+    if (found == nullptr)
+      throw file_->error(cells, fmt::format("the array {} is missing in <Cells>", name), needed);
     refuse_time_steps(*found);
     return *found;
   }
@@ -228,29 +235,8 @@ class VtuReader {
     if (cells == nullptr) throw file_->error(piece, "<Cells> is missing", "each piece has its cells");
     types_ = &cell_array(*cells, "types");
 
-    // where each cell ends
-    const VtuElement& offsets = cell_array(*cells, "offsets");
-    const Offset first_entry = cells_.offsets.back();
-    Offset last = 0;
-    append_integers(offsets, count, cells_.offsets, [&](std::int64_t c, auto end) {
-      if (!std::in_range<Offset>(end) || std::cmp_less(end, last)) {
-        throw file_->error(
-            offsets, fmt::format("cell {} (counted from 0) ends at {}, before it begins at {}", c, end, last),
-            "offsets must ascend");
-      }
-      last = static_cast<Offset>(end);
-      return first_entry + last;
-    });
-
-    const VtuElement& connectivity = cell_array(*cells, "connectivity");
-    const Index points = mesh_.vertex_count() - first_point;
-    append_integers(connectivity, last, cells_.vertices, [&](std::int64_t, auto point) {
-      if (std::cmp_less(point, 0) || std::cmp_greater_equal(point, points)) {
-        throw file_->error(connectivity, fmt::format("a cell names the point {}", point),
-                           fmt::format("the piece has points 0 to {}", points - 1));
-      }
-      return first_point + static_cast<Index>(point);
-    });
+    const Offset last = append_ends(cell_array(*cells, "offsets"), count, "cell", cells_.offsets);
+    append_points(cell_array(*cells, "connectivity"), last, first_point, cells_.vertices);
 
     append_integers(*types_, count, cells_.types, [&](std::int64_t c, auto type) {
       if (std::cmp_less(type, 0) || std::cmp_greater(type, 255)) {
@@ -259,6 +245,154 @@ class VtuReader {
       }
       return static_cast<std::uint8_t>(type);
     });
+    read_polyhedra(*cells, count, first_point);
+  }
+
+  /// Appends where each of `count` things ends, counted on from the last entry of `ends`; returns the last.
+  Offset append_ends(const VtuElement& array, std::int64_t count, const char* thing,
+                     std::vector<Offset>& ends) {
+    const Offset first = ends.back();
+    Offset last = 0;
+    append_integers(array, count, ends, [&](std::int64_t k, auto end) {
+      if (!std::in_range<Offset>(end) || std::cmp_less(end, last)) {
+        throw file_->error(
+            array,
+            fmt::format("{} {} (counted from 0) ends at {}, before it begins at {}", thing, k, end, last),
+            "offsets must ascend");
+      }
+      last = static_cast<Offset>(end);
+      return first + last;
+    });
+    return last;
+  }
+
+  void append_points(const VtuElement& array, std::int64_t count, Index first_point,
+                     std::vector<Index>& target) {
+    const Index points = mesh_.vertex_count() - first_point;
+    append_integers(array, count, target, [&](std::int64_t, auto point) {
+      if (std::cmp_less(point, 0) || std::cmp_greater_equal(point, points)) {
+        throw file_->error(array, fmt::format("a cell names the point {}", point),
+                           fmt::format("the piece has points 0 to {}", points - 1));
+      }
+      return first_point + static_cast<Index>(point);
+    });
+  }
+
+  // ---- polyhedra
+
+  void read_polyhedra(const VtuElement& cells, std::int64_t count, Index first_point) {
+    Polyhedra& polyhedra = cells_.polyhedra;
+    const auto first_cell = static_cast<std::int64_t>(cells_.types.size()) - count;
+    const bool any =
+        std::find(cells_.types.begin() + first_cell, cells_.types.end(), kPolyhedron) != cells_.types.end();
+    if (!any && polyhedra.empty()) return;
+    if (polyhedra.empty()) polyhedra.starts.assign(static_cast<std::size_t>(first_cell) + 1, 0);
+    if (!any) {
+      polyhedra.starts.resize(cells_.types.size() + 1, polyhedra.starts.back());
+    } else if (find_cell_array(cells, "polyhedron_to_faces") != nullptr) {
+      polyhedra.are_by_face = true;
+      read_polyhedra_by_face(cells, count, first_cell, first_point);
+    } else {
+      read_streams_of_faces(cells, count, first_cell, first_point);
+    }
+  }
+
+  /// Reads polyhedra as VTK wrote them up to 9.3: the numbers of Polyhedra, and where those of each cell end;
+  /// −1 for other cells.
+  void read_streams_of_faces(const VtuElement& cells, std::int64_t count, std::int64_t first_cell,
+                             Index first_point) {
+    constexpr const char* kNeeded = "polyhedra have faces and faceoffsets";
+    const VtuElement& offsets = cell_array(cells, "faceoffsets", kNeeded);
+    const VtuElement& faces = cell_array(cells, "faces", kNeeded);
+    Polyhedra& polyhedra = cells_.polyhedra;
+    const Offset first = polyhedra.starts.back();
+    Offset last = 0;
+    append_integers(offsets, count, polyhedra.starts, [&](std::int64_t c, auto end) {
+      if (cells_.types[static_cast<std::size_t>(first_cell + c)] != kPolyhedron) return first + last;
+      if (!std::in_range<Offset>(end) || std::cmp_less_equal(end, last)) {
+        throw file_->error(
+            offsets, fmt::format("the faces of cell {} (counted from 0), a polyhedron, end at {}", c, end),
+            fmt::format("more than {} is needed, where they begin", last));
+      }
+      last = static_cast<Offset>(end);
+      return first + last;
+    });
+    append_integers(faces, last, polyhedra.numbers, [&](std::int64_t, auto number) {
+      if (!std::in_range<Index>(number)) {
+        throw file_->error(faces, fmt::format("a number of faces, corners or a point is {}", number),
+                           "it is too large");
+      }
+      return static_cast<Index>(number);
+    });
+    const Index points = mesh_.vertex_count() - first_point;
+    for (std::int64_t c = first_cell; c < first_cell + count; ++c) {
+      const auto at = static_cast<std::size_t>(c);
+      const std::span<Index> numbers(polyhedra.numbers.data() + polyhedra.starts[at],
+                                     polyhedra.numbers.data() + polyhedra.starts[at + 1]);
+      if (cells_.types[at] != kPolyhedron) continue;
+      if (!are_faces(numbers)) {
+        throw file_->error(
+            faces,
+            fmt::format("cell {} (counted from 0), a polyhedron, has faces that do not fit its {} numbers",
+                        c - first_cell, numbers.size()),
+            "the number of its faces is needed, then of each face the number of its corners and these");
+      }
+      for_faces(numbers, [&](std::span<Index> corners) {
+        for (Index& corner : corners) {
+          if (corner < 0 || corner >= points) {
+            throw file_->error(faces, fmt::format("a face names the point {}", corner),
+                               fmt::format("the piece has points 0 to {}", points - 1));
+          }
+          corner += first_point;
+        }
+      });
+    }
+  }
+
+  /// Reads polyhedra as VTK writes them since 9.4: the corners of all faces, and the faces of each cell.
+  void read_polyhedra_by_face(const VtuElement& cells, std::int64_t count, std::int64_t first_cell,
+                              Index first_point) {
+    constexpr const char* kNeeded =
+        "polyhedra have face_connectivity, face_offsets, polyhedron_to_faces and polyhedron_offsets";
+    const VtuElement& corner_ends = cell_array(cells, "face_offsets", kNeeded);
+    std::vector<Offset> corner_starts{0};
+    const Offset corner_count =
+        append_ends(corner_ends, file_->value_count(corner_ends), "face", corner_starts);
+    std::vector<Index> corners;
+    append_points(cell_array(cells, "face_connectivity", kNeeded), corner_count, first_point, corners);
+    std::vector<Offset> face_starts{0};
+    const Offset face_count =
+        append_ends(cell_array(cells, "polyhedron_offsets", kNeeded), count, "cell", face_starts);
+    const VtuElement& faces_of_cells = cell_array(cells, "polyhedron_to_faces", kNeeded);
+    std::vector<Index> faces;
+    std::uint64_t size = static_cast<std::uint64_t>(count);  // of all numbers of polyhedra
+    append_integers(faces_of_cells, face_count, faces, [&](std::int64_t, auto face) {
+      if (std::cmp_less(face, 0) || std::cmp_greater_equal(face, corner_starts.size() - 1)) {
+        throw file_->error(faces_of_cells, fmt::format("a polyhedron names the face {}", face),
+                           fmt::format("the piece has faces 0 to {}", corner_starts.size() - 2));
+      }
+      const auto f = static_cast<std::size_t>(face);
+      size += static_cast<std::uint64_t>(1 + corner_starts[f + 1] - corner_starts[f]);
+      return static_cast<Index>(face);
+    });
+    file_->claim(faces_of_cells, bytes_for(size, sizeof(Index)));  // a face may be that of many cells
+
+    Polyhedra& polyhedra = cells_.polyhedra;
+    polyhedra.numbers.reserve(polyhedra.numbers.size() + size);
+    for (std::size_t c = 0; c + 1 < face_starts.size(); ++c) {
+      const bool is_polyhedron = cells_.types[static_cast<std::size_t>(first_cell) + c] == kPolyhedron;
+      const Offset own_count = is_polyhedron ? face_starts[c + 1] - face_starts[c] : 0;
+      const auto own = std::span(faces).subspan(static_cast<std::size_t>(face_starts[c]),
+                                                static_cast<std::size_t>(own_count));
+      if (is_polyhedron) polyhedra.numbers.push_back(static_cast<Index>(own.size()));
+      for (const Index face : own) {
+        const auto f = static_cast<std::size_t>(face);
+        polyhedra.numbers.push_back(static_cast<Index>(corner_starts[f + 1] - corner_starts[f]));
+        polyhedra.numbers.insert(polyhedra.numbers.end(), corners.begin() + corner_starts[f],
+                                 corners.begin() + corner_starts[f + 1]);
+      }
+      polyhedra.starts.push_back(static_cast<Offset>(polyhedra.numbers.size()));
+    }
   }
 
   /// Appends `checked(i, number)` for every number of an array.
@@ -386,9 +520,10 @@ class VtuReader {
     const std::vector<std::uint8_t> types = old_order ? cells_.types : std::vector<std::uint8_t>{};
     const VtuElement& at = types_ != nullptr ? *types_ : grid;
     metadata_->inward_wedges = take_cells(
-        mesh_, std::move(cells_),
+        mesh_, cells_,
         [&](const std::string& what, const std::string& remedy) { return file_->error(at, what, remedy); },
         notes_);
+    metadata_->polyhedra = std::move(cells_.polyhedra);
     check_arrays(grid, mesh_.cell_count());
     for (DataArray& array : arrays_) add_array(mesh_, std::move(array));
     if (old_order) swap_hexahedron_edges(mesh_, types, mesh_.cells);
@@ -400,10 +535,10 @@ class VtuReader {
 
   const FilePath& path_;
   Notes& notes_;
-  const VtuDocument* file_ = nullptr;  ///< that is read
-  int version_ = 0;                    ///< of the first file, times ten
+  const VtuDocument* file_ = nullptr;          ///< that is read
+  int version_ = 0;                            ///< of the first file, times ten
   std::map<std::string, std::size_t> fields_;  ///< places of the fields, by name
-  int pieces_ = 0;                     ///< that are not empty
+  int pieces_ = 0;                             ///< that are not empty
   Mesh mesh_;
   std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   std::vector<DataArray> arrays_;

@@ -279,14 +279,35 @@ std::vector<std::string> VtuDocument::strings(const VtuElement& array, std::int6
   return result;
 }
 
-Values VtuDocument::values(const VtuElement& array, std::int64_t count) const {
+/// Returns no values of the array's number type.
+Values VtuDocument::no_values(const VtuElement& array) const {
   const std::string& type = required(array, "type");
-  if (type == "Bit") return bits(array, count);
   const auto found = std::find(kXmlTypeNames.begin(), kXmlTypeNames.end(), type);
   if (found == kXmlTypeNames.end())
     throw error(array, "the type is '" + type.substr(0, 40) + "'",
                 "Int8 … UInt64, Float32, Float64 or String is needed");
-  Values values = values_of_type(static_cast<std::size_t>(found - kXmlTypeNames.begin()));
+  return values_of_type(static_cast<std::size_t>(found - kXmlTypeNames.begin()));
+}
+
+std::int64_t VtuDocument::value_count(const VtuElement& array) const {
+  if (mode(array) == VtuEncoding::Mode::ascii) {
+    std::int64_t count = 0;
+    std::string_view text = array.text;
+    while (!next_word(text, kXmlBlanks).empty()) ++count;
+    return count;
+  }
+  const std::uint64_t size = locate(array).size;
+  return std::visit(
+      [&](const auto& list) {
+        using Number = typename std::decay_t<decltype(list)>::value_type;
+        return static_cast<std::int64_t>(size / sizeof(Number));
+      },
+      no_values(array));
+}
+
+Values VtuDocument::values(const VtuElement& array, std::int64_t count) const {
+  if (required(array, "type") == "Bit") return bits(array, count);
+  Values values = no_values(array);
   std::visit(
       [&](auto& result) {
         using Number = typename std::decay_t<decltype(result)>::value_type;

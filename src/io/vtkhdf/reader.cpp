@@ -312,7 +312,7 @@ class VtkHdfReader {
   }
 
   void finish() {
-    metadata_->inward_wedges = take_cells(mesh_, std::move(cells_), error_of_file(), notes_);
+    metadata_->inward_wedges = take_cells(mesh_, cells_, error_of_file(), notes_);
     for (DataArray& array : arrays_) vtk::add_array(mesh_, std::move(array));
   }
 

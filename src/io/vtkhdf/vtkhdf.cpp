@@ -220,7 +220,9 @@ Format vtkhdf_format() {
           .groups_cells_by_type = false,
           .read = vtkhdf::read,
           .write = vtkhdf::write,
-          .holds = vtk::holds};
+          .holds = [](const Mesh& mesh, Shape shape, int vertices) {
+            return shape != Shape::polyhedron && vtk::holds(mesh, shape, vertices);
+          }};
 }
 
 }  // namespace meshorder

@@ -372,7 +372,7 @@ class XdmfReader {
 
   void finish() {
     reading_.layout->inward_wedges = vtk::take_cells(
-        reading_.mesh, std::move(reading_.cells),
+        reading_.mesh, reading_.cells,
         [&](const std::string& what, const std::string& remedy) {
           return reading_.document.error(reading_.where_cells_are, what, remedy);
         },
