@@ -252,6 +252,8 @@ std::optional<Shape> shape_of_vtk_type(int type) {
     case 74:
     case 81:
       return Shape::pyramid;
+    case 15:  // prisms of five and six sides
+    case 16:
     case 42:
       return Shape::polyhedron;
     default:

@@ -23,6 +23,9 @@
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -266,6 +269,50 @@ TEST(VtkPolyhedra, CellsThatAreLeftOutTakeTheirFacesAlong) {
   EXPECT_THROW(write_mesh(mesh, folder.path() / "c.vtu"), InvalidArgument);
 }
 
+TEST(VtkPolyhedra, PrismsKeepTheirTypes) {
+  const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  const vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  const vtkNew<vtkIntArray> labels;
+  labels->SetName("label");
+  for (const int sides : {5, 6}) {
+    std::vector<vtkIdType> corners;
+    for (int k = 0; k < 2 * sides; ++k) {
+      corners.push_back(
+          points->InsertNextPoint(std::cos(6.2832 * k / sides), std::sin(6.2832 * k / sides), k / sides));
+    }
+    grid->InsertNextCell(sides == 5 ? VTK_PENTAGONAL_PRISM : VTK_HEXAGONAL_PRISM, 2 * sides, corners.data());
+    labels->InsertNextValue(sides);
+  }
+  grid->SetPoints(points);
+  grid->GetCellData()->AddArray(labels);
+  const TemporaryFolder folder;
+  const vtkNew<vtkUnstructuredGridWriter> writer;
+  writer->SetInputData(grid);
+  writer->SetFileName((folder.path() / "a.vtk").c_str());
+  writer->SetFileTypeToBinary();
+  ASSERT_EQ(writer->Write(), 1);
+  Mesh mesh = read_mesh(folder.path() / "a.vtk");
+  EXPECT_EQ(mesh.cells.shapes, (std::vector<Shape>(2, Shape::polyhedron)));
+  apply_reordering(mesh, shuffled(22, 3), Permutation::from_old_to_new({1, 0}));
+  write_mesh(mesh, folder.path() / "b.vtk");
+  write_mesh(mesh, folder.path() / "b.vtu");
+  for (const auto& found : {grid_in<vtkUnstructuredGridReader>(folder.path() / "b.vtk"),
+                            grid_in<vtkXMLUnstructuredGridReader>(folder.path() / "b.vtu")}) {
+    EXPECT_EQ(found->GetCellType(0), VTK_HEXAGONAL_PRISM);
+    EXPECT_EQ(found->GetCellType(1), VTK_PENTAGONAL_PRISM);
+    EXPECT_EQ(faces_by_label(found), faces_by_label(grid));
+  }
+  write_mesh(mesh, folder.path() / "b.vtkhdf");
+  EXPECT_EQ(read_mesh(folder.path() / "b.vtkhdf").cells, mesh.cells);
+  EXPECT_THAT(write_error(mesh, folder.path() / "b.msh"), HasSubstr("cannot hold a cell of type polyhedron"));
+  expect_broken("c.vtk",
+                {{"a prism that lacks a corner",
+                  "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
+                  "0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n15\n",
+                  ":9: cell 0 (counted from 0) is a VTK_PENTAGONAL_PRISM of 4 vertices; it has 10"}});
+}
+
 TEST(VtkPolyhedra, OtherFormatsRefuseThem) {
   const TemporaryFolder folder;
   const Mesh mesh = read_mesh(folder.file("a.vtu", kByFace));
@@ -282,18 +329,18 @@ TEST(VtkPolyhedra, BrokenFacesGiveOneClearError) {
   expect_broken(
       "b.vtu",
       {{"a face that is not there", by_face("0 1 2 3 4 5 1 6", "0 1 2 3 4 5 11 6"),
-        ":28: a polyhedron names the face 11; the piece has faces 0 to 10"},
-       {"a point that is not there", by_face("4 8 10 6 5", "4 8 13 6 5"), ":23: a cell names the point 13"},
+        ":24: a polyhedron names the face 11; the piece has faces 0 to 10"},
+       {"a point that is not there", by_face("4 8 10 6 5", "4 8 13 6 5"), ":19: a cell names the point 13"},
        {"a point of another cell", by_face("4 8 10 6 5", "4 8 0 6 5"),
         "cell 2 (counted from 0) is a polyhedron whose faces are not on its points"},
        {"faces that end before they begin", by_face("4 8 12 16", "4 8 6 16"),
-        ":27: face 2 (counted from 0) ends at 6, before it begins at 8"},
+        ":23: face 2 (counted from 0) ends at 6, before it begins at 8"},
        {"no faces", by_face("6 6 12 12", "12 12 12 12"),
-        "cell 2 (counted from 0) is a polyhedron whose faces"},
+        "cell 0 (counted from 0) is a polyhedron whose faces"},
        {"no offsets of faces", by_face("face_offsets", "offsets_of_faces"),
-        ":18: the array face_offsets is missing in <Cells>; polyhedra have face_connectivity"},
+        ":13: the array face_offsets is missing in <Cells>; polyhedra have face_connectivity"},
        {"neither way", by_face("polyhedron_to_faces", "faces"),
-        ":18: the array faceoffsets is missing in <Cells>; polyhedra have faces and faceoffsets"}});
+        ":13: the array faceoffsets is missing in <Cells>; polyhedra have faces and faceoffsets"}});
   const auto old = [](const std::string& faces, const std::string& ends) {
     std::string text(kByFace);
     const auto begin = text.find("        <DataArray type=\"Int64\" Name=\"face_connectivity\"");
@@ -305,12 +352,12 @@ TEST(VtkPolyhedra, BrokenFacesGiveOneClearError) {
   };
   expect_broken("b.vtu",
                 {{"counts that do not fit", old("2 4 0 1 2 3 5 4 5 6 7 1 3 4 5 6", "11 -1 16 -1"),
-                  ":23: cell 0 (counted from 0), a polyhedron, has faces that do not fit its 11 numbers"},
-                 {"a huge count", old("2000000000 4 0 1 2 3 1 3 4 5 6", "6 -1 11 -1"), ":23: cell 0"},
+                  ":19: cell 0 (counted from 0), a polyhedron, has faces that do not fit its 11 numbers"},
+                 {"a huge count", old("2000000000 4 0 1 2 3 1 3 4 5 6", "6 -1 11 -1"), ":19: cell 0"},
                  {"no end", old("1 4 0 1 2 3", "6 -1 -1 -1"),
-                  ":24: the faces of cell 2 (counted from 0), a polyhedron, end at -1"},
+                  ":20: the faces of cell 2 (counted from 0), a polyhedron, end at -1"},
                  {"a point that is not there", old("1 4 0 1 2 3 1 3 4 5 66", "6 -1 11 -1"),
-                  ":23: a face names the point 66; the piece has points 0 to 12"}});
+                  ":19: a face names the point 66; the piece has points 0 to 12"}});
   const std::string head =
       "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
       "0 0 0 1 0 0 0 1 0 0 0 1\n";

@@ -353,6 +353,8 @@ TEST(VtkLegacy, BrokenFilesGiveOneClearError) {
         ":14: there are 1 CELL_TYPES for 2 cells"},
        {"no types", broken("CELL_TYPES 2\n10\n5\n", ""), "there are 0 CELL_TYPES for 2 cells"},
        {"a type that nobody has", broken("10\n5", "10\n99"), ":14: cell 1 (counted from 0) has the type 99"},
+       {"a convex set of points", broken("10\n5", "10\n41"),
+        ":14: cell 1 (counted from 0) has the type 41; VTK's types 1 to 16, 21 to 37, 42, 60 to 62"},
        {"a type beyond a byte", broken("10\n5", "10\n1005"), ":16: cell 1"},
        {"a polyhedron of a triangle's numbers", broken("10\n5", "10\n42"),
         ":11: cell 1 (counted from 0), a polyhedron, has faces that do not fit its 3 numbers"},

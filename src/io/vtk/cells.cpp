@@ -77,6 +77,8 @@ constexpr std::array kTypes{
     CellType{kVoxel, "VTK_VOXEL", Shape::hexahedron, 8, {{{2, 3}, {6, 7}}}},
     CellType{36, "VTK_QUADRATIC_POLYGON", Shape::polygon, -3},
     CellType{kPolyhedron, "VTK_POLYHEDRON", Shape::polyhedron, -1},
+    CellType{15, "VTK_PENTAGONAL_PRISM", Shape::polyhedron, 10},
+    CellType{16, "VTK_HEXAGONAL_PRISM", Shape::polyhedron, 12},
     CellType{60, "VTK_HIGHER_ORDER_EDGE", Shape::line, -2},
     CellType{61, "VTK_HIGHER_ORDER_TRIANGLE", Shape::triangle, -3},
     CellType{62, "VTK_HIGHER_ORDER_QUAD", Shape::quad, -4},
@@ -181,7 +183,7 @@ InputError unknown_type(int number, Index cell, const ErrorAt& error) {
   } else {
     what += "has the type " + std::to_string(number);
   }
-  return error(what, "the types with fixed nodes are understood, from VTK_VERTEX to VTK_BEZIER_PYRAMID");
+  return error(what, "VTK's types 1 to 16, 21 to 37, 42, 60 to 62 and 64 to 81 are understood");
 }
 
 }  // namespace
@@ -269,13 +271,15 @@ Index first_unfit_polyhedron(const Cells& cells, const std::vector<std::uint8_t>
   return -1;
 }
 
+bool has_polyhedra(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  return own != nullptr && !own->polyhedra.empty();
+}
+
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
   const CellType* const type = default_type(shape, vertices);
   if (type == nullptr) return false;
-  if (type->number == kPolyhedron) {
-    const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
-    return own != nullptr && !own->polyhedra.empty();
-  }
+  if (type->number == kPolyhedron) return has_polyhedra(mesh) || kept_types(mesh) != nullptr;
   const bool lagrange = type->number >= kFirstLagrange && type->number <= kLastLagrange;
   if (!lagrange || is_from_vtk(mesh)) return true;
   return kept_types(mesh) != nullptr;  // which Lagrange type it is, is known then

@@ -197,8 +197,12 @@ bool take_cells(Mesh& mesh, FileCells& cells, const ErrorAt& error, Notes& notes
 bool is_from_vtk(const Mesh& mesh);
 
 /// Returns whether VTK has a type for these cells. Node orders above second order are known for meshes from
-/// VTK only, and so are the faces of polyhedra.
+/// VTK only, and so are the faces of polyhedra. Prisms of five and six sides, which have types of their own,
+/// are polyhedra here.
 bool holds(const Mesh& mesh, Shape shape, int vertices);
+
+/// Returns whether the mesh has polyhedra with the faces of a file of VTK.
+bool has_polyhedra(const Mesh& mesh);
 
 /// Returns VTK's type number of every cell; VTK `holds` them.
 std::vector<std::uint8_t> cell_types(const Mesh& mesh);

@@ -221,7 +221,8 @@ Format vtkhdf_format() {
           .read = vtkhdf::read,
           .write = vtkhdf::write,
           .holds = [](const Mesh& mesh, Shape shape, int vertices) {
-            return shape != Shape::polyhedron && vtk::holds(mesh, shape, vertices);
+            return vtk::holds(mesh, shape, vertices) &&
+                   !(shape == Shape::polyhedron && vtk::has_polyhedra(mesh));
           }};
 }
 
