@@ -4,13 +4,9 @@
 namespace meshorder {
 
 std::string UniqueNames::take(Association association, const std::string& wanted) {
-  if (names_.emplace(association, wanted).second) return wanted;
-  int& last = last_numbers_.try_emplace({association, wanted}, 1).first->second;
-  std::string name;
-  do {
-    name = wanted + " (" + std::to_string(++last) + ")";
-  } while (!names_.emplace(association, name).second);
-  return name;
+  return numbers_[association].free_name(
+      wanted, [&](int k) { return wanted + " (" + std::to_string(k) + ")"; },
+      [&](const std::string& name) { return names_.emplace(association, name).second; });
 }
 
 std::string add_named(Mesh& mesh, DataArray array, UniqueNames& names) {

@@ -10,6 +10,27 @@
 
 namespace meshorder {
 
+/// Finds free names by numbering taken ones.
+class NameNumbers {
+ public:
+  /// Takes and returns the first of `wanted`, `numbered(2)`, `numbered(3)` … that is free.
+  ///
+  /// @param take  returns whether a name was free, and takes it
+  /// @note O(log names), besides `take`, also where all want the same name.
+  template <class Numbered, class Take>
+  std::string free_name(const std::string& wanted, Numbered numbered, Take take) {
+    if (take(wanted)) return wanted;
+    int& last = last_.try_emplace(wanted, 1).first->second;
+    for (;;) {
+      std::string name = numbered(++last);
+      if (take(name)) return name;
+    }
+  }
+
+ private:
+  std::map<std::string, int> last_;  // number, by the wanted name
+};
+
 /// Gives arrays, or sets, names that no other of their association has.
 class UniqueNames {
  public:
@@ -24,7 +45,7 @@ class UniqueNames {
  private:
   using Name = std::pair<Association, std::string>;
   std::set<Name> names_;
-  std::map<Name, int> last_numbers_;
+  std::map<Association, NameNumbers> numbers_;
 };
 
 /// Adds an array to a mesh under a name that no other has; returns that name.

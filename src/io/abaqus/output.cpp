@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "io/abaqus/cards.hpp"
 #include "io/names.hpp"
+#include "io/unique_names.hpp"
 #include "io/unsupported.hpp"
 
 #include <fmt/format.h>
@@ -66,16 +67,16 @@ struct RealText {
 };
 
 /// Returns a name that decks can have and that is not taken yet, in any case; takes it.
-std::string name_for(const std::string& given, std::set<std::string>& taken) {
+std::string name_for(const std::string& given, std::set<std::string>& taken, NameNumbers& numbers) {
   constexpr std::size_t kLongest = 80;
   std::string name = plain_name(given, " ,\"=*.");
   if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0) name = "set_" + name;
-  std::string result(utf8_prefix(name, kLongest));
-  for (int k = 2; !taken.insert(capitals(result)).second; ++k) {
+  const auto numbered = [&](int k) {
     const std::string end = fmt::format("_{}", k);
-    result = std::string(utf8_prefix(name, kLongest - end.size())) + end;
-  }
-  return result;
+    return std::string(utf8_prefix(name, kLongest - end.size())) + end;
+  };
+  return numbers.free_name(std::string(utf8_prefix(name, kLongest)), numbered,
+                           [&](const std::string& free) { return taken.insert(capitals(free)).second; });
 }
 
 }  // namespace
@@ -147,13 +148,14 @@ void write_sets(DeckOutput& out, const std::vector<EntitySet>& sets,
                 const std::function<std::int64_t(Index)>& vertex_number,
                 const std::function<std::int64_t(Index)>& cell_number, Notes& notes) {
   std::array<std::set<std::string>, 2> taken;
+  std::array<NameNumbers, 2> numbering;
   for (const EntitySet& set : sets) {
     const bool of_nodes = set.association == Association::vertices;
     if (set.members.empty()) {
       note_set_empty(set, notes);
       continue;
     }
-    const std::string name = name_for(set.name, taken[of_nodes ? 0 : 1]);
+    const std::string name = name_for(set.name, taken[of_nodes ? 0 : 1], numbering[of_nodes ? 0 : 1]);
     note_renamed_set(set, name, notes);
     std::vector<std::int64_t> numbers;
     numbers.reserve(set.members.size());

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/cgns/reading.hpp"
+#include "io/unique_names.hpp"
 
 #include <fmt/format.h>
 
@@ -76,8 +77,11 @@ class ArrayMaker {
 
   void add(const Group& group, const std::string& wanted) {
     const Association association = group.front()->association;
-    std::string name = wanted;
-    for (int k = 2; !names_.insert({association, name}).second; ++k) name = fmt::format("{} {}", wanted, k);
+    const std::string name = numbers_[association].free_name(
+        wanted, [&](int k) { return fmt::format("{} {}", wanted, k); },
+        [&](const std::string& free) {
+          return names_.insert({association, free}).second;
+        });
     for (const Piece* const piece : group) reading_.metadata->fields[piece->field].array = name;
     DataArray array{.name = name, .association = association};
     for (const Piece* const piece : group) {
@@ -119,6 +123,7 @@ class ArrayMaker {
 
   Reading& reading_;
   std::set<std::pair<Association, std::string>> names_;
+  std::map<Association, NameNumbers> numbers_;
 };
 
 }  // namespace

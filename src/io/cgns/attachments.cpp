@@ -4,6 +4,7 @@
 #include "io/cgns/reading.hpp"
 #include "io/labels.hpp"
 #include "io/stream/read_limits.hpp"
+#include "io/unique_names.hpp"
 
 #include <fmt/format.h>
 
@@ -467,8 +468,9 @@ class AttachmentReader {
   }
 
   void add_set(PointList& list, const std::string& wanted, std::set<std::string>& names) {
-    std::string name = wanted;
-    for (int k = 2; !names.insert(name).second; ++k) name = fmt::format("{} {}", wanted, k);
+    const std::string name = numbers_.free_name(
+        wanted, [&](int k) { return fmt::format("{} {}", wanted, k); },
+        [&](const std::string& free) { return names.insert(free).second; });
     EntitySet set{name, list.association, {}};
     std::vector<bool> taken(list.association == Association::vertices ? reading_.mesh.points.size()
                                                                       : reading_.mesh.cells.shapes.size());
@@ -549,6 +551,7 @@ class AttachmentReader {
   bool has_named_part_ = false;  // whether a part of the zone has data for a list that it names
   std::map<std::pair<int, Association>, std::shared_ptr<const std::vector<Index>>> rows_;
   std::vector<FoundSet> sets_;
+  NameNumbers numbers_;
   std::vector<std::int64_t> labels_;
 };
 

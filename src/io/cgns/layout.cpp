@@ -5,6 +5,7 @@
 #include "io/cgns/cgns.hpp"
 #include "io/labels.hpp"
 #include "io/names.hpp"
+#include "io/unique_names.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 
@@ -41,17 +42,19 @@ class NodeNames {
     name = first == std::string::npos ? "_" : name.substr(first, name.find_last_not_of(' ') - first + 1);
     if (name == "." || name == "..") name = "_";
     name = std::string(utf8_prefix(name, kLongestName));
-    const std::string base = name;
-    for (int k = 2; !names_.insert(name).second; ++k) {
+    const auto numbered = [&](int k) {
       const std::string end = fmt::format(" {}", k);
-      name = std::string(utf8_prefix(base, kLongestName - end.size())) + end;
-    }
+      return std::string(utf8_prefix(name, kLongestName - end.size())) + end;
+    };
+    name = numbers_.free_name(name, numbered,
+                              [&](const std::string& free) { return names_.insert(free).second; });
     if (name != wanted) notes.push_back(fmt::format("the name '{}' becomes '{}'", wanted, name));
     return name;
   }
 
  private:
   std::set<std::string> names_;
+  NameNumbers numbers_;
 };
 
 // ---- a file for a mesh of another format
@@ -256,8 +259,10 @@ class Addition {
     }
     for (Node& base : tree_.root.children) {
       if (base.label != "CGNSBase_t") continue;
+      std::set<std::string> names;
+      for (const Node& child : base.children) names.insert(child.name);
       for (Node& family : families_) {
-        if (base.child(family.name) == nullptr) base.children.push_back(std::move(family));
+        if (names.insert(family.name).second) base.children.push_back(std::move(family));
       }
     }
     metadata_.tree = std::make_shared<const Tree>(std::move(tree_));
@@ -268,6 +273,13 @@ class Addition {
     if (association == Association::cells)
       return metadata_.sections[metadata_.section_of_cell[position]].zone;
     return metadata_.zone_of_vertex.empty() ? 0 : metadata_.zone_of_vertex[position];
+  }
+
+  /// Returns the names of the children of a zone, or of a node in it or in one of its sections.
+  NodeNames& names_below(const Node& parent, int zone, int section = -1) {
+    const std::string path = &parent == zones_[zone] ? fmt::format("{}", zone)
+                                                     : fmt::format("{}/{}/{}", zone, section, parent.name);
+    return names_.try_emplace(path, parent).first->second;
   }
 
   [[nodiscard]] int dimension_of(Index cell) const { return dimension(mesh_.cells.shapes[cell]); }
@@ -325,7 +337,7 @@ class Addition {
 
   /// Adds a node for each component of an array; `rows` says for which vertices or cells.
   void add_components(const DataArray& array, Node& parent, const Field& rows) {
-    NodeNames names(parent);
+    NodeNames& names = names_below(parent, rows.place, rows.section);
     for (Index k = 0; k < array.components; ++k) {
       Node node{.name = names.take(array.name + suffix_of(array, k), notes_), .label = "DataArray_t"};
       Field field = rows;
@@ -374,7 +386,7 @@ class Addition {
   }
 
   Node& new_node(int zone, const std::string& name, const std::string& label) {
-    NodeNames names(*zones_[zone]);
+    NodeNames& names = names_below(*zones_[zone], zone);
     Notes ignored;
     zones_[zone]->children.push_back({.name = names.take(name, ignored), .label = label});
     return zones_[zone]->children.back();
@@ -432,7 +444,7 @@ class Addition {
       }
       const bool is_region = set.association == Association::cells && highest == metadata_.cell_dimension;
       Node& parent = is_region ? *zones_[zone] : conditions(zone);
-      NodeNames names(parent);
+      NodeNames& names = names_below(parent, zone);
       Node node{.name = names.take(set.name, notes_), .label = "ZoneSubRegion_t"};
       if (is_region) {
         node.type = "I4";
@@ -453,9 +465,7 @@ class Addition {
 
   /// Adds a family of that name, by which programs know the parts of a boundary, unless there is one.
   void add_family(const std::string& name) {
-    const bool is_known = std::any_of(families_.begin(), families_.end(),
-                                      [&](const Node& family) { return family.name == name; });
-    if (!is_known) families_.push_back({.name = name, .label = "Family_t"});
+    if (family_names_.insert(name).second) families_.push_back({.name = name, .label = "Family_t"});
   }
 
   Node& conditions(int zone) {
@@ -469,6 +479,8 @@ class Addition {
   Tree tree_;
   std::vector<Node*> zones_;
   std::vector<Node> families_;
+  std::set<std::string> family_names_;
+  std::map<std::string, NodeNames> names_;  // of the children of a node, by its path
   std::map<std::pair<Association, int>, Index> full_counts_;
   std::vector<Index> section_counts_;
   std::map<std::pair<int, Association>, std::string> full_solutions_;

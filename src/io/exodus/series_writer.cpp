@@ -2,6 +2,7 @@
 #include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/exodus/writing.hpp"
+#include "io/unique_names.hpp"
 #include "io/unsupported.hpp"
 
 #include <fmt/format.h>
@@ -128,8 +129,9 @@ class SeriesPlanner {
 
   void add(const DataArray& array, Index component, const std::string& wanted) {
     const std::string held = trimmed(wanted).empty() ? "unnamed" : wanted;
-    std::string name = held;
-    for (int k = 2; !names_.insert(name).second; ++k) name = fmt::format("{} ({})", held, k);
+    const std::string name = numbers_.free_name(
+        held, [&](int k) { return fmt::format("{} ({})", held, k); },
+        [&](const std::string& free) { return names_.insert(free).second; });
     if (name != wanted) {
       writing_.notes.push_back(fmt::format("the array '{}' is written as the variable '{}'", wanted, name));
     }
@@ -147,6 +149,7 @@ class SeriesPlanner {
   Writing& writing_;
   Association association_;
   std::set<std::string> names_;
+  NameNumbers numbers_;
   std::vector<SeriesPlan> plans_;
 };
 

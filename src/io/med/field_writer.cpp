@@ -3,6 +3,7 @@
 #include "base/text.hpp"
 #include "io/med/med.hpp"
 #include "io/names.hpp"
+#include "io/unique_names.hpp"
 
 #include <fmt/format.h>
 
@@ -284,11 +285,12 @@ class FieldWriter {
 
   std::string unused_name(const DataArray& array, const std::string& wanted) {
     const std::string clean = clean_name(wanted);
-    std::string name = clean;
-    for (int k = 2; !names_.insert(name).second; ++k) {
+    const auto numbered = [&](int k) {
       const std::string number = fmt::format("_{}", k);
-      name = clean.substr(0, kLongestName - number.size()) + number;
-    }
+      return clean.substr(0, kLongestName - number.size()) + number;
+    };
+    const std::string name = numbers_.free_name(
+        clean, numbered, [&](const std::string& free) { return names_.insert(free).second; });
     if (name != wanted) {
       writing_.notes.push_back(fmt::format("the array '{}' on {} is written as the field '{}'", array.name,
                                            to_string(array.association), name));
@@ -424,6 +426,7 @@ class FieldWriter {
   Writing& writing_;
   Profiles profiles_;
   std::set<std::string> names_;  // of fields
+  NameNumbers numbers_;
   const DataArray* last_array_ = nullptr;
   std::vector<Index> table_;  // its rows by item
 };

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "io/labels.hpp"
+#include "io/unique_names.hpp"
 #include "io/unsupported.hpp"
 #include "io/vtk/vtk.hpp"
 #include <meshorder/error.hpp>
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 #include <string_view>
 #include <type_traits>
@@ -64,8 +66,9 @@ class Names {
 
   std::string unused(const std::string& wanted, Association association, Notes& notes) {
     const std::string held = wanted.empty() ? "array" : held_there(wanted);
-    std::string name = held;
-    for (int i = 2; !taken_.emplace(association, name).second; ++i) name = held + "_" + std::to_string(i);
+    const std::string name = numbers_[association].free_name(
+        held, [&](int k) { return held + "_" + std::to_string(k); },
+        [&](const std::string& free) { return taken_.emplace(association, free).second; });
     if (name != wanted)
       notes.push_back(
           fmt::format("the array '{}' on {} is written as '{}'", wanted, to_string(association), name));
@@ -82,6 +85,7 @@ class Names {
 
   NamePlace place_;
   std::set<std::pair<Association, std::string>> taken_;
+  std::map<Association, NameNumbers> numbers_;
 };
 
 bool filled_with_nan(const DataArray& array) {

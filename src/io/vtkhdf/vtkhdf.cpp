@@ -4,6 +4,7 @@
 #include "io/all_formats.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/session.hpp"
+#include "io/unique_names.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
 #include <meshorder/error.hpp>
@@ -55,10 +56,12 @@ void write_field(hdf5::File& file, const DataArray& field, const std::string& pa
 /// Writes all fields, each under a name that no other has.
 void write_fields(hdf5::File& file, const std::vector<DataArray>& fields, Notes& notes) {
   std::set<std::string> taken;
+  NameNumbers numbers;
   for (const DataArray& field : fields) {
     const std::string held = vtk::name_in_hdf5(field.name);
-    std::string name = held;
-    for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}", held, i);
+    const std::string name = numbers.free_name(
+        held, [&](int k) { return fmt::format("{}_{}", held, k); },
+        [&](const std::string& free) { return taken.insert(free).second; });
     if (name != field.name)
       notes.push_back(fmt::format("the field '{}' is written as '{}'", field.name, name));
     write_field(file, field, fmt::format("{}/FieldData/{}", kRoot, name));
@@ -141,11 +144,14 @@ constexpr std::array<std::string_view, 4> kDatasets{"Points", "Connectivity", "O
 /// Returns the path of an array on points or cells under a name that no other has. `held` knows the arrays by
 /// the names that are taken.
 std::string place_array(const RawDataset& dataset,
-                        std::map<std::pair<Association, std::string>, std::string>& held, Notes& notes) {
+                        std::map<std::pair<Association, std::string>, std::string>& held,
+                        std::map<Association, NameNumbers>& numbers, Notes& notes) {
   const std::string wanted = vtk::name_in_hdf5(dataset.name);
-  std::string name = wanted;
-  for (int i = 2; !held.try_emplace({dataset.association, name}, dataset.name).second; ++i)
-    name = fmt::format("{}_{}", wanted, i);
+  const std::string name = numbers[dataset.association].free_name(
+      wanted, [&](int k) { return fmt::format("{}_{}", wanted, k); },
+      [&](const std::string& free) {
+        return held.try_emplace({dataset.association, free}, dataset.name).second;
+      });
   if (name != dataset.name) {
     notes.push_back(fmt::format("the array '{}' on {} is written as '{}'", dataset.name,
                                 to_string(dataset.association), name));
@@ -178,10 +184,11 @@ void write_without_values(const std::filesystem::path& path, const std::string& 
   hdf5::File file = hdf5::File::change(path, name);
   write_counts(file, partitions);
   std::map<std::pair<Association, std::string>, std::string> held;  // names that are taken, of which arrays
+  std::map<Association, NameNumbers> numbers;
   std::vector<std::string> paths;
   for (const RawDataset& dataset : datasets) {
     paths.push_back(dataset.role == RawDataset::Role::data
-                        ? place_array(dataset, held, notes)
+                        ? place_array(dataset, held, numbers, notes)
                         : fmt::format("{}/{}", kRoot, kDatasets[static_cast<std::size_t>(dataset.role)]));
     std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(dataset.rows)};
     if (dataset.components != 1) shape.push_back(static_cast<std::uint64_t>(dataset.components));

@@ -57,7 +57,9 @@ void Writer::add_others() {
     if (!covered.contains({array.association, array.name})) add_array(array);
   }
   for (const EntitySet& set : mesh_.sets) {
-    if (placed.contains({set.association, set.name}) || covered.contains({set.association, std::string(kSetName) + set.name})) continue;
+    if (placed.contains({set.association, set.name}) ||
+        covered.contains({set.association, std::string(kSetName) + set.name}))
+      continue;
     const DataArray marks = marks_of(set);
     notes_.push_back(fmt::format("the set '{}' of {} is written as the array '{}'", set.name,
                                  to_string(set.association), marks.name));
@@ -88,8 +90,9 @@ void Writer::add_ids(const std::vector<std::int64_t>& ids, const char* name, Ass
 std::string Writer::unused_name(const DataArray& array) {
   const std::string wanted = array.name.empty() ? "array" : array.name;
   const std::string clean = meshorder::xml_text(wanted);
-  std::string name = clean;
-  for (int k = 2; !names_.emplace(array.association, name).second; ++k) name = fmt::format("{}_{}", clean, k);
+  const std::string name = numbers_[array.association].free_name(
+      clean, [&](int k) { return fmt::format("{}_{}", clean, k); },
+      [&](const std::string& free) { return names_.emplace(array.association, free).second; });
   if (name != array.name) {
     notes_.push_back(fmt::format("the array '{}' on {} is written as '{}'", array.name,
                                  to_string(array.association), name));

@@ -8,6 +8,7 @@
 #include "io/named_parts.hpp"
 #include "io/stream/file_path.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/unique_names.hpp"
 #include "io/xdmf/data_item.hpp"
 #include "io/xdmf/document.hpp"
 #include "io/xdmf/xdmf.hpp"
@@ -154,6 +155,7 @@ class Writer {
   std::vector<OutputFile> binaries_;
   std::set<const Field*> gone_;
   std::set<std::pair<Association, std::string>> names_;  // of arrays
+  std::map<Association, NameNumbers> numbers_;
 };
 
 /// Sets the one of two attributes that is there, else adds the first.
