@@ -100,6 +100,23 @@ def test_calculix_finds_the_same_displacements(command, tmp_path, kind, ids):
     assert (new is None) or any(before[n] != pytest.approx(after[n], rel=1e-3) for n in before)
 
 
+@needs_calculix
+def test_a_comma_at_the_end_of_a_keyword_line_is_followed_by_data(command, tmp_path):
+    deck = cantilever("C3D8")
+    for keyword in ("*NODE, NSET=Nall", "elset=Eall", "*NSET, NSET=fixed", "half, generate", "TYPE=ELEMENT", "*EQUATION",
+                    "*BOUNDARY", "*CLOAD", "*DLOAD", "*DSLOAD"):
+        assert keyword + "\n" in deck
+        deck = deck.replace(keyword + "\n", keyword + ", \n")
+    (tmp_path / "a.inp").write_text(deck)
+    (tmp_path / "plain.inp").write_text(cantilever("C3D8"))
+    command.ok("order", tmp_path / "a.inp", "-o", tmp_path / "b.inp", "--vertices", "scrambled", "--maps", tmp_path / "m")
+    before, after = solved(tmp_path, "a")[0], solved(tmp_path, "b")[0]
+    assert before == solved(tmp_path, "plain")[0]
+    new = numpy.load(tmp_path / "m.vertices.old_to_new.npy") + 1
+    for number, displacement in before.items():
+        assert displacement == pytest.approx(after[int(new[number - 1])], rel=1e-5, abs=1e-9)
+
+
 def test_the_rest_of_a_deck_stays(command, tmp_path):
     deck = cantilever("C3D4")
     (tmp_path / "a.inp").write_text(deck)

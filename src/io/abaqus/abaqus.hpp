@@ -9,6 +9,7 @@
 #include "io/stream/id_map.hpp"
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,10 @@ struct Deck {
   IdMap nodes;                  ///< numbers in the order of the file
   IdMap elements;               ///< of those that are cells
   std::vector<EntitySet> sets;  ///< of the deck; members are positions in the file
+  /// What the lines of some nodes have after their coordinates, and those of some elements after the nodes of
+  /// their type, from the comma on; by positions in the file.
+  std::map<Index, std::string> more_of_nodes;
+  std::map<Index, std::string> more_of_elements;
   std::string line_end = "\n";
   /// Cards that may name nodes or elements by number and are not understood: "*USER ELEMENT (line 12)". With
   /// one of them all numbers must stay.

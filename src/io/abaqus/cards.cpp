@@ -27,7 +27,20 @@ std::string_view first_line(std::string_view text) {
 
 std::string_view without_end(std::string_view line) { return line.substr(0, line.find_first_of(kEnds)); }
 
-/// A part of a keyword line between commas; a comma in quotes is none.
+bool is_comment_line(std::string_view line) { return trimmed(line).starts_with("**"); }
+
+/// Returns the length of the comments and blank lines at the front.
+std::size_t skipped_lines(std::string_view lines) {
+  std::size_t length = 0;
+  while (length < lines.size()) {
+    const std::string_view line = first_line(lines.substr(length));
+    if (!is_comment_line(line) && !trimmed(without_end(line)).empty()) break;
+    length += line.size();
+  }
+  return length;
+}
+
+/// A part of a keyword line between commas; a comma in quotes is none. Comments before it belong to no part.
 struct Piece {
   std::size_t begin;
   std::size_t end;
@@ -38,6 +51,12 @@ std::vector<Piece> pieces_of(std::string_view lines) {
   bool quoted = false;
   std::size_t begin = 0;
   for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (i > 0 && kEnds.find(lines[i - 1]) != std::string_view::npos &&
+        is_comment_line(first_line(lines.substr(i)))) {
+      begin = i + skipped_lines(lines.substr(i));
+      i = begin - 1;
+      continue;
+    }
     if (lines[i] == '"') quoted = !quoted;
     if (lines[i] != ',' || quoted) continue;
     pieces.push_back({begin, i});
@@ -65,6 +84,19 @@ std::string_view trimmed_of_ends(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
+/// Returns whether a line after a comma at the end of a keyword line has further parameters, as in Abaqus:
+/// one with a value, or some of those without that change what the data lines are. CalculiX continues no
+/// keyword line, so that all else must be data: numbers and names of sets.
+bool continues_keyword(std::string_view line) {
+  constexpr std::array<std::string_view, 6> kWithoutValue{"GENERATE", "INTERNAL", "REMOVE",
+                                                          "RIKS",     "TABULAR",  "UNSORTED"};
+  line = trimmed(line);
+  const std::string_view first = trimmed(line.substr(0, line.find_first_of(",=")));
+  if (first.empty() || std::isalpha(static_cast<unsigned char>(first.front())) == 0) return false;
+  return line.find('=') != std::string_view::npos ||
+         std::find(kWithoutValue.begin(), kWithoutValue.end(), capitals(first)) != kWithoutValue.end();
+}
+
 Card::Parameter parameter_of(std::string_view piece) {
   const std::size_t equals = piece.find('=');
   Card::Parameter result{compact(piece.substr(0, equals)), {}};
@@ -88,11 +120,13 @@ std::string_view Card::value(std::string_view name) const {
 }
 
 std::string_view keyword_lines(std::string_view lines) {
-  std::size_t length = 0;
-  while (length < lines.size()) {
-    const std::string_view line = first_line(lines.substr(length));
-    length += line.size();
-    if (!trimmed(without_end(line)).ends_with(',')) break;
+  std::string_view line = first_line(lines);
+  std::size_t length = line.size();
+  while (trimmed(without_end(line)).ends_with(',')) {
+    const std::size_t next = length + skipped_lines(lines.substr(length));
+    line = first_line(lines.substr(next));
+    if (!continues_keyword(without_end(line))) break;
+    length = next + line.size();
   }
   return lines.substr(0, length);
 }

@@ -32,7 +32,9 @@ struct Card {
   [[nodiscard]] std::string_view value(std::string_view name) const;
 };
 
-/// Returns the keyword line at the front and the lines that continue it: those after a comma at its end.
+/// Returns the keyword line at the front and the lines that continue it: after a comma at its end, those of
+/// parameters, with comments and blank lines between. A line of numbers or of a set's name is data. O(bytes
+/// returned and skipped).
 std::string_view keyword_lines(std::string_view lines);
 
 /// Returns the card of a keyword line and the lines that continue it.

@@ -11,9 +11,11 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numeric>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -34,6 +36,8 @@ class DeckWriter {
         notes_(notes),
         file_(path),
         out_(file_, deck_.line_end),
+        more_of_nodes_(by_place(deck_.more_of_nodes, nodes_)),
+        more_of_elements_(by_place(deck_.more_of_elements, elements_)),
         same_numbers_(nodes_.all_as_in_file() && elements_.all_as_in_file()) {
     if (!same_numbers_) require_known_references(deck_.unknown, path);
   }
@@ -54,9 +58,39 @@ class DeckWriter {
     }
     file_.commit();
     out_.note_rounded(notes_);
+    note_more();
   }
 
  private:
+  using TextByPlace = std::unordered_map<Index, std::string_view>;
+
+  /// Returns texts of the file's nodes or elements by their positions in the mesh.
+  static TextByPlace by_place(const std::map<Index, std::string>& texts, const FileNumbers& numbers) {
+    TextByPlace result;
+    for (const auto& [k, text] : texts) result.emplace(numbers.place(k), text);
+    return result;
+  }
+
+  static std::string_view text_at(const TextByPlace& texts, Index place) {
+    if (texts.empty()) return {};
+    const auto found = texts.find(place);
+    return found == texts.end() ? std::string_view() : found->second;
+  }
+
+  void note_more() {
+    if (!more_of_nodes_.empty()) {
+      notes_.push_back(fmt::format(
+          "fields after the coordinates of {} stay as they are, and are not understood",
+          more_of_nodes_.size() == 1 ? "a node" : fmt::format("{} nodes", more_of_nodes_.size())));
+    }
+    if (!more_of_elements_.empty()) {
+      notes_.push_back(
+          fmt::format("numbers after the last node of {} stay as they are; CalculiX does not read them",
+                      more_of_elements_.size() == 1 ? "an element"
+                                                    : fmt::format("{} elements", more_of_elements_.size())));
+    }
+  }
+
   void write(const Section& section) {
     switch (section.part) {
       case Part::nodes:
@@ -92,7 +126,7 @@ class DeckWriter {
       }
     }
     for (Index v = section.first; v < section.first + section.count; ++v) {
-      out_.node(nodes_.at(v), mesh_.points[v], mesh_.dimension);
+      out_.node(nodes_.at(v), mesh_.points[v], mesh_.dimension, text_at(more_of_nodes_, v));
     }
   }
 
@@ -129,7 +163,7 @@ class DeckWriter {
     for (const Index c : places_of(section, elements_)) {
       const auto cell = mesh_.cells[c];
       for (std::size_t k = 0; k < cell.size(); ++k) nodes[node_place(section.kind, k)] = nodes_.at(cell[k]);
-      out_.element(elements_.at(c), nodes);
+      out_.element(elements_.at(c), nodes, text_at(more_of_elements_, c));
     }
   }
 
@@ -201,6 +235,8 @@ class DeckWriter {
   Notes& notes_;
   OutputFile file_;
   DeckOutput out_;
+  TextByPlace more_of_nodes_;
+  TextByPlace more_of_elements_;
   bool same_numbers_;
   std::vector<std::pair<std::string, const Section*>> sets_of_cards_;  ///< that are still to be written
   std::unordered_set<std::string> words_of_sets_;  ///< the first of each of their names, in capitals

@@ -101,13 +101,14 @@ void DeckOutput::write_line() {
   line_.clear();
 }
 
-void DeckOutput::node(std::int64_t number, const Point& point, int dimension) {
+void DeckOutput::node(std::int64_t number, const Point& point, int dimension, std::string_view more) {
   add("", number);
   for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k) add_coordinate(point[k]);
+  line_ += more;
   write_line();
 }
 
-void DeckOutput::element(std::int64_t number, const std::vector<std::int64_t>& nodes) {
+void DeckOutput::element(std::int64_t number, const std::vector<std::int64_t>& nodes, std::string_view more) {
   add("", number);
   std::size_t on_line = 1;
   for (const std::int64_t node : nodes) {
@@ -119,6 +120,7 @@ void DeckOutput::element(std::int64_t number, const std::vector<std::int64_t>& n
     add(on_line == 0 ? "" : ", ", node);
     ++on_line;
   }
+  line_ += more;
   write_line();
 }
 

@@ -25,10 +25,10 @@ class DeckOutput {
     if (!text.empty()) within_line_ = text.back() != '\n' && text.back() != '\r';
   }
 
-  /// Writes the line of a node with `dimension` coordinates.
-  void node(std::int64_t number, const Point& point, int dimension);
-  /// Writes an element and the numbers of its nodes, 16 numbers on a line.
-  void element(std::int64_t number, const std::vector<std::int64_t>& nodes);
+  /// Writes the line of a node with `dimension` coordinates, and then `more`.
+  void node(std::int64_t number, const Point& point, int dimension, std::string_view more = {});
+  /// Writes an element and the numbers of its nodes, 16 numbers on a line, and then `more`.
+  void element(std::int64_t number, const std::vector<std::int64_t>& nodes, std::string_view more = {});
   /// Writes numbers, 16 on a line.
   void list(const std::vector<std::int64_t>& numbers);
   /// Writes a set as *NSET or *ELSET.

@@ -26,6 +26,7 @@ namespace meshorder::abaqus {
 namespace {
 
 constexpr std::size_t kMostNodes = 20;
+constexpr std::size_t kShownTypes = 3;
 
 bool is_comment(std::string_view line) { return line.starts_with("**"); }
 bool is_keyword(std::string_view line) { return line.starts_with('*') && !is_comment(line); }
@@ -114,12 +115,9 @@ class DeckReader {
 
   /// Takes a keyword line and the lines that continue it.
   std::string take_keyword() {
-    std::string text(lines_.take());
-    std::string_view line;
-    while (trimmed(std::string_view(text).substr(0, text.find_last_not_of("\r\n") + 1)).ends_with(',') &&
-           lines_.peek(line) && !line.starts_with('*')) {
-      text += lines_.take();
-    }
+    const std::size_t length = keyword_lines(lines_.rest()).size();
+    std::string text;
+    while (text.size() < length) text += lines_.take();
     return text;
   }
 
@@ -273,7 +271,7 @@ class DeckReader {
       point[k] = take_coordinate(line);
     }
     if (line.find_first_not_of(" \t,") != std::string_view::npos) {
-      lines_.at().fail("a node has more than three coordinates", "give normals by *NORMAL");
+      deck_->more_of_nodes.emplace(mesh_.vertex_count(), fmt::format(", {}", line));
     }
     mesh_.points.push_back(point);
   }
@@ -315,16 +313,22 @@ class DeckReader {
     const auto nodes = static_cast<std::size_t>(kind.nodes);
     std::array<Index, kMostNodes> cell{};
     const Offset first = mesh_.cells.offsets.back();
+    bool may_have_more = true;  // else a node is missing, and this is the next element
     for (std::size_t given = 0;;) {
+      const bool goes_on = line.ends_with(',');
       while (!line.empty()) {
         skip_blanks(line);
         if (line.empty() || line.front() == ',') {  // a comma at the end
           line.remove_prefix(line.empty() ? 0 : 1);
           continue;
         }
-        if (given == nodes) {
+        if (given == nodes && !may_have_more) {
           lines_.at().fail(fmt::format("element {} has more than the {} nodes of {}", number, nodes, type),
                            "remove them or give its type");
+        }
+        if (given == nodes) {  // CalculiX does not read the rest of the line
+          deck_->more_of_elements.emplace(mesh_.cell_count(), fmt::format(", {}", line));
+          break;
         }
         const Index node = take_number(line, "a node of the element");
         // the k-th node of the element is the same vertex of the cell
@@ -337,6 +341,7 @@ class DeckReader {
       }
       (void)lines_.take();
       if (given == nodes) break;
+      may_have_more = goes_on;
       if (!peek_data(line, comments)) {
         lines_.at().fail(fmt::format("element {} has {} of the {} nodes of {}", number, given, nodes, type),
                          "lines are missing");
@@ -358,6 +363,8 @@ class DeckReader {
     begin_section(Part::text, std::move(text), line_);
     deck_->unknown.push_back(fmt::format("elements of type {} (line {})", shown(type), line_));
     deck_->contents.push_back(fmt::format("elements of type {}", shown(type)));
+    if (other_types_.size() < kShownTypes)
+      other_types_.push_back(fmt::format("{}, line {}", shown(type), line_));
     if (const std::string_view set = card.value("ELSET"); !set.empty()) {
       sets_.add_block(Association::cells, set, 0, 0);
     }
@@ -405,7 +412,15 @@ class DeckReader {
 
   void finish() {
     if (deck_->nodes.size() == 0) throw InputError(lines_.at().file(), "has no *NODE", no_mesh());
-    if (deck_->elements.size() == 0) throw InputError(lines_.at().file(), "has no *ELEMENT", no_mesh());
+    if (deck_->elements.size() == 0) {
+      if (!other_types_.empty()) {
+        throw InputError(lines_.at().file(),
+                         fmt::format("its only elements are of types that are no cells here ({})",
+                                     join(other_types_, "; ")),
+                         "nothing can be reordered");
+      }
+      throw InputError(lines_.at().file(), "has no *ELEMENT", no_mesh());
+    }
     resolve_nodes();
     const bool has_volume = mesh_.cells.highest_dimension() == 3;
     mesh_.dimension = has_volume || has_third_coordinate_ ? 3 : 2;
@@ -457,6 +472,7 @@ class DeckReader {
     if (!types_.empty()) contents.push_back("the types of elements " + join(types_));
     if (!surfaces.empty()) contents.push_back("surfaces of the deck: " + join(surfaces));
     if (!titles.empty()) contents.push_back("cards of the deck: " + join(titles));
+    if (!deck_->more_of_nodes.empty()) contents.emplace_back("fields after the coordinates of nodes");
   }
 
   /// Lists the cards that may have numbers where nothing here looks for them.
@@ -490,6 +506,7 @@ class DeckReader {
   std::vector<UnknownNode> unknown_nodes_;
   std::vector<std::string> files_;                   // of unknown_nodes_
   std::unordered_set<std::int64_t> other_elements_;  // that are no cells
+  std::vector<std::string> other_types_;             // the first of these, for a message
   std::vector<std::string> types_;
   std::int64_t line_ = 0;  // of the last keyword
   int parts_ = 0;

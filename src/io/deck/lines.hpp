@@ -23,6 +23,8 @@ class DeckLines {
   /// Takes the line and returns it with its end, which the last line of the deck may lack. Valid until the
   /// next call.
   std::string_view take();
+  /// Returns what is left of the present file, from the next line on. Valid until the next call.
+  [[nodiscard]] std::string_view rest() { return at().all().substr(static_cast<std::size_t>(at().byte())); }
   /// Goes on with the lines of a file that the deck may include. Fails, at that line of the present file, for
   /// others, for one that does not exist or includes itself, and for too many.
   void include(const std::string& name, std::int64_t line);
