@@ -283,6 +283,28 @@ TEST(Nastran, ReadsBulkDataAloneAndIncludedFiles) {
             "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\r\nCTRIA3,1,1,1,2,3\r\n");
 }
 
+TEST(Nastran, ReadsNamesOfIncludedFilesOverSeveralLines) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "a" / "long name");
+  const std::string nodes = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\n";
+  (void)folder.file("a/b.dat", nodes);
+  (void)folder.file("a/long name/c.dat", nodes);
+  const auto nodes_of = [&](const std::string& include) {
+    return read_mesh(folder.file("a.bdf", include + "CTRIA3,1,1,1,2,3\nENDDATA\n")).vertex_count();
+  };
+  EXPECT_EQ(nodes_of("INCLUDE 'a/\nb.dat'\n"), 3);
+  EXPECT_EQ(nodes_of("INCLUDE 'a/\r\n   b.dat' $ the nodes\r\n"), 3);
+  EXPECT_EQ(nodes_of("include \"a/\nlong name/\n  c.d\nat\"\n"), 3);
+  EXPECT_EQ(nodes_of("INCLUDE='\na/b.dat\n'\n"), 3);
+
+  (void)folder.file("b.bdf", "INCLUDE 'a/\nb.dat\n" + nodes);
+  EXPECT_THAT(test::read_error(folder.path() / "b.bdf"),
+              HasSubstr("b.bdf:1: the name of the included file has no quote at its end; add it"));
+  (void)folder.file("a/c.bdf", "GRID,9,,0.,0.,0.\nINCLUDE '../\na.bdf'\n");
+  EXPECT_THAT(test::read_error(folder.path() / "a" / "c.bdf"),
+              HasSubstr("c.bdf:2: the included file '../a.bdf' is not in the deck's folder"));
+}
+
 TEST(Nastran, TakesCornersOfElementsThatLackSomeNodesOfEdges) {
   const TemporaryFolder folder;
   Notes notes;

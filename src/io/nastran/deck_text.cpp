@@ -113,6 +113,24 @@ void DeckText::take_line(std::string_view line) {
   }
 }
 
+/// Returns a name in quotes, which may go on in further lines; of these takes all but the last.
+std::string DeckText::quoted_name(std::string_view line) {
+  constexpr std::size_t kLongest = 4096;
+  const std::int64_t first = lines_.at().line();
+  const char quote = line.front();
+  std::string name;
+  line.remove_prefix(1);
+  for (std::size_t end = line.find(quote); end == std::string_view::npos; end = line.find(quote)) {
+    name += line;
+    const Scanner* const file = &lines_.at();
+    (void)lines_.take();
+    if (name.size() > kLongest || file->bytes_left() == 0 || !lines_.peek(line)) {
+      lines_.fail(first, "the name of the included file has no quote at its end", "add it");
+    }
+  }
+  return name.append(line.substr(0, line.find(quote)));
+}
+
 /// Goes on with the lines of a file: INCLUDE 'name'.
 void DeckText::include() {
   const std::int64_t number = lines_.at().line();
@@ -120,14 +138,8 @@ void DeckText::include() {
   (void)lines_.peek(line);
   line = trimmed(line.substr(std::string_view("INCLUDE").size()));
   if (line.starts_with('=')) line = trimmed(line.substr(1));
-  std::string name(line.substr(0, line.find('$')));
-  if (!line.empty() && (line.front() == '\'' || line.front() == '"')) {
-    const std::size_t end = line.find(line.front(), 1);
-    if (end == std::string_view::npos) {
-      lines_.at().fail("the name of the included file does not end on its line", "write it on one line");
-    }
-    name = line.substr(1, end - 1);
-  }
+  const bool is_quoted = line.starts_with('\'') || line.starts_with('"');
+  std::string name = is_quoted ? quoted_name(line) : std::string(line.substr(0, line.find('$')));
   name.erase(name.find_last_not_of(" \t") + 1);
   (void)lines_.take();
   if (name.empty()) lines_.fail(number, "the name of a file is missing", "write INCLUDE 'FILE'");

@@ -48,6 +48,7 @@ class DeckText {
   void read();
   void take_line(std::string_view line);
   void include();
+  std::string quoted_name(std::string_view line);
 
   std::string path_;
   DeckLines lines_;
