@@ -333,7 +333,7 @@ TEST(Abaqus, KeepsNumbersWhereACardMayNameThem) {
   Mesh mesh = read_deck(deck, &notes);
   EXPECT_THAT(notes,
               ElementsAre("all nodes and elements keep their numbers, and only their lines move, as these "
-                          "may name some by number: *NEW LOAD (line 65)"));
+                          "may name some by number, or go by their order: *NEW LOAD (line 65)"));
   const std::vector<std::int64_t> ids = mesh.vertex_ids;
   turn_round(mesh, Ids::renumber);
   EXPECT_EQ(mesh.vertex_ids.front(), 99);
@@ -348,6 +348,23 @@ TEST(Abaqus, KeepsNumbersWhereACardMayNameThem) {
   notes.clear();
   (void)read_deck(with(std::string(kDeck), "*FILM\n20, F2FC, 13, 5", "*NEW LOAD\n200, F2FC, 1000"), &notes);
   EXPECT_THAT(notes, IsEmpty()) << "no node or element has such a number";
+}
+
+TEST(Abaqus, KeepsNumbersWhereResultsGoByThem) {
+  for (const std::string card :
+       {"*TIE, NAME=t, CYCLIC SYMMETRY\ntop, top\n*CYCLIC SYMMETRY MODEL, N=8, TIE=t\n0,0,0,0,0,1\n",
+        "*RESTART, READ, STEP=1\n", "*VIEWFACTOR, READ\n"}) {
+    Notes notes;
+    Mesh mesh = read_deck(with(std::string(kDeck), "*Step, INC=10", card + "*Step, INC=10"), &notes);
+    EXPECT_THAT(notes, testing::Contains(HasSubstr("keep their numbers"))) << card;
+    turn_round(mesh, Ids::renumber);
+    EXPECT_THAT(deck_of(mesh), HasSubstr(std::string(kDeck.substr(kDeck.find("*NSET"), 80)))) << card;
+  }
+  for (const std::string card : {"*TIE, NAME=t\ntop, top\n", "*RESTART, WRITE\n", "*VIEWFACTOR, WRITE\n"}) {
+    Notes notes;
+    (void)read_deck(with(std::string(kDeck), "*Step, INC=10", card + "*Step, INC=10"), &notes);
+    EXPECT_THAT(notes, Not(testing::Contains(HasSubstr("keep their numbers")))) << card;
+  }
 }
 
 TEST(Abaqus, KeepsElementsOfTypesThatItDoesNotKnow) {

@@ -409,6 +409,12 @@ std::optional<std::vector<Reference>> references(const Card& card, std::string_v
   return ReferenceFinder(card, lines).find();
 }
 
+bool depends_on_numbers(const Card& card) {
+  const std::string& keyword = card.keyword;
+  return keyword == "CYCLICSYMMETRYMODEL" || (keyword == "TIE" && card.has("CYCLICSYMMETRY")) ||
+         ((keyword == "RESTART" || keyword == "VIEWFACTOR") && card.has("READ"));
+}
+
 bool pairs_sets(const Card& card, std::string_view lines) {
   return ReferenceFinder(card, lines).pairs_sets();
 }

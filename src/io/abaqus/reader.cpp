@@ -416,7 +416,7 @@ class DeckReader {
       if (!other_types_.empty()) {
         throw InputError(lines_.at().file(),
                          fmt::format("its only elements are of types that are no cells here ({})",
-                                     join(other_types_, "; ")),
+                                     join(other_types_, std::string_view("; "))),
                          "nothing can be reordered");
       }
       throw InputError(lines_.at().file(), "has no *ELEMENT", no_mesh());
@@ -483,9 +483,10 @@ class DeckReader {
       const Card card = parse_card(section.text);
       const bool is_set = card.keyword == "NSET" || card.keyword == "ELSET";
       if (card.keyword == "ELEMENT" || (is_set && !has_other_file(card))) continue;
-      if (references(card, section.text)) continue;
+      const bool goes_by_numbers = depends_on_numbers(card);
+      if (!goes_by_numbers && references(card, section.text)) continue;
       const std::vector<std::int64_t> numbers = numbers_in(section.text);
-      const bool names_any = card.keyword == "PARAMETER" || has_other_file(card) ||
+      const bool names_any = goes_by_numbers || card.keyword == "PARAMETER" || has_other_file(card) ||
                              pairs_sets(card, section.text) ||
                              std::any_of(numbers.begin(), numbers.end(), [&](std::int64_t number) {
                                return deck_->nodes.find(number) >= 0 || deck_->elements.find(number) >= 0;

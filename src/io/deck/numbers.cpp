@@ -103,7 +103,7 @@ void note_kept_numbers(const std::vector<std::string>& unknown, Notes& notes) {
   const std::vector<std::string> first(unknown.begin(), unknown.end() - static_cast<std::ptrdiff_t>(more));
   notes.push_back(fmt::format(
       "all nodes and elements keep their numbers, and only their lines move, as these may name some by "
-      "number: {}{}",
+      "number, or go by their order: {}{}",
       join(first), more > 0 ? fmt::format(" and {} more", more) : ""));
 }
 
