@@ -271,7 +271,7 @@ class DeckReader {
       point[k] = take_coordinate(line);
     }
     if (line.find_first_not_of(" \t,") != std::string_view::npos) {
-      deck_->more_of_nodes.emplace(mesh_.vertex_count(), fmt::format(", {}", line));
+      deck_->more_of_nodes.emplace(mesh_.vertex_count(), fmt::format(", {}", trimmed(line)));
     }
     mesh_.points.push_back(point);
   }
