@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/scanner.hpp"
 
+#include "io/stream/text_ends.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -22,7 +24,13 @@ std::string shown(std::string_view text) {
 }
 
 Scanner::Scanner(const FilePath& file, char comment)
-    : file_(file.string()), text_(file.read()), comment_(comment) {}
+    : file_(file.string()), text_(file.read()), comment_(comment) {
+  text_.erase(0, text_.size() - without_byte_order_mark(text_).size());
+  if (text_.empty()) throw InputError(file_, "is empty", "give a mesh file");
+  constexpr std::string_view kWide("\xFE\xFF\0", 3);  // in the other byte order the fourth byte is the zero
+  const bool is_wide = text_.starts_with(kWide) || (text_.starts_with("\xFF\xFE") && text_.find('\0') == 3);
+  if (is_wide) throw InputError(file_, "is text in UTF-16", "save it in UTF-8");
+}
 
 void Scanner::seek(std::int64_t byte) {
   const auto target = std::min(static_cast<std::size_t>(byte), text_.size());

@@ -31,6 +31,11 @@ std::size_t line_begin(std::string_view text, std::size_t at) {
 
 }  // namespace
 
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.substr(text.starts_with(kMark) ? kMark.size() : 0);
+}
+
 std::string comments_before(std::string_view text, char comment) {
   std::size_t end = 0;
   for (std::size_t at = first_mark(text, 0); at < text.size() && text[at] == comment;

@@ -9,7 +9,12 @@
 
 namespace meshorder {
 
-// Comments before and after the data of a text file, kept for the writer.
+// What is before and after the data of a text file.
+
+/// Returns a text without the byte order mark of UTF-8 that some editors put before it.
+std::string_view without_byte_order_mark(std::string_view text);
+
+// Comments are kept for the writer.
 
 /// Returns, verbatim, the lines up to the last comment before the first word; empty if there is none.
 std::string comments_before(std::string_view text, char comment);
