@@ -21,8 +21,9 @@ namespace {
 
 /// What it takes to hold a mesh of another format: neither a library that keeps files on disk nor one point
 /// for all vertices.
-constexpr std::array<std::string_view, 13> kOtherFormats{
-    "gmsh", "vtu", "vtk", "medit", "tetgen", "vega", "off", "ply", "obj", "su2", "abaqus", "nastran", "unv"};
+constexpr std::array<std::string_view, 14> kOtherFormats{"gmsh",   "vtu",     "vtk", "medit", "tetgen",
+                                                         "vega",   "off",     "ply", "obj",   "su2",
+                                                         "abaqus", "nastran", "unv", "ucd"};
 
 Mesh read(std::string_view format, const std::vector<MemoryFile>& files) {
   const MemoryFile& first = files.front();

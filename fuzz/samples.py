@@ -19,6 +19,7 @@ FAMILIES = {
     "vega": ("io/vega_test.cpp", ""), "off": ("io/off_test.cpp", ""), "ply": ("io/ply_test.cpp", "ply"),
     "obj": ("io/obj_test.cpp", ""), "stl": ("io/stl_test.cpp", ""), "su2": ("io/su2_test.cpp", ""),
     "abaqus": ("io/abaqus_test.cpp", ""), "nastran": ("io/nastran_test.cpp", ""), "unv": ("io/unv_test.cpp", " "),
+    "ucd": ("io/ucd_test.cpp", "#"),
     "xdmf": ("io/xdmf_test.cpp", "<"), "matrix": ("io/matrix_test.cpp", "%%"), "graph": ("io/matrix_test.cpp", ""),
 }
 NAME = r"^(?:constexpr std::string_view|const std::string) (k\w+)\s*=\s*"

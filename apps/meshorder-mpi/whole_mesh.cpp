@@ -3,6 +3,7 @@
 
 #include "distributed/parts.hpp"
 #include "io/format.hpp"
+#include "io/format_choice.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
 #include "ordering/order_cells.hpp"
@@ -44,7 +45,7 @@ WholeMesh read_at_root(const Communicator& communicator, const MeshFiles& files,
       notes.push_back(with_commas(whole.mesh.cell_count()) +
                       " cells are read and written by rank 0, which has memory for all of them");
     }
-    whole.arranged = arrange_cells(whole.mesh, output_format_of(files.output));
+    whole.arranged = arrange_cells(whole.mesh, output_format_of(files.output, whole.mesh.format));
     return whole;
   });
 }

@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
+#include "io/format_choice.hpp"
 #include "io/stream/output_file.hpp"
 #include "maps.hpp"
 #include "mesh/reorder.hpp"
@@ -32,15 +33,15 @@ struct ApplyArguments : Common {
 void run(const ApplyArguments& arguments) {
   Console console(arguments);
   const Stopwatch total;
-  const Format& format = output_format_of(arguments.output);
   const Ids ids = parse<Ids>(arguments.ids);
-  check_holds_ids(format, ids);
+  check_holds_ids(output_format_of(arguments.output), ids);
   (void)OutputFile(arguments.output);  // fail before the work if it cannot be written
 
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.5);
   Notes notes;
   Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
+  const Format& format = output_format_of(arguments.output, mesh.format);
   leave_out_unmapped_cells(arguments.prefix, mesh, notes);
   const Maps maps = read_maps(arguments.prefix, mesh, arguments.input, arguments.inverse);
   try {

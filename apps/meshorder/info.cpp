@@ -202,7 +202,8 @@ void run(const InfoArguments& arguments) {
   progress.finish();
   if (advice && !advice->doubt.empty()) notes.push_back(advice->doubt);
   console.warn_of(notes);
-  console.print("{}, {}", arguments.input, format_of(arguments.input).name);
+  const std::string_view format = format_named(mesh.format).name;
+  console.print("{}, {}", arguments.input, format);
   console.print("{:<12} {} {}", "vertices", with_commas(mesh.vertex_count()),
                 has_places(mesh) ? fmt::format("in {} dimensions", mesh.dimension) : "without coordinates");
   console.print("{:<12} {}", "cells", cells_in_words(mesh));
@@ -237,7 +238,7 @@ void run(const InfoArguments& arguments) {
 
   nlohmann::ordered_json result{
       {"file", arguments.input},
-      {"format", format_of(arguments.input).name},
+      {"format", format},
       {"vertices", mesh.vertex_count()},
       {"dimension", mesh.dimension},
       {"cells", cells_by_type(mesh)},

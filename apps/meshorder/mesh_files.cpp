@@ -2,6 +2,7 @@
 #include "mesh_files.hpp"
 
 #include "io/format.hpp"
+#include "io/format_choice.hpp"
 #include "io/kept_cells.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/output_set.hpp"
@@ -34,10 +35,10 @@ void check_can_write(const MeshFiles& files) {
 }
 
 MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t bytes_of_entry) {
-  const Format& format = output_format_of(files.output);
   MeshToOrder result;
   Mesh& mesh = result.mesh;
   mesh = read_to_work_on(files.input, notes, bytes_of_entry);
+  const Format& format = output_format_of(files.output, mesh.format);
   const Index cells_read = mesh.cell_count();
   const std::vector<Index> wanted = keep_cells(mesh, {.dimension = files.keeping.dimension, .notes = &notes});
   const std::vector<Index> held = files.keeping.strict ? all_cells(mesh) : cells_for(mesh, format, notes);

@@ -3,6 +3,7 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
+#include "io/format_choice.hpp"
 #include "machines.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
@@ -106,6 +107,14 @@ void note_no_better(const Mesh& mesh, const ReorderOptions& options, const Permu
   if (!reason.empty()) notes.push_back(reason + "; --elements original keeps the order");
 }
 
+/// Returns whether a file gives vertices or cells other numbers than it gave them before they moved. `mesh`
+/// has been reordered.
+bool has_new_numbers(const Mesh& mesh, const MeshOrder& order, const ReorderOptions& options) {
+  const bool are_moved = !order.vertices.permutation.is_identity() || !order.cells.permutation.is_identity();
+  const bool are_bound = mesh.format_metadata != nullptr && mesh.format_metadata->binds_ids();
+  return are_moved && !are_bound && options.ids != Ids::keep && has_numbers(format_named(options.format));
+}
+
 /// Returns {"count", "method", "chosen_by", "because", "kept", "seconds"}.
 nlohmann::ordered_json half_json(Index count, const Order& order) {
   nlohmann::ordered_json result{{"count", count}};
@@ -119,7 +128,7 @@ void run(const OrderArguments& arguments) {
   Console console(arguments);
   ReorderOptions options = arguments.reordering;
   options.ids = parse<Ids>(arguments.ids);
-  options.format = output_format_of(arguments.output).key();
+  (void)output_format_of(arguments.output);  // fail before the work
   const bool in_race = arguments.measure || arguments.predict;
   if (in_race) check_race(arguments);
   if (!in_race && (!arguments.machine.empty() || arguments.all_threads)) {
@@ -137,6 +146,7 @@ void run(const OrderArguments& arguments) {
   const std::uint64_t bytes_of_race = arguments.measure ? 3 * kBytesToMeasure : kBytesToPredict;
   MeshToOrder job = read_to_order(arguments, notes, in_race ? bytes_of_race : kBytesToOrder);
   Mesh& mesh = job.mesh;
+  options.format = output_format_of(arguments.output, mesh.format).key();
   const double read_seconds = reading.seconds();
 
   // a race on all threads has no other costs to choose by
@@ -183,6 +193,9 @@ void run(const OrderArguments& arguments) {
   console.warn_of(notes);
   if (raced) console.print("{:<10} {}", "race", in_words(*raced));
   print_result(console, order, groups, before, after);
+  if (has_new_numbers(mesh, order, options)) {
+    console.print("{:<10} {}", "numbers", "of vertices and cells are new; --ids keep keeps the old ones");
+  }
   console.print("{:<10} {}", "wrote", arguments.output);
   for (const std::string& file : map_files) console.print("{:<10} {}", "", file);
   nlohmann::ordered_json result{

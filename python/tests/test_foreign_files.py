@@ -12,7 +12,7 @@ from conftest import tetrahedra
 from meshorder import InputError
 
 FORMATS = {
-    ".avs": "avsucd", ".mdpa": "mdpa", ".f3grid": "flac3d", ".dat": "tecplot", ".post": "permas",
+    ".mdpa": "mdpa", ".f3grid": "flac3d", ".dat": "tecplot", ".post": "permas",
 }  # fmt: skip
 
 
@@ -100,9 +100,9 @@ def test_second_order_cells_there_and_back(tmp_path):
 def test_mixed_cells_are_grouped_and_told(tmp_path):
     points = np.random.default_rng(1).random((8, 3))
     cells = (np.array([0, 4, 7, 11]), np.array([0, 1, 2, 3, 0, 1, 2, 4, 5, 6, 7]), np.array([10, 5, 10]))
-    notes = meshorder.write(meshorder.make_mesh(points, cells), tmp_path / "mixed.avs")
+    notes = meshorder.write(meshorder.make_mesh(points, cells), tmp_path / "mixed.mdpa")
     assert "cells were grouped by type" in notes
-    assert [block.type for block in meshio.read(tmp_path / "mixed.avs").cells] == ["tetra", "triangle"]
+    assert [block.type for block in meshio.read(tmp_path / "mixed.mdpa").cells] == ["tetra", "triangle"]
 
 
 def test_what_a_mesh_cannot_hold_is_told():
@@ -129,7 +129,7 @@ def test_meshes_of_other_libraries_are_written(tmp_path):
         meshorder.write(5, tmp_path / "mesh.vtu")
 
 
-@pytest.mark.parametrize("suffix", [".avs", ".mdpa", ".h5m"])
+@pytest.mark.parametrize("suffix", [".mdpa", ".h5m"])
 def test_broken_files_are_input_errors(tmp_path, suffix, capsys):
     with pytest.raises(InputError, match="No such file"):
         meshorder.read(tmp_path / f"missing{suffix}")

@@ -3,8 +3,11 @@
 
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
+#include "io/format_choice.hpp"
 #include "io/openfoam/cell_order.hpp"
 #include "io/other_formats.hpp"
+#include "io/stream/text_ends.hpp"
+#include "io/ucd/ucd.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -18,9 +21,9 @@ namespace meshorder {
 namespace {
 
 const std::vector<Format> kFormats{
-    tetgen_format(),        vega_format(),        gmsh_format(),    medit_format(), vtu_format(),
-    vtk_format(),           off_format(),         obj_format(),     ply_format(),   stl_format(),
-    su2_format(),           abaqus_format(),      nastran_format(), unv_format(),
+    tetgen_format(),        vega_format(),        gmsh_format(), medit_format(),   vtu_format(),
+    vtk_format(),           off_format(),         obj_format(),  ply_format(),     stl_format(),
+    su2_format(),           abaqus_format(),      ucd_format(),  nastran_format(), unv_format(),
 #ifdef MESHORDER_HAS_HDF5
     vtkhdf_format(),
 #endif
@@ -172,6 +175,7 @@ std::string_view format_that_begins(std::string_view bytes) {
   if (is_bulk_data(bytes)) return "Nastran";
   if (is_med(bytes)) return "MED";
   if (is_vtkhdf(bytes)) return "VTKHDF";
+  if (ucd::begins_ucd(bytes)) return "UCD";
   while (!bytes.empty()) {
     std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));
     bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
@@ -245,6 +249,15 @@ const Format& format_of(const std::filesystem::path& path) {
                    "known are " + known + "; the Python package and its command also take meshio's formats");
 }
 
+const Format& format_of_file(const FilePath& path) {
+  const Format& format = format_of(path.path());
+  if (format.name != "Abaqus" || !path.is_file()) return format;
+  constexpr std::size_t kFirst = 65536;
+  const bool is_compressed = without_gz(path.path()) != path.path();
+  const std::string bytes = is_compressed ? path.read() : path.read_first(kFirst);
+  return ucd::begins_ucd(without_byte_order_mark(bytes)) ? format_named("UCD") : format;
+}
+
 const Format& output_format_of(const std::filesystem::path& path) {
   const Format& format = format_of(path);
   if (lower_case(without_gz(path).extension().string()) == ".pvtu") {
@@ -252,6 +265,17 @@ const Format& output_format_of(const std::filesystem::path& path) {
                      "write a .vtu file, or pieces by `mpirun -n 4 meshorder order MESH --pieces FOLDER`");
   }
   return format;
+}
+
+const Format& output_format_of(const std::filesystem::path& path, std::string_view of_mesh) {
+  const Format& format = output_format_of(path);
+  return of_mesh == "ucd" && format.name == "Abaqus" ? format_named("UCD") : format;
+}
+
+bool has_numbers(const Format& format) {
+  constexpr std::array<std::string_view, 7> kNames{"Gmsh", "Abaqus", "UCD", "Nastran",
+                                                   "UNV",  "Exodus", "MED"};
+  return std::find(kNames.begin(), kNames.end(), format.name) != kNames.end();
 }
 
 const Format& format_named(std::string_view name) {
@@ -267,7 +291,7 @@ const Format& format_named(std::string_view name) {
 
 const Format* format_of_bytes(std::string_view bytes) {
   if (has_size_of_stl(bytes)) return &format_named("STL");
-  const std::string_view name = format_that_begins(bytes);
+  const std::string_view name = format_that_begins(without_byte_order_mark(bytes));
   return name.empty() ? nullptr : &format_named(name);
 }
 

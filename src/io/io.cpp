@@ -2,7 +2,7 @@
 //
 // The public functions that read and write meshes, on disk and in memory.
 #include "base/arena.hpp"
-#include "io/format.hpp"
+#include "io/format_choice.hpp"
 #include "io/kept_cells.hpp"
 #include "io/not_together.hpp"
 #include "io/stream/gzip.hpp"
@@ -185,13 +185,14 @@ Permutation write_checked(const Mesh& mesh, const FilePath& path, const Format& 
 }  // namespace
 
 Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options) {
-  return write_checked(mesh, path, output_format_of(path.path()), options);
+  return write_checked(mesh, path, output_format_of(path.path(), mesh.format), options);
 }
 
 inline namespace v0_2 {
 
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
-  return read_checked(path, options.format.empty() ? format_of(path) : format_named(options.format), options);
+  return read_checked(path, options.format.empty() ? format_of_file(path) : format_named(options.format),
+                      options);
 }
 
 Mesh read_mesh(std::span<const std::byte> bytes, const ReadOptions& options) {

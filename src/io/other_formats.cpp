@@ -23,7 +23,6 @@ constexpr std::array kOtherFormats{
     OtherFormat{".vtr", kStructured, kGridOrder},
     OtherFormat{".mdpa", "is a mesh of Kratos", kByMeshio},
     OtherFormat{".h5m", "is a mesh of MOAB", kByMeshio},
-    OtherFormat{".avs", "is an AVS-UCD file", kByMeshio},
     OtherFormat{".ugrid", "is an AFLR3 file", kByMeshio},
     OtherFormat{".f3grid", "is a mesh of FLAC3D", kByMeshio},
     OtherFormat{".tec", "is a Tecplot file", kByMeshio},

@@ -7,14 +7,17 @@
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 namespace meshorder {
 namespace {
 
 using test::TemporaryFolder;
+using testing::HasSubstr;
 
 /// Cells of all linear volumes and surfaces, interleaved.
 Mesh interleaved(const std::vector<Shape>& shapes) {
@@ -42,6 +45,32 @@ TEST(Format, ExtensionsAreUnique) {
   }
   std::sort(all.begin(), all.end());
   EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
+}
+
+TEST(Format, PassesOverAByteOrderMark) {
+  const TemporaryFolder folder;
+  const Mesh mesh = test::cells_of_type(Shape::triangle, 3, 2);
+  constexpr std::array<std::string_view, 12> kTexts{".msh", ".mesh", ".vtk", ".vtu", ".off", ".obj",
+                                                    ".ply", ".stl",  ".su2", ".inp", ".bdf", ".avs"};
+  for (const std::string_view extension : kTexts) {
+    const std::filesystem::path plain = folder.path() / ("plain" + std::string(extension));
+    write_mesh(mesh, plain);
+    const std::string text = test::content_of(plain);
+    const std::string name = "marked" + std::string(extension);
+    const Mesh expected = read_mesh(plain);
+    const Mesh marked = read_mesh(folder.file(name, "\xEF\xBB\xBF" + text));
+    EXPECT_EQ(marked.points, expected.points) << name;
+    EXPECT_EQ(marked.cells, expected.cells) << name;
+    write_mesh(marked, folder.path() / name);
+    EXPECT_EQ(test::content_of(folder.path() / name), text) << "written without it";
+
+    std::string wide = "\xFF\xFE";
+    for (const char c : text) wide.append({c, '\0'});
+    EXPECT_THAT(test::read_error(folder.file(name, wide)), HasSubstr("is text in UTF-16; save it in UTF-8"));
+  }
+  EXPECT_EQ(format_of_bytes("\xEF\xBB\xBFMeshVersionFormatted 2")->name, "Medit");
+  EXPECT_THAT(test::read_error(folder.file("only.obj", "\xEF\xBB\xBF")), HasSubstr("is empty"));
+  EXPECT_THAT(test::read_error(folder.file("short.obj", "\xFF\xFE")), HasSubstr("short.obj"));
 }
 
 TEST(ArrangeCells, MakesAConvertedFileHoldTheOrderThatWasComputed) {

@@ -21,9 +21,9 @@ bool move_places(std::vector<Index>& places, std::span<const Index> moves) {
   return std::none_of(places.begin(), places.end(), [](Index place) { return place < 0; });
 }
 
-bool can_be_numbers(std::vector<std::int64_t> ids, std::int64_t largest) {
+bool can_be_numbers(std::vector<std::int64_t> ids, std::int64_t largest, std::int64_t smallest) {
   std::sort(ids.begin(), ids.end());
-  return !ids.empty() && ids.front() > 0 && ids.back() <= largest &&
+  return !ids.empty() && ids.front() >= smallest && ids.back() <= largest &&
          std::adjacent_find(ids.begin(), ids.end()) == ids.end();
 }
 
@@ -80,13 +80,14 @@ std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
   return added;
 }
 
-void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes) {
+void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes,
+                    std::int64_t smallest) {
   for (const Association association : {Association::vertices, Association::cells}) {
     const auto& ids = association == Association::vertices ? mesh.vertex_ids : mesh.cell_ids;
-    if (ids.empty() || can_be_numbers(ids, largest)) continue;
+    if (ids.empty() || can_be_numbers(ids, largest, smallest)) continue;
     notes.push_back(
-        fmt::format("the ids of {} are not written: numbers of {} are 1 to {} and differ from each other",
-                    to_string(association), format, largest));
+        fmt::format("the ids of {} are not written: numbers of {} are {} to {} and differ from each other",
+                    to_string(association), format, smallest, largest));
   }
 }
 

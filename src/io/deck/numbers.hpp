@@ -21,9 +21,9 @@ namespace meshorder {
 /// Moves the places of items; `moves` is empty where all stay. Returns whether all still have a place.
 bool move_places(std::vector<Index>& places, std::span<const Index> moves);
 
-/// Returns whether ids can be the numbers of nodes or elements: 1 to `largest`, and each given once. False
-/// for none. O(n log n).
-bool can_be_numbers(std::vector<std::int64_t> ids, std::int64_t largest);
+/// Returns whether ids can be the numbers of nodes or elements: `smallest` to `largest`, and each given once.
+/// False for none. O(n log n).
+bool can_be_numbers(std::vector<std::int64_t> ids, std::int64_t largest, std::int64_t smallest = 1);
 
 /// Returns the positions, in the file, of items whose numbers are from, from + step, … ≤ to; ascending by
 /// number. `step` is 1 or more. O(numbers), or O(items) if these are fewer.
@@ -86,8 +86,9 @@ std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
                                    const std::vector<EntitySet>& of_mesh, const FileNumbers& nodes,
                                    const FileNumbers& elements, Notes& notes);
 
-/// Notes the ids of a mesh that are not written because they `can_be_numbers` not.
-void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes);
+/// Notes the ids of a mesh that are not written: those that `can_be_numbers` refuses.
+void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes,
+                    std::int64_t smallest = 1);
 
 /// Throws InputError where `unknown` cards may name nodes or elements by number, so that these cannot change.
 void require_known_references(const std::vector<std::string>& unknown, const FilePath& path);

@@ -1,0 +1,253 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
+#include "io/labels.hpp"
+#include "io/stream/id_map.hpp"
+#include "io/stream/scanner.hpp"
+#include "io/stream/text_ends.hpp"
+#include "io/ucd/ucd.hpp"
+#include "io/unique_names.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+namespace meshorder::ucd {
+namespace {
+
+constexpr char kComment = '#';
+constexpr std::string_view kFirstLine =
+    "it has the numbers of nodes, cells, and values of nodes, cells and the model";
+constexpr char kBinary = '\7';  // the first byte of a binary file
+
+class Reader {
+ public:
+  Reader(const FilePath& path, Notes& notes) : in_(path), notes_(notes) {}
+
+  Mesh read() {
+    if (in_.all().front() == kBinary) {
+      throw InputError(in_.file(), "is a binary AVS UCD file", "save it as text");
+    }
+    metadata_->comments_before = comments_before(in_.all(), kComment);
+    in_.seek(std::ssize(metadata_->comments_before));
+    const Index nodes = in_.count("the number of nodes", 8);
+    const Index cells = in_.count("the number of cells", 8);
+    const std::int64_t node_values = count_of_values("nodes");
+    const std::int64_t cell_values = count_of_values("cells");
+    metadata_->model_values = count_of_values("the model");
+    if (!take_end()) fail_at_more("counts", std::string(kFirstLine));
+    read_nodes(nodes);
+    read_cells(cells);
+    names_.take(Association::cells, std::string(kLabel));
+    read_data(Association::vertices, node_values, node_numbers_);
+    read_data(Association::cells, cell_values, cell_numbers_);
+    keep_rest();
+    note_missing_line_end(in_, kComment, notes_);
+    mesh_.vertex_ids = node_numbers_.ids_unless_from(1);
+    if (cells_are_numbered_) mesh_.cell_ids = cell_numbers_.ids_unless_from(1);
+    mesh_.format_metadata = metadata_;
+    return std::move(mesh_);
+  }
+
+ private:
+  std::int64_t count_of_values(std::string_view of) {
+    if (in_.at_line_end()) in_.fail("the first line has fewer than five counts", std::string(kFirstLine));
+    const std::string what = fmt::format("the number of values of {}", of);
+    const auto count = in_.integer<std::int64_t>(what);
+    if (count < 0 || count > kMaxIndex) in_.fail(fmt::format("{} is {}", what, count), "0 or more is needed");
+    return count;
+  }
+
+  /// Takes the end of a line; returns false where the line goes on.
+  bool take_end() {
+    if (!in_.at_line_end()) return false;
+    (void)in_.raw_line();
+    return true;
+  }
+
+  [[noreturn]] void fail_at_more(std::string_view of, const std::string& wanted) const {
+    in_.fail(fmt::format("the line of {} has more than it should", of), wanted);
+  }
+
+  Index number(std::string_view what) {
+    const auto number = in_.integer<std::int64_t>(what);
+    if (number < 0 || number > kMaxIndex) {
+      in_.fail(fmt::format("{} is {}", what, number), "0 to 2147483647 are possible");
+    }
+    return static_cast<Index>(number);
+  }
+
+  void read_nodes(Index count) {
+    mesh_.points.resize(static_cast<std::size_t>(count));
+    for (Point& point : mesh_.points) {
+      const Index id = number("the number of a node");
+      if (!node_numbers_.add(id)) in_.fail(fmt::format("node {} is given twice", id), "numbers must differ");
+      for (double& coordinate : point) coordinate = in_.finite("a coordinate");
+      if (!take_end()) fail_at_more("a node", "a number and three coordinates are needed");
+    }
+  }
+
+  void read_cells(Index count) {
+    std::vector<std::int64_t> materials;
+    materials.reserve(static_cast<std::size_t>(count));
+    std::array<Index, 8> cell{};
+    for (Index c = 0; c < count; ++c) {
+      const Index id = number("the number of a cell");
+      if (cells_are_numbered_ && !cell_numbers_.add(id)) {
+        cells_are_numbered_ = false;
+        notes_.push_back(
+            fmt::format("{}:{}: cell {} is given twice: cells are numbered by their places from here on",
+                        in_.file(), in_.line(), id));
+      }
+      materials.push_back(in_.integer<std::int64_t>("the material of a cell"));
+      const CellKind& kind = kind_named(in_.word("the type of a cell"));
+      const auto nodes = static_cast<std::size_t>(kind.nodes);
+      for (std::size_t k = 0; k < nodes; ++k) {
+        const Index node = number("a node of the cell");
+        const Index v = node_numbers_.find(node);
+        if (v < 0) {
+          in_.fail(fmt::format("a node of cell {} is {}, which the file does not have", id, node),
+                   "correct the cell, or add the node");
+        }
+        cell[k] = v;
+      }
+      std::array<Index, 8> in_order{};
+      for (std::size_t k = 0; k < nodes; ++k) in_order[k] = cell[static_cast<std::size_t>(kind.places[k])];
+      if (!take_end()) {
+        fail_at_more(
+            fmt::format("cell {}", id),
+            fmt::format("a cell of type {} has {} nodes, without any on its edges", kind.name, nodes));
+      }
+      mesh_.cells.push_back(kind.shape, {in_order.data(), nodes});
+    }
+    mesh_.data.push_back(
+        {std::string(kLabel), Association::cells, 1, label_values(std::move(materials)), {}, {}});
+  }
+
+  const CellKind& kind_named(std::string_view name) const {
+    const auto* const found = std::find_if(kCellKinds.begin(), kCellKinds.end(), [&](const CellKind& kind) {
+      return same_but_for_case(kind.name, name);
+    });
+    if (found == kCellKinds.end()) {
+      in_.fail(fmt::format("a cell has the type '{}'", shown(name)),
+               "known are " + join(kCellKinds, [](const CellKind& kind) { return kind.name; }));
+    }
+    return *found;
+  }
+
+  // ---- data
+
+  /// Reads the arrays of all nodes or cells: their sizes, their labels with units, and a line for each item.
+  void read_data(Association association, std::int64_t values, const IdMap& numbers) {
+    if (values == 0) return;
+    const bool of_nodes = association == Association::vertices;
+    const std::string_view item = of_nodes ? "node" : "cell";
+    const Index rows = of_nodes ? mesh_.vertex_count() : mesh_.cell_count();
+    (void)in_.checked_count(rows, fmt::format("the number of {}s with data", item), 2 * (values + 1));
+    const std::size_t first = mesh_.data.size();
+    begin_arrays(association, values);
+    std::vector<std::vector<double>> arrays;
+    for (std::size_t i = first; i < mesh_.data.size(); ++i) {
+      arrays.emplace_back(static_cast<std::size_t>(rows) *
+                          static_cast<std::size_t>(mesh_.data[i].components));
+    }
+    const std::string what = fmt::format("a value of a {}", item);
+    std::vector<bool> seen(static_cast<std::size_t>(rows), false);
+    for (Index row = 0; row < rows; ++row) {
+      const Index place = place_of_row(of_nodes || cells_are_numbered_ ? &numbers : nullptr, row, item);
+      if (seen[place]) in_.fail(fmt::format("the {} has data twice", item), "remove one of the lines");
+      seen[place] = true;
+      for (std::size_t i = 0; i < arrays.size(); ++i) {
+        const Index components = mesh_.data[first + i].components;
+        for (Index k = 0; k < components; ++k) {
+          arrays[i][Offset{place} * components + k] = in_.real(what);
+        }
+      }
+      if (!take_end()) {
+        fail_at_more(fmt::format("data of a {}", item), fmt::format("{} values are needed", values));
+      }
+    }
+    for (std::size_t i = 0; i < arrays.size(); ++i) mesh_.data[first + i].values = std::move(arrays[i]);
+  }
+
+  /// Takes the number of the item that a line of data belongs to; of cells without numbers it is the row.
+  Index place_of_row(const IdMap* numbers, Index row, std::string_view item) {
+    const Index id = number("the number of a line of data");
+    const Index place = numbers == nullptr ? row : numbers->find(id);
+    if (place < 0) in_.fail(fmt::format("{} {} does not exist", item, id), "correct its number");
+    return place;
+  }
+
+  void begin_arrays(Association association, std::int64_t values) {
+    const Index count = in_.count("the number of arrays", 4);
+    std::int64_t left = values;
+    std::vector<Index> components;
+    for (Index i = 0; i < count; ++i) {
+      const auto size = in_.integer<std::int64_t>("the components of an array");
+      if (size < 1 || size > left) break;
+      components.push_back(static_cast<Index>(size));
+      left -= size;
+    }
+    if (left != 0 || index_size(components) != count) {
+      in_.fail(fmt::format("the components of the arrays do not add up to {}", values),
+               "correct them, or the first line of the file");
+    }
+    if (!take_end()) fail_at_more("the sizes of arrays", "a size for each array is needed");
+    for (const Index size : components) {
+      if (in_.bytes_left() == 0) in_.fail("the label of an array is missing", "the file may be cut short");
+      const std::string line(in_.raw_line());
+      const std::string label(trimmed(std::string_view(line).substr(0, line.find(','))));
+      const std::string name = names_.take(association, label);
+      metadata_->labels.emplace(std::pair(association, name), line);
+      mesh_.data.push_back({name, association, size, std::vector<double>(), {}, {}});
+    }
+  }
+
+  /// Keeps the data of the model. Without such, nothing may follow: it would be data in the old order.
+  void keep_rest() {
+    if (in_.at_end()) return;
+    if (metadata_->model_values == 0) {
+      in_.fail("the file goes on after its last line",
+               "the counts of its first line are wrong, or lines are too many");
+    }
+    metadata_->model_data = in_.all().substr(static_cast<std::size_t>(in_.byte()));
+  }
+
+  Scanner in_;
+  Notes& notes_;
+  Mesh mesh_;
+  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  IdMap node_numbers_;
+  IdMap cell_numbers_;
+  bool cells_are_numbered_ = true;  // each by a number of its own
+  UniqueNames names_;
+};
+
+}  // namespace
+
+bool begins_ucd(std::string_view bytes) {
+  if (bytes.starts_with(kBinary)) return true;
+  bytes.remove_prefix(comments_before(bytes, kComment).size());
+  const auto numbers_of_line = [&](std::string_view allowed) {
+    std::string_view line;
+    while (trimmed(line).empty() && !bytes.empty()) {
+      line = bytes.substr(0, bytes.find_first_of("\r\n"));
+      bytes.remove_prefix(std::min(line.size() + 1, bytes.size()));
+    }
+    int count = 0;
+    for (std::string_view word = next_word(line); !word.empty(); word = next_word(line), ++count) {
+      if (word.find_first_not_of(allowed) != std::string_view::npos) return 0;
+    }
+    return count;
+  };
+  // five counts, then a node and its coordinates
+  return numbers_of_line("0123456789") == 5 && numbers_of_line("0123456789+-.eEdD") == 4;
+}
+
+Mesh read(const FilePath& path, Notes& notes) { return Reader(path, notes).read(); }
+
+}  // namespace meshorder::ucd
