@@ -2,6 +2,7 @@
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "command.hpp"
+#include "confinement.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
 #include "io/format_choice.hpp"
@@ -36,11 +37,12 @@ void run(const ApplyArguments& arguments) {
   const Ids ids = parse<Ids>(arguments.ids);
   check_holds_ids(output_format_of(arguments.output), ids);
   (void)OutputFile(arguments.output);  // fail before the work if it cannot be written
+  confine({.meshes = {arguments.input}, .maps_read = arguments.prefix, .outputs = {arguments.output}});
 
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.5);
   Notes notes;
-  Mesh mesh = read_mesh(arguments.input, {.notes = &notes});
+  Mesh mesh = read_input(arguments.input, notes);
   const Format& format = output_format_of(arguments.output, mesh.format);
   leave_out_unmapped_cells(arguments.prefix, mesh, notes);
   const Maps maps = read_maps(arguments.prefix, mesh, arguments.input, arguments.inverse);

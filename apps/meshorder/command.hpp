@@ -63,7 +63,7 @@ inline constexpr const char* kQuietList = "No warnings; the list is printed all 
 /// Adds --json, --quiet and --threads.
 void add_common(CLI::App& subcommand, Common& common, const std::string& quiet = kQuiet);
 
-/// Adds --limit-memory and --allow-includes-from, which hold for the rest of the process.
+/// Adds --limit-memory, --allow-includes-from and --trust, which hold for the rest of the process.
 void add_reading_options(CLI::App& subcommand);
 
 /// Adds --seed.

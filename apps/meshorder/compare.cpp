@@ -2,6 +2,7 @@
 #include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "compare_report.hpp"
+#include "confinement.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
 #include "machines.hpp"
@@ -95,6 +96,7 @@ void run(const CompareArguments& arguments) {
   comparison.caches = arguments.caches.empty() ? choose_machine(arguments.machine).model.caches
                                                : parse_caches(arguments.caches);
   comparison.orders = orders_of(arguments.methods.empty() ? default_methods() : arguments.methods);
+  confine({.meshes = {arguments.input}});
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.05);
   Notes notes;

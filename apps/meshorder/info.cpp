@@ -3,6 +3,7 @@
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "command.hpp"
+#include "confinement.hpp"
 #include "console.hpp"
 #include "graph/traversal.hpp"
 #include "io/format.hpp"
@@ -157,6 +158,7 @@ void run(const InfoArguments& arguments) {
   // refused before anything takes time
   if (!arguments.caches.empty()) (void)parse_caches(arguments.caches);
   MachineChoice machine = choose_machine(arguments.machine, arguments.all_threads && !arguments.measure);
+  confine({.meshes = {arguments.input}});
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.3);
   const Mesh mesh =

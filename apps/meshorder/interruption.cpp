@@ -2,6 +2,7 @@
 #include "interruption.hpp"
 
 #include "io/stream/scratch.hpp"
+#include "standard_streams.hpp"
 
 #include <unistd.h>
 
@@ -40,7 +41,7 @@ extern "C" void clean_up(int signal) {
   remove_unfinished_outputs();
   for (const Ending& ending : kEndings) {
     if (ending.signal == signal && !ending.line.empty())
-      (void)!::write(STDERR_FILENO, ending.line.data(), ending.line.size());
+      (void)!::write(messages_descriptor(), ending.line.data(), ending.line.size());
   }
   // SA_RESETHAND: ends the process as if it had not been caught
   ::raise(signal);

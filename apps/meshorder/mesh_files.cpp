@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh_files.hpp"
 
+#include "confinement.hpp"
 #include "io/format.hpp"
 #include "io/format_choice.hpp"
 #include "io/kept_cells.hpp"
@@ -24,7 +25,7 @@ void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids
 }
 
 Mesh read_to_work_on(const std::string& path, Notes& notes, std::uint64_t bytes_of_entry) {
-  Mesh mesh = read_mesh(path, {.notes = &notes});
+  Mesh mesh = read_input(path, notes);
   limit_joins(left_by_last_reading(), bytes_of_entry);
   return mesh;
 }

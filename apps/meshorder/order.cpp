@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/stopwatch.hpp"
 #include "command.hpp"
+#include "confinement.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
 #include "io/format_choice.hpp"
@@ -138,6 +139,7 @@ void run(const OrderArguments& arguments) {
   std::optional<MachineChoice> machine;
   if (in_race) machine = choose_machine(arguments.machine, arguments.all_threads);
   check_can_write(arguments);  // fail before the work
+  confine({.meshes = {arguments.input}, .outputs = {arguments.output}, .maps_written = arguments.maps});
 
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.4);

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/memory.hpp"
 #include "command.hpp"
+#include "confinement.hpp"
 #include "io/stream/read_limits.hpp"
 
 #include <CLI/CLI.hpp>
@@ -46,6 +47,10 @@ void add_reading_options(CLI::App& subcommand) {
       ->check(CLI::ExistingDirectory)
       ->type_name("FOLDER")
       ->allow_extra_args(false);
+  subcommand.add_flag_callback(
+      "--trust", trust_files,
+      "Read files that libraries parse (CGNS, Exodus, MED, VTKHDF, XDMF) with all rights of this process,\n"
+      "not in one that can reach nothing else");
 }
 
 }  // namespace meshorder::command

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/stopwatch.hpp"
 #include "command.hpp"
+#include "confinement.hpp"
 #include "console.hpp"
 #include "interruption.hpp"
 #include "io/stream/output_file.hpp"
@@ -169,6 +170,11 @@ void run(const SimulateArguments& arguments) {
     throw InvalidArgument("give the name or the file of a scenario; --list shows the names");
   Scenario scenario = scenario_of(arguments);
 
+  if (!names_a_model(scenario.mesh)) {
+    Files files{.meshes = {scenario.mesh}, .others = {arguments.resume}, .outputs = {arguments.checkpoint}};
+    if (!arguments.frames.empty()) files.folders.push_back(arguments.frames);
+    confine(files);
+  }
   Progress progress(!console.quiet());
   const std::string path = mesh_path(scenario, progress);
   progress.stage("reading " + path, 0.5, 0.7);

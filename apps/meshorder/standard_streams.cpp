@@ -7,13 +7,20 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <new>
 #include <string>
 
 namespace meshorder::command {
 namespace {
+
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): as stderr itself
+std::atomic<std::FILE*> messages = nullptr;  // null: stderr
+volatile std::sig_atomic_t descriptor_of_messages = STDERR_FILENO;
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 void refuse_unless_reader_left() {
   constexpr int kBadInput = 2;
@@ -41,7 +48,35 @@ void flush_stdout() {
   if (std::fflush(stdout) != 0) refuse_unless_reader_left();
 }
 
-void write_stderr(std::string_view text) noexcept { (void)std::fwrite(text.data(), 1, text.size(), stderr); }
+void write_stderr(std::string_view text) noexcept {
+  std::FILE* const stream = messages;
+  (void)std::fwrite(text.data(), 1, text.size(), stream != nullptr ? stream : stderr);
+}
+
+void silence_libraries() noexcept {
+#ifdef MESHORDER_IS_SANITIZED
+  return;  // what sanitizers report is to be seen
+#endif
+  constexpr int kBeyondThoseOfShells = 10;
+  static const int copy = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, kBeyondThoseOfShells);
+  static std::FILE* const stream = copy < 0 ? nullptr : ::fdopen(copy, "w");
+  if (stream == nullptr) return;
+  (void)std::setvbuf(stream, nullptr, _IONBF, 0);
+  const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (nothing < 0) return;
+  messages = stream;
+  descriptor_of_messages = copy;
+  (void)::dup2(nothing, STDERR_FILENO);
+  (void)::close(nothing);
+}
+
+void hear_libraries() noexcept {
+  if (messages.exchange(nullptr) == nullptr) return;
+  (void)::dup2(descriptor_of_messages, STDERR_FILENO);
+  descriptor_of_messages = STDERR_FILENO;
+}
+
+int messages_descriptor() noexcept { return descriptor_of_messages; }
 
 int report_failure(std::string_view message, int status) noexcept {
   std::string escaped;

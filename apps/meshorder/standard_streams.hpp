@@ -19,6 +19,14 @@ void flush_stdout();
 /// Writes text to stderr; where that fails, there is nobody to tell.
 void write_stderr(std::string_view text) noexcept;
 
+/// Has what libraries print on stderr dropped, also what the C library says before it aborts. What this
+/// program prints, by `write_stderr` and to `messages_descriptor`, is still seen.
+void silence_libraries() noexcept;
+/// Ends that.
+void hear_libraries() noexcept;
+/// Returns the descriptor that messages of this program go to; for a signal handler, too.
+int messages_descriptor() noexcept;
+
 /// Prints why the command fails, with characters that a terminal acts on escaped as long as there is memory,
 /// and returns the status.
 int report_failure(std::string_view message, int status) noexcept;

@@ -238,7 +238,8 @@ Format cgns_format() {
           .write = cgns::write,
           .holds = cgns::holds,
           .places = cgns::places,
-          .first_number = 1};
+          .first_number = 1,
+          .library = "CGNS"};
 }
 
 }  // namespace meshorder

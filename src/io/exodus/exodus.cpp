@@ -744,7 +744,8 @@ Format exodus_format() {
           .holds = exodus::holds,
           .conflict = exodus::conflict,
           .places = exodus::places,
-          .first_number = 1};
+          .first_number = 1,
+          .library = "netCDF"};
 }
 
 }  // namespace meshorder

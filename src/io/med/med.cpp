@@ -447,7 +447,8 @@ Format med_format() {
           .read = med::read,
           .write = med::write,
           .holds = med::holds,
-          .first_number = 1};
+          .first_number = 1,
+          .library = "HDF5"};
 }
 
 }  // namespace meshorder

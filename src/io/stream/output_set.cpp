@@ -68,6 +68,16 @@ class Move {
   bool existed_ = false;
 };
 
+/// What asks the other process to put files in place; empty where there is none.
+PutInPlace& other_process() {
+  static PutInPlace ask;
+  return ask;
+}
+
+bool is_beside_target(const FinishedFile& file) {
+  return folder_of(output_place(file.target).path) == file.scratch.parent_path();
+}
+
 /// Gives a file the attributes of the one that it replaces and syncs it.
 void complete(const FinishedFile& file, const OutputPlace& place) {
   if (place.is_through || folder_of(place.path) != file.scratch.parent_path())
@@ -125,9 +135,13 @@ void OutputSet::commit() {
   notes_.insert(notes_.end(), std::make_move_iterator(notes.begin()), std::make_move_iterator(notes.end()));
 }
 
+void put_in_place_by(PutInPlace other) { other_process() = std::move(other); }
+
 std::vector<std::string> put_in_place(std::span<const FinishedFile> files,
                                       std::span<const FilePath> removed_first,
                                       std::span<const FilePath> removed) {
+  if (other_process() && !files.empty() && !is_beside_target(files.front()))
+    return other_process()(files, removed_first, removed);
   std::vector<std::string> notes;
   std::set<fs::path> targets;
   std::vector<Move> fresh;

@@ -4,6 +4,7 @@
 #include "io/stream/output_file.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -71,5 +72,14 @@ struct FinishedFile {
 std::vector<std::string> put_in_place(std::span<const FinishedFile> files,
                                       std::span<const FilePath> removed_first = {},
                                       std::span<const FilePath> removed = {});
+
+/// As `put_in_place`.
+using PutInPlace = std::function<std::vector<std::string>(std::span<const FinishedFile> files,
+                                                          std::span<const FilePath> removed_first,
+                                                          std::span<const FilePath> removed)>;
+
+/// Has outputs whose scratch folders are not beside them (`keep_scratches_in`) put in place by another
+/// process, which this one asks by that function. To be called while there is one thread.
+void put_in_place_by(PutInPlace other);
 
 }  // namespace meshorder

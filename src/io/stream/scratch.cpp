@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -71,6 +72,12 @@ void forget(int slot) noexcept {
 }
 
 // ---- folders
+
+/// Where scratch folders are made that are not beside their outputs, by the folders of these.
+std::map<fs::path, fs::path>& other_places() {
+  static std::map<fs::path, fs::path> places;
+  return places;
+}
 
 constexpr std::string_view kPrefix = ".meshorder-";
 constexpr std::string_view kSuffix = ".new";
@@ -158,9 +165,16 @@ void remove_inner(const fs::path& path) noexcept {
 
 }  // namespace
 
+void keep_scratches_in(const fs::path& place, const fs::path& folder) { other_places()[folder] = place; }
+
+fs::path place_of_scratches(const fs::path& folder) {
+  const auto other = other_places().find(folder);
+  return other != other_places().end() ? other->second : folder;
+}
+
 Scratch::Scratch(const fs::path& target) {
   for (int attempts = 0; attempts < 100; ++attempts) {
-    path_ = folder_of(target) / random_name();
+    path_ = place_of_scratches(folder_of(target)) / random_name();
     if (::mkdir(path_.c_str(), S_IRWXU) != 0) {
       if (errno == EEXIST) continue;
       throw_system_fault(target.string(), "cannot be written", errno);

@@ -37,6 +37,14 @@ class Scratch {
   int slot_ = -1;
 };
 
+/// Has scratch folders of outputs in a folder made in another one of the same file system, for a process that
+/// may write nowhere else. To be called while there is one thread.
+void keep_scratches_in(const std::filesystem::path& place, const std::filesystem::path& folder);
+
+/// Returns where scratch folders of outputs in a folder are made: in the folder itself, unless
+/// `keep_scratches_in` says otherwise.
+std::filesystem::path place_of_scratches(const std::filesystem::path& folder);
+
 /// Removes the scratch folders that dead processes of this user left in a folder, at the first call for the
 /// folder in a process; for commands that write there. Removes nothing but folders with such a name whose
 /// `lock` is free, and in them `new`, `old` and `lock`; follows no links. What cannot be removed stays.

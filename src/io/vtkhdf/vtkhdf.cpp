@@ -227,10 +227,12 @@ Format vtkhdf_format() {
           .groups_cells_by_type = false,
           .read = vtkhdf::read,
           .write = vtkhdf::write,
-          .holds = [](const Mesh& mesh, Shape shape, int vertices) {
-            return vtk::holds(mesh, shape, vertices) &&
-                   !(shape == Shape::polyhedron && vtk::has_polyhedra(mesh));
-          }};
+          .holds =
+              [](const Mesh& mesh, Shape shape, int vertices) {
+                return vtk::holds(mesh, shape, vertices) &&
+                       !(shape == Shape::polyhedron && vtk::has_polyhedra(mesh));
+              },
+          .library = "HDF5"};
 }
 
 }  // namespace meshorder

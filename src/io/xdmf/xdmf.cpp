@@ -71,7 +71,8 @@ Format xdmf_format() {
           .write = xdmf::write,
           .holds = xdmf::holds,
           .places = xdmf::places,
-          .single_file = false};
+          .single_file = false,
+          .library = "HDF5"};
 }
 
 }  // namespace meshorder

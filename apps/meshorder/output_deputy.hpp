@@ -1,0 +1,62 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/stream/descriptor.hpp"
+#include "io/stream/file_path.hpp"
+#include "io/stream/scratch.hpp"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meshorder::command {
+
+/// Puts outputs in place for a confined child process, which writes them in private scratch folders and can
+/// reach no others: the child asks, over a socket, and this process checks that each file is one that the
+/// user asked for. A child in a stranger's hands can spoil these outputs and no other file.
+class OutputDeputy {
+ public:
+  /// Makes a scratch folder in each folder of an output. Throws InputError for an output that cannot be
+  /// written.
+  ///
+  /// @param outputs  empty ones are skipped
+  /// @param maps     prefix of maps; empty: none
+  OutputDeputy(const std::vector<FilePath>& outputs, std::string maps);
+
+  /// Returns the scratch folders.
+  [[nodiscard]] std::vector<std::filesystem::path> folders() const;
+  /// Returns the outputs that are written to rather than replaced: devices and pipes.
+  [[nodiscard]] const std::vector<std::filesystem::path>& through() const noexcept { return through_; }
+
+  /// In the child: has it make its scratch folders in those, and ask for its files to be put in place.
+  void serve_this_process();
+  /// In the other process: does what the child asks, until that ends.
+  void serve_child();
+
+ private:
+  struct Output {
+    FilePath path;
+    bool is_alone = true;  ///< no other files belong to it
+  };
+  struct Home {
+    std::filesystem::path folder;  ///< of outputs
+    Scratch scratch;
+  };
+
+  void add_home(const std::filesystem::path& target);
+  /// Returns an output that may be put in place. Throws Error for any other path.
+  [[nodiscard]] FilePath allowed(const std::string& path) const;
+  /// Takes a file out of the child's hands: moves it from its scratch folder to one of this process.
+  [[nodiscard]] Scratch taken(const std::string& scratch, const FilePath& target) const;
+  [[nodiscard]] std::vector<std::string> do_as_asked(std::string_view request) const;
+
+  std::vector<Output> outputs_;
+  std::string maps_;
+  std::vector<Home> homes_;
+  std::vector<std::filesystem::path> through_;
+  Descriptor asking_;     ///< the child's end of the socket
+  Descriptor answering_;  ///< the other
+};
+
+}  // namespace meshorder::command
