@@ -112,8 +112,8 @@ typedef struct mo_result {
 /** Returns the version of the library: 10000 major + 100 minor + patch. Never fails. */
 MO_API uint32_t mo_version(void);
 
-/** Returns the message of this thread's last failure, "" if there was none. Valid until this thread's next
- * call. */
+/** Returns the message of this thread's last failure, one line, "" if there was none. Valid until this
+ * thread's next call. */
 MO_API const char* mo_last_error(void);
 
 /** Fills in the defaults. `struct_size` is sizeof(mo_options) of the caller. Does nothing for a null pointer.
@@ -162,7 +162,8 @@ MO_API mo_status mo_order_mesh(const mo_in* cell_offsets, const mo_in* cell_vert
                                mo_result* cell_result);
 
 /**
- * Computes the Fiedler vector of every connected component: norm 1 and sum 0 in each.
+ * Computes the Fiedler vector of every connected component: norm 1 and sum 0 in each, but for
+ * isolated vertices, which have 0.
  *
  * @param offsets     n + 1, ascending, the first is `base`
  * @param neighbours  offsets[n] - base numbers from `base` on; loops and repeats are ignored

@@ -128,7 +128,7 @@ void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
   add_seed_option(subcommand, options.seed);
   subcommand
       .add_option("--tolerance", options.tolerance,
-                  "Residual of Fiedler vectors relative to lambda2; below 0.1 the order hardly changes")
+                  "Residual of Fiedler vectors relative to lambda2; below 0.1 orders of meshes hardly change")
       ->check(positive())
       ->capture_default_str();
 }

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/text.hpp"
 #include <meshorder/error.hpp>
 
 #include <meshorder.h>
@@ -21,12 +22,12 @@ static_assert(static_cast<int>(Code::io) == MO_IO);
 static_assert(static_cast<int>(Code::internal) == MO_INTERNAL);
 
 /// Calls `work()` for a caller in C. Returns MO_OK, or the status of the exception that `work` throws, whose
-/// sentence then replaces `message`.
+/// sentence then replaces `message`, on one line and without what a terminal acts on.
 template <class Work>
 mo_status status_of(const Work& work, std::string& message) noexcept {
   const auto failure = [&](mo_status status, const char* sentence) noexcept {
     try {
-      message = sentence;
+      message = visible(sentence);
     } catch (...) {
       message.clear();  // no memory for the sentence: the status has to do
     }

@@ -8,7 +8,7 @@
 #include "distributed/shared_problem.hpp"
 #include "ordering/sorted.hpp"
 #include "spectral/fiedler.hpp"
-#include "spectral/lobpcg.hpp"
+#include "spectral/lowest.hpp"
 #include "spectral/nested_start.hpp"
 
 #include <algorithm>
@@ -186,8 +186,12 @@ std::vector<double> solve(const Communicator& communicator, SharedLevel finest, 
     companion = column(start, 1);
   }
   SharedProblem problem(hierarchy, 0);
-  const LobpcgResult solved = lobpcg<1, 1>(
-      problem, {.tolerance = options.tolerance, .max_iterations = options.max_iterations, .limit = {}}, x,
+  // noise of its own on every rank
+  const std::uint64_t seed =
+      options.seed + static_cast<std::uint64_t>(communicator.rank()) * 0x9e3779b97f4a7c15U;
+  const LobpcgResult solved = lowest_eigenvector(
+      problem, hierarchy.levels().front().slack,
+      {.tolerance = options.tolerance, .max_iterations = options.max_iterations, .limit = {}}, seed, x,
       std::move(companion));
   report.lambda2 = solved.eigenvalue;
   report.residual = solved.residual;

@@ -9,6 +9,7 @@
 #include "spectral/row_chunks.hpp"
 #include <meshorder/error.hpp>
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -51,8 +52,10 @@ bool SharedHierarchy::coarsen(GlobalIndex few) {
   SharedLevel& fine = levels_.back();
   const RowChunks all_rows = RowChunks::whole(fine.laplacian.size());
   Aggregation aggregation =
-      communicator_.together([&] { return aggregate(fine.laplacian, all_rows, kStrength); });
+      communicator_.together([&] { return aggregate(fine.laplacian, all_rows, kStrength, fine.masses); });
   fine.aggregate_of = aggregation.aggregate_of;
+  const std::vector<double> slacks = communicator_.gathered(aggregation.slack);
+  fine.slack = *std::max_element(slacks.begin(), slacks.end());
   const Layout layout = Layout::of_sizes(communicator_.gathered(GlobalIndex{aggregation.count()}));
 
   // the aggregates of other ranks

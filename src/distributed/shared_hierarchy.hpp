@@ -23,6 +23,7 @@ struct SharedLevel {
   Laplacian laplacian;                   ///< own rows; columns are these and behind them the halo's numbers
   std::vector<double> masses = {};       ///< as of `Level`, of the own rows
   std::vector<Index> aggregate_of = {};  ///< own coarser vertex of each own row
+  double slack = 0;                      ///< as of `Level`, the largest of all ranks; of shared levels alone
 
   [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(laplacian.size()); }
 };

@@ -5,11 +5,13 @@
 #include "spectral/component_numbering.hpp"
 #include "spectral/hierarchy.hpp"
 #include "spectral/lobpcg.hpp"
+#include "spectral/lowest.hpp"
 #include "spectral/nested_start.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -41,17 +43,18 @@ FiedlerComponent solve_component(Laplacian laplacian, std::span<const Index> ver
   if (hierarchy.levels().size() == 1 && hierarchy.has_exact_coarsest()) {
     x = hierarchy.coarsest_eigenvectors<1>();
     solved = lobpcg<1>(hierarchy, 0, {options.tolerance, 0, limit}, x);
-  } else if (x = given_start(options.start, vertices); !x.empty()) {
-    solved = lobpcg<1>(hierarchy, 0, {options.tolerance, options.max_iterations, limit}, x);
   } else {
     VectorBlock<1> companion;
+    x = given_start(options.start, vertices);
     {
       const StartBlock start = nested_start(hierarchy, options.seed, limit);
-      x = column(start, 0);
-      companion = column(start, 1);
+      companion = column(start, x.empty() ? 1 : 0);
+      if (x.empty()) x = column(start, 0);
     }
-    solved = lobpcg<1, 1>(hierarchy, 0, {options.tolerance, options.max_iterations, limit}, x,
-                          std::move(companion));
+    LevelProblem problem(hierarchy, 0);
+    solved = lowest_eigenvector(problem, hierarchy.levels().front().slack,
+                                {options.tolerance, options.max_iterations, limit}, options.seed, x,
+                                std::move(companion));
   }
   for (std::size_t k = 0; k < x.size(); ++k) values[vertices[k]] = x[k][0];
   return {index_size(x), solved.eigenvalue, solved.residual, solved.iterations, solved.converged};
@@ -124,6 +127,29 @@ void check_input(GraphRef graph, std::span<const double> weights, RealView start
   }
 }
 
+/// The power of two by which weights are multiplied, so that no sum or square of them leaves the range of
+/// numbers; 0 where none is near its ends.
+int exponent_of_scale(std::span<const double> weights) {
+  constexpr int kOrdinary = 300;
+  if (weights.empty()) return 0;
+  const int exponent = std::ilogb(*std::max_element(weights.begin(), weights.end()));
+  return std::abs(exponent) <= kOrdinary ? 0 : -exponent;
+}
+
+/// Weights times a power of two; those that become too small are the smallest positive number.
+std::vector<double> scaled(std::span<const double> weights, int exponent) {
+  std::vector<double> result(weights.size());
+  std::transform(weights.begin(), weights.end(), result.begin(), [&](double weight) {
+    return std::max(std::ldexp(weight, exponent), std::numeric_limits<double>::min());
+  });
+  return result;
+}
+
+/// A figure of scaled weights for those that were given; the largest number where it is larger than that.
+double scaled_back(double figure, int exponent) {
+  return std::min(std::ldexp(figure, -exponent), std::numeric_limits<double>::max());
+}
+
 }  // namespace
 
 FiedlerOptions solver_options(const OrderOptions& options) {
@@ -140,6 +166,14 @@ FiedlerOptions solver_options(const OrderOptions& options) {
 FiedlerVectors fiedler_vectors(GraphRef graph, std::span<const double> weights,
                                const FiedlerOptions& options) {
   check_input(graph, weights, options.start);
+  if (const int exponent = exponent_of_scale(weights); exponent != 0) {
+    FiedlerVectors result = fiedler_vectors(graph, scaled(weights, exponent), options);
+    for (FiedlerComponent& component : result.components) {
+      component.lambda2 = scaled_back(component.lambda2, exponent);
+      component.residual = scaled_back(component.residual, exponent);
+    }
+    return result;
+  }
   report("coarsen");
   const TimeLimit limit;
   const ComponentNumbering numbering = number_components(graph);

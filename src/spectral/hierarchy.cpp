@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -20,12 +21,13 @@ constexpr Index kDenseSize = 60;  // a dense eigensolver takes half a millisecon
 bool coarsen(Level& fine, bool smoothed, Level& coarse) {
   constexpr Index kFewAlone = 50;  // one in so many
   const Index n = fine.laplacian.size();
-  Aggregation aggregation = aggregate(fine.laplacian, fine.chunks, kStrength);
+  Aggregation aggregation = aggregate(fine.laplacian, fine.chunks, kStrength, fine.masses);
   if (aggregation.alone > n / kFewAlone && fine.chunks.count() > 1) {
     fine.chunks = RowChunks::whole(n);
-    aggregation = aggregate(fine.laplacian, fine.chunks, kStrength);
+    aggregation = aggregate(fine.laplacian, fine.chunks, kStrength, fine.masses);
   }
   if (aggregation.count() > kWorthwhile * n) return false;
+  fine.slack = aggregation.slack;
   if (smoothed) {
     fine.prolongation = smoothed_prolongation(fine.laplacian, aggregation);
     // where smoothing fills the coarse graph it is left out
@@ -136,7 +138,11 @@ void Hierarchy::coarsen_all(bool smoothed) {
     levels_.push_back(std::move(coarse));
   }
   const Laplacian& coarsest = levels_.back().laplacian;
-  if (coarsest.size() <= kDenseSize) coarsest_inverse_ = dense_inverse(coarsest);
+  if (coarsest.size() <= kDenseSize) {
+    coarsest_inverse_ = dense_inverse(coarsest);
+  } else {
+    levels_.front().slack = std::numeric_limits<double>::infinity();
+  }
 }
 
 template <int M>

@@ -22,6 +22,9 @@ struct Level {
   std::vector<double> masses;       ///< see `mass`; empty where all are 1
   std::vector<Index> aggregate_of;  ///< plain coarsening: the coarser vertex of each vertex
   SparseRows prolongation;          ///< smoothed coarsening: the way from the next coarser level
+  /// Of the aggregation that makes the next coarser level, see `aggregate`; infinite on the finest level
+  /// where the hierarchy has no exact coarsest one.
+  double slack = 0;
 
   /// How many vertices of the finest graph v stands for.
   [[nodiscard]] double mass(Index v) const { return masses.empty() ? 1.0 : masses[v]; }

@@ -11,7 +11,9 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kRows = 2048;  // in a chunk for threads; what a pass touches stays in the L2 cache
+constexpr Index kRows = 2048;       // in a chunk for threads; what a pass touches stays in the L2 cache
+constexpr double kCalm = 0.01;      // change of a Ritz value in an iteration
+constexpr int kLeastUntilCalm = 4;  // iterations, in which noise becomes smooth
 
 /// Numbers that are added up entry by entry.
 template <std::size_t N>
@@ -227,33 +229,6 @@ void prepare(const EigenProblem& problem, double total_mass, WithImage<M>& block
   problem.apply(x, block.images);
 }
 
-/// The problem on a level of a hierarchy.
-class OnLevel : public EigenProblem {
- public:
-  OnLevel(const Hierarchy& hierarchy, int level)
-      : EigenProblem(hierarchy.levels()[level].laplacian.size(), hierarchy.levels()[level].masses),
-        hierarchy_(hierarchy),
-        level_(level) {}
-
-  void apply(const VectorBlock<1>& x, VectorBlock<1>& y) const override { laplacian().apply<1>(x, y); }
-  void apply(const VectorBlock<2>& x, VectorBlock<2>& y) const override { laplacian().apply<2>(x, y); }
-  void precondition(const VectorBlock<1>& r, VectorBlock<1>& w) override {
-    hierarchy_.cycle<1>(level_, r, w, one_);
-  }
-  void precondition(const VectorBlock<2>& r, VectorBlock<2>& w) override {
-    hierarchy_.cycle<2>(level_, r, w, two_);
-  }
-  void add_up(std::span<double> /*sums*/) const override {}
-
- private:
-  [[nodiscard]] const Laplacian& laplacian() const { return hierarchy_.levels()[level_].laplacian; }
-
-  const Hierarchy& hierarchy_;
-  int level_;
-  CycleWorkspace<1> one_;
-  CycleWorkspace<2> two_;
-};
-
 }  // namespace
 
 template <int M, int Companions>
@@ -282,17 +257,26 @@ LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorB
   if constexpr (Companions > 0) prepare(problem, total_mass[0], s.companions);
   LobpcgResult result;
   result.residual = search();
+  int calm = 0;  // iterations in a row that hardly changed a Ritz value
   const auto converged = [&] { return result.residual <= options.tolerance * values[0]; };
+  const auto done = [&] {
+    return options.until_calm ? result.iterations >= kLeastUntilCalm && calm >= 2 : converged();
+  };
   for (;; ++result.iterations) {
     report("eigenvector");
     const bool last = result.iterations >= options.max_iterations || options.limit.is_over();
-    if (last || converged()) {
+    if (last || done()) {
       result.residual = refresh<M>(s.x, problem, values, r);
-      if (last || converged()) break;
+      if (last || done()) break;
     }
+    const std::array<double, M> before = values;
     problem.precondition(r, s.w.vectors);
     prepare(problem, total_mass[0], s.w);
     result.residual = search();
+    ++calm;
+    for (int m = 0; m < M; ++m) {
+      if (std::abs(before[m] - values[m]) > kCalm * before[m]) calm = 0;
+    }
   }
   result.eigenvalue = values[0];
   result.converged = converged();
@@ -303,7 +287,7 @@ LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorB
 template <int M, int Companions>
 LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x,
                     VectorBlock<Companions> companions) {
-  OnLevel problem(hierarchy, level);
+  LevelProblem problem(hierarchy, level);
   return lobpcg<M, Companions>(problem, options, x, std::move(companions));
 }
 

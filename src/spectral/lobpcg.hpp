@@ -13,6 +13,7 @@ struct LobpcgOptions {
   double tolerance = 0.1;    ///< on ‖L x − λ B x‖ / (λ ‖x‖) of the first column
   int max_iterations = 500;  ///< more are not made; the result says whether it converged
   TimeLimit limit = {};      ///< ends the iteration like max_iterations
+  bool until_calm = false;   ///< ends it where all Ritz values change by less than 1 %, not by the tolerance
 };
 
 struct LobpcgResult {
@@ -50,6 +51,34 @@ class EigenProblem {
  private:
   Index size_;
   std::span<const double> masses_;
+};
+
+/// The problem on a level of a hierarchy, preconditioned by the hierarchy's cycle; B has the level's masses.
+class LevelProblem : public EigenProblem {
+ public:
+  /// @param hierarchy  outlives this object
+  LevelProblem(const Hierarchy& hierarchy, int level)
+      : EigenProblem(hierarchy.levels()[level].laplacian.size(), hierarchy.levels()[level].masses),
+        hierarchy_(hierarchy),
+        level_(level) {}
+
+  void apply(const VectorBlock<1>& x, VectorBlock<1>& y) const override { laplacian().apply<1>(x, y); }
+  void apply(const VectorBlock<2>& x, VectorBlock<2>& y) const override { laplacian().apply<2>(x, y); }
+  void precondition(const VectorBlock<1>& r, VectorBlock<1>& w) override {
+    hierarchy_.cycle<1>(level_, r, w, one_);
+  }
+  void precondition(const VectorBlock<2>& r, VectorBlock<2>& w) override {
+    hierarchy_.cycle<2>(level_, r, w, two_);
+  }
+  void add_up(std::span<double> /*sums*/) const override {}
+
+ private:
+  [[nodiscard]] const Laplacian& laplacian() const { return hierarchy_.levels()[level_].laplacian; }
+
+  const Hierarchy& hierarchy_;
+  int level_;
+  CycleWorkspace<1> one_;
+  CycleWorkspace<2> two_;
 };
 
 /// Improves the columns of `x` towards the eigenvectors of L x = λ B x with the smallest eigenvalues after

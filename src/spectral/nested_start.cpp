@@ -2,6 +2,7 @@
 #include "spectral/nested_start.hpp"
 
 #include "base/random.hpp"
+#include "spectral/lowest.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,14 +12,18 @@ namespace meshorder {
 
 namespace {
 
+constexpr Index kSmallShare = 50;     // of such a share of the graph, a search costs nothing beside the rest
+constexpr double kVeryDoubtful = 4;   // smoothed coarsening hides less
+constexpr double kNearlyEqual = 0.9;  // of an eigenvalue that is no other one
+
+}  // namespace
+
 void fill_with_noise(StartBlock& x, int first_column, std::uint64_t seed) {
   Random random(seed);
   for (auto& row : x) {
     for (int m = first_column; m < kStartColumns; ++m) row[m] = random.unit() - 0.5;
   }
 }
-
-}  // namespace
 
 LobpcgOptions coarse_search(TimeLimit limit) {
   return {.tolerance = 1, .max_iterations = 30, .limit = limit};
@@ -46,7 +51,13 @@ StartBlock nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimi
       fill_with_noise(x, known, seed);
       known = kStartColumns;
     }
-    if (level > 0) lobpcg<kStartColumns>(hierarchy, level, coarse_search(limit), x);
+    if (level == 0) break;
+    const LobpcgResult found = lobpcg<kStartColumns>(hierarchy, level, coarse_search(limit), x);
+    const bool is_small = levels[level].laplacian.size() < levels[0].laplacian.size() / kSmallShare;
+    if (found.eigenvalue * levels[level].slack <= (is_small ? kDoubtful : kVeryDoubtful)) continue;
+    LevelProblem problem(hierarchy, level);
+    const LobpcgOptions search{.max_iterations = kSearchIterations, .limit = limit};
+    find_lower(problem, kNearlyEqual * found.eigenvalue, search, seed + 1, x);
   }
   return x;
 }

@@ -21,6 +21,9 @@ using StartBlock = VectorBlock<kStartColumns>;
 /// O(graph).
 [[nodiscard]] StartBlock nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimit limit);
 
+/// Sets random entries between −1/2 and 1/2 in the columns from `first_column` on of a block.
+void fill_with_noise(StartBlock& x, int first_column, std::uint64_t seed);
+
 /// Returns a column of start vectors. O(n).
 [[nodiscard]] VectorBlock<1> column(const StartBlock& x, int m);
 

@@ -2,6 +2,7 @@
 #include "spectral/fiedler.hpp"
 
 #include "graph/traversal.hpp"
+#include "support/clustered_graphs.hpp"
 #include "support/dense.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
@@ -470,6 +471,80 @@ TEST(FiedlerVector, RejectsWeightsThatAreNone) {
   EXPECT_THROW(fiedler_vectors(graph, std::vector<double>{1, -1, -1, 1}), InvalidArgument);
   EXPECT_THROW(fiedler_vectors(graph, std::vector<double>{1, 1, NAN, 1}), InvalidArgument);
   EXPECT_THROW(fiedler_vectors(graph, std::vector<double>{1, 1, INFINITY, 1}), InvalidArgument);
+}
+
+/// The second-smallest eigenvalue of a weighted Laplacian.
+double dense_lambda2(const CsrGraph& graph, const std::vector<double>& weights) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(graph.size(), graph.size());
+  for (Index v = 0; v < graph.size(); ++v) {
+    for (Offset k = graph.offsets[v]; k < graph.offsets[v + 1]; ++k) {
+      const double weight = weights.empty() ? 1 : weights[k];
+      matrix(v, v) += weight;
+      matrix(v, graph.neighbours[k]) -= weight;
+    }
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[1];
+}
+
+TEST(FiedlerVector, OfClusteredGraphsIsNoOtherEigenvector) {
+  // at the default tolerance x may mix eigenvectors whose eigenvalues are that close
+  const std::uint64_t count = test::kSanitized ? 260 : 2600;
+  for (std::uint64_t seed = 0; seed < count; ++seed) {
+    const test::ClusteredGraph clustered = test::clustered_graph(seed);
+    const FiedlerVectors result = fiedler_vectors(clustered.graph, clustered.weights);
+    ASSERT_EQ(result.components.size(), 1U);
+    ASSERT_TRUE(result.components[0].converged) << clustered.name << ", seed " << seed;
+    const double exact = dense_lambda2(clustered.graph, clustered.weights);
+    ASSERT_LE(result.components[0].lambda2, 1.2 * exact) << clustered.name << ", seed " << seed;
+  }
+}
+
+TEST(FiedlerVector, OfTwoCliquesAndABridgeCutsTheBridge) {
+  for (const Index half : {60, 61, 200, 300}) {
+    std::vector<Edge> edges{{0, half}};
+    for (Index a = 0; a < half; ++a) {
+      for (Index b = 0; b < a; ++b) edges.insert(edges.end(), {{a, b}, {half + a, half + b}});
+    }
+    const CsrGraph graph = graph_from_edges(2 * half, edges);
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+      const FiedlerVectors result = fiedler_vectors(graph, {.seed = seed});
+      EXPECT_TRUE(result.components[0].converged);
+      EXPECT_LT(result.components[0].lambda2, 2.0 / half) << half << ", seed " << seed;
+      for (Index v = 0; v < 2 * half; ++v)
+        ASSERT_EQ(result.values[v] < 0, (result.values[0] < 0) == (v < half));
+    }
+  }
+}
+
+TEST(FiedlerVector, DoesNotStayAtAnotherEigenvectorThatItStartsFrom) {
+  const CsrGraph graph = test::grid(30, 20);
+  const auto exact = test::dense_eigen(graph);
+  const Eigen::VectorXd third = exact.eigenvectors().col(2);
+  const std::vector<double> start(third.begin(), third.end());
+  const FiedlerVectors result = fiedler_vectors(graph, {.start = start});
+  EXPECT_LE(result.components[0].lambda2, 1.1 * exact.eigenvalues()[1]);
+}
+
+TEST(FiedlerVector, OfWeightsNearTheEndsOfTheRangeIsThatOfOrdinaryOnes) {
+  const CsrGraph graph = test::grid(20, 10);
+  const FiedlerVectors plain = fiedler_vectors(graph, std::vector<double>(graph.neighbours.size(), 1.0));
+  for (const int exponent : {-1022, -900, -500, 500, 900, 1023}) {
+    const double weight = std::ldexp(1.0, exponent);
+    const FiedlerVectors result =
+        fiedler_vectors(graph, std::vector<double>(graph.neighbours.size(), weight));
+    EXPECT_EQ(result.values, plain.values) << exponent;
+    EXPECT_EQ(result.components[0].lambda2, std::ldexp(plain.components[0].lambda2, exponent));
+    EXPECT_TRUE(result.components[0].converged);
+  }
+  // over the whole range in one graph
+  std::vector<double> weights;
+  for (Index v = 0; v < graph.size(); ++v) {
+    for (const Index u : graph[v])
+      weights.push_back(std::pow(10.0, (7 * std::min(u, v) + std::max(u, v)) % 600 - 300));
+  }
+  const FiedlerVectors result = fiedler_vectors(graph, weights);
+  for (const double value : result.values) ASSERT_TRUE(std::isfinite(value));
+  EXPECT_TRUE(std::isfinite(result.components[0].lambda2));
 }
 
 TEST(FiedlerVector, IsTheSameBitsOnAnyNumberOfThreads) {
