@@ -115,6 +115,15 @@ void check_input(GraphRef graph, std::span<const double> weights, RealView start
     throw InvalidArgument("fiedler_vector: weight " + std::to_string(bad - weights.begin()) + " is " +
                           std::to_string(*bad) + "; weights must be positive and finite");
   }
+  if (!weights.empty()) {
+    constexpr double kLargestRatio = 1e100;
+    const auto [least, most] = std::minmax_element(weights.begin(), weights.end());
+    if (*most * (1 / kLargestRatio) > *least) {
+      throw InvalidArgument(
+          "fiedler_vector: the largest weight is more than 1e100 times the smallest one; "
+          "numbers cannot tell such weights apart from none");
+    }
+  }
   if (!start.empty() && std::cmp_not_equal(start.size(), graph.size())) {
     throw InvalidArgument("fiedler_vector: a start vector of " + std::to_string(start.size()) +
                           " entries for " + std::to_string(graph.size()) + " vertices");

@@ -39,7 +39,7 @@ struct FiedlerVectors {
 ///
 /// @param weights  one for each neighbour, > 0 and finite, the same in both rows of an edge; or none
 /// @throws InvalidArgument for another number of weights or of start entries, for a weight that is not
-///         positive and finite and a start entry that is not finite
+///         positive and finite, for weights whose ratio is above 1e100, and a start entry that is not finite
 FiedlerVectors fiedler_vectors(GraphRef graph, std::span<const double> weights,
                                const FiedlerOptions& options = {});
 

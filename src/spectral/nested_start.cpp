@@ -12,7 +12,8 @@ namespace meshorder {
 
 namespace {
 
-constexpr Index kSmallShare = 50;     // of such a share of the graph, a search costs nothing beside the rest
+constexpr Index kFew = 300;           // vertices on which a search takes a third of a millisecond
+constexpr Index kSmallShare = 50;     // of such a share of the graph, it costs nothing beside the rest
 constexpr double kVeryDoubtful = 4;   // smoothed coarsening hides less
 constexpr double kNearlyEqual = 0.9;  // of an eigenvalue that is no other one
 
@@ -53,7 +54,8 @@ StartBlock nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimi
     }
     if (level == 0) break;
     const LobpcgResult found = lobpcg<kStartColumns>(hierarchy, level, coarse_search(limit), x);
-    const bool is_small = levels[level].laplacian.size() < levels[0].laplacian.size() / kSmallShare;
+    const bool is_small =
+        levels[level].laplacian.size() <= std::max(kFew, levels[0].laplacian.size() / kSmallShare);
     if (found.eigenvalue * levels[level].slack <= (is_small ? kDoubtful : kVeryDoubtful)) continue;
     LevelProblem problem(hierarchy, level);
     const LobpcgOptions search{.max_iterations = kSearchIterations, .limit = limit};

@@ -536,15 +536,18 @@ TEST(FiedlerVector, OfWeightsNearTheEndsOfTheRangeIsThatOfOrdinaryOnes) {
     EXPECT_EQ(result.components[0].lambda2, std::ldexp(plain.components[0].lambda2, exponent));
     EXPECT_TRUE(result.components[0].converged);
   }
-  // over the whole range in one graph
-  std::vector<double> weights;
-  for (Index v = 0; v < graph.size(); ++v) {
-    for (const Index u : graph[v])
-      weights.push_back(std::pow(10.0, (7 * std::min(u, v) + std::max(u, v)) % 600 - 300));
-  }
-  const FiedlerVectors result = fiedler_vectors(graph, weights);
-  for (const double value : result.values) ASSERT_TRUE(std::isfinite(value));
+}
+
+TEST(FiedlerVector, TakesWeightsUpToARatioAndRefusesOthers) {
+  const CsrGraph graph = test::grid(20, 10);
+  const auto spread = [&](int decades) {
+    return weights_of(
+        graph, [&](Index a, Index b) { return std::pow(10.0, (7 * a + b) % (decades + 1) - decades / 2); });
+  };
+  const FiedlerVectors result = fiedler_vectors(graph, spread(90));
   EXPECT_TRUE(std::isfinite(result.components[0].lambda2));
+  EXPECT_TRUE(std::isfinite(result.components[0].residual));
+  EXPECT_THROW(fiedler_vectors(graph, spread(600)), InvalidArgument);
 }
 
 TEST(FiedlerVector, IsTheSameBitsOnAnyNumberOfThreads) {
