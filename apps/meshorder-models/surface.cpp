@@ -82,7 +82,7 @@ std::string read_text(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) {
     throw InputError(fmt::format("{}: no such file; give an OFF file of triangles", file.string()));
   }
-  std::ifstream in(file, std::ios::binary);
+  std::ifstream in(file, std::ios::binary);  // the user's own file; this program has no part of the library
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in.is_open() || in.bad()) {
     throw InputError(fmt::format("{}: cannot be read; make it readable", file.string()));

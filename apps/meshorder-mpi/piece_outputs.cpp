@@ -2,14 +2,13 @@
 #include "piece_outputs.hpp"
 
 #include "base/text.hpp"
+#include "io/stream/file_path.hpp"
 #include "io/stream/system_fault.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -35,8 +34,10 @@ bool is_name_of_piece(std::string_view file, std::string_view name) {
 /// Returns the files that a .pvtu file names, as they stand in it; none where it is not there.
 std::set<std::string> named_by(const fs::path& index) {
   constexpr std::string_view kAttribute = "Source=\"";
-  std::ifstream file(index, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  constexpr std::size_t kMost = std::size_t{1} << 28;
+  std::error_code code;
+  if (!fs::exists(index, code)) return {};
+  const std::string text = FilePath::in(index.parent_path(), index).open().text(kMost);
   std::set<std::string> names;
   for (std::size_t at = text.find(kAttribute); at != std::string::npos; at = text.find(kAttribute, at)) {
     at += kAttribute.size();

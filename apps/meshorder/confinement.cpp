@@ -279,10 +279,10 @@ void confine(const Files& files) {
   work = of_child;
 }
 
-Mesh read_input(const std::string& path, Notes& notes) {
+Mesh read_input(const FilePath& path, Notes& notes) {
   std::optional<Reading> reading;
-  if (work != nullptr) reading.emplace(path);
-  return read_mesh(path, {.notes = &notes});
+  if (work != nullptr) reading.emplace(path.string());
+  return read_mesh_from(path, {.notes = &notes});
 }
 
 }  // namespace meshorder::command

@@ -35,6 +35,6 @@ void trust_files();
 
 /// Reads a mesh as `meshorder::read_mesh` does. In a confined process the reading may take a minute of
 /// processor time and a second more for each MB, and what libraries print is dropped.
-Mesh read_input(const std::string& path, Notes& notes);
+Mesh read_input(const FilePath& path, Notes& notes);
 
 }  // namespace meshorder::command

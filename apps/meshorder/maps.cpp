@@ -15,7 +15,6 @@
 #include <charconv>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <stdexcept>
@@ -62,7 +61,7 @@ void write_map(const Permutation& map, const std::vector<std::int64_t>& ids, con
 
 std::vector<std::int64_t> read_ids(const std::string& path, Index count) {
   if (!std::filesystem::exists(path)) return {};
-  std::vector<std::int64_t> ids = read_npy(path);
+  std::vector<std::int64_t> ids = read_npy(FilePath::derived(path));
   if (index_size(ids) != count) {
     throw InputError(path, "has " + std::to_string(ids.size()) + " numbers for " + std::to_string(count),
                      "give the maps that were written with this mesh");
@@ -74,8 +73,9 @@ Maps read_permutations(const std::string& prefix, const Mesh& mesh) {
   const bool is_old = !std::filesystem::exists(old_to_new_path(prefix, "cells")) &&
                       std::filesystem::exists(old_to_new_path(prefix, kOldNameOfCells));
   const std::string cells = is_old ? kOldNameOfCells : "cells";
-  return {read_permutation(old_to_new_path(prefix, "vertices"), mesh.vertex_count(), "vertices"),
-          read_permutation(old_to_new_path(prefix, cells), mesh.cell_count(), "cells"),
+  return {read_permutation(FilePath::derived(old_to_new_path(prefix, "vertices")), mesh.vertex_count(),
+                           "vertices"),
+          read_permutation(FilePath::derived(old_to_new_path(prefix, cells)), mesh.cell_count(), "cells"),
           read_ids(ids_path(prefix, "vertices"), mesh.vertex_count()),
           read_ids(ids_path(prefix, cells), mesh.cell_count()),
           {},
@@ -149,9 +149,10 @@ std::optional<MeshChecksums> checksums_from(const nlohmann::json& json) {
 }
 
 Identity read_identity(const std::string& path) {
-  std::ifstream file(path);
+  constexpr std::size_t kMost = 1 << 16;
+  const std::string text = FilePath::derived(path).open().text(kMost);
   try {
-    const nlohmann::json json = nlohmann::json::parse(file);
+    const nlohmann::json json = nlohmann::json::parse(text);
     Identity identity{checksums_from(json.at("before")), checksums_from(json.at("after")), {}};
     if (const auto maps = json.find("maps"); maps != json.end()) {
       for (const auto& [name, checksum] : kOfMaps) {
@@ -246,7 +247,7 @@ void remove_other_maps(const std::string& prefix, OutputSet& files) {
 void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& notes) {
   const std::string path = kept_path(prefix);
   if (!std::filesystem::exists(path)) return;
-  const std::vector<std::int64_t> positions = read_npy(path);
+  const std::vector<std::int64_t> positions = read_npy(FilePath::derived(path));
   if (index_size(positions) == mesh.cell_count()) return;
   const bool ascending =
       std::adjacent_find(positions.begin(), positions.end(), std::greater_equal<>()) == positions.end();

@@ -24,7 +24,7 @@ void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids
           more_maps);
 }
 
-Mesh read_to_work_on(const std::string& path, Notes& notes, std::uint64_t bytes_of_entry) {
+Mesh read_to_work_on(const FilePath& path, Notes& notes, std::uint64_t bytes_of_entry) {
   Mesh mesh = read_input(path, notes);
   limit_joins(left_by_last_reading(), bytes_of_entry);
   return mesh;

@@ -3,6 +3,7 @@
 
 #include "command.hpp"
 #include "graph/join_limit.hpp"
+#include "io/stream/file_path.hpp"
 #include "maps.hpp"
 #include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
@@ -38,7 +39,7 @@ void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids
 /// the process.
 ///
 /// @param bytes_of_entry  as of `limit_joins`
-Mesh read_to_work_on(const std::string& path, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
+Mesh read_to_work_on(const FilePath& path, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
 /// As kBytesToOrder, for commands that predict times, and for those that run kernels, on so many orders at a
 /// time.

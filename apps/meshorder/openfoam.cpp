@@ -232,7 +232,7 @@ std::string no_better(GraphRef graph, const Permutation& order, const std::strin
 OrderedMesh ordered(const Case& meshes, const std::string& name, const OpenFoamArguments& arguments,
                     Notes& notes) {
   const openfoam::PolyMesh mesh = openfoam::read_poly_mesh(
-      meshes.poly_mesh(name), needs_centres(arguments.cells, arguments.ordering.workload));
+      meshes.path(), meshes.poly_mesh(name), needs_centres(arguments.cells, arguments.ordering.workload));
   OrderedMesh result;
   result.name = name;
   result.cells = mesh.graph.size();
@@ -263,7 +263,7 @@ class Outputs {
     const fs::path dictionary = meshes.dictionary();
     const bool is_there = fs::exists(dictionary) && !force;
     if (!is_there) dictionary_ = meshes.output(dictionary);
-    keeps_other_ = is_there && !openfoam::takes_cell_order(dictionary);
+    keeps_other_ = is_there && !openfoam::takes_cell_order(meshes.output(dictionary));
     for (const FilePath& map : maps_) (void)OutputFile(map);
     if (dictionary_) (void)OutputFile(*dictionary_);
   }

@@ -190,13 +190,13 @@ bool is_study(const std::string& input) {
 }
 
 /// Returns the results.json that an argument of a study names.
-fs::path results_of(const std::string& input) {
-  if (!fs::is_directory(input)) return input;
+FilePath results_of(const std::string& input) {
+  if (!fs::is_directory(input)) return {input};
   const StudyFolder folder(input);
   if (!fs::exists(folder.results()))
     throw InputError(input, "holds no results.json",
                      "name the folder of a study that `meshorder reproduce` made, or mesh files");
-  return folder.results();
+  return folder.file(folder.results());
 }
 
 void report_on_study(Console& console, const ReportArguments& arguments) {
@@ -204,7 +204,7 @@ void report_on_study(Console& console, const ReportArguments& arguments) {
     throw InvalidArgument(
         "-o is for a report on meshes or two studies; a study's report is written into the study's folder");
   const std::string& input = arguments.inputs.front();
-  const fs::path results = results_of(input);
+  const fs::path results = results_of(input).path();
   const StudyFolder folder(fs::is_directory(input)     ? fs::path(input)
                            : results.has_parent_path() ? results.parent_path()
                                                        : fs::path("."));
@@ -257,8 +257,8 @@ void compare_studies(Console& console, const ReportArguments& arguments) {
     throw InvalidArgument("-o " + page.string() +
                           " names the page on two studies: give a name that ends in .html");
   const auto read = [](const std::string& input) {
-    const fs::path results = results_of(input);
-    return ComparedStudy{results.string(), read_results(results)};
+    const FilePath file = results_of(input);
+    return ComparedStudy{file.string(), read_results(file)};
   };
   const ComparedStudy a = read(arguments.inputs.front());
   const ComparedStudy b = read(arguments.inputs.back());

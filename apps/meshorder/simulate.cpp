@@ -61,7 +61,10 @@ void list_scenarios(const Console& console) {
 /// Returns the scenario with the replacements of the command line.
 Scenario scenario_of(const SimulateArguments& arguments) {
   Scenario scenario = find_scenario(arguments.scenario);
-  if (!arguments.mesh.empty()) scenario.mesh = arguments.mesh;
+  if (!arguments.mesh.empty()) {
+    scenario.mesh = arguments.mesh;
+    scenario.mesh_folder.reset();
+  }
   if (!arguments.order.empty()) {
     OrderNames order = order_named(arguments.order);
     scenario.vertex_order = std::move(order.vertices);
@@ -180,7 +183,7 @@ void run(const SimulateArguments& arguments) {
   progress.stage("reading " + path, 0.5, 0.7);
   const Stopwatch reading;
   Notes notes;
-  Mesh mesh = read_to_work_on(path, notes);
+  Mesh mesh = read_to_work_on(scenario.mesh_file(path), notes);
   const double read_seconds = reading.seconds();
   progress.stage("setting up", 0.7, 1);
   Simulation simulation = set_up(std::move(scenario), std::move(mesh), path, arguments.ordering);

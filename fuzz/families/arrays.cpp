@@ -30,7 +30,7 @@ void check_openfoam(std::string_view /*family*/, Family::Bytes input) {
     scratch_file(std::string(name), bytes_of(files, name));
   }
   for (const bool with_centres : {false, true}) {
-    const auto mesh = accepted([&] { return openfoam::read_poly_mesh(folder, with_centres); });
+    const auto mesh = accepted([&] { return openfoam::read_poly_mesh(folder, folder, with_centres); });
     if (mesh) check_graph(mesh->graph);
   }
 }

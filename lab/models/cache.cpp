@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/models/cache.hpp"
 
+#include "base/input_file.hpp"
 #include "base/user_folder.hpp"
 #include <meshorder/error.hpp>
 
@@ -8,8 +9,8 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
-#include <fstream>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -25,9 +26,13 @@ constexpr const char* kElsewhere = "set MESHORDER_CACHE to a folder that can be 
   throw InputError(path.string(), what, kElsewhere);
 }
 
-/// Returns the first number of a file outside its comments; 0 if there is none.
+/// Returns the first number of a file outside its comments; 0 if there is none, or no such file.
 Index first_number(const fs::path& path) {
-  std::ifstream in(path);
+  if (std::error_code code; !fs::exists(path, code)) return 0;
+  constexpr std::size_t kMost = 1 << 16;
+  std::string start(kMost, '\0');
+  start.resize(InputFile(path, std::array{path.parent_path()}).read(start));
+  std::istringstream in(start);
   for (std::string line; std::getline(in, line);) {
     std::istringstream words(line);
     std::string word;

@@ -214,7 +214,7 @@ void write_checkpoint(const Checkpoint& checkpoint, const std::filesystem::path&
   file.commit();
 }
 
-Checkpoint read_checkpoint(const std::filesystem::path& path, const Fingerprint& expected) {
+Checkpoint read_checkpoint(const FilePath& path, const Fingerprint& expected) {
   Scanner file(path);
   read_header(file);
   Checkpoint result;

@@ -22,6 +22,6 @@ void write_checkpoint(const Checkpoint& checkpoint, const std::filesystem::path&
 /// Reads a checkpoint. Throws Error, with the byte, for a file that is not a checkpoint, is truncated or
 /// changed, or has the other byte order; and, naming what differs, if it is of another simulation than
 /// `expected`.
-Checkpoint read_checkpoint(const std::filesystem::path& path, const Fingerprint& expected);
+Checkpoint read_checkpoint(const FilePath& path, const Fingerprint& expected);
 
 }  // namespace meshorder

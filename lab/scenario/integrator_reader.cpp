@@ -174,7 +174,8 @@ ScenarioObstacle obstacle(const JsonValue& value) {
     result.opening = (*bowl)["opening"].number({.min = 0, .max = 180, .min_open = true, .max_open = true});
   } else {
     result.kind = Kind::surface;
-    result.file = (std::filesystem::path(value.file()).parent_path() / value["surface"].text()).string();
+    result.folder = std::filesystem::path(value.file()).parent_path();
+    result.file = (result.folder / value["surface"].text()).string();
   }
   if (const auto friction = value.find("friction")) result.friction = friction->number(kNotNegative);
   return result;

@@ -56,7 +56,7 @@ void MotionFile::commit() {
   file_.commit();
 }
 
-Motion read_motion(const std::filesystem::path& path) {
+Motion read_motion(const FilePath& path) {
   Scanner file(path);
   const NpyHeader header = read_npy_header(file);
   const auto& shape = header.shape;

@@ -41,7 +41,7 @@ struct Motion {
 
 /// Reads a motion. Throws Error, with the byte, for a file that is not such an array, is truncated or holds a
 /// number that is not finite. O(size of the file).
-Motion read_motion(const std::filesystem::path& path);
+Motion read_motion(const FilePath& path);
 
 /// Timings and iteration counts of a step, and the body's shape after it. Its warnings are in
 /// MotionRecord::warnings.

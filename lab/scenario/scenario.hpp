@@ -4,6 +4,7 @@
 #include "base/index.hpp"
 #include "base/point.hpp"
 #include "base/text.hpp"
+#include "io/stream/file_path.hpp"
 #include "kernels/material.hpp"
 #include "kernels/regions.hpp"
 #include "lab/admm/projective_dynamics.hpp"
@@ -69,13 +70,14 @@ struct ScenarioStart {
 struct ScenarioObstacle {
   enum class Kind : std::uint8_t { half_space, sphere, bowl, surface };
   Kind kind = Kind::half_space;
-  Point place{};           ///< a point of the plane; the centre of a sphere or bowl
-  Point direction{};       ///< the plane's normal; the bowl's axis
-  double radius = 0.0;     ///< of the sphere, of the middle of the bowl's wall
-  double thickness = 0.0;  ///< of the bowl
-  double opening = 0.0;    ///< half the opening angle of the bowl, degrees
-  std::string file;        ///< of a closed surface
-  double friction = 0.0;   ///< Coulomb's coefficient
+  Point place{};                 ///< a point of the plane; the centre of a sphere or bowl
+  Point direction{};             ///< the plane's normal; the bowl's axis
+  double radius = 0.0;           ///< of the sphere, of the middle of the bowl's wall
+  double thickness = 0.0;        ///< of the bowl
+  double opening = 0.0;          ///< half the opening angle of the bowl, degrees
+  std::string file;              ///< of a closed surface
+  std::filesystem::path folder;  ///< that the file must lie in
+  double friction = 0.0;         ///< Coulomb's coefficient
 };
 
 /// Options of ADMM projective dynamics; obstacles are described rather than made.
@@ -85,16 +87,15 @@ struct ProjectiveScenario : ProjectiveOptions {
   std::vector<ScenarioObstacle> obstacles;
 };
 
-/// Bytes of the names of scenarios and meshes that become part of file names.
-inline constexpr std::size_t kLongestNameInFiles = 100;
-
 /// A simulation: mesh, material, loads, integrator and solver. Independent of the order of vertices and
 /// elements. docs/simulate.md describes its file.
 struct Scenario {
   std::string file;  ///< the path it was read from
   std::string name;
-  std::string title;            ///< may be empty
-  std::string mesh;             ///< a model's name, or the path of a file
+  std::string title;  ///< may be empty
+  std::string mesh;   ///< a model's name, or the path of a file
+  /// The folder that the mesh must lie in; none if the user named the mesh.
+  std::optional<std::filesystem::path> mesh_folder;
   double longest_side = 0;      ///< of the bounding box that the mesh is scaled to, m; 0: not scaled
   double height = 0;            ///< the box's side along y instead, m
   std::optional<Point> bottom;  ///< position of the middle of the box's bottom, m
@@ -118,6 +119,10 @@ struct Scenario {
   std::vector<std::string> paper;  ///< paths in the file of values that the paper gives
   std::vector<std::string> notes;
 
+  /// Returns the mesh to read: `path` is `mesh`, or where the model of that name is.
+  [[nodiscard]] FilePath mesh_file(const std::string& path) const {
+    return mesh_folder ? FilePath::in(*mesh_folder, path) : FilePath(path);
+  }
   [[nodiscard]] bool is_implicit() const noexcept {
     return std::holds_alternative<ImplicitOptions>(integrator);
   }

@@ -20,8 +20,10 @@ constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr int kAround = 96;  // corners of a circle
 
 /// Reads the points and triangles of a surface's file.
-std::pair<std::vector<Point>, std::vector<std::array<int, 3>>> read_surface(const std::string& file) {
-  Mesh mesh = read_mesh(file);
+std::pair<std::vector<Point>, std::vector<std::array<int, 3>>> read_surface(
+    const ScenarioObstacle& obstacle) {
+  const std::string& file = obstacle.file;
+  Mesh mesh = read_mesh_from(FilePath::in(obstacle.folder, file));
   const Simplices simplices = cut_into_simplices(mesh);
   if (simplices.dimension != 2)
     throw InputError(file, "is not a surface", "an obstacle is a closed surface of triangles");
@@ -124,7 +126,7 @@ std::shared_ptr<const Obstacle> obstacle_of(const ScenarioObstacle& obstacle) {
     case Kind::surface:
       break;
   }
-  auto [points, triangles] = read_surface(obstacle.file);
+  auto [points, triangles] = read_surface(obstacle);
   try {
     return closed_surface(std::move(points), std::move(triangles));
   } catch (const InvalidArgument& error) {
@@ -138,7 +140,7 @@ Mesh surfaces_of(std::span<const ScenarioObstacle> obstacles, double extent) {
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const ScenarioObstacle& obstacle = obstacles[i];
     if (obstacle.kind == Kind::surface) {
-      const auto [points, triangles] = read_surface(obstacle.file);
+      const auto [points, triangles] = read_surface(obstacle);
       const Index first = mesh.vertex_count();
       mesh.points.insert(mesh.points.end(), points.begin(), points.end());
       for (const auto& [a, b, c] : triangles)

@@ -145,17 +145,13 @@ Scenario parse_scenario(std::string_view text, const std::string& file) {
                     "notes"});
   Scenario scenario;
   scenario.file = file;
-  scenario.name = root["name"].text();
-  if (scenario.name.find_first_of("/\\") != std::string::npos)
-    throw root["name"].error("'" + scenario.name + "' contains a slash",
-                             "leave it out: the name becomes part of file names");
-  if (scenario.name.size() > kLongestNameInFiles || visible(scenario.name) != scenario.name)
-    throw root["name"].error(
-        fmt::format("'{}' cannot become part of file names", scenario.name.substr(0, kLongestNameInFiles)),
-        fmt::format("give one of at most {} bytes, without control characters", kLongestNameInFiles));
+  scenario.name = root["name"].name_in_files();
   if (const auto title = root.find("title")) scenario.title = title->text();
   scenario.mesh = root["mesh"].text();
-  if (!names_a_model(scenario.mesh)) scenario.mesh = (fs::path(file).parent_path() / scenario.mesh).string();
+  if (!names_a_model(scenario.mesh)) {
+    scenario.mesh_folder = fs::path(file).parent_path();
+    scenario.mesh = (*scenario.mesh_folder / scenario.mesh).string();
+  }
   if (const auto scale = root.find("scale")) read_scale(*scale, scenario);
   if (const auto place = root.find("place")) {
     place->expect_keys({"bottom"});

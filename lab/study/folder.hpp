@@ -21,10 +21,8 @@ class StudyFolder {
       : root_(std::move(root)), named_(is_named ? root_ : root_.parent_path()) {}
 
   [[nodiscard]] const std::filesystem::path& root() const noexcept { return root_; }
-  /// Returns one of the paths below as that of an output, whose name is not the user's.
-  [[nodiscard]] FilePath output(const std::filesystem::path& path) const {
-    return FilePath::in(named_, path);
-  }
+  /// Returns one of the paths below as a file to read or write, whose name is not the user's.
+  [[nodiscard]] FilePath file(const std::filesystem::path& path) const { return FilePath::in(named_, path); }
   [[nodiscard]] std::filesystem::path results() const { return root_ / "results.json"; }
   [[nodiscard]] std::filesystem::path data() const { return root_ / "data"; }
   [[nodiscard]] std::filesystem::path page() const { return root_ / "report.html"; }

@@ -77,14 +77,16 @@ void expect_positive(std::int64_t number, const JsonValue& value, std::string_vi
   if (number < 1) throw value[key].error("is 0", "give 1 or more");
 }
 
-/// Returns the names of the records of a list. Throws if a name occurs twice.
+/// Returns the names of the records of a list. Throws if a name occurs twice or cannot be in a file's name.
 template <class Record>
 std::set<std::string> unique_names(const std::vector<Record>& records, std::string Record::*name,
                                    const JsonValue& value, std::string_view list, std::string_view key) {
   std::set<std::string> names;
+  const std::vector<JsonValue> items = value[list].items();
   for (std::size_t i = 0; i < records.size(); ++i) {
-    if (!names.insert(records[i].*name).second)
-      throw value[list].items()[i][key].error("'" + records[i].*name + "' occurs twice", "keep one of them");
+    const JsonValue of_name = items[i][key];
+    if (!names.insert(of_name.name_in_files()).second)
+      throw of_name.error("'" + records[i].*name + "' occurs twice", "keep one of them");
   }
   return names;
 }
@@ -234,7 +236,7 @@ nlohmann::ordered_json to_json(const StudyResults& results) {
 
 void write_results(const StudyResults& results, const FilePath& path) { write_json(to_json(results), path); }
 
-StudyResults read_results(const std::filesystem::path& path) {
+StudyResults read_results(const FilePath& path) {
   const Scanner text(path);
   const std::string& file = text.file();
   const nlohmann::json json = parse_json(text.all(), file, kGuide);

@@ -18,6 +18,6 @@ void write_results(const StudyResults& results, const FilePath& path);
 
 /// Reads results that write_results wrote, the same bit for bit. Throws Error, which names the path in the
 /// file, for values that are missing, unknown or out of range.
-StudyResults read_results(const std::filesystem::path& path);
+StudyResults read_results(const FilePath& path);
 
 }  // namespace meshorder

@@ -25,12 +25,14 @@ namespace {
 
 /// Reads an order; without a file it is the identity.
 Permutation order_of(const std::string& path, Index count, const std::string& what) {
-  return path.empty() ? Permutation::identity(count) : read_permutation(path, count, what);
+  if (path.empty()) return Permutation::identity(count);
+  return read_permutation(FilePath::in(std::filesystem::path(path).parent_path(), path), count, what);
 }
 
 Simulation set_up(const StepperTask& task) {
   Scenario scenario = find_scenario(task.scenario);
-  Mesh mesh = read_mesh(task.mesh);
+  if (task.mesh != scenario.mesh) scenario.mesh_folder.reset();
+  Mesh mesh = read_mesh_from(scenario.mesh_file(task.mesh));
   MeshOrder order;
   order.vertices.permutation = order_of(task.vertex_order, mesh.vertex_count(), "vertices");
   order.cells.permutation = order_of(task.cell_order, mesh.cells.size(), "cells");

@@ -11,6 +11,7 @@
 #include "lab/scenario/simulation.hpp"
 #include "lab/study/study_store.hpp"
 #include "lab/study/study_turns.hpp"
+#include "lab/support/json.hpp"
 #include "payoff/machine.hpp"
 #include <meshorder/error.hpp>
 
@@ -85,6 +86,7 @@ class Study {
     subject.scenario = find_scenario(argument);
     std::string& mesh = subject.scenario.mesh;
     mesh = plan_.mesh.empty() ? mesh_of_size(plan_.size, mesh) : plan_.mesh;
+    if (!plan_.mesh.empty()) subject.scenario.mesh_folder.reset();
     if (!fits_in_memory(plan_.size, subject.scenario)) {
       observer_.note(fmt::format("{} is skipped: its factored matrix would not fit in memory at size {}",
                                  subject.scenario.name, plan_.size));
@@ -135,7 +137,7 @@ class Study {
   }
 
   void study_mesh_of(const Subject& subject, const Share& share) {
-    Mesh mesh = read_mesh(subject.mesh_path);
+    Mesh mesh = read_mesh_from(subject.scenario.mesh_file(subject.mesh_path));
     require_volume_cells(mesh, subject.mesh_path);
     mesh.cell_blocks.clear();  // orders are compared, not a file's layout
     MeshStudyOptions options;
@@ -216,11 +218,11 @@ class Study {
     for (std::size_t i = 0; i < motions.size(); ++i)
       record.orders[i].motion =
           difference_of(read_motion(motions[i].file()), reference, subject.body.longest_side);
-    const FinishedFile kept{motions.front().path(), folder.output(folder.motion(subject.scenario.name))};
+    const FinishedFile kept{motions.front().path(), folder.file(folder.motion(subject.scenario.name))};
     put_in_place({&kept, 1});
     if (subject.scenario.is_implicit() || subject.scenario.projective().obstacles.empty()) return;
     write_mesh_to(surfaces_of(subject.scenario.projective().obstacles, subject.body.longest_side),
-                  folder.output(folder.obstacles(subject.scenario.name)), {});
+                  folder.file(folder.obstacles(subject.scenario.name)), {});
   }
 
   const StudyPlan& plan_;

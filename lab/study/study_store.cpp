@@ -40,10 +40,10 @@ std::ptrdiff_t place_of(const ScenarioRecord& record) {
 }  // namespace
 
 StudyStore::StudyStore(const StudyPlan& plan, const StudyFolder& folder) : folder_(folder) {
-  (void)output_place(folder.output(folder.mesh("any")));  // makes no folder behind a link
+  (void)output_place(folder.file(folder.mesh("any")));  // makes no folder behind a link
   make_folders(folder);
   lock_.emplace(folder.root());
-  (void)OutputFile(folder.output(folder.mesh("any")));  // fail before the work if it cannot be written
+  (void)OutputFile(folder.file(folder.mesh("any")));  // fail before the work if it cannot be written
   MachineRecord machine = describe_machine();
   std::error_code code;
   if (fs::exists(folder.results(), code)) {
@@ -64,7 +64,7 @@ void StudyStore::begin(const StudyPlan& plan, MachineRecord machine) {
 }
 
 void StudyStore::resume(const StudyPlan& plan, const MachineRecord& machine) {
-  results_ = read_results(folder_.results());
+  results_ = read_results(folder_.file(folder_.results()));
   const auto same = [&](bool is_same, const std::string& what) {
     if (!is_same)
       throw InputError(folder_.results().string(), "is of a study with " + what,
@@ -83,7 +83,7 @@ void StudyStore::resume(const StudyPlan& plan, const MachineRecord& machine) {
        "other orderings");
   results_.runs = std::max(results_.runs, plan.runs);
   summarise(results_);
-  write_results(results_, folder_.output(folder_.results()));
+  write_results(results_, folder_.file(folder_.results()));
 }
 
 bool StudyStore::has_mesh(std::string_view name) const {
@@ -122,17 +122,17 @@ void StudyStore::keep(const Mesh& mesh, OrderedMesh studied) {
   for (std::size_t i = 0; i < studied.orders.size(); ++i) {
     const std::string& ordering = studied.record.orders[i].ordering;
     write_npy(studied.orders[i].vertices.permutation.old_to_new(),
-              {folder_.output(folder_.vertex_order(name, ordering)), files});
+              {folder_.file(folder_.vertex_order(name, ordering)), files});
     write_npy(studied.orders[i].cells.permutation.old_to_new(),
-              {folder_.output(folder_.cell_order(name, ordering)), files});
+              {folder_.file(folder_.cell_order(name, ordering)), files});
   }
   Mesh bare;
   bare.points = mesh.points;
   bare.cells = mesh.cells;
-  write_mesh_to(bare, {folder_.output(folder_.mesh(name)), files}, {});
+  write_mesh_to(bare, {folder_.file(folder_.mesh(name)), files}, {});
   studied.record.file = fs::relative(folder_.mesh(name), folder_.root()).string();
   results_.meshes.push_back(std::move(studied.record));
-  write_results(results_, {folder_.output(folder_.results()), files});
+  write_results(results_, {folder_.file(folder_.results()), files});
   files.commit();
 }
 
@@ -149,7 +149,7 @@ void StudyStore::keep(std::string_view scenario, const std::vector<RunRecord>& r
     for (std::size_t i = 0; i < runs.size(); ++i) record.orders[i].runs.push_back(runs[i]);
   }
   summarise(results_);
-  write_results(results_, folder_.output(folder_.results()));
+  write_results(results_, folder_.file(folder_.results()));
 }
 
 }  // namespace meshorder

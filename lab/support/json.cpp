@@ -154,6 +154,16 @@ std::string JsonValue::text() const {
   return result;
 }
 
+std::string JsonValue::name_in_files() const {
+  std::string name = text();
+  if (name.find_first_of("/\\") != std::string::npos)
+    throw error("'" + name + "' contains a slash", "leave it out: the name becomes part of file names");
+  if (name.size() > kLongestNameInFiles || visible(name) != name)
+    throw error(fmt::format("'{}' cannot become part of file names", name.substr(0, kLongestNameInFiles)),
+                fmt::format("give one of at most {} bytes, without control characters", kLongestNameInFiles));
+  return name;
+}
+
 double JsonValue::number(const NumberRange& range) const {
   if (!value_->is_number()) throw error("is " + kind(), "a number is needed");
   const auto result = value_->get<double>();

@@ -34,6 +34,9 @@ inline constexpr std::string_view kScenarioGuide = "docs/simulate.md";
 nlohmann::json parse_json(std::string_view text, const std::string& file,
                           std::string_view guide = kScenarioGuide);
 
+/// Bytes of the names of scenarios and meshes that become part of file names.
+inline constexpr std::size_t kLongestNameInFiles = 100;
+
 /// A range of numbers; it includes its ends unless they are `open`.
 struct NumberRange {
   double min = std::numeric_limits<double>::lowest();
@@ -78,6 +81,9 @@ class JsonValue {
   [[nodiscard]] std::string text() const;
   /// Returns a text, which may be empty.
   [[nodiscard]] std::string any_text() const;
+  /// Returns a text that may become part of a file's name: without slashes and control characters, of at most
+  /// `kLongestNameInFiles` bytes.
+  [[nodiscard]] std::string name_in_files() const;
   [[nodiscard]] double number(const NumberRange& range = {}) const;
   [[nodiscard]] std::int64_t whole(std::int64_t min, std::int64_t max) const;
   [[nodiscard]] bool truth() const;

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/support/process.hpp"
 
+#include "base/input_file.hpp"
 #include <meshorder/error.hpp>
 
 #include <fcntl.h>
@@ -17,8 +18,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <new>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -100,7 +101,8 @@ class Redirections {
 };
 
 std::string last_line_of(const fs::path& log) {
-  std::ifstream in(log);
+  constexpr std::size_t kMost = std::size_t{1} << 26;
+  std::istringstream in(InputFile(log, std::array{log.parent_path()}).text(kMost));
   std::string last;
   for (std::string line; std::getline(in, line);) {
     const auto first = line.find_first_not_of(" \t\r");

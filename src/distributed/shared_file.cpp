@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/shared_file.hpp"
 
+#include "base/input_file.hpp"
 #include "io/stream/descriptor.hpp"
 
 #include <fcntl.h>
@@ -30,7 +31,11 @@ SharedFile::SharedFile(const Communicator& communicator, const std::string& path
     : communicator_(communicator), name_(std::move(name)) {
   // Open MPI 4.1.4 waits for ever where only some of the ranks see the file
   communicator.together([&] {
-    const Descriptor file(path, use == Use::read ? O_RDONLY : O_WRONLY);
+    if (use == Use::read) {
+      (void)InputFile(path);
+      return;
+    }
+    const Descriptor file(path, O_WRONLY);
     if (!file.is_open()) throw cannot_be_opened(std::generic_category().message(errno));
   });
   const int mode = use == Use::read ? MPI_MODE_RDONLY : MPI_MODE_WRONLY;

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/vtkhdf_head.hpp"
 
+#include "base/input_file.hpp"
 #include "distributed/mold.hpp"
 #include "distributed/number_types.hpp"
 #include "distributed/raw_arrays.hpp"
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -24,7 +24,7 @@ namespace meshorder::distributed {
 bool is_hdf5(const std::string& path) {
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
   std::array<char, kSignature.size()> start{};
-  std::ifstream(path, std::ios::binary).read(start.data(), std::ssize(start));
+  (void)InputFile(path).read(start);
   return std::string_view(start.data(), start.size()) == kSignature;
 }
 
@@ -64,10 +64,9 @@ FileArray array_of(const RawDataset& dataset, std::size_t element) {
 /// Whether the cells of a file begin at the first entry of its connectivity.
 bool begins_at_zero(const std::string& path, const FileArray& offsets) {
   std::vector<std::byte> first(static_cast<std::size_t>(offsets.row));
-  std::ifstream file(path, std::ios::binary);
-  file.seekg(offsets.at - offsets.row);
-  file.read(reinterpret_cast<char*>(first.data()), std::ssize(first));
-  return file && numbers_of<Offset>(first, offsets.type).front() == 0;
+  const std::size_t got = InputFile(path).read_at(static_cast<std::uint64_t>(offsets.at - offsets.row),
+                                                  {reinterpret_cast<char*>(first.data()), first.size()});
+  return got == first.size() && numbers_of<Offset>(first, offsets.type).front() == 0;
 }
 
 /// Describes the arrays and fields of a mesh.

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/vtu_head.hpp"
 
+#include "base/input_file.hpp"
 #include "base/memory.hpp"
 #include "distributed/number_types.hpp"
 #include "distributed/text_store.hpp"
@@ -16,7 +17,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <fstream>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -54,8 +55,8 @@ class HeadReader {
     TextStore store(text + "</AppendedData></VTKFile>");
     const FilePath path(path_, store);
     const ReadScope scope(path);
-    bytes_.open(path_, std::ios::binary | std::ios::ate);
-    head_.facts.bytes = static_cast<Offset>(bytes_.tellg());
+    file_.emplace(path_);
+    head_.facts.bytes = static_cast<Offset>(file_->size());
     count_file(path, static_cast<std::uint64_t>(head_.facts.bytes));
     const vtk::VtuDocument file(path);
     const VtuEncoding& encoding = head_.facts.encoding = file.encoding();
@@ -183,12 +184,14 @@ class HeadReader {
   /// Returns the next words of the file.
   std::vector<std::uint64_t> words(const vtk::VtuDocument& file, const vtk::VtuElement& element,
                                    const std::string& what, std::uint64_t count) {
-    const auto left = static_cast<std::uint64_t>(head_.facts.bytes - bytes_.tellg());
+    const auto left = static_cast<std::uint64_t>(head_.facts.bytes - at_);
     if (count > left / word_) throw file.error(element, what + " ends early", kCutShort);
     file.claim(element, bytes_for(count, 2 * sizeof(std::uint64_t)));
     std::vector<char> bytes(count * word_);
-    bytes_.read(bytes.data(), std::ssize(bytes));
-    if (!bytes_) throw InputError(path_, "cannot be read", "it may have changed while it was read");
+    const std::size_t got = file_->read_at(static_cast<std::uint64_t>(at_), bytes);
+    at_ += std::ssize(bytes);
+    if (got < bytes.size())
+      throw InputError(path_, "cannot be read", "it may have changed while it was read");
     std::vector<std::uint64_t> result;
     for (std::size_t at = 0; at < bytes.size(); at += word_) {
       std::uint64_t wide = 0;
@@ -202,9 +205,9 @@ class HeadReader {
   /// Finds the bytes of an array that is not compressed, by the word before them; returns their number.
   std::uint64_t place_bytes(const vtk::VtuDocument& file, const vtk::VtuElement& element,
                             const std::string& what, FileArray& array) {
-    bytes_.seekg(array.at);
+    at_ = array.at;
     const std::uint64_t size = words(file, element, what, 1).front();
-    const auto left = static_cast<std::uint64_t>(head_.facts.bytes - bytes_.tellg());
+    const auto left = static_cast<std::uint64_t>(head_.facts.bytes - at_);
     if (size > left)
       throw file.error(element, fmt::format("{} has {} bytes, but the file ends after {}", what, size, left),
                        kCutShort);
@@ -216,14 +219,14 @@ class HeadReader {
   /// and of a shorter last one, and the compressed bytes of each. Returns how many bytes they hold.
   std::uint64_t place_blocks(const vtk::VtuDocument& file, const vtk::VtuElement& element,
                              const std::string& what, FileArray& array, std::vector<Offset>& blocks) {
-    bytes_.seekg(array.at);
+    at_ = array.at;
     const std::vector<std::uint64_t> head = words(file, element, what, 3);
     const std::vector<std::uint64_t> compressed = words(file, element, what, head[0]);
     if (head[0] > 1 && head[1] == 0)
       throw file.error(element, what + " has empty blocks", "the array is damaged");
     const std::uint64_t ratio = vtk::VtuCompressor::greatest_ratio(head_.facts.encoding.compressor);
     std::uint64_t size = 0;
-    blocks.push_back(bytes_.tellg());
+    blocks.push_back(at_);
     for (std::size_t b = 0; b < compressed.size(); ++b) {
       if (compressed[b] > static_cast<std::uint64_t>(head_.facts.bytes - blocks.back()))
         throw file.error(element, what + " ends early", kCutShort);
@@ -264,7 +267,8 @@ class HeadReader {
   int ranks_;
   FileHead head_;
   std::size_t word_ = 8;  ///< bytes of a word before an array
-  std::ifstream bytes_;
+  std::optional<InputFile> file_;
+  Offset at_ = 0;  ///< of the next byte to read
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/input_file.hpp"
 #include "distributed/cell_places.hpp"
 #include "distributed/file_slices.hpp"
 #include "distributed/mold.hpp"
@@ -15,8 +16,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -31,8 +32,7 @@ class AppendedValues {
  public:
   AppendedValues(const std::string& path, Offset first_byte, const vtk::VtuDocument& document)
       : path_(path),
-        file_(path, std::ios::binary | std::ios::ate),
-        size_(file_.tellg()),
+        file_(path),
         first_byte_(first_byte),
         document_(document),
         encoding_(document.encoding()) {}
@@ -40,8 +40,8 @@ class AppendedValues {
   /// Returns an array with the word of its size before it, as base64.
   std::string as_text(const vtk::VtuElement& element) {
     const Offset at = whole_number(document_, element, "offset");
-    if (at > size_ - first_byte_) fail_at_end();
-    file_.seekg(first_byte_ + at);
+    if (at > static_cast<Offset>(file_.size()) - first_byte_) fail_at_end();
+    at_ = static_cast<std::uint64_t>(first_byte_ + at);
     const bool is_raw = encoding_.compressor == VtuEncoding::Compressor::none;
     const std::string values = is_raw ? bytes(word()) : from_blocks(element);
     const std::uint64_t size = values.size();
@@ -54,16 +54,20 @@ class AppendedValues {
   /// The next word; nothing but words and bytes that the file has are read.
   std::uint64_t word() {
     std::uint64_t value = 0;
-    file_.read(reinterpret_cast<char*>(&value), static_cast<std::streamsize>(word_size()));
-    if (!file_) fail_at_end();
+    take({reinterpret_cast<char*>(&value), word_size()});
     return value;
   }
 
   std::string bytes(std::uint64_t count) {
-    if (count > static_cast<std::uint64_t>(size_ - Offset{file_.tellg()})) fail_at_end();
+    if (count > file_.size() - std::min(at_, file_.size())) fail_at_end();
     std::string result(count, '\0');
-    file_.read(result.data(), std::ssize(result));
+    take(result);
     return result;
+  }
+
+  void take(std::span<char> into) {
+    if (file_.read_at(at_, into) < into.size()) fail_at_end();
+    at_ += into.size();
   }
 
   /// The values of compressed blocks: their number, the bytes of each and of a shorter last one, and the
@@ -96,8 +100,8 @@ class AppendedValues {
   }
 
   const std::string& path_;
-  std::ifstream file_;
-  Offset size_;  ///< bytes of the file
+  InputFile file_;
+  std::uint64_t at_ = 0;  ///< of the next byte to read
   Offset first_byte_;
   const vtk::VtuDocument& document_;
   VtuEncoding encoding_;

@@ -84,6 +84,9 @@ void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices,
 /// are sorted.
 void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells);
 
+/// As the public `read_mesh`; a file whose name comes from another one is read only below its folder.
+Mesh read_mesh_from(const FilePath& path, const ReadOptions& options = {});
+
 /// As the public `write_mesh`; a mesh whose path belongs to a set of outputs is put in place by that.
 Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options);
 

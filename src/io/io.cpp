@@ -188,11 +188,15 @@ Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOpt
   return write_checked(mesh, path, output_format_of(path.path(), mesh.format), options);
 }
 
+Mesh read_mesh_from(const FilePath& path, const ReadOptions& options) {
+  return read_checked(path, options.format.empty() ? format_of_file(path) : format_named(options.format),
+                      options);
+}
+
 inline namespace v0_2 {
 
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
-  return read_checked(path, options.format.empty() ? format_of_file(path) : format_named(options.format),
-                      options);
+  return read_mesh_from(path, options);
 }
 
 Mesh read_mesh(std::span<const std::byte> bytes, const ReadOptions& options) {

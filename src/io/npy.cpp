@@ -87,7 +87,7 @@ NpyHeader read_npy_header(Scanner& file) {
   return header;
 }
 
-std::vector<std::int64_t> read_npy(const std::filesystem::path& path) {
+std::vector<std::int64_t> read_npy(const FilePath& path) {
   Scanner file(path);
   const NpyHeader header = read_npy_header(file);
   if (header.shape.size() != 1) {
@@ -115,7 +115,7 @@ std::vector<std::int64_t> read_npy(const std::filesystem::path& path) {
   return values;
 }
 
-Permutation read_permutation(const std::filesystem::path& path, Index count, const std::string& what) {
+Permutation read_permutation(const FilePath& path, Index count, const std::string& what) {
   const std::vector<std::int64_t> places = read_npy(path);
   if (index_size(places) != count) {
     throw InputError(

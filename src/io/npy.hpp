@@ -5,7 +5,6 @@
 #include <meshorder/permutation.hpp>
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,10 +18,10 @@ void write_npy(std::span<const std::int64_t> values, const FilePath& path);
 
 /// Reads a one-dimensional NumPy array of 32- or 64-bit integers, signed or not. Throws Error, with the byte,
 /// for anything else.
-std::vector<std::int64_t> read_npy(const std::filesystem::path& path);
+std::vector<std::int64_t> read_npy(const FilePath& path);
 
 /// Reads the new position of each of `count` vertices or cells; `what` names them in the plural. Throws Error
 /// if their number differs or the file does not hold a permutation.
-Permutation read_permutation(const std::filesystem::path& path, Index count, const std::string& what);
+Permutation read_permutation(const FilePath& path, Index count, const std::string& what);
 
 }  // namespace meshorder

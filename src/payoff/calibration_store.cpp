@@ -2,6 +2,7 @@
 #include "payoff/calibration_store.hpp"
 
 #include "base/checksum.hpp"
+#include "base/input_file.hpp"
 #include "base/processor.hpp"
 #include "base/user_folder.hpp"
 #include "io/stream/output_file.hpp"
@@ -11,10 +12,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -195,15 +196,16 @@ StoredCalibration load_calibration(const CalibrationKey& key) {
   const auto refused = [&](const std::string& why) {
     return StoredCalibration{{}, "the calibration in " + file.string() + " is not used: it " + why};
   };
-  std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in || text.empty()) return refused("cannot be read or is empty");
+  constexpr std::size_t kMost = 1 << 20;
   try {
+    const std::string text = InputFile(file, std::array{user_cache_folder()}).text(kMost);
     Calibration calibration = parse_calibration(text);
     if (key_of(calibration) != key) return refused("is of another machine or build");
     return {std::move(calibration), {}};
   } catch (const InvalidArgument& error) {
     return refused(error.what());
+  } catch (const InputError& error) {
+    return StoredCalibration{{}, std::string("the calibration is not used: ") + error.what()};
   }
 }
 

@@ -3,15 +3,19 @@
 // Preloaded into the command (LD_PRELOAD): counts its calls by kind from the first line of main to the end of
 // the process, and makes chosen ones fail. What it is to do stands in the environment:
 //
-//   FAULTS_COUNTERS=FILE         keeps the calls of each kind, then the number of failures, in FILE: 64 bits
-//   each FAULTS_FAIL=KIND:N[+]:WHAT   lets the Nth call of a kind, counted from 1, fail; with + all later
-//   ones, too FAULTS_LOG=FILE              appends a line for each call that changes files, and the stack of
-//   an abort
+// - FAULTS_COUNTERS=FILE: keeps the calls of each kind, then the number of failures, in FILE, in 64 bits
+// each;
+// - FAULTS_FAIL=KIND:N[+]:WHAT: lets the Nth call of a kind, counted from 1, fail; with + all later ones,
+// too;
+// - FAULTS_LOG=FILE: appends a line for each call that changes files, and the stack of an abort;
+// - FAULTS_OPENED=FILE: appends the path, links resolved, of each file that is opened.
 //
 // KIND is a word of `kKindNames`. WHAT is a number of errno, `short` (half of the bytes), `kill` (SIGKILL
 // before the call) or `torn` (half of the bytes, then SIGKILL). Calls of the C library within itself are not
-// seen: stdio writes and closes unseen, but its opening is seen. Programs that the command starts run without
-// the interposer. Nothing is synced to the disk in fact, which would only take time.
+// seen: stdio writes and closes unseen, but its opening is seen; the list of what is opened lacks folders
+// that are listed, libraries that are loaded and what the C library reads for itself (locales). Programs that
+// the command starts run without the interposer. Nothing is synced to the disk in fact, which would only take
+// time.
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <fcntl.h>
@@ -57,6 +61,7 @@ struct Fault {
 bool active = false;
 Fault fault;
 int log_file = -1;
+int opened_file = -1;
 std::array<std::uint64_t, kKinds + 1> unshared_counters{};
 std::uint64_t* counters = unshared_counters.data();
 int (*real_main)(int, char**, char**) = nullptr;
@@ -78,6 +83,28 @@ void log_descriptor(const char* verb, int descriptor) {
   std::snprintf(link.data(), link.size(), "/proc/self/fd/%d", descriptor);
   std::array<char, 2048> path{};
   if (syscall(SYS_readlink, link.data(), path.data(), path.size() - 1) > 0) log_line(verb, path.data());
+}
+
+/// Notes what has been opened, but for folders that are only passed through.
+void log_opened(int descriptor, int flags) {
+  if (opened_file < 0 || descriptor < 0 || (flags & O_PATH) != 0) return;
+  std::array<char, 64> link{};
+  std::snprintf(link.data(), link.size(), "/proc/self/fd/%d", descriptor);
+  std::array<char, 4096> path{};
+  const auto length = syscall(SYS_readlink, link.data(), path.data(), path.size() - 1);
+  if (length <= 0) return;
+  path[static_cast<std::size_t>(length)] = '\n';
+  syscall(SYS_write, opened_file, path.data(), static_cast<std::size_t>(length) + 1);
+}
+
+/// Opens a file of the interposer's own, with a number that leaves those of the command as they are without
+/// it.
+int own_file(const char* path) {
+  constexpr int kAboveAll = 500;
+  const int file = static_cast<int>(syscall(SYS_openat, AT_FDCWD, path, O_WRONLY | O_APPEND | O_CREAT, 0644));
+  const int moved = fcntl(file, F_DUPFD_CLOEXEC, kAboveAll);
+  syscall(SYS_close, file);
+  return moved;
 }
 
 [[noreturn]] void die() {
@@ -161,12 +188,7 @@ void prepare() {
     syscall(SYS_close, file);
   }
   if (const char* const path = std::getenv("FAULTS_LOG")) {
-    constexpr int kAboveAll =
-        500;  // descriptors of the command keep the numbers that they have without a log
-    const int file =
-        static_cast<int>(syscall(SYS_openat, AT_FDCWD, path, O_WRONLY | O_APPEND | O_CREAT, 0644));
-    log_file = fcntl(file, F_DUPFD_CLOEXEC, kAboveAll);
-    syscall(SYS_close, file);
+    log_file = own_file(path);
     std::array<void*, 1> frame{};
     backtrace(frame.data(), 1);                         // loads what it needs
     static std::array<char, 1 << 16> handlers_stack{};  // the process's own may have overflowed
@@ -177,8 +199,10 @@ void prepare() {
     action.sa_flags = SA_ONSTACK;
     for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) sigaction(signal, &action, nullptr);
   }
+  if (const char* const path = std::getenv("FAULTS_OPENED")) opened_file = own_file(path);
   if (const char* const text = std::getenv("FAULTS_FAIL")) set_fault(text);
-  for (const char* const name : {"LD_PRELOAD", "FAULTS_COUNTERS", "FAULTS_LOG", "FAULTS_FAIL"})
+  for (const char* const name :
+       {"LD_PRELOAD", "FAULTS_COUNTERS", "FAULTS_LOG", "FAULTS_OPENED", "FAULTS_FAIL"})
     unsetenv(name);
   real_fopen = reinterpret_cast<decltype(real_fopen)>(dlsym(RTLD_NEXT, "fopen"));
   real_pthread_create = reinterpret_cast<decltype(real_pthread_create)>(dlsym(RTLD_NEXT, "pthread_create"));
@@ -192,7 +216,12 @@ int counted_main(int argc, char** argv, char** environment) {
 
 int open_at(int folder, const char* path, int flags, mode_t mode) {
   if ((flags & O_ACCMODE) != O_RDONLY) log_line("open", path);
-  return fails(kOpen) ? -1 : static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
+  if (fails(kOpen)) return -1;
+  const int descriptor = static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
+  const int error = errno;
+  log_opened(descriptor, flags);
+  errno = error;
+  return descriptor;
 }
 
 mode_t mode_of(int flags, std::va_list arguments) {
@@ -264,7 +293,10 @@ int openat(int folder, const char* path, int flags, ...) {
 int openat64(int folder, const char* path, int flags, ...) __attribute__((alias("openat")));
 std::FILE* fopen(const char* path, const char* mode) {
   if (*mode != 'r') log_line("open", path);
-  return fails(kOpen) ? nullptr : real_fopen(path, mode);
+  if (fails(kOpen)) return nullptr;
+  std::FILE* const file = real_fopen(path, mode);
+  if (file != nullptr) log_opened(fileno(file), 0);
+  return file;
 }
 std::FILE* fopen64(const char* path, const char* mode) __attribute__((alias("fopen")));
 

@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -17,6 +18,8 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <thread>
 
 namespace meshorder {
 namespace {
@@ -197,9 +200,9 @@ TEST(ReadLimits, WhatIsNoFileIsRefused) {
     std::filesystem::create_symlink(target, folder.path() / name);
     return folder.path() / name;
   };
-  EXPECT_THAT(fault(link("a.off", "/dev/zero")), EndsWith("a.off: is a device; give a mesh file"));
+  EXPECT_THAT(fault(link("a.off", "/dev/zero")), EndsWith("a.off: is a device; give a file"));
 #ifdef MESHORDER_HAS_HDF5
-  EXPECT_THAT(fault(link("a.med", "/dev/zero")), EndsWith("a.med: is a device; give a mesh file"));
+  EXPECT_THAT(fault(link("a.med", "/dev/zero")), EndsWith("a.med: is a device; give a file"));
 #endif
   EXPECT_THAT(fault(link("b.off", "/usr")), EndsWith("b.off: is a folder; give a mesh file"));
   // files of /sys claim a page each
@@ -257,6 +260,40 @@ TEST(Includes, StayBelowTheFolderOfTheMesh) {
   for (const std::string& name : {secret.string(), std::string("link.txt"), up})
     EXPECT_EQ(of_vega(name, allowed), "");
   EXPECT_THAT(of_vega("/etc/passwd", allowed), EndsWith(remedy));
+}
+
+TEST(Includes, ThatAreExchangedForLinksInTimeAreNotRead) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder outside;
+  const auto secret = outside.file("secret.txt", "secret");
+  const TemporaryFolder folder;
+  const auto plain = folder.file("plain.txt", "plain");
+  fs::create_symlink(secret, folder.path() / "link.txt");
+  const FilePath mesh(folder.path() / "a.veg");
+  const FilePath included = mesh.beside("i.txt");
+  std::atomic<bool> is_over = false;
+  std::thread others([&] {
+    std::error_code ignored;
+    for (int k = 0; !is_over; ++k) {
+      fs::copy(folder.path() / (k % 2 == 0 ? "plain.txt" : "link.txt"), folder.path() / "next.txt",
+               fs::copy_options::copy_symlinks, ignored);
+      fs::rename(folder.path() / "next.txt", folder.path() / "i.txt", ignored);
+    }
+  });
+  int plain_ones = 0;
+  for (int k = 0; k < 20'000; ++k) {
+    if (!may_include(mesh, included)) continue;
+    try {
+      const std::string text = included.read();
+      plain_ones += text == "plain" ? 1 : 0;
+      EXPECT_NE(text, "secret");
+    } catch (const InputError&) {
+      continue;  // it was the link
+    }
+  }
+  is_over = true;
+  others.join();
+  EXPECT_GT(plain_ones, 0);
 }
 
 TEST(Includes, StayBelowTheFolderInMemory) {

@@ -103,7 +103,7 @@ PolyMesh read(const Files& files) {
   (void)folder.file("neighbour", files.neighbour);
   (void)folder.file("points", files.points);
   (void)folder.file("faces", files.faces);
-  return read_poly_mesh(folder.path(), true);
+  return read_poly_mesh(folder.path(), folder.path(), true);
 }
 
 std::string fault_of(const Files& files) {

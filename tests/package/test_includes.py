@@ -48,7 +48,7 @@ HOSTS = {"petsc": ("petsc",), "dealii": ("deal.II/",), "dolfinx": ("dolfinx", "b
 OF_PLUGINS = {"meshorder/dealii.hpp", "meshorder/dolfinx.hpp"}
 #: a communicator is MPI's
 OF_MANY_RANKS = {("distributed.hpp", "mpi.h"), ("distributed.hpp", "meshorder_mpi.h"), ("meshorder_mpi.h", "meshorder.h")}
-SYSTEM = re.compile(r"(dirent|dlfcn|fcntl|sched|spawn|unistd|sys/\w+)\.h")
+SYSTEM = re.compile(r"(dirent|dlfcn|fcntl|poll|sched|spawn|unistd|sys/\w+)\.h")
 
 
 def files(folder):
@@ -119,3 +119,19 @@ def test_nothing_below_includes_what_stands_above(folder, above):
     wrong = [f"{path.relative_to(ROOT)}: {header}" for path in files(folder) for kind, header in includes(path)
              if kind == '"' and target(path, header).startswith(above)]
     assert not wrong
+
+
+# what opens a file to read it, and the sources that may: the opener, and those that ask the system about itself, lock a
+# file, or read what the same process has just written
+OPENING = re.compile(r"\b(ifstream|fopen|freopen)\b|(?<!\w)::open(at)?\(")
+MAY_OPEN = {
+    "src/base/input_file.cpp", "src/io/stream/descriptor.cpp", "src/base/memory.cpp", "src/base/processor.cpp",
+    "src/payoff/machine.cpp", "lab/study/folder_lock.cpp", "lab/study/study_turns.cpp", "lab/models/cache.cpp",
+    "apps/meshorder/standard_streams.cpp", "apps/meshorder-models/surface.cpp",
+}
+
+
+def test_files_are_opened_in_one_place():
+    found = {str(path.relative_to(ROOT)) for top in ("src", "lab", "apps") for path in files(top)
+             if OPENING.search(re.sub(r"//.*", "", path.read_text(encoding="utf-8")))}
+    assert found <= MAY_OPEN

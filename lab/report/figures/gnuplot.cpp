@@ -2,6 +2,7 @@
 #include "lab/report/figures/gnuplot.hpp"
 
 #include "base/text.hpp"
+#include "io/stream/file_path.hpp"
 #include "lab/report/figures/figures.hpp"
 #include "lab/support/process.hpp"
 #include <meshorder/error.hpp>
@@ -13,7 +14,6 @@
 #include <cstdlib>  // mkdtemp
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string_view>
 #include <system_error>
 
@@ -77,11 +77,6 @@ std::string shortened(std::string_view text, std::ptrdiff_t characters, std::ptr
     end = i;
   }
   return std::string(text.substr(0, end)) + std::string(kCut);
-}
-
-std::string read(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// Makes the ids that a tag gives or refers to begin with `prefix`.
@@ -160,7 +155,7 @@ std::string draw(const Drawing& drawing) {
                     ended.last_line.empty() ? fmt::format("status {}", ended.code) : ended.last_line),
         "is it version 5.4 or newer, and is there space in the folder for temporary files?");
   }
-  return tidied(read(folder.path() / "figure.svg"), drawing);
+  return tidied(FilePath(folder.path() / "figure.svg").read(), drawing);
 }
 
 std::string gnuplot_quoted(std::string_view text) {

@@ -60,7 +60,8 @@ PageMesh mesh_of(const StudyFolder& folder, const StudyResults& results, const M
   for (const OrderingSpec& ordering : results.orderings) {
     const fs::path path = folder.vertex_order(record.name, ordering.name);
     if (is_there(path)) {
-      orders.emplace_back(ordering.name, read_permutation(path, mesh.vertex_count(), "vertices"));
+      orders.emplace_back(ordering.name,
+                          read_permutation(folder.file(path), mesh.vertex_count(), "vertices"));
     } else {
       notes.push_back(fmt::format("the page does not show {} in the order {}: {} is missing", record.name,
                                   ordering.title, path.string()));
@@ -78,9 +79,10 @@ std::optional<PageMotion> motion_of(const StudyFolder& folder, const ScenarioRec
                                 (mesh == meshes.end() ? folder.mesh(scenario.mesh) : path).string()));
     return std::nullopt;
   }
-  const Motion motion = read_motion(path);
+  const Motion motion = read_motion(folder.file(path));
   std::optional<Mesh> obstacles;
-  if (is_there(folder.obstacles(scenario.name))) obstacles = read_mesh(folder.obstacles(scenario.name));
+  if (is_there(folder.obstacles(scenario.name)))
+    obstacles = read_mesh_from(folder.file(folder.obstacles(scenario.name)));
   return naming(path, [&] {
     return page_motion(scenario, mesh->second, motion, obstacles ? &*obstacles : nullptr, detail);
   });
@@ -125,7 +127,7 @@ Page page_of(const StudyFolder& folder, const StudyResults& results, Notes& note
       notes.push_back(fmt::format("the page does not show {}: {} is missing", record.name, path.string()));
       continue;
     }
-    const Mesh& mesh = meshes.emplace(record.name, read_mesh(path)).first->second;
+    const Mesh& mesh = meshes.emplace(record.name, read_mesh_from(folder.file(path))).first->second;
     page.meshes.push_back(mesh_of(folder, results, record, mesh, notes, detail));
   }
   for (const ScenarioRecord& scenario : results.scenarios) {
@@ -140,14 +142,14 @@ Page page_of(const StudyFolder& folder, const StudyResults& results, Notes& note
 
 WrittenReport write_report(const StudyFolder& folder, const ReportProgress& progress) {
   WrittenReport report;
-  Page page = page_of(folder, read_results(folder.results()), report.notes, progress);
+  Page page = page_of(folder, read_results(folder.file(folder.results())), report.notes, progress);
   std::error_code code;
   if (!page.figures.empty()) fs::create_directories(folder.figure("any").parent_path(), code);
   if (code)
     throw InputError(folder.root().string(), "cannot be written: " + code.message(), "check the folder");
   std::vector<OutputFile> files;
   const auto add = [&](const fs::path& path, const std::string& content) {
-    files.emplace_back(folder.output(path)).write(content);
+    files.emplace_back(folder.file(path)).write(content);
     report.files.push_back(path);
   };
   add(folder.tables(".md"), markdown_of(page));

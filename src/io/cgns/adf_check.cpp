@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/input_file.hpp"
 #include "base/run_scope.hpp"
 #include "io/cgns/tree.hpp"
 #include "io/stream/byte_order.hpp"
@@ -9,9 +10,7 @@
 #include <bit>
 #include <charconv>
 #include <cstdint>
-#include <fstream>
 #include <set>
-#include <system_error>
 #include <utility>
 
 // Checks a file of ADF before libcgns reads it, which follows the pointers in it. The layout: Advanced Data
@@ -43,12 +42,7 @@ constexpr std::size_t kNode = kChunksAt + 4 + kPointer + kTag;
 
 class AdfCheck {
  public:
-  AdfCheck(const std::filesystem::path& path, std::string name)
-      : name_(std::move(name)), stream_(path, std::ios::binary) {
-    std::error_code code;
-    size_ = std::filesystem::file_size(path, code);
-    if (code) size_ = 0;
-  }
+  AdfCheck(const InputFile& file, std::string name) : name_(std::move(name)), file_(file) {}
 
   void run() {
     binary_ = bytes(kVersionAt, 1) == "B";
@@ -65,11 +59,10 @@ class AdfCheck {
   }
 
   std::string bytes(std::uint64_t at, std::size_t count) {
-    if (at > size_ || count > size_ - at) fail(at, "a part of a node lies beyond the end of the file");
+    if (at > file_.size() || count > file_.size() - at)
+      fail(at, "a part of a node lies beyond the end of the file");
     std::string result(count, '\0');
-    stream_.seekg(static_cast<std::streamoff>(at));
-    stream_.read(result.data(), static_cast<std::streamsize>(count));
-    if (!stream_) fail(at, "cannot be read");
+    if (file_.read_at(at, result) < count) fail(at, "cannot be read");
     return result;
   }
 
@@ -90,7 +83,7 @@ class AdfCheck {
   std::uint64_t pointer(std::uint64_t at) {
     const std::uint64_t block = wide<std::uint64_t>(at);
     const std::uint64_t byte = wide<std::uint32_t>(at + kDigits);
-    if (block > size_ / kBlock || byte > kBlock)
+    if (block > file_.size() / kBlock || byte > kBlock)
       fail(at, "the target of a pointer lies beyond the end of the file");
     return block * kBlock + byte;
   }
@@ -116,7 +109,7 @@ class AdfCheck {
     constexpr std::size_t kEntry = kName + kPointer;
     expect_tag(table, "SNTb");
     const std::uint64_t first = table + kTag + kPointer;
-    if (entries > size_ / kEntry) fail(table, "a node has more children than the file can hold");
+    if (entries > file_.size() / kEntry) fail(table, "a node has more children than the file can hold");
     const std::uint64_t end = first + entries * kEntry;
     if (pointer(table + kTag) != end) fail(table, "the end of the children is somewhere else");
     expect_tag(end, "snTE");
@@ -133,7 +126,7 @@ class AdfCheck {
     std::uint64_t wanted = width;
     for (std::uint64_t k = 0; k < rank; ++k) {
       const std::uint64_t length = wide<std::uint64_t>(node + kRankAt + 2 + k * kDigits);
-      if (wanted > 0 && length > size_ / wanted)
+      if (wanted > 0 && length > file_.size() / wanted)
         fail(node, "a node claims more values than the file can hold");
       wanted *= length;
     }
@@ -165,8 +158,7 @@ class AdfCheck {
   }
 
   std::string name_;
-  std::ifstream stream_;
-  std::uint64_t size_ = 0;
+  const InputFile& file_;
   bool binary_ = false;
   std::endian order_ = std::endian::little;  // of binary numbers
   std::set<std::uint64_t> seen_;             // nodes
@@ -174,6 +166,6 @@ class AdfCheck {
 
 }  // namespace
 
-void check_adf(const std::filesystem::path& path, const std::string& name) { AdfCheck(path, name).run(); }
+void check_adf(const InputFile& file, const std::string& name) { AdfCheck(file, name).run(); }
 
 }  // namespace meshorder::cgns

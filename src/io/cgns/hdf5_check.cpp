@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/cgns/tree.hpp"
 #include "io/hdf5/hdf5_file.hpp"
+#include "io/hdf5/parts.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/hdf5/visitor.hpp"
 #include <meshorder/error.hpp>
@@ -100,6 +101,8 @@ class Hdf5Check {
     if (kind == H5I_GROUP) {
       if (name.size() > kMostLetters) fail(path + " has a name of more than 32 characters");
       check_group(object.id(), path, level + 1);
+    } else if (kind == H5I_DATASET && hdf5::has_values_elsewhere(object.id())) {
+      fail(path + " has its values in other files", "copy them into one file (h5repack)");
     } else if (kind == H5I_DATASET && level > 0) {
       // links of libcgns name their targets in datasets of characters
       const hdf5::DatasetInfo data = file_.info(path);

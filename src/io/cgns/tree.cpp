@@ -19,7 +19,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <string_view>
 #include <system_error>
@@ -255,25 +254,24 @@ class TreeWriter {
   const std::function<void(Node&)>& fill_;
 };
 
-Tree read_from_disk(const fs::path& path, const std::string& name) {
+Tree read_open(const InputFile& input, const FilePath& counted, const std::string& name) {
   const hdf5::Session session;
+  const std::string path = input.path_for_libraries();
   int type = CGIO_FILE_NONE;
   if (cgio_check_file(path.c_str(), &type) != CGIO_ERR_NONE || type == CGIO_FILE_NONE) {
     throw InputError(name, "is neither a file of HDF5 nor of ADF, as CGNS's are", "check the file");
   }
-  std::error_code code;
-  const std::uintmax_t bytes = fs::file_size(path, code);
-  count_file(path, code ? 0 : bytes);
+  count_file(counted, input.size());
   Tree tree;
   tree.storage = type == CGIO_FILE_HDF5 ? Storage::hdf5 : Storage::adf;
   if (tree.storage == Storage::hdf5) {
     check_hdf5(path, name);
   } else {
-    check_adf(path, name);
+    check_adf(input, name);
   }
   const CgioFile file(path, name, CGIO_MODE_READ, type);
   session.watch();
-  TreeReader reader(file, code ? 0 : bytes, tree.storage == Storage::hdf5);
+  TreeReader reader(file, input.size(), tree.storage == Storage::hdf5);
   tree.root = reader.read(file.root(), "", 0);
   session.require_no_fault(name);
   return tree;
@@ -291,15 +289,6 @@ void write_to_disk(const Tree& tree, const fs::path& path, const std::string& na
   for (const Node& node : tree.root.children) writer.write(node, root, "");
   file.close();
   session.require_no_fault(name);  // the library does not look at all of its results
-}
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::error_code code;
-  std::string bytes(fs::file_size(path, code), '\0');
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (code || !stream) throw Error(Code::io, path.string() + ": cannot be read again");
-  return bytes;
 }
 
 }  // namespace
@@ -366,7 +355,7 @@ std::size_t size_of_type(std::string_view type) {
 Tree read_tree(const FilePath& path) {
   constexpr std::string_view kGzip = "\x1f\x8b";
   if (path.store() == nullptr && path.is_file() && path.read_first(kGzip.size()) != kGzip) {
-    return read_from_disk(path.path(), path.string());
+    return read_open(path.open(), path, path.string());
   }
   const std::string bytes = path.read();
   const PrivateFolder folder;
@@ -378,7 +367,7 @@ Tree read_tree(const FilePath& path) {
                      "a temporary file cannot be written: " + system_fault(error).reason,
                      "set TMPDIR to a folder with enough space");
   }
-  return read_from_disk(folder.file(), path.string());
+  return read_open(InputFile(folder.file()), folder.file(), path.string());
 }
 
 void write_tree(const Tree& tree, const FilePath& path, const std::function<void(Node&)>& fill) {
@@ -389,7 +378,7 @@ void write_tree(const Tree& tree, const FilePath& path, const std::function<void
   } else {
     const PrivateFolder folder;
     write_to_disk(tree, folder.file(), path.string(), fill);
-    out.write(bytes_of(folder.file()));
+    out.write(FilePath(folder.file()).read_first(std::numeric_limits<std::size_t>::max()));
   }
   out.commit();
 }

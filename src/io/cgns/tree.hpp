@@ -4,6 +4,7 @@
 // The nodes of a CGNS file, read and written by CGIO, the low-level interface of the CGNS library
 // (https://cgns.github.io/CGNS_docs_current/cgio/). It is the same for files of HDF5 and of ADF.
 
+#include "base/input_file.hpp"
 #include "io/stream/file_path.hpp"
 #include <meshorder/io.hpp>
 
@@ -69,6 +70,6 @@ void check_hdf5(const std::filesystem::path& path, const std::string& name);
 
 /// Throws InputError unless libcgns can read a file of ADF safely: nodes, their lists of children and values
 /// are where it is told that they are, each node once. O(nodes · log nodes).
-void check_adf(const std::filesystem::path& path, const std::string& name);
+void check_adf(const InputFile& file, const std::string& name);
 
 }  // namespace meshorder::cgns

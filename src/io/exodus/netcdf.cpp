@@ -29,6 +29,7 @@ const NcType kDouble = NC_DOUBLE;
 
 namespace {
 
+constexpr const char* kNameInMemory = "mesh";  // others could mean an address in the net
 constexpr std::string_view kDamaged = "the file may be damaged";
 constexpr std::uint64_t kMostExpansion = 1032;  // of deflate
 constexpr std::size_t kBuffer = std::size_t{1} << 18;
@@ -113,28 +114,39 @@ Storage plain_storage(bool large) { return {large ? NC_FORMAT_CDF5 : NC_FORMAT_6
 
 // ---- reading
 
-NcInput::NcInput(const FilePath& path) : lock_(hdf5::enter_library()), name_(path.string()) {
+NcInput::NcInput(const FilePath& path) : name_(path.string()) {
   constexpr std::size_t kStart = 8;
   std::error_code code;
   const bool on_disk = path.store() == nullptr && std::filesystem::is_regular_file(path.path(), code) &&
                        without_gz(path.path()) == path.path();
-  if (!on_disk) memory_ = path.read();
-  const std::string start = on_disk ? path.read_first(kStart) : memory_.substr(0, kStart);
-  size_ = on_disk ? std::filesystem::file_size(path.path(), code) : memory_.size();
-  if (on_disk) count_file(path, size_);
+  if (on_disk) {
+    file_.emplace(path.open());
+    count_file(path, file_->size());
+  } else {
+    memory_ = path.read();
+  }
+  size_ = on_disk ? file_->size() : memory_.size();
+  const auto first = [&](std::size_t bytes) {
+    if (!on_disk) return memory_.substr(0, bytes);
+    std::string result(std::min<std::uint64_t>(bytes, size_), '\0');
+    result.resize(file_->read_at(0, result));
+    return result;
+  };
+  const std::string start = first(kStart);
+  if (start.empty()) fail("is empty", "give a file");
   if (start.starts_with("CDF")) {
-    check_classic_header(
-        name_, [&](std::size_t bytes) { return on_disk ? path.read_first(bytes) : memory_.substr(0, bytes); },
-        size_);
-  } else if (!start.starts_with("\x89HDF\r\n\x1a\n")) {
+    check_classic_header(name_, first, size_);
+  } else if (start.starts_with("\x89HDF\r\n\x1a\n")) {
+    require_whole_hdf5(on_disk ? file_->path_for_libraries() : "", memory_, name_);
+  } else {
     throw InputError(Location{name_, 0, 0}, "is not a file of netCDF",
                      "an Exodus file begins with CDF or HDF");
   }
   if (on_disk) {
     std::size_t buffer = kBuffer;
-    check(nc__open(name_.c_str(), NC_NOWRITE, &buffer, &id_), "");
+    check(nc__open(file_->path_for_libraries().c_str(), NC_NOWRITE, &buffer, &id_), "");
   } else {
-    check(nc_open_mem(name_.c_str(), NC_NOWRITE, memory_.size(), memory_.data(), &id_), "");
+    check(nc_open_mem(kNameInMemory, NC_NOWRITE, memory_.size(), memory_.data(), &id_), "");
   }
   try {
     inquire();
@@ -159,11 +171,7 @@ void NcInput::check(int status, const std::string& what) const {
 void NcInput::inquire() {
   int dimension_count = 0;
   int variable_count = 0;
-  int groups = 0;
   check(nc_inq(id_, &dimension_count, &variable_count, nullptr, nullptr), "");
-  check(nc_inq_grps(id_, &groups, nullptr), "");
-  if (groups > 0)
-    fail(fmt::format("has {} groups", groups), "a mesh is in the file itself; take a group out");
   int unlimited_count = 0;
   std::vector<int> unlimited(static_cast<std::size_t>(dimension_count));
   check(nc_inq_unlimdims(id_, &unlimited_count, nullptr), "");
@@ -441,14 +449,10 @@ int creation_mode(int kind) {
 }  // namespace
 
 NcOutput::NcOutput(const FilePath& path, const Storage& storage)
-    : lock_(hdf5::enter_library()),
-      name_(path.string()),
-      out_(path),
-      is_in_memory_(path.store() != nullptr),
-      storage_(storage) {
+    : name_(path.string()), out_(path), is_in_memory_(path.store() != nullptr), storage_(storage) {
   if (is_in_memory_) {
     // an initial size would be the least that the file gets
-    check(nc_create_mem(name_.c_str(), NC_CLOBBER | creation_mode(storage.kind), 0, &id_), "");
+    check(nc_create_mem(kNameInMemory, NC_CLOBBER | creation_mode(storage.kind), 0, &id_), "");
     // filled at first: bytes between variables, which the library does not write, would be what memory held
   } else {
     out_->close();
@@ -457,7 +461,7 @@ NcOutput::NcOutput(const FilePath& path, const Storage& storage)
 }
 
 NcOutput::NcOutput(const UnfinishedFile& file, const Storage& storage)
-    : lock_(hdf5::enter_library()), name_(file.name), is_in_memory_(false), storage_(storage) {
+    : name_(file.name), is_in_memory_(false), storage_(storage) {
   create(file.path);
 }
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "io/hdf5/mutex.hpp"
+#include "io/exodus/library.hpp"
 #include "io/stream/file_path.hpp"
 #include "io/stream/output_file.hpp"
 #include <meshorder/error.hpp>
@@ -145,8 +145,9 @@ class NcInput {
   /// Throws InputError where the library would take more memory for a chunk than the file may claim.
   void check_chunks(const Variable& variable) const;
 
-  hdf5::LibraryLock lock_;
+  Library library_;
   std::string name_;
+  std::optional<InputFile> file_;
   std::string memory_;  // of a file that is not on disk
   std::uint64_t size_ = 0;
   int id_ = -1;
@@ -225,7 +226,7 @@ class NcOutput {
   void put_attribute(int variable, const Attribute& attribute, const std::string& of) const;
 
   friend class NcSink;
-  hdf5::LibraryLock lock_;
+  Library library_;
   std::string name_;
   std::optional<OutputFile> out_;  ///< none: others put the file in place
   bool is_in_memory_;

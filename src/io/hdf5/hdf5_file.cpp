@@ -63,6 +63,7 @@ bool leads_to_object(hid_t group, const std::string& name) {
 Handle file_access() {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
+  H5Pset_fapl_sec2(access.id());  // whatever HDF5_DRIVER in the environment says
   return access;
 }
 
@@ -102,9 +103,9 @@ File File::open(const FilePath& path) {
   const Session session;
   // not those of pipes, which HDF5 would wait for, and of devices, which are refused
   if (path.store() != nullptr || !path.is_file()) return in_memory(path.read(), path.string());
-  std::error_code ignored;
-  count_file(path, std::filesystem::file_size(path.path(), ignored));
-  return open(path.path(), path.string());
+  const InputFile file = path.open();
+  count_file(path, file.size());
+  return open(file.path_for_libraries(), path.string());
 }
 
 File File::open(const std::filesystem::path& path, std::string name) {

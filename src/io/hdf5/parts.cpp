@@ -40,6 +40,11 @@ std::uint64_t most_bytes(hid_t dataset) {
   return H5Pget_layout(creation.id()) == H5D_CHUNKED ? kMostFromOneByte * (stored + 1) : stored;
 }
 
+bool has_values_elsewhere(hid_t dataset) {
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  return H5Pget_layout(creation.id()) == H5D_VIRTUAL || H5Pget_external_count(creation.id()) > 0;
+}
+
 void forget_times(const Handle& creation) { H5Pset_obj_track_times(creation.id(), false); }
 
 std::vector<std::string> names_in(hid_t group, H5_index_t index) {

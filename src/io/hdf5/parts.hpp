@@ -25,6 +25,9 @@ std::size_t alternative_of(hid_t type);
 /// thousand bytes of one.
 std::uint64_t most_bytes(hid_t dataset);
 
+/// Returns whether the values of a dataset are in files of their own, or those of datasets of other files.
+bool has_values_elsewhere(hid_t dataset);
+
 /// Sets that a dataset does not hold when it was last changed: the same mesh is the same bytes at any time.
 void forget_times(const Handle& creation);
 

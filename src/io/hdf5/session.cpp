@@ -67,6 +67,8 @@ Session::Session() : lock_(enter_library()) {
     faults = {.sessions = 1};
     errno = 0;
   }
+  H5PLget_loading_state(&plugins_);
+  H5PLset_loading_state(0);
   H5Eget_auto2(H5E_DEFAULT, &handler_, &data_);
   watch();
 }
@@ -74,6 +76,7 @@ Session::Session() : lock_(enter_library()) {
 Session::~Session() {
   faults.memory = faults.memory || errno == ENOMEM;
   H5Eset_auto2(H5E_DEFAULT, handler_, data_);
+  H5PLset_loading_state(plugins_);
   --faults.sessions;
 }
 

@@ -8,8 +8,9 @@
 
 namespace meshorder::hdf5 {
 
-/// Keeps other threads out of libhdf5 and the library quiet as long as it lives. May be nested. Takes note of
-/// calls that fail, also where the library, or one on top of it, does not look at their result.
+/// Keeps other threads out of libhdf5 and the library quiet as long as it lives. Meanwhile the library loads
+/// no plug-ins, which a file can ask for by the number of a filter. May be nested. Takes note of calls that
+/// fail, also where the library, or one on top of it, does not look at their result.
 class Session {
  public:
   Session();
@@ -32,6 +33,7 @@ class Session {
 
  private:
   LibraryLock lock_;
+  unsigned plugins_ = 0;
   H5E_auto2_t handler_ = nullptr;
   void* data_ = nullptr;
 };

@@ -74,8 +74,7 @@ DatasetInfo File::info(const std::string& path) const {
   H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr);
   info.shape.assign(shape.begin(), shape.end());
 
-  const H5D_layout_t layout = H5Pget_layout(creation.id());
-  if (layout == H5D_VIRTUAL || H5Pget_external_count(creation.id()) > 0) {
+  if (has_values_elsewhere(dataset.id())) {
     fail(path, "has its values in other files", "copy them into one file (h5repack)");
   }
   if (const std::string filter = lacking_filter(creation.id()); !filter.empty()) {

@@ -44,7 +44,7 @@ void write_dictionary(OutputFile& file) {
   for (const std::string_view entry : kDictionaryEntries) file.print("{}\n", entry);
 }
 
-bool takes_cell_order(const fs::path& dictionary) {
+bool takes_cell_order(const FilePath& dictionary) {
   FoamFile file(dictionary);
   bool is_manual = false;
   bool names_order = false;

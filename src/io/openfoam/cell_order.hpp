@@ -28,7 +28,7 @@ void write_dictionary(OutputFile& file);
 /// Returns whether a renumberMeshDict takes the order from `kCellOrder`.
 ///
 /// @throws InputError for a file that is no dictionary of OpenFOAM
-bool takes_cell_order(const std::filesystem::path& dictionary);
+bool takes_cell_order(const FilePath& dictionary);
 
 /// Returns the folder of a case: of `CASE/NAME.foam`, by which ParaView opens it, `CASE`; other paths as they
 /// are.

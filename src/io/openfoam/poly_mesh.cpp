@@ -43,13 +43,21 @@ void require_faces(const Sides& sides, const fs::path& folder) {
                    "cells are numbered from 0 without a gap");
 }
 
-Sides read_sides(const fs::path& folder) {
+/// The folder `polyMesh`, and the case that it must lie in.
+struct MeshFolder {
+  const fs::path& of_case;
+  const fs::path& path;
+
+  [[nodiscard]] FilePath file(std::string_view name) const { return FilePath::in(of_case, path / name); }
+};
+
+Sides read_sides(const MeshFolder& folder) {
   Sides sides;
-  FoamFile owner(folder / "owner");
+  FoamFile owner(folder.file("owner"));
   // every cell has a face, so that there are no more cells than faces
   owner.read_labels(sides.owner, "owner", 0, std::nullopt);
   const auto faces = static_cast<std::int64_t>(sides.owner.size());
-  FoamFile neighbour(folder / "neighbour");
+  FoamFile neighbour(folder.file("neighbour"));
   neighbour.read_labels(sides.neighbour, "neighbour", -1, faces);
   // old versions list all faces and give those at the boundary a −1
   while (!sides.neighbour.empty() && sides.neighbour.back() < 0) sides.neighbour.pop_back();
@@ -73,7 +81,7 @@ Sides read_sides(const fs::path& folder) {
     last = std::max(last, b);
   }
   sides.cells = last + 1;
-  require_faces(sides, folder);
+  require_faces(sides, folder.path);
   return sides;
 }
 
@@ -124,8 +132,8 @@ class CentreSums {
 
 class CentreReader {
  public:
-  CentreReader(const fs::path& folder, const Sides& sides)
-      : points_(FoamFile(folder / "points").read_points()), faces_(folder / "faces"), sums_(sides) {}
+  CentreReader(const MeshFolder& folder, const Sides& sides)
+      : points_(FoamFile(folder.file("points")).read_points()), faces_(folder.file("faces")), sums_(sides) {}
 
   std::vector<Point> read() {
     if (faces_.class_name() == "faceCompactList") {
@@ -187,13 +195,14 @@ class CentreReader {
 
 }  // namespace
 
-PolyMesh read_poly_mesh(const fs::path& folder, bool with_centres) {
+PolyMesh read_poly_mesh(const fs::path& of_case, const fs::path& folder, bool with_centres) {
   const FilePath path(folder);
   const ReadScope scope(path);
-  const Sides sides = read_sides(folder);
+  const MeshFolder files{of_case, folder};
+  const Sides sides = read_sides(files);
   PolyMesh mesh;
   mesh.internal_faces = index_size(sides.neighbour);
-  if (with_centres) mesh.centres = CentreReader(folder, sides).read();
+  if (with_centres) mesh.centres = CentreReader(files, sides).read();
   mesh.graph = graph_of(sides);
   return mesh;
 }

@@ -16,12 +16,13 @@ struct PolyMesh {
   std::vector<Point> centres;  ///< of each cell the mean of its faces' centres; empty unless asked for
 };
 
-/// Reads a folder `polyMesh`: its files `owner` and `neighbour`, text or binary, each also as `.gz`, and, for
-/// the centres, `points` and `faces`.
+/// Reads the folder `polyMesh` of a case, whose files lie below the case's folder: its files `owner` and
+/// `neighbour`, text or binary, each also as `.gz`, and, for the centres, `points` and `faces`.
 ///
 /// @throws InputError for a file that is missing or faulty, with its line or byte, and for a cell without
 ///         faces; a mesh without any cell is returned as it is
 /// @note O(faces · log faces of a cell); about 30 bytes a face besides the files' own size.
-PolyMesh read_poly_mesh(const std::filesystem::path& folder, bool with_centres);
+PolyMesh read_poly_mesh(const std::filesystem::path& of_case, const std::filesystem::path& folder,
+                        bool with_centres);
 
 }  // namespace meshorder::openfoam

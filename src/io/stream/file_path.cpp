@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <istream>
 #include <limits>
 #include <system_error>
@@ -23,64 +22,37 @@ namespace meshorder {
 namespace fs = std::filesystem;
 namespace {
 
-/// Throws InputError unless the path leads to a file or a pipe.
-void require_readable(const fs::path& path, const fs::file_status& status) {
-  const auto refuse = [&](const char* what) { throw InputError(path.string(), what, "give a mesh file"); };
-  if (!fs::exists(status)) throw InputError(path.string(), "no such file", "check the path");
-  if (fs::is_directory(status)) refuse("is a folder");
-  if (fs::is_socket(status)) refuse("is a socket");
-  if (fs::is_block_file(status) || fs::is_character_file(status)) refuse("is a device");
-}
-
-/// Returns the first `wanted` bytes of a file that has `size`.
-std::string read_sized(std::istream& stream, const std::string& name, std::uintmax_t size,
-                       std::uintmax_t wanted) {
+/// Returns the first `wanted` bytes of a file.
+std::string read_sized(InputFile& file, const std::string& name, std::uint64_t wanted) {
   // a limit on claims is none on what is there
   const std::uint64_t most = std::max(limit_on_unknown_sizes(), usable_memory() / 4 * 3);
   if (wanted > most) {
-    throw InputError(name, fmt::format("has {}, more than the limit of {}", size_text(size), size_text(most)),
-                     "raise the limit on memory (--limit-memory) if it fits");
+    throw InputError(
+        name, fmt::format("has {}, more than the limit of {}", size_text(file.size()), size_text(most)),
+        "raise the limit on memory (--limit-memory) if it fits");
   }
   std::string bytes;
   resize_large(bytes, wanted);
-  stream.read(bytes.data(), static_cast<std::streamsize>(wanted));
-  const auto got = static_cast<std::uintmax_t>(stream.gcount());
+  const std::size_t got = file.read(bytes);
   if (got < wanted) {
-    throw InputError(name, fmt::format("had {} bytes and ended after {}", size, got),
+    throw InputError(name, fmt::format("had {} bytes and ended after {}", file.size(), got),
                      "it may have been written to meanwhile, or the disk fails");
   }
-  if (wanted == size && stream.peek() != std::istream::traits_type::eof()) {
-    throw InputError(name, fmt::format("had {} bytes and goes on after them", size),
+  if (char further = 0; wanted == file.size() && file.read({&further, 1}) > 0) {
+    throw InputError(name, fmt::format("had {} bytes and goes on after them", file.size()),
                      "wait until it is written to the end");
   }
   return bytes;
 }
 
-/// Returns the bytes of a file, at most `most` of them; of a pipe all.
-std::string read_from_disk(const fs::path& path, std::uintmax_t most) {
-  const std::string name = path.string();
-  std::error_code code;
-  const auto status = fs::status(path, code);
-  require_readable(path, status);
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(name, "cannot be read", "check its permissions");
-  const auto size = fs::is_regular_file(status) ? fs::file_size(path, code) : 0;
-  // files of /proc have no size either
-  if (code || size == 0) return read_to_end(stream, name);
-  return read_sized(stream, name, size, std::min(size, most));
-}
-
-bool is_gz(const fs::path& path) { return same_but_for_case(path.extension().string(), ".gz"); }
-
-}  // namespace
-
-std::string read_to_end(std::istream& stream, const std::string& name) {
+/// Returns all that `read` puts into a buffer, call by call, until it puts nothing there.
+template <class Read>
+std::string all_of(const Read& read, const std::string& name) {
   constexpr std::size_t kPart = std::size_t{1} << 20;
   const std::uint64_t most = limit_on_unknown_sizes();
   std::string bytes;
   std::vector<char> part(kPart);
-  while (stream.read(part.data(), kPart), stream.gcount() > 0) {
-    const auto got = static_cast<std::size_t>(stream.gcount());
+  while (const std::size_t got = read(part)) {
     if (got > most - bytes.size()) {
       throw InputError(name, "has no end within " + size_text(most),
                        "if it has one, raise the limit on memory (--limit-memory)");
@@ -88,6 +60,27 @@ std::string read_to_end(std::istream& stream, const std::string& name) {
     bytes.append(part.data(), got);
   }
   return bytes;
+}
+
+/// Returns the bytes of a file, at most `most` of them; of a pipe all.
+std::string read_from_disk(const FilePath& path, std::uint64_t most) {
+  InputFile file = path.open();
+  // files of /proc have no size either
+  if (file.size() == 0)
+    return all_of([&](std::vector<char>& part) { return file.read(part); }, path.string());
+  return read_sized(file, path.string(), std::min(file.size(), most));
+}
+
+bool is_gz(const fs::path& path) { return same_but_for_case(path.extension().string(), ".gz"); }
+
+}  // namespace
+
+std::string read_to_end(std::istream& stream, const std::string& name) {
+  const auto read = [&](std::vector<char>& part) {
+    stream.read(part.data(), std::ssize(part));
+    return static_cast<std::size_t>(stream.gcount());
+  };
+  return all_of(read, name);
 }
 
 fs::path without_gz(fs::path path) {
@@ -119,18 +112,22 @@ bool FilePath::is_same(const FilePath& other) const {
   return fs::equivalent(path_, other.path_, ignored);
 }
 
+InputFile FilePath::open() const {
+  return folder_ ? InputFile(path_, folders_for_includes(*folder_)) : InputFile(path_);
+}
+
 std::string FilePath::read() const {
   std::string bytes = read_first(std::numeric_limits<std::size_t>::max());
   count_file(*this, bytes.size());
   bytes = uncompressed(std::move(bytes), string());
-  if (bytes.empty()) throw InputError(string(), "is empty", "give a mesh file");
+  if (bytes.empty()) throw InputError(string(), "is empty", "give a file");
   return bytes;
 }
 
 std::string FilePath::read_first(std::size_t most) const {
-  std::string bytes = store_ != nullptr ? store_->read(path_) : read_from_disk(path_, most);
+  std::string bytes = store_ != nullptr ? store_->read(path_) : read_from_disk(*this, most);
   if (bytes.size() > most) bytes.resize(most);
-  if (bytes.empty()) throw InputError(string(), "is empty", "give a mesh file");
+  if (bytes.empty()) throw InputError(string(), "is empty", "give a file");
   return bytes;
 }
 

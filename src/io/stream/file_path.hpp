@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/input_file.hpp"
+
 #include <cstddef>
 #include <filesystem>
 #include <iosfwd>
@@ -53,6 +55,7 @@ class FilePath {
   FilePath(FilePath path, OutputSet& set) : FilePath(std::move(path)) { set_ = &set; }
 
   /// A file on disk below a folder that the user named; the rest of the path this program made, or a file.
+  /// It is read only where it lies below the folder, links resolved (see `may_include`).
   static FilePath in(std::filesystem::path folder, std::filesystem::path path);
   /// The same in the path's own folder: this program made the last name.
   static FilePath derived(const std::filesystem::path& path) { return in(path.parent_path(), path); }
@@ -75,6 +78,8 @@ class FilePath {
   [[nodiscard]] bool is_empty() const;
   /// Returns whether two paths lead to one file.
   [[nodiscard]] bool is_same(const FilePath& other) const;
+  /// Opens a file on disk. Throws InputError as `InputFile` does.
+  [[nodiscard]] InputFile open() const;
   /// Returns the bytes of the file; of a gzip file what is in it. Throws InputError for a folder, a device,
   /// an unreadable or an empty file, one that changes meanwhile or exceeds the limit on memory, and a damaged
   /// gzip file; Unavailable for a gzip file in a build without zlib.

@@ -28,19 +28,6 @@ std::vector<fs::path>& folders_of_process() {
   return folders;
 }
 
-/// Returns whether a path without .. and links is in that folder or below it.
-bool is_below(const fs::path& path, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
-}
-
-bool is_below_on_disk(const fs::path& path, const fs::path& folder) {
-  std::error_code code;
-  const fs::path real_folder = fs::canonical(folder.empty() ? fs::path(".") : folder, code);
-  if (code) return false;
-  const fs::path real_path = fs::weakly_canonical(path, code);
-  return !code && is_below(real_path, real_folder);
-}
-
 bool is_below_by_name(const fs::path& path, const fs::path& folder) {
   const fs::path rest =
       path.lexically_normal().lexically_relative(folder.empty() ? fs::path(".") : folder.lexically_normal());
@@ -116,18 +103,20 @@ void allow_includes_from(fs::path folder) { folders_of_process().push_back(std::
 
 const std::vector<fs::path>& allowed_include_folders() { return folders_of_process(); }
 
-bool may_include(const FilePath& from, const FilePath& file) {
-  const auto contains = [&](const fs::path& folder) {
-    return file.store() != nullptr ? is_below_by_name(file.path(), folder)
-                                   : is_below_on_disk(file.path(), folder);
-  };
-  if (contains(from.path().parent_path())) return true;
-  const ReadScope* const reading = current_reading;
-  if (reading != nullptr &&
-      std::any_of(reading->include_folders_.begin(), reading->include_folders_.end(), contains)) {
-    return true;
+std::vector<fs::path> folders_for_includes(const fs::path& folder) {
+  std::vector<fs::path> folders = folders_of_process();
+  if (const ReadScope* const reading = current_reading; reading != nullptr) {
+    folders.insert(folders.begin(), reading->include_folders_.begin(), reading->include_folders_.end());
   }
-  return std::any_of(folders_of_process().begin(), folders_of_process().end(), contains);
+  folders.insert(folders.begin(), folder);
+  return folders;
+}
+
+bool may_include(const FilePath& from, const FilePath& file) {
+  const std::vector<fs::path> folders = folders_for_includes(from.path().parent_path());
+  if (file.store() == nullptr) return real_path_below(file.path(), folders).has_value();
+  return std::any_of(folders.begin(), folders.end(),
+                     [&](const fs::path& folder) { return is_below_by_name(file.path(), folder); });
 }
 
 }  // namespace meshorder

@@ -40,7 +40,7 @@ class ReadScope {
   friend std::string refused_for_a_while(std::uint64_t bytes, std::string_view what);
   friend void claim_memory(std::uint64_t bytes, std::string_view what, Location where);
   friend std::uint64_t limit_on_unknown_sizes();
-  friend bool may_include(const FilePath& from, const FilePath& file);
+  friend std::vector<std::filesystem::path> folders_for_includes(const std::filesystem::path& folder);
 
   [[nodiscard]] std::uint64_t limit() const;
 
@@ -86,6 +86,9 @@ void allow_includes_from(std::filesystem::path folder);
 
 /// Returns the folders that are allowed so.
 const std::vector<std::filesystem::path>& allowed_include_folders();
+
+/// Returns the folders where files may be that a file in `folder` names: this and the allowed ones.
+std::vector<std::filesystem::path> folders_for_includes(const std::filesystem::path& folder);
 
 /// Returns whether a mesh may name this file to be read: whether it is below the folder of `from` or an
 /// allowed one, links and .. resolved; in memory by the names alone.

@@ -1,0 +1,66 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace meshorder {
+
+/// Returns the path without links, "." and ".." if it then lies below one of the folders, which are resolved
+/// likewise ("" is the current one). The file itself need not exist.
+std::optional<std::filesystem::path> real_path_below(const std::filesystem::path& path,
+                                                     std::span<const std::filesystem::path> folders);
+
+/// A file that is open for reading. Everything that is read is opened here, but for what the system says of
+/// itself (/proc, /sys).
+///
+/// Nobody is waited for: a pipe that the user named needs a writer within three seconds, and others are
+/// refused like devices, sockets and folders. Throws InputError for these, for a file that is missing or may
+/// not be read, and for failures of the disk.
+class InputFile {
+ public:
+  /// Opens the path that the user gave. Links are followed; a pipe is read to its end.
+  explicit InputFile(const std::filesystem::path& path);
+  /// Opens a file whose name comes from a file, a folder or another name. It must lie below one of the
+  /// folders (see `real_path_below`). The path is checked first and then opened part by part, none of which
+  /// may be a link: what others put in its place meanwhile is not opened.
+  InputFile(const std::filesystem::path& path, std::span<const std::filesystem::path> folders);
+  ~InputFile();
+  InputFile(InputFile&& other) noexcept;
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+  InputFile& operator=(InputFile&&) = delete;
+
+  /// Returns the bytes of the file when it was opened; 0 for a pipe and for files of /proc.
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+
+  /// Reads the next bytes. Returns their number, less than asked for at the end only.
+  std::size_t read(std::span<char> into);
+  /// Reads bytes at a place, which a pipe does not have. Returns their number, less than asked for at the end
+  /// only.
+  std::size_t read_at(std::uint64_t at, std::span<char> into) const;
+  /// Returns the rest of a file that is small. Throws InputError if it has more than `most` bytes.
+  std::string text(std::size_t most);
+
+  /// Returns a path by which libraries open this very file, as long as this object lives: nobody can put
+  /// another in its place. Where the system has no /proc, its own path.
+  [[nodiscard]] std::string path_for_libraries() const;
+
+ private:
+  [[noreturn]] void fail(int error) const;
+  void require_readable();
+  void wait_for_writer();
+  void close() noexcept;
+
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;
+  std::optional<char> ahead_;  ///< the first byte of a pipe
+  bool may_be_pipe_ = false;
+};
+
+}  // namespace meshorder
