@@ -26,7 +26,7 @@ namespace {
 /// Reads an order; without a file it is the identity.
 Permutation order_of(const std::string& path, Index count, const std::string& what) {
   if (path.empty()) return Permutation::identity(count);
-  return read_permutation(FilePath::in(std::filesystem::path(path).parent_path(), path), count, what);
+  return read_permutation(FilePath::derived(path), count, what);
 }
 
 Simulation set_up(const StepperTask& task) {

@@ -15,7 +15,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <system_error>
 #include <utility>
 
