@@ -81,7 +81,7 @@ DatasetInfo File::info(const std::string& path) const {
     fail(path, fmt::format("is compressed by the filter '{}', which this HDF5 lacks", filter),
          "decompress it (h5repack -f NONE)");
   }
-  if (layout == H5D_CHUNKED) {
+  if (H5Pget_layout(creation.id()) == H5D_CHUNKED) {
     // as it is stored, and as it is read
     const std::string fault =
         refused_for_a_while(2 * bytes_of_chunk(creation.id(), type.id()), "a chunk of it");
