@@ -28,7 +28,8 @@ LobpcgResult lowest_eigenvector(EigenProblem& problem, double slack, const Lobpc
   const double nearly_equal = 1 - std::clamp(options.tolerance, 1e-6, 0.1);
   LobpcgResult result = lobpcg<1, 1>(problem, options, x, std::move(companion));
   for (std::uint64_t round = 1; round <= kRounds; ++round) {
-    if (!result.converged || result.eigenvalue * slack <= kDoubtful) break;
+    const bool is_small = x.size() <= static_cast<std::size_t>(kSmallProblem);
+    if (!result.converged || (!is_small && result.eigenvalue * slack <= kDoubtful)) break;
     StartBlock block(x.size());
     for (std::size_t v = 0; v < x.size(); ++v) block[v][0] = x[v][0];
     const int more = find_lower(problem, nearly_equal * result.eigenvalue, options, seed + round, block);

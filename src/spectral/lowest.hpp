@@ -8,6 +8,7 @@
 namespace meshorder {
 
 constexpr double kDoubtful = 0.25;     ///< λ · slack from which an aggregate may hide an eigenvector
+constexpr Index kSmallProblem = 4096;  ///< vertices up to which the search costs next to nothing
 constexpr int kSearchIterations = 40;  ///< of `find_lower`; about six are needed
 
 /// Looks for an eigenvalue below `least`: iterates column 0 of `x` beside a random vector until nothing
@@ -24,8 +25,8 @@ int find_lower(EigenProblem& problem, double least, const LobpcgOptions& options
 ///
 /// A small residual says that λ is near an eigenvalue, not which: where most eigenvalues are about equal, as
 /// those of cliques, even random vectors have one. Coarse graphs find the right one unless an aggregate hides
-/// it, which λ · slack says, see `aggregate`. There `find_lower` follows, and the solution goes on from what
-/// it finds. That takes about as long as the solution; elsewhere nothing is added to it.
+/// it, which λ · slack says, see `aggregate`. There, and on all small graphs, `find_lower` follows, and the
+/// solution goes on from what it finds. That takes about as long as the solution; elsewhere nothing is added.
 ///
 /// @param slack  of the finest level of the hierarchy that preconditions the problem
 /// @param seed   of the random vectors
