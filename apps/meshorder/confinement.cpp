@@ -41,7 +41,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kStatusOfBadInput = 2;
-constexpr rlim_t kSecondsToRead = 60;                // of processor time
+constexpr rlim_t kSecondsToRead = 10;                // of processor time
 constexpr std::uintmax_t kBytesASecond = 1'000'000;  // that it may read slowly beyond these
 constexpr std::uintmax_t kMostSeconds = 10'000'000;
 constexpr unsigned kWaiting = 10;  // seconds that pass for each of them

@@ -33,7 +33,7 @@ void confine(const Files& files);
 /// Trusts all files that this process reads: `confine` does nothing.
 void trust_files();
 
-/// Reads a mesh as `meshorder::read_mesh` does. In a confined process the reading may take a minute of
+/// Reads a mesh as `meshorder::read_mesh` does. In a confined process the reading may take ten seconds of
 /// processor time and a second more for each MB, and what libraries print is dropped.
 Mesh read_input(const FilePath& path, Notes& notes);
 

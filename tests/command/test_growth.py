@@ -119,6 +119,8 @@ REPEATED = {
     "veg sets": (5000, lambda n: vega(lines(n, lambda k: f"*SET s{k}\n1,\n"))),
     "veg regions": (5000, lambda n: vega(
         "*SET s\n1\n*MATERIAL m\nENU, 1, 1, 0.1\n" + "*REGION\ns, m\n" * n)),
+    "veg regions of a large set": (3000, lambda n: vega(
+        "*SET s\n" + "1," * n + "\n*MATERIAL m\nENU, 1, 1, 0.1\n" + "*REGION\ns, m\n" * n)),
     "veg regions of many sets": (5000, lambda n: vega(
         lines(n, lambda k: f"*SET s{k}\n1\n") + lines(n, lambda k: f"*MATERIAL m{k}\nENU, 1, 1, 0.1\n")
         + lines(n, lambda k: f"*REGION\ns{k}, m{k}\n"))),

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -357,20 +358,24 @@ void Reader::label_by_region() {
 }  // namespace
 
 std::vector<std::int32_t> region_numbers(const Metadata& metadata, const Mesh& mesh) {
-  const NamedParts parts(mesh);
-  std::vector<std::int32_t> numbers;
+  // of regions of one set, the last counts
+  std::map<std::string_view, std::int32_t> region_of_set;
   std::int32_t number = 0;
   for (const Section& section : metadata.sections) {
-    if (section.kind != Kind::region) continue;
-    numbers.resize(mesh.cells.shapes.size(), 0);
-    ++number;
-    if (section.region_set == kAllElements) {
-      std::fill(numbers.begin(), numbers.end(), number);
-      continue;
+    if (section.kind == Kind::region) region_of_set[section.region_set] = ++number;
+  }
+  if (number == 0) return {};
+  std::map<std::int32_t, std::string_view> regions;
+  for (const auto& [set, region] : region_of_set) regions.emplace(region, set);
+  const NamedParts parts(mesh);
+  std::vector<std::int32_t> numbers(mesh.cells.shapes.size(), 0);
+  for (const auto& [region, name] : regions) {
+    const EntitySet* const set = parts.set(name, Association::cells);
+    if (name == kAllElements) {
+      std::fill(numbers.begin(), numbers.end(), region);
+    } else if (set != nullptr) {
+      for (const Index member : set->members) numbers[member] = region;
     }
-    const EntitySet* const set = parts.set(section.region_set, Association::cells);
-    if (set == nullptr) continue;
-    for (const Index member : set->members) numbers[member] = number;
   }
   return numbers;
 }
