@@ -42,7 +42,7 @@ class InputFile {
   std::size_t read(std::span<char> into);
   /// Reads bytes at a place, which a pipe does not have. Returns their number, less than asked for at the end
   /// only.
-  std::size_t read_at(std::uint64_t at, std::span<char> into) const;
+  [[nodiscard]] std::size_t read_at(std::uint64_t at, std::span<char> into) const;
   /// Returns the rest of a file that is small. Throws InputError if it has more than `most` bytes.
   std::string text(std::size_t most);
 

@@ -144,7 +144,8 @@ TEST(VtkHdf, TellsWhatItHasNoPlaceFor) {
   mesh.data[1].component_names = {"x", "y"};
   mesh.data[2].values = std::vector<std::string>{"a", "b", "c"};
   auto metadata = std::make_shared<vtk::Metadata>();
-  metadata->facts = {{Association::vertices, "heat", {}, {}, "<InformationKey/>"}};
+  metadata->facts[{Association::vertices, "heat"}] = {
+      Association::vertices, "heat", {}, {}, "<InformationKey/>"};
   mesh.format_metadata = metadata;
   Notes notes;
   const Mesh read = through_vtkhdf(mesh, &notes);

@@ -52,7 +52,8 @@ class FilePath {
   /// A file in a store, which must outlive this object.
   FilePath(std::filesystem::path path, FileStore& store) : path_(std::move(path)), store_(&store) {}
   /// A file on disk that, if it is written, is put in place by the set, which must outlive this object.
-  FilePath(FilePath path, OutputSet& set) : FilePath(std::move(path)) { set_ = &set; }
+  FilePath(FilePath path, OutputSet& set)
+      : path_(std::move(path.path_)), folder_(std::move(path.folder_)), set_(&set) {}
 
   /// A file on disk below a folder that the user named; the rest of the path this program made, or a file.
   /// It is read only where it lies below the folder, links resolved (see `may_include`).
