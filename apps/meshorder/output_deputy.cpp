@@ -40,7 +40,7 @@ enum Kind : char {
 };
 
 void add(std::string& message, Kind kind, std::string_view text) {
-  message += kind;
+  message += static_cast<char>(kind);
   message += text;
   message += '\0';
 }

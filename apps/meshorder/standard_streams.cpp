@@ -59,6 +59,7 @@ void silence_libraries() noexcept {
 #endif
   constexpr int kBeyondThoseOfShells = 10;
   static const int copy = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, kBeyondThoseOfShells);
+  // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a stream is written to
   static std::FILE* const stream = copy < 0 ? nullptr : ::fdopen(copy, "w");
   if (stream == nullptr) return;
   (void)std::setvbuf(stream, nullptr, _IONBF, 0);
