@@ -156,7 +156,7 @@ std::string JsonValue::text() const {
 
 std::string JsonValue::name_in_files() const {
   std::string name = text();
-  if (name.find_first_of("/\\") != std::string::npos)
+  if (name.find('/') != std::string::npos)
     throw error("'" + name + "' contains a slash", "leave it out: the name becomes part of file names");
   if (name.size() > kLongestNameInFiles || visible(name) != name)
     throw error(fmt::format("'{}' cannot become part of file names", name.substr(0, kLongestNameInFiles)),

@@ -6,6 +6,7 @@
 #include "io/format_choice.hpp"
 #include "io/openfoam/cell_order.hpp"
 #include "io/other_formats.hpp"
+#include "io/stream/gzip.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/ucd/ucd.hpp"
 #include <meshorder/error.hpp>
@@ -253,8 +254,7 @@ const Format& format_of_file(const FilePath& path) {
   const Format& format = format_of(path.path());
   if (format.name != "Abaqus" || !path.is_file()) return format;
   constexpr std::size_t kFirst = 65536;
-  const bool is_compressed = without_gz(path.path()) != path.path();
-  const std::string bytes = is_compressed ? path.read() : path.read_first(kFirst);
+  const std::string bytes = uncompressed_start(path.read_first(kFirst), path.string());
   return ucd::begins_ucd(without_byte_order_mark(bytes)) ? format_named("UCD") : format;
 }
 

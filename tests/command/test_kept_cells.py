@@ -115,7 +115,7 @@ def test_lines_of_a_surface_are_left_out(command, tmp_path, extension):
 def test_tetrahedra_are_not_written_where_other_readers_do_not_find_them(command, tmp_path):
     cells_in_gmsh(tmp_path / "a.msh")
     assert command.fails("order", "a.msh", "-o", "b.ply").endswith(
-        "b.ply: PLY cannot hold a cell of type tetrahedron; write .msh, .vtu, .vtk, .vtkhdf, .exo, .xdmf, .cgns or .med")
+        "b.ply: PLY cannot hold a cell of type tetrahedron; write .msh, .vtu, .vtk, .avs, .vtkhdf, .exo, .xdmf, .cgns or .med")
     assert not (tmp_path / "b.ply").exists()
 
 
@@ -138,7 +138,7 @@ def test_only_keeps_the_cells_of_one_dimension(command, tmp_path):
 def test_strict_refuses_what_the_output_cannot_hold(command, tmp_path):
     cells_in_gmsh(tmp_path / "a.msh")
     refusal = command.fails("order", "a.msh", "-o", "b.veg", "--strict")
-    assert "Vega cannot hold a cell of type triangle; write .msh, .vtu, .vtk, .vtkhdf, .exo, .xdmf, .cgns or .med" in refusal
+    assert "Vega cannot hold a cell of type triangle; write .msh, .vtu, .vtk, .avs, .vtkhdf, .exo, .xdmf, .cgns or .med" in refusal
     assert "is not written" in command.fails("order", "a.msh", "-o", "b.mesh", "--strict", "--only", "volume")
     command.ok("order", "a.msh", "-o", "b.msh", "--strict", "--maps", "m")
     assert "Vega cannot hold" in command.fails("apply", "m", "a.msh", "-o", "b.veg", "--strict")

@@ -17,7 +17,7 @@ import conftest
 import meshes
 
 INTERPOSER = pathlib.Path(conftest.MESHORDER).resolve().parents[1] / "lib" / "libmeshorder_faults.so"
-SYSTEM = re.compile(r"/(proc|sys|usr/lib|usr/share|lib|lib64|etc/ld\.so)\b|/dev/(null|urandom)$")
+SYSTEM = re.compile(r"/(proc|sys|usr/lib|usr/share|lib|lib64|etc/ld\.so)\b|/dev/(null|urandom)$|/tmp/meshorder-figure-\w{6}\b")
 SETTINGS = (".ncrc", ".daprc", ".dodsrc", ".netrc", ".aws/config", ".aws/credentials", "mesh", "cgns.rc")
 SURFACE = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n"
 MATRIX = "%%MatrixMarket matrix coordinate real symmetric\n3 3 5\n1 1 1\n2 1 1\n2 2 1\n3 2 1\n3 3 1\n"
@@ -80,7 +80,7 @@ def write_sample(traced, extension):
     for source in sources:
         done = traced.run("order", source, "-o", path, "-q")
         if done.returncode == 0:
-            return path
+            return path if path.exists() else path.with_suffix(".node")  # a volume has no file of faces
         faults.append(done.stderr)
     raise AssertionError(faults)
 
@@ -104,7 +104,7 @@ def test_the_list_of_opened_files_has_those_that_are_opened(traced):
     """Without this, the test above could pass for a list that lacks what libraries open."""
     (traced.here / "a.off").write_text(SURFACE)
     (traced.meshes / "a.off").write_text(SURFACE)
-    assert traced.run("compare", "a.off", "-q").returncode == 0
+    assert traced.run("info", "a.off", "-q").returncode == 0
     traced.log.write_text(traced.log.read_text() + f"{traced.meshes}/a.off\n")
     assert traced.strangers() == {str(traced.here / "a.off")}
 
@@ -225,6 +225,7 @@ def test_companions_of_allowed_folders(command, tmp_path):
 def test_files_of_openfoam(command, tmp_path, plant):
     folder = tmp_path / "case" / "constant" / "polyMesh"
     folder.mkdir(parents=True)
+    (tmp_path / "case" / "system").mkdir()
     for name, numbers in {"owner": "7(0 0 0 1 1 0 1)", "neighbour": "1(1)"}.items():
         (folder / name).write_text("FoamFile { version 2.0; format ascii; class labelList; object x; }\n" + numbers + "\n")
     command.ok("openfoam", "case", "--cells", "fiedler")

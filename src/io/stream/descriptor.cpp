@@ -2,8 +2,10 @@
 #include "io/stream/descriptor.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 
 namespace meshorder {
@@ -36,6 +38,12 @@ int Descriptor::close() noexcept {
   const int descriptor = std::exchange(descriptor_, -1);
   // after EINTR the descriptor is closed all the same
   return descriptor < 0 || ::close(descriptor) == 0 || errno == EINTR ? 0 : errno;
+}
+
+std::size_t descriptors_for_locks() noexcept {
+  constexpr rlim_t kMost = 128;
+  struct rlimit files {};
+  return ::getrlimit(RLIMIT_NOFILE, &files) == 0 ? std::min(files.rlim_cur / 4, kMost) : kMost;
 }
 
 int sync_folder(const std::filesystem::path& folder) noexcept {

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -35,6 +36,10 @@ class Descriptor {
  private:
   int descriptor_ = -1;
 };
+
+/// Returns how many descriptors may be held for locks: a quarter of those that the process may have, at most
+/// 128.
+[[nodiscard]] std::size_t descriptors_for_locks() noexcept;
 
 /// Waits until the names in a folder are on the disk.
 [[nodiscard]] int sync_folder(const std::filesystem::path& folder) noexcept;

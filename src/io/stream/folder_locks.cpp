@@ -18,7 +18,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kLongestWait{10};
 constexpr std::chrono::milliseconds kPause{2};
-constexpr std::size_t kMost = 64;  // each takes a descriptor
 
 void lock(const Descriptor& folder, Clock::time_point last) {
   while (::flock(folder.get(), LOCK_EX | LOCK_NB) != 0) {
@@ -37,8 +36,9 @@ FolderLocks::FolderLocks(const std::set<std::filesystem::path>& folders) {
     if (::stat(folder.c_str(), &status) == 0) by_identity.try_emplace({status.st_dev, status.st_ino}, folder);
   }
   const Clock::time_point last = Clock::now() + kLongestWait;
+  const std::size_t most = descriptors_for_locks() / 2;  // scratch folders take the others
   for (const auto& [identity, folder] : by_identity) {
-    if (locked_.size() == kMost) return;
+    if (locked_.size() >= most) return;
     Descriptor opened(folder, O_RDONLY | O_DIRECTORY);
     if (!opened.is_open()) continue;
     lock(opened, last);

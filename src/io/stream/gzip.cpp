@@ -70,6 +70,17 @@ class Inflation {
   Inflation& operator=(const Inflation&) = delete;
   Inflation& operator=(Inflation&&) = delete;
 
+  /// Returns what the first bytes hold, up to a fault or the size of a step.
+  std::string start() {
+    feed();
+    std::string result(kInflateStep, '\0');
+    stream_.next_out = reinterpret_cast<Bytef*>(result.data());
+    stream_.avail_out = static_cast<uInt>(result.size());
+    (void)inflate(&stream_, Z_SYNC_FLUSH);
+    result.resize(result.size() - stream_.avail_out);
+    return result;
+  }
+
   std::string run() {
     InflatedBlocks blocks;
     for (;;) {
@@ -119,6 +130,12 @@ class Inflation {
 
 #endif
 
+#ifndef MESHORDER_HAS_ZLIB
+[[noreturn]] void throw_without_zlib(const std::string& file) {
+  throw Unavailable(file + ": is compressed, which needs a build with zlib (MESHORDER_ZLIB=ON); run gunzip");
+}
+#endif
+
 }  // namespace
 
 std::string uncompressed(std::string bytes, const std::string& file) {
@@ -126,7 +143,16 @@ std::string uncompressed(std::string bytes, const std::string& file) {
 #ifdef MESHORDER_HAS_ZLIB
   return Inflation(bytes, file).run();
 #else
-  throw Unavailable(file + ": is compressed, which needs a build with zlib (MESHORDER_ZLIB=ON); run gunzip");
+  throw_without_zlib(file);
+#endif
+}
+
+std::string uncompressed_start(std::string bytes, const std::string& file) {
+  if (!is_gzip(bytes)) return bytes;
+#ifdef MESHORDER_HAS_ZLIB
+  return Inflation(bytes, file).start();
+#else
+  throw_without_zlib(file);
 #endif
 }
 

@@ -8,7 +8,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -36,17 +35,9 @@ namespace {
 constexpr const char* kLock = "lock";
 constexpr std::size_t kDigits = 16;
 
-/// Returns how many folders are locked at a time, each of which takes a descriptor. Further ones are not
-/// locked, and no other process cleans these up.
-int most_locks() {
-  constexpr rlim_t kMost = 128;
-  struct rlimit files {};
-  return static_cast<int>(::getrlimit(RLIMIT_NOFILE, &files) == 0 ? std::min(files.rlim_cur / 4, kMost)
-                                                                  : kMost);
-}
-
+/// Folders beyond `descriptors_for_locks` are not locked, and no other process cleans these up.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): descriptors are the process's
-std::atomic<int> locks_held = 0;
+std::atomic<std::size_t> locks_held = 0;
 
 // ---- what a signal handler removes
 
@@ -180,7 +171,7 @@ Scratch::Scratch(const fs::path& target) {
       throw_system_fault(target.string(), "cannot be written", errno);
     }
     slot_ = remember(path_.string());
-    if (locks_held >= most_locks()) return;
+    if (locks_held >= descriptors_for_locks()) return;
     if (lock_new(path_, lock_)) {
       if (lock_.is_open()) ++locks_held;
       return;
