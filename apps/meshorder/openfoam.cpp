@@ -6,6 +6,7 @@
 #include "io/openfoam/cell_order.hpp"
 #include "io/openfoam/poly_mesh.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/scratch.hpp"
 #include "metrics/edge_span.hpp"
 #include "ordering/judgement.hpp"
 #include "progress.hpp"
@@ -265,7 +266,11 @@ class Outputs {
     if (!is_there) dictionary_ = meshes.output(dictionary);
     keeps_other_ = is_there && !openfoam::takes_cell_order(meshes.output(dictionary));
     for (const FilePath& map : maps_) (void)OutputFile(map);
-    if (dictionary_) (void)OutputFile(*dictionary_);
+    if (dictionary_) {
+      (void)OutputFile(*dictionary_);
+    } else if (!fs::is_symlink(dictionary.parent_path())) {
+      remove_dead_scratches(dictionary.parent_path());  // of a run that put the dictionary in place
+    }
   }
 
   /// Returns whether a dictionary that asks for something else stays.

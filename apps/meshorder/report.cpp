@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "command.hpp"
-#include "confinement.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
 #include "io/stream/output_file.hpp"
@@ -155,7 +154,6 @@ void report_on_meshes(Console& console, const ReportArguments& arguments) {
   const std::string output = file.string();
   check_name_of_page(output);
   (void)OutputFile(file);  // fail before the work if it cannot be written
-  confine({.meshes = arguments.inputs, .outputs = {file}});
   Progress progress(!console.quiet());
   Page page;
   page.results.began = timestamp_now();

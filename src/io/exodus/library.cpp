@@ -30,6 +30,7 @@ void start_library() {
                              std::string("HOME=/dev/null"), std::string("AWS_CONFIG_FILE=/dev/null"),
                              std::string("AWS_SHARED_CREDENTIALS_FILE=/dev/null")};
   static std::vector<char*> variables;
+  variables.reserve(settings.size());
   for (std::string& setting : settings) variables.push_back(setting.data());
   for (char** variable = ::environ; variable != nullptr && *variable != nullptr; ++variable) {
     const std::string_view text(*variable);

@@ -209,9 +209,9 @@ void NcInput::check_chunks(const Variable& variable) const {
   if (nc_inq_var_chunking(id_, variable.id, &storage, lengths.data()) != NC_NOERR || storage != NC_CHUNKED)
     return;
   // as it is stored, and as it is read
-  std::uint64_t bytes = 2 * std::max<std::size_t>(1, size_of(variable.type));
-  for (const std::size_t length : lengths) bytes = bytes_for(bytes, length);
-  const std::string fault = refused_for_a_while(bytes, "a chunk of " + variable.name);
+  std::uint64_t size = 2 * std::max<std::size_t>(1, size_of(variable.type));
+  for (const std::size_t length : lengths) size = bytes_for(size, length);
+  const std::string fault = refused_for_a_while(size, "a chunk of " + variable.name);
   if (!fault.empty()) fail(fault, kClaimRemedy);
 }
 

@@ -289,7 +289,7 @@ class FieldWriter {
       const std::string number = fmt::format("_{}", k);
       return clean.substr(0, kLongestName - number.size()) + number;
     };
-    const std::string name = numbers_.free_name(
+    std::string name = numbers_.free_name(
         clean, numbered, [&](const std::string& free) { return names_.insert(free).second; });
     if (name != wanted) {
       writing_.notes.push_back(fmt::format("the array '{}' on {} is written as the field '{}'", array.name,

@@ -72,9 +72,9 @@ void count_file(const FilePath& file, std::uint64_t bytes) {
 }
 
 std::string refused_claim(std::uint64_t bytes, std::string_view what) {
-  bytes = bytes_for(bytes, kCopiesOfClaim);
-  std::string fault = refused_for_a_while(bytes, what);
-  if (fault.empty() && current_reading != nullptr) current_reading->claimed_ += bytes;
+  const std::uint64_t claim = bytes_for(kCopiesOfClaim, bytes);
+  std::string fault = refused_for_a_while(claim, what);
+  if (fault.empty() && current_reading != nullptr) current_reading->claimed_ += claim;
   return fault;
 }
 

@@ -148,6 +148,7 @@ void remove_inner(const fs::path& path) noexcept {
   try {
     const Descriptor folder(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW);
     for (const std::string& inner : scratches_in(folder)) remove_if_dead(folder, inner, true);
+    remove_files_of(folder);
     ::rmdir(path.c_str());
   } catch (const std::bad_alloc&) {
     return;

@@ -66,7 +66,7 @@ class Names {
 
   std::string unused(const std::string& wanted, Association association, Notes& notes) {
     const std::string held = wanted.empty() ? "array" : held_there(wanted);
-    const std::string name = numbers_[association].free_name(
+    std::string name = numbers_[association].free_name(
         held, [&](int k) { return held + "_" + std::to_string(k); },
         [&](const std::string& free) { return taken_.emplace(association, free).second; });
     if (name != wanted)

@@ -90,7 +90,7 @@ void Writer::add_ids(const std::vector<std::int64_t>& ids, const char* name, Ass
 std::string Writer::unused_name(const DataArray& array) {
   const std::string wanted = array.name.empty() ? "array" : array.name;
   const std::string clean = meshorder::xml_text(wanted);
-  const std::string name = numbers_[array.association].free_name(
+  std::string name = numbers_[array.association].free_name(
       clean, [&](int k) { return fmt::format("{}_{}", clean, k); },
       [&](const std::string& free) { return names_.emplace(array.association, free).second; });
   if (name != array.name) {
