@@ -37,8 +37,10 @@ def by_vtk(path):
     reader.SetFileName(str(path))
     reader.Update()
     grid = reader.GetOutput()
-    ids = [grid.GetCell(c).GetPointIds() for c in range(grid.GetNumberOfCells())]
-    cells = [[of_cell.GetId(k) for k in range(of_cell.GetNumberOfIds())] for of_cell in ids]
+    cells = []
+    for c in range(grid.GetNumberOfCells()):  # the next call changes what GetCell returned
+        ids = grid.GetCell(c).GetPointIds()
+        cells.append([ids.GetId(k) for k in range(ids.GetNumberOfIds())])
     values = [to_numpy(grid.GetPointData().GetArray(name)) for name in ("temperature", "flow")]
     return by_points(to_numpy(grid.GetPoints().GetData()), cells,
                      to_numpy(grid.GetCellData().GetArray("Material Id")), numpy.column_stack(values))

@@ -130,7 +130,7 @@ def test_plain_binary_files_of_two_runs_are_refused(command, tmp_path):
     points.astype("<f8").tofile(tmp_path / "points.bin")
     text = "\n".join(" ".join(map(str, cell)) for cell in cells)
     (tmp_path / "a.xdmf").write_text(f"""<Xdmf Version="3.0"><Domain><Grid>
-<Topology TopologyType="Tetrahedron" NumberOfElements="{len(cells)}"><DataItem Dimensions="{len(cells)} 4">{text}</DataItem>
+<Topology TopologyType="Tetrahedron" NumberOfElements="{len(cells)}"><DataItem Dimensions="{len(cells)} 4" NumberType="Int">{text}</DataItem>
 </Topology><Geometry><DataItem Format="Binary" Endian="Little" Precision="8" Dimensions="{len(points)} 3">points.bin</DataItem>
 </Geometry></Grid></Domain></Xdmf>""")
     for method in ("rcm", "hilbert"):
