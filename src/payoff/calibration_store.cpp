@@ -198,6 +198,7 @@ StoredCalibration load_calibration(const CalibrationKey& key) {
   constexpr std::size_t kMost = 1 << 20;
   try {
     const std::string text = InputFile(file, std::array{user_cache_folder()}).text(kMost);
+    if (text.empty()) return refused("is empty");
     Calibration calibration = parse_calibration(text);
     if (key_of(calibration) != key) return refused("is of another machine or build");
     return {std::move(calibration), {}};

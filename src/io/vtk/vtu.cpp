@@ -232,11 +232,13 @@ class VtuWriter {
   void add_polyhedra_by_face(std::vector<Array>& cells) {
     auto& [corners, corner_ends, faces, face_ends] = face_numbers_;
     for (Index c = 0; c < from_.mesh.cell_count(); ++c) {
-      for_faces(from_.metadata.polyhedra[c], [&](std::span<const Index> face) {
+      const auto add = [&corners = corners, &corner_ends = corner_ends,
+                        &faces = faces](std::span<const Index> face) {
         corners.insert(corners.end(), face.begin(), face.end());
         corner_ends.push_back(std::ssize(corners));
         faces.push_back(std::ssize(faces));
-      });
+      };
+      for_faces(from_.metadata.polyhedra[c], add);
       face_ends.push_back(std::ssize(faces));
     }
     cells.push_back(integers("face_connectivity", corners));

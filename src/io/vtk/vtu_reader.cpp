@@ -365,7 +365,7 @@ class VtuReader {
         append_ends(cell_array(cells, "polyhedron_offsets", kNeeded), count, "cell", face_starts);
     const VtuElement& faces_of_cells = cell_array(cells, "polyhedron_to_faces", kNeeded);
     std::vector<Index> faces;
-    std::uint64_t size = static_cast<std::uint64_t>(count);  // of all numbers of polyhedra
+    auto size = static_cast<std::uint64_t>(count);  // of all numbers of polyhedra
     append_integers(faces_of_cells, face_count, faces, [&](std::int64_t, auto face) {
       if (std::cmp_less(face, 0) || std::cmp_greater_equal(face, corner_starts.size() - 1)) {
         throw file_->error(faces_of_cells, fmt::format("a polyhedron names the face {}", face),
