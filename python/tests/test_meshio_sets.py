@@ -73,9 +73,8 @@ def box(folder):
         gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
         gmsh.model.occ.synchronize()
         gmsh.model.addPhysicalGroup(3, [1], name="body")
-        gmsh.model.addPhysicalGroup(2, [1, 4], name="skin")
+        gmsh.model.addPhysicalGroup(2, [1, 2, 3, 4, 5, 6], name="skin")
         gmsh.option.setNumber("Mesh.MeshSizeMax", 0.5)
-        gmsh.option.setNumber("Mesh.SaveAll", 1)
         gmsh.model.mesh.generate(3)
         gmsh.write(str(folder / "box.msh"))
     finally:
@@ -90,15 +89,8 @@ def nastran(folder):
     return read(folder / "b.bdf", text.replace("GRID,5,", "GRID,50,"), "nastran")
 
 
-def exodus(folder):
-    given = meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])], point_sets={"ends": np.array([0, 3])})
-    given.write(folder / "a.e")
-    return meshio.read(folder / "a.e")
-
-
 MESHES = {
     "abaqus": lambda folder: read(folder / "a.inp", ABAQUS, "abaqus"),
-    "exodus": exodus,
     "flac3d": lambda folder: read(folder / "a.f3grid", FLAC3D, "flac3d"),
     "gmsh": box,
     "nastran": nastran,
@@ -110,7 +102,7 @@ def places(mesh, name, blocks, starts):
     if any(isinstance(part, list) for part in blocks):
         return [places(mesh, name, part, starts) for part in blocks]
     found = [
-        mesh.points[block.data[np.asarray(members, dtype=int) - start]].reshape(len(members), -1)
+        mesh.points[block.data[np.asarray(members, dtype=int) - start]].reshape(len(members), block.data.shape[1] * mesh.points.shape[1])
         for block, members, start in zip(mesh.cells, blocks, starts)
         if members is not None
     ]
