@@ -37,8 +37,8 @@ struct Format {
   /// the numbers of vertices: an entry below the diagonal, the edges of a graph by their vertices. Returns
   /// the applied permutation of cells. Null: files keep the cells as they are.
   Permutation (*settle_cells)(Mesh&) = nullptr;
-  bool single_file = true;  ///< whether a mesh is one file; others do not fit one stream
-  int first_number = 0;     ///< that vertices and cells have by their places where the mesh has no ids
+  bool single_file = true;        ///< whether a mesh is one file; others do not fit one stream
+  int first_number = 0;           ///< that vertices and cells have by their places where the mesh has no ids
   std::string_view library = {};  ///< that parses the files; empty: meshorder does
 
   /// Returns the name in lower case, as the public functions take it.
