@@ -398,7 +398,8 @@ void note_sets(const Mesh& mesh, const Metadata& layout, Notes& notes) {
     std::vector<Index> members = set.members;
     std::sort(members.begin(), members.end());
     const auto [first, last] = physical.equal_range({set.association, set.name});
-    const bool held = std::any_of(first, last, [&](const auto& other) { return members == other.second->members; });
+    const bool held =
+        std::any_of(first, last, [&](const auto& other) { return members == other.second->members; });
     if (!held) note_set_unsupported(set, "Gmsh", notes);
   }
 }
