@@ -184,4 +184,4 @@ def test_time_grows_with_the_number(command, tmp_path, what):
             min(seconds(command, arguments[0], f"{name}.{kind}", *arguments[1:]) for _ in range(2))
             for name in ("few", "some", "many")
         )
-        assert many - least <= 9 * max(some - least, 0.03), (arguments[0], least, some, many)
+        assert many - least <= 9 * max(some - least, 0.04), (arguments[0], least, some, many)

@@ -389,8 +389,9 @@ void take_layout(const Metadata& layout, WriteContext& output) {
 /// Notes the sets that differ from the physical groups and periodic nodes of the layout.
 void note_sets(const Mesh& mesh, const Metadata& layout, Notes& notes) {
   const std::vector<EntitySet> of_layout = physical_sets(mesh, layout);
-  std::multimap<std::pair<Association, std::string_view>, const EntitySet*> physical;
-  for (const EntitySet& set : of_layout) physical.emplace(std::pair{set.association, set.name}, &set);
+  using Name = std::pair<Association, std::string_view>;
+  std::multimap<Name, const EntitySet*> physical;
+  for (const EntitySet& set : of_layout) physical.emplace(Name(set.association, set.name), &set);
   std::set<std::string> periodic;
   for (const PeriodicLink& link : layout.periodic) periodic.insert({link.nodes, link.master_nodes});
   for (const EntitySet& set : mesh.sets) {
