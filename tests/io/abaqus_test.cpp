@@ -28,6 +28,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using testing::UnorderedElementsAre;
 
 // two hexahedra with a wedge on them and shells, with all kinds of references
 constexpr std::string_view kDeck =
@@ -259,7 +260,8 @@ TEST(Abaqus, ContinuesKeywordLinesWithParameters) {
   EXPECT_THAT(members("*NSET,\r\nNSET=s,\r\n unsorted\r\n7, 1\r\n"), ElementsAre(6, 0));
   EXPECT_THAT(members("*NSET, NSET=s, INTERNAL,\n7, 1\n"), ElementsAre(6, 0));
   EXPECT_THAT(members("*NSET, NSET=a\n4\n*NSET, NSET=s,\na\n"), ElementsAre(3)) << "the name of a set";
-  EXPECT_THAT(members("*NSET, NSET=generated\n4\n*NSET, NSET=s,\ngenerated, 1\n"), ElementsAre(3, 0));
+  EXPECT_THAT(members("*NSET, NSET=generated\n4\n*NSET, NSET=s,\ngenerated, 1\n"),
+              UnorderedElementsAre(3, 0));
 
   Mesh moved = read_deck(mesh + "*NSET, NSET=s,\n** kept\nGENERATE\n1, 7, 3\n");
   turn_round(moved, Ids::renumber);

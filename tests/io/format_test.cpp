@@ -51,7 +51,7 @@ TEST(Format, PassesOverAByteOrderMark) {
   const TemporaryFolder folder;
   const Mesh mesh = test::cells_of_type(Shape::triangle, 3, 2);
   constexpr std::array<std::string_view, 12> kTexts{".msh", ".mesh", ".vtk", ".vtu", ".off", ".obj",
-                                                    ".ply", ".stl",  ".su2", ".inp", ".bdf", ".avs"};
+                                                    ".ply", ".stl",  ".unv", ".inp", ".bdf", ".avs"};
   for (const std::string_view extension : kTexts) {
     const std::filesystem::path plain = folder.path() / ("plain" + std::string(extension));
     write_mesh(mesh, plain);

@@ -137,14 +137,17 @@ struct Column {
   std::vector<Index> row_of;  // empty: row i belongs to vertex or cell i
 };
 
-void print_value(OutputFile& out, const Column& column, Index item) {
+/// Returns a value as it is written.
+std::string text_of(const Column& column, Index item) {
   const Offset row = column.row_of.empty() ? item : column.row_of[item];
-  if (row < 0) return out.write("  0");  // a cell without a label
-  std::visit(
+  if (row < 0) return "0";  // a cell without a label
+  return std::visit(
       [&](const auto& values) {
         using Value = typename std::decay_t<decltype(values)>::value_type;
         if constexpr (std::is_arithmetic_v<Value>) {
-          out.print("  {}", values[row * column.array->components + column.component]);
+          return fmt::format("{}", values[row * column.array->components + column.component]);
+        } else {
+          return std::string();
         }
       },
       column.array->values);
@@ -253,7 +256,7 @@ void write_points(OutputFile& out, const WriteContext& from, Notes& notes) {
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     out.integer("", from.vertex_number(v));
     for (int k = 0; k < from.layout.dimension; ++k) out.print("  {}", mesh.points[v][k]);
-    for (const Column& column : columns) print_value(out, column, v);
+    for (const Column& column : columns) out.print("  {}", text_of(column, v));
     if (marked) out.print("  {}", from.vertex_labels.values[v]);
     out.write("\n");
   }
@@ -270,7 +273,7 @@ void write_cells(OutputFile& out, File file, const WriteContext& from, const std
     out.integer("", from.cell_number(c, i));
     for (std::size_t k = 0; k < order.size(); ++k) as_given[order[k]] = mesh.cells[c][k];
     for (std::size_t k = 0; k < order.size(); ++k) out.integer(" ", from.vertex_number(as_given[k]));
-    for (const Column& column : columns) print_value(out, column, c);
+    for (const Column& column : columns) out.print("  {}", text_of(column, c));
     if (marked) out.print("  {}", from.cell_labels.values[c]);
     out.write("\n");
   }
@@ -294,6 +297,21 @@ void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes&
 /// Returns a line that two meshes, or one in two orders or with other data, hardly share.
 std::string mark_of(const WriteContext& from) {
   Checksum sum;
+  Notes ignored;  // the files that are written give them
+  const auto add_columns = [&](Association association, const std::vector<Index>& items) {
+    for (const Column& column : attribute_columns(from.mesh, association, items, ignored)) {
+      for (const Index item : items) sum.add_all(text_of(column, item));
+    }
+  };
+  const auto add_markers = [&](const Labels& labels, const std::vector<Index>& items) {
+    if (!has_markers(labels, items, "", ignored)) return;
+    for (const Index item : items) sum.add(labels.values[item]);
+  };
+  const std::vector<Index> vertices = index_range(0, from.mesh.vertex_count());
+  add_columns(Association::vertices, vertices);
+  add_markers(from.vertex_labels, vertices);
+  add_columns(Association::cells, from.layout.cells[kEle]);
+  for (const File file : {kFace, kEdge}) add_markers(from.cell_labels, from.layout.cells[file]);
   sum.add_all(from.mesh.points);
   for (Index v = 0; v < from.mesh.vertex_count(); ++v) sum.add(from.vertex_number(v));
   for (const std::vector<Index>& cells : from.layout.cells) {
@@ -301,14 +319,6 @@ std::string mark_of(const WriteContext& from) {
       sum.add(from.cell_number(cells[k], static_cast<Index>(k)));
       for (const Index v : from.mesh.cells[cells[k]]) sum.add(v);
     }
-  }
-  for (const DataArray& array : from.mesh.data) {
-    std::visit(
-        [&](const auto& numbers) {
-          using Number = typename std::decay_t<decltype(numbers)>::value_type;
-          if constexpr (std::is_arithmetic_v<Number>) sum.add_all(numbers);
-        },
-        array.values);
   }
   return fmt::format("{}{:0{}x}\n", kMarkBefore, sum.value(), kMarkDigits);
 }
