@@ -15,6 +15,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
@@ -376,6 +377,18 @@ TEST(CalibrationStore, AnotherMachinesFileIsNotTaken) {
   const StoredCalibration stored = load_calibration(key_of_this_machine());
   EXPECT_FALSE(stored.calibration);
   EXPECT_THAT(stored.fault, HasSubstr("is of another machine or build"));
+}
+
+TEST(CalibrationStore, WhatIsNoFileIsNotWaitedFor) {
+  const test::TemporaryFolder folder;
+  const Variable variable("MESHORDER_CACHE", folder.path().string());
+  const std::filesystem::path file = save_calibration(made_up());
+  std::filesystem::remove(file);
+  ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+  EXPECT_THAT(load_calibration(key_of_this_machine()).fault, HasSubstr("is not used: "));
+  std::filesystem::remove(file);
+  std::filesystem::create_symlink("/dev/zero", file);
+  EXPECT_THAT(load_calibration(key_of_this_machine()).fault, HasSubstr("lies outside of the folder"));
 }
 
 TEST(CalibrationStore, NoDamagedFileIsTaken) {
