@@ -215,10 +215,10 @@ def test_what_fields_claim_is_limited(tmp_path):
     made = grid()
     made.GetFieldData().AddArray(array("zeros", numpy.zeros(1_000_000)))
     write(tmp_path / "a.vtu", made, compressor=vtkZLibDataCompressor)
-    done = launch(2, "order", tmp_path / "a.vtu", "--pieces", tmp_path / "out", "--limit-memory", "7M")
+    done = launch(2, "order", tmp_path / "a.vtu", "--pieces", tmp_path / "out", "--limit-memory", "28M")
     assert done.returncode == 2 and len(own_lines(done)) == 1 and "zeros" in done.stderr, done.stderr
     assert os.listdir(tmp_path) == ["a.vtu"]
-    order(2, tmp_path / "a.vtu", "--pieces", tmp_path / "out", "--limit-memory", "9M")
+    order(2, tmp_path / "a.vtu", "--pieces", tmp_path / "out", "--limit-memory", "36M")
 
 
 @pytest.mark.parametrize("offset", [10**6, 2**63 - 1])

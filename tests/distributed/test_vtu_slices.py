@@ -356,9 +356,9 @@ def test_what_blocks_claim_is_limited(tmp_path):
     made = grid()
     made.GetCellData().AddArray(array("nothing", numpy.zeros((900, 2000))))
     write(tmp_path / "a.vtu", made, True, vtkZLibDataCompressor)
-    done = launch(2, "order", tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--limit-memory", "4M")
+    done = launch(2, "order", tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--limit-memory", "16M")
     assert done.returncode == 2 and len(own_lines(done)) == 1 and "the array 'nothing' would take" in own_lines(done)[0]
-    order(4, tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--limit-memory", "5M")
+    order(4, tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--limit-memory", "20M")
 
 
 def test_a_full_disk_ends_all_ranks(tmp_path):
