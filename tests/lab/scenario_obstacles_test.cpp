@@ -69,6 +69,7 @@ TEST(Obstacles, AreReadFromClosedSurfacesAlone) {
   ScenarioObstacle obstacle;
   obstacle.kind = Kind::surface;
   const auto write = [&](const std::string& faces) {
+    obstacle.folder = folder.path();
     obstacle.file = folder.file("tetrahedron.off", "OFF\n4 " + std::to_string(faces.size() / 8) +
                                                        " 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n" + faces);
   };
