@@ -20,11 +20,11 @@ struct Files {
   std::vector<std::string> folders{};  ///< below which it writes
 };
 
-/// Where a library, not meshorder, parses one of the meshes, goes on in a child
-/// process that reaches nothing but these files and what calibrations are kept in (see `give_up_rights`), so
-/// that a damaged file, or one made to do harm, can harm nothing else. Returns in the child only. This
-/// process waits, passes signals on, and ends as the child does; where a library crashed or did not end, it
-/// removes unfinished outputs and ends with one line of error and status 2.
+/// Goes on in a child process if a library, not meshorder, parses one of the meshes. The child reaches these
+/// files, the kept calibrations and nothing else (see `give_up_rights`): a damaged file, or one made to do
+/// harm, can harm nothing else. Returns in the child only. This process waits, passes signals on, and ends as
+/// the child does. If a library crashes or does not end, it removes unfinished outputs, prints one line of
+/// error and ends with status 2.
 ///
 /// Does nothing for files that are trusted (`--trust`), and where the system makes no child. To be called
 /// while there is one thread. Throws InputError for an output that cannot be written.
