@@ -58,14 +58,15 @@ class Browser:
 
     def wait(self, condition, *arguments, seconds=60):
         """Waits until a JavaScript expression is true, and returns it."""
-        done = self.driver.execute_async_script("""
-            const done = arguments[arguments.length - 1];
-            const until = performance.now() + arguments[1] * 1000;
-            const look = () => {
-              const found = Function("parameters", `return ${arguments[0]}`)(arguments[2]);
+        # the expression is a part of the script: pages do not allow strings to be evaluated
+        done = self.driver.execute_async_script(f"""
+            const [seconds, parameters, done] = arguments;
+            const until = performance.now() + seconds * 1000;
+            const look = () => {{
+              const found = {condition};
               if (found || performance.now() > until) done(found); else setTimeout(look, 40);
-            };
-            look();""", condition, seconds, arguments)
+            }};
+            look();""", seconds, arguments)
         assert done, f"never came true: {condition}"
         return done
 
