@@ -22,7 +22,7 @@ std::vector<int> pieces(Shape shape, int vertices) {
     case Shape::pyramid:
       return {0, 1, 2, 4, 0, 2, 3, 4};
     case Shape::wedge:
-      return {0, 2, 1, 3, 1, 2, 4, 3, 2, 5, 4, 3};
+      return {0, 1, 2, 3, 1, 4, 2, 3, 2, 4, 5, 3};
     case Shape::hexahedron:  // around the diagonal from 0 to 6
       return {0, 1, 2, 6, 0, 2, 3, 6, 0, 3, 7, 6, 0, 7, 4, 6, 0, 4, 5, 6, 0, 5, 1, 6};
     case Shape::polyline: {

@@ -329,6 +329,25 @@ TEST(Facets, BoundEveryVolumeOnceOnEachSide) {
   }
 }
 
+TEST(Facets, OfVolumesFaceOutward) {
+  // the volumes between the origin and the facets add up to the cell's, positive when these face outward
+  const std::vector<std::pair<Shape, std::vector<Point>>> cells{
+      {Shape::tetrahedron, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+      {Shape::pyramid, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}}},
+      {Shape::wedge, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}},
+      {Shape::hexahedron,
+       {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}}};
+  for (const auto& [shape, points] : cells) {
+    double volume = 0;
+    for (const auto& facet : facets(shape, static_cast<int>(points.size()))) {
+      for (std::size_t k = 2; k < facet.size(); ++k) {
+        volume += dot(points[facet[0]], cross(points[facet[k - 1]], points[facet[k]])) / 6;
+      }
+    }
+    EXPECT_GT(volume, 0.1) << to_string(shape);
+  }
+}
+
 TEST(Facets, OfATriangleStripAreItsOutline) {
   for (int n = 3; n <= 8; ++n) {
     // edges that only one of the strip's triangles has

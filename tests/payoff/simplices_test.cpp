@@ -47,7 +47,7 @@ TEST(CutIntoSimplices, FillsEveryCell) {
       {Shape::triangle_strip, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 0}}, 3, 1.5},
       {Shape::tetrahedron, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1, 1.0 / 6},
       {Shape::pyramid, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 3}}, 2, 1.0},
-      {Shape::wedge, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 2}, {0, 1, 2}, {1, 0, 2}}, 3, 1.0},
+      {Shape::wedge, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 2}, {1, 0, 2}, {0, 1, 2}}, 3, 1.0},
       {Shape::hexahedron,
        {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
        6,
@@ -64,7 +64,7 @@ TEST(CutIntoSimplices, FillsEveryCell) {
 
 TEST(CutIntoSimplices, PiecesOfASolidDoNotOverlap) {
   // volumes with their signs add up to the volume only when no piece is turned inside out
-  Mesh mesh = single_cell(Shape::wedge, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 2}, {0, 1, 2}, {1, 0, 2}});
+  Mesh mesh = single_cell(Shape::wedge, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 2}, {1, 0, 2}, {0, 1, 2}});
   std::vector<Index> hexahedron{6, 7, 8, 9, 10, 11, 12, 13};
   for (const Point& p : std::vector<Point>{
            {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}) {
