@@ -4,8 +4,8 @@
 #include "command.hpp"
 #include "io/format.hpp"
 #include "io/stream/output_place.hpp"
+#include "io/stream/private_folder.hpp"
 #include "io/stream/read_limits.hpp"
-#include "io/stream/system_fault.hpp"
 #include "output_deputy.hpp"
 #include "payoff/calibration_store.hpp"
 #include "restrictions.hpp"
@@ -27,7 +27,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
-#include <cstdlib>  // mkdtemp
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <new>
@@ -222,26 +222,16 @@ int report_ending(const Work& of_child, int signal) {
   return report_failure(error.what(), kStatusOfBadInput);
 }
 
-/// Makes a folder for what is unpacked for a library, where temporary files are. Throws InputError if it
-/// cannot.
-fs::path make_unpacking_folder() {
-  std::string name = (fs::temp_directory_path() / "meshorder-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw_system_fault(name, "the folder for a temporary file cannot be made", errno);
-  return name;
-}
-
 /// Serves the child, waits for it, removes what it unpacked, and ends as it does.
 [[noreturn]] void supervise(const Work& of_child, std::unique_ptr<OutputDeputy> deputy,
-                            const fs::path& unpacked) {
+                            std::unique_ptr<PrivateFolder> unpacked) {
   deputy->serve_child();
   int status = 0;
   while (::waitpid(static_cast<pid_t>(child), &status, 0) < 0) {
     if (errno != EINTR) break;
   }
   deputy.reset();  // which removes unfinished outputs
-  std::error_code ignored;
-  if (!unpacked.empty()) fs::remove_all(unpacked, ignored);
+  unpacked.reset();
   if (!WIFSIGNALED(status)) std::_Exit(WEXITSTATUS(status));
   const int signal = WTERMSIG(status);
   const bool has_crashed = std::find(kCrashes.begin(), kCrashes.end(), signal) != kCrashes.end();
@@ -267,11 +257,11 @@ void confine(const Files& files) {
   auto deputy = std::make_unique<OutputDeputy>(files.outputs, files.maps_written);
   for (fs::path& folder : deputy->folders()) reach.write.push_back(std::move(folder));
   reach.through = deputy->through();
-  fs::path unpacked;
+  std::unique_ptr<PrivateFolder> unpacked;
   const auto is_compressed = [](const fs::path& mesh) { return without_gz(mesh) != mesh; };
   if (std::any_of(files.meshes.begin(), files.meshes.end(), is_compressed)) {
-    unpacked = make_unpacking_folder();
-    reach.write.push_back(unpacked);
+    unpacked = std::make_unique<PrivateFolder>();
+    reach.write.push_back(unpacked->path());
   }
   (void)std::signal(SIGCHLD, SIG_DFL);
   sigset_t passed_on;
@@ -284,7 +274,7 @@ void confine(const Files& files) {
   if (child > 0) {
     pass_signals_on();
     ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    supervise(*of_child, std::move(deputy), unpacked);
+    supervise(*of_child, std::move(deputy), std::move(unpacked));
   }
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (child < 0) return;
@@ -292,9 +282,10 @@ void confine(const Files& files) {
   (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) std::_Exit(1);
 #endif
-  // never destroyed here: what it holds is the other process's to remove
+  // never destroyed here: what they hold is the other process's to remove
   deputy.release()->serve_this_process();
-  if (!unpacked.empty()) (void)::setenv("TMPDIR", unpacked.c_str(), 1);
+  if (const PrivateFolder* const folder = unpacked.release())
+    (void)::setenv("TMPDIR", folder->path().c_str(), 1);
   give_up_rights(reach);
   work = of_child;
 }

@@ -27,6 +27,7 @@ Format su2_format();            ///< .su2
 Format xdmf_format();           ///< .xdmf with .h5 beside it; only where HDF5 is built in
 Format med_format();            ///< .med of Salome and Code_Aster; only where HDF5 is built in
 Format abaqus_format();         ///< .inp of Abaqus and CalculiX
+Format ucd_format();            ///< .avs and .ucd, and .inp where it is no deck
 Format nastran_format();        ///< bulk data of Nastran
 Format matrix_market_format();  ///< .mtx
 Format metis_graph_format();    ///< .graph

@@ -5,6 +5,7 @@
 #include "io/hdf5/session.hpp"
 #include "io/stream/descriptor.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/private_folder.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/stream/system_fault.hpp"
 #include <meshorder/error.hpp>
@@ -12,7 +13,6 @@
 #include <cgns_io.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is POSIX's
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -21,7 +21,6 @@
 #include <cstring>
 #include <limits>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 // Reads and writes nodes by CGIO.
@@ -49,31 +48,6 @@ std::string without_filling(const Text& text) {
   const std::string_view whole(text.data());
   return std::string(whole.substr(0, whole.find_last_not_of(' ') + 1));
 }
-
-/// A folder of our own for one file, removed at the end: CGIO opens files by their paths only.
-class PrivateFolder {
- public:
-  PrivateFolder() {
-    std::string name = (fs::temp_directory_path() / "meshorder-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw_system_fault(name, "the folder for a temporary file cannot be made", errno);
-    }
-    path_ = name;
-  }
-  ~PrivateFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  PrivateFolder(const PrivateFolder&) = delete;
-  PrivateFolder(PrivateFolder&&) = delete;
-  PrivateFolder& operator=(const PrivateFolder&) = delete;
-  PrivateFolder& operator=(PrivateFolder&&) = delete;
-
-  [[nodiscard]] fs::path file() const { return path_ / "mesh.cgns"; }
-
- private:
-  fs::path path_;
-};
 
 /// A file that CGIO has open.
 class CgioFile {
@@ -359,15 +333,15 @@ Tree read_tree(const FilePath& path) {
   }
   const std::string bytes = path.read();
   const PrivateFolder folder;
-  Descriptor file(folder.file(), O_WRONLY | O_CREAT | O_EXCL, S_IRUSR | S_IWUSR);
+  const fs::path copy = folder.path() / "mesh.cgns";
+  Descriptor file(copy, O_WRONLY | O_CREAT | O_EXCL, S_IRUSR | S_IWUSR);
   int error = file.is_open() ? file.write(bytes) : errno;
   if (const int closing = file.close(); error == 0) error = closing;
   if (error != 0) {
-    throw InputError(folder.file().string(),
-                     "a temporary file cannot be written: " + system_fault(error).reason,
+    throw InputError(copy.string(), "a temporary file cannot be written: " + system_fault(error).reason,
                      "set TMPDIR to a folder with enough space");
   }
-  return read_open(InputFile(folder.file()), folder.file(), path.string());
+  return read_open(InputFile(copy), copy, path.string());
 }
 
 void write_tree(const Tree& tree, const FilePath& path, const std::function<void(Node&)>& fill) {
@@ -377,8 +351,9 @@ void write_tree(const Tree& tree, const FilePath& path, const std::function<void
     write_to_disk(tree, out.temporary(), path.string(), fill);
   } else {
     const PrivateFolder folder;
-    write_to_disk(tree, folder.file(), path.string(), fill);
-    out.write(FilePath(folder.file()).read_first(std::numeric_limits<std::size_t>::max()));
+    const fs::path written = folder.path() / "mesh.cgns";
+    write_to_disk(tree, written, path.string(), fill);
+    out.write(FilePath(written).read_first(std::numeric_limits<std::size_t>::max()));
   }
   out.commit();
 }

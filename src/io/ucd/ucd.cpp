@@ -2,6 +2,7 @@
 #include "io/ucd/ucd.hpp"
 
 #include "base/text.hpp"
+#include "io/all_formats.hpp"
 #include "io/deck/numbers.hpp"
 #include "io/exact_values.hpp"
 #include "io/labels.hpp"

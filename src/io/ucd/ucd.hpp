@@ -55,9 +55,3 @@ Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
 }  // namespace meshorder::ucd
-
-namespace meshorder {
-
-Format ucd_format();  ///< .avs and .ucd, and .inp where it is no deck
-
-}  // namespace meshorder
