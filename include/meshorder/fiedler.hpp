@@ -41,7 +41,7 @@ struct Fiedler {
 /// eigensolver, larger ones are coarsened by aggregation and solved by LOBPCG (Knyazev 2001, Toward the
 /// optimal preconditioned eigensolver) from level to finer level.
 ///
-/// @param graph    n vertices; weights > 0 or none
+/// @param graph    n vertices; weights > 0 or none, the largest at most 1e100 times the smallest
 /// @param options  tolerance, max_iterations, seed, start, check, symmetry and run; the rest is not used. The
 ///                 default tolerance of 0.1 suffices for an order; take 1e-8 for a vector to be used as such
 /// @return vector and report for each component. A component that does not converge keeps its best vector,

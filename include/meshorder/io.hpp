@@ -54,8 +54,8 @@ struct ReadOptions {
 
 /// Reads a mesh from a file.
 ///
-/// If the file is one of several that a process was stopped while putting in place, those are completed
-/// first, or refused where that is impossible.
+/// Files of one mesh that do not belong together, as a stopped process leaves them, are refused where the
+/// format marks them (TetGen, XDMF). Nothing is written.
 ///
 /// @param path     the file; for formats of several, any of them
 /// @param options  see `ReadOptions`
@@ -110,8 +110,9 @@ struct WriteOptions {
 ///
 /// @param mesh   not changed
 /// @param path   replaced when all is written and on the disk; nothing is left behind after an exception.
-///               Symbolic links are followed; owner, mode and ACLs stay as the system allows; further hard
-///               links keep the old content, which `notes` tells; devices and pipes are written directly
+///               Symbolic links are followed in `path` itself, not in names derived from it; owner, mode and
+///               ACLs stay as the system allows; further hard links keep the old content, which `notes`
+///               tells; devices and pipes are written directly
 /// @param notes  receives what the format cannot hold; null: dropped
 /// @return the places that the cells have in the file, behind them those of cells that are left out; the
 ///         identity after `reorder` for that format

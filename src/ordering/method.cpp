@@ -4,10 +4,12 @@
 #include "base/run_scope.hpp"
 #include "base/text.hpp"
 #include "ordering/all_methods.hpp"
+#include "ordering/fronts.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +31,14 @@ struct BuiltInElementMethod {
   bool needs_points = false;
 };
 
+/// A method, then fronts within its chunks.
+template <Order (*kMethod)(const VertexInput&, const OrderOptions&)>
+Order then_fronts(const VertexInput& input, const OrderOptions& options) {
+  Order result = kMethod(input, options);
+  result.permutation = in_fronts(input.graph, result.permutation);
+  return result;
+}
+
 constexpr std::array kVertexMethods{
     BuiltInVertexMethod{"auto", "the one below that measurements favour for the mesh's size and use (--for)",
                         auto_vertices},
@@ -46,6 +56,14 @@ constexpr std::array kVertexMethods{
     BuiltInVertexMethod{"bfs", "breadth first from a vertex at the rim", bfs_vertices},
     BuiltInVertexMethod{"morton", "along Morton's Z curve through the coordinates", morton_vertices, true},
     BuiltInVertexMethod{"hilbert", "along Hilbert's curve through the coordinates", hilbert_vertices, true},
+    BuiltInVertexMethod{"hilbert-fronts", "hilbert, then breadth first within each 2,048 vertices",
+                        then_fronts<hilbert_vertices>, true},
+    BuiltInVertexMethod{"spectral-fronts", "spectral, then breadth first within each 2,048 vertices",
+                        then_fronts<spectral_vertices>},
+    BuiltInVertexMethod{"minla-fronts", "minla, then breadth first within each 2,048 vertices",
+                        then_fronts<minla_vertices>},
+    BuiltInVertexMethod{"fiedler-fronts", "fiedler, then breadth first within each 2,048 vertices",
+                        then_fronts<fiedler_vertices>},
 #ifdef MESHORDER_HAS_METIS
     BuiltInVertexMethod{"metis-nd", "METIS nested dissection, made for sparse factorisation",
                         metis_nd_vertices},
@@ -99,16 +117,13 @@ MethodInfo info_of(const Method& method) {
           .needs_points = method.needs_points};
 }
 
-/// Moves vertices without neighbours behind the others, in their old order.
-Permutation with_isolated_last(const Permutation& order, GraphRef graph) {
-  std::vector<Index> new_to_old;
-  new_to_old.reserve(order.new_to_old().size());
-  for (const Index v : order.new_to_old()) {
-    if (graph.degree(v) > 0) new_to_old.push_back(v);
-  }
-  for (Index v = 0; v < graph.size(); ++v) {
-    if (graph.degree(v) == 0) new_to_old.push_back(v);
-  }
+/// Moves vertices without neighbours after the others, in their old order.
+Permutation with_isolated_last(Permutation order, GraphRef graph) {
+  const auto is_isolated = [&](Index v) { return graph.degree(v) == 0; };
+  if (std::adjacent_find(graph.offsets.begin(), graph.offsets.end()) == graph.offsets.end()) return order;
+  std::vector<Index> new_to_old(order.new_to_old().begin(), order.new_to_old().end());
+  const auto isolated = std::stable_partition(new_to_old.begin(), new_to_old.end(), std::not_fn(is_isolated));
+  std::sort(isolated, new_to_old.end());
   return Permutation::from_new_to_old(std::move(new_to_old));
 }
 
@@ -129,7 +144,7 @@ Order order_graph(std::string_view method, const VertexInput& input, const Order
   if (const BuiltInVertexMethod* found = find_method(kVertexMethods, method)) {
     result = found->order(input, options);
     if (found->order != original_vertices) {
-      result.permutation = with_isolated_last(result.permutation, input.graph);
+      result.permutation = with_isolated_last(std::move(result.permutation), input.graph);
     }
   } else if (const VertexMethod registered = registered_vertex_method(method)) {
     const VertexProblem problem{input.graph.offsets, input.graph.neighbours, input.weights, input.points};

@@ -1,0 +1,20 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "graph/csr_graph.hpp"
+#include <meshorder/permutation.hpp>
+
+namespace meshorder {
+
+/// Renumbers each chunk of 2,048 vertices of an order breadth first, from the vertices that have neighbours
+/// in earlier chunks on, those of the earliest neighbour first.
+///
+/// A sweep over rows or edges then touches new vertices nearly in the order of their numbers. Where vectors
+/// exceed the last cache it reads memory forward, which processors prefetch, as they do after breadth-first
+/// numbering of the whole graph; and each chunk stays the compact region that the order made it. Vertices
+/// move within their chunk only.
+///
+/// O(n + edges · log degree) on all threads; the result does not depend on their number.
+Permutation in_fronts(GraphRef graph, const Permutation& order);
+
+}  // namespace meshorder
