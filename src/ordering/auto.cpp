@@ -5,64 +5,97 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace meshorder {
 namespace {
 
+/// What a graph's coordinates say.
+enum class Coordinates : std::uint8_t { none, lattice, general };
+
 /// When a method is taken: the first rule that fits decides.
 struct Rule {
-  std::optional<Workload> workload = {};  ///< none: any
-  Index least_vertices = 0;               ///< from so many on
-  bool geometric = false;                 ///< only where there are coordinates
+  std::vector<Workload> workloads = {};         ///< none: any
+  Index least_vertices = 0;                     ///< from so many on
+  std::optional<Coordinates> coordinates = {};  ///< none: any
   std::string_view method;
   std::string_view reason;
 };
 
-// Evidence: `meshorder compare` on one thread of a 2-core Zen 5 machine (48 KB L1, 1 MB L2, 32 MB L3); the
-// tables stand in docs/auto.md.
-constexpr std::array kVertexRules{
-    Rule{.workload = Workload::bandwidth,
+// Evidence: plain kernels, as users write them, on one thread of a 2-core Zen 4 machine (32 KB L1, 1 MB L2,
+// 32 MB L3); the tables are in docs/auto.md.
+const std::array kVertexRules{
+    Rule{.workloads = {Workload::bandwidth},
          .method = "rcm",
          .reason = "reverse Cuthill-McKee is made to keep the bandwidth small"},
 #ifdef MESHORDER_HAS_METIS
-    Rule{.workload = Workload::fill,
+    Rule{.workloads = {Workload::fill},
          .method = "metis-nd",
          .reason = "nested dissection is made to keep the factors of a direct solver sparse"},
 #endif
-    Rule{.workload = Workload::springs,
-         .least_vertices = 1'000'000,
-         .method = "rcm",
-         .reason = "springs of a mesh this large run fastest on the few forward streams of its levels"},
-    Rule{.geometric = true,
-         .method = "hilbert",
+    Rule{.coordinates = Coordinates::lattice,
+         .method = "bfs",
+         .reason = "on lattices no order measured is faster, and it is cheap"},
+    Rule{.coordinates = Coordinates::general,
+         .method = "hilbert-fronts",
          .reason =
-             "within a few per cent of the best order measured, at the cost of one sort of the coordinates"},
-    Rule{.method = "spectral",
-         .reason = "the best order measured that needs no coordinates, of which there are none"},
+             "within a few per cent of the best order measured, at the cost of a sort of the coordinates "
+             "and a pass over the edges"},
+    Rule{.workloads = {Workload::element, Workload::assembly},
+         .least_vertices = 100'000,
+         .method = "spectral-fronts",
+         .reason = "the best order measured for elements that needs no coordinates, of which there are none"},
+    Rule{.method = "bfs",
+         .reason =
+             "no order measured makes products faster without coordinates, of which there are none, and "
+             "it is cheap"},
 };
 
-bool fits(const Rule& rule, Index vertices, bool coordinates, Workload workload) {
-  return (!rule.workload || *rule.workload == workload) && vertices >= rule.least_vertices &&
-         (coordinates || !rule.geometric);
+bool fits(const Rule& rule, Index vertices, Coordinates coordinates, Workload workload) {
+  const auto& workloads = rule.workloads;
+  return (workloads.empty() || std::ranges::find(workloads, workload) != workloads.end()) &&
+         vertices >= rule.least_vertices && (!rule.coordinates || *rule.coordinates == coordinates);
 }
 
-/// Returns whether there are coordinates and at least two vertices differ in them.
-bool has_coordinates(const VertexInput& input) {
-  if (std::cmp_not_equal(input.points.size(), input.graph.size()) || input.graph.size() == 0) return false;
-  const Point first = point_at(input.points, 0);
-  for (Index v = 1; v < input.graph.size(); ++v) {
-    if (point_at(input.points, v) != first) return true;
+/// Returns whether the points lie on a lattice along the axes, most places of which are taken. Looks at some
+/// 65,536 of them. O(log n) each.
+bool is_lattice(const PointsView& points, Index count) {
+  constexpr Index kLookedAt = 65'536;
+  constexpr double kPlacesForEach = 4;
+  std::array<std::set<double>, 3> values;
+  const Index step = std::max(1, count / kLookedAt);
+  for (Offset p = 0; p < count; p += step) {
+    const Point point = point_at(points, static_cast<Index>(p));
+    double places = 1;
+    for (std::size_t axis = 0; axis < values.size(); ++axis) {
+      values[axis].insert(point[axis]);
+      places *= static_cast<double>(values[axis].size());
+    }
+    if (places > kPlacesForEach * count) return false;
   }
-  return false;
+  return true;
+}
+
+Coordinates coordinates_of(const VertexInput& input) {
+  const Index n = input.graph.size();
+  if (std::cmp_not_equal(input.points.size(), n) || n == 0) return Coordinates::none;
+  const Point first = point_at(input.points, 0);
+  Index v = 1;
+  while (v < n && point_at(input.points, v) == first) ++v;
+  if (v == n) return Coordinates::none;
+  return is_lattice(input.points, n) ? Coordinates::lattice : Coordinates::general;
 }
 
 }  // namespace
 
 MethodChoice choose_vertex_method(const VertexInput& input, Workload workload) {
-  const bool coordinates = has_coordinates(input);
+  const Coordinates coordinates = coordinates_of(input);
   const auto rule = std::find_if(kVertexRules.begin(), kVertexRules.end(), [&](const Rule& r) {
     return fits(r, input.graph.size(), coordinates, workload);
   });

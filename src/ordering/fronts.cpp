@@ -36,14 +36,15 @@ class Section {
       is_queued_[vertex] = 1;
     };
     for (const auto& [earliest, vertex] : seeds_) enqueue(vertex);
-    Index next = 0;
-    for (Index first = 0; next < end - begin; ++first) {
-      enqueue(first);
-      for (; next < queued; ++next) {
-        const Index v = queue_[next];
-        places_[begin + v] = begin + next;
-        for (Index k = starts_[v]; k < starts_[v + 1]; ++k) enqueue(neighbours_[k]);
+    Index first = 0;  // that may not have been reached
+    for (Index next = 0; next < end - begin;) {
+      if (next == queued) {
+        enqueue(first++);
+        continue;
       }
+      const Index v = queue_[next];
+      places_[begin + v] = begin + next++;
+      for (Index k = starts_[v]; k < starts_[v + 1]; ++k) enqueue(neighbours_[k]);
     }
   }
 

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <set>
 #include <span>
@@ -170,15 +171,43 @@ TEST(Auto, LooksAtTheUse) {
   CsrGraph large;
   large.offsets.assign(2'000'001, 0);
   const auto taken = [&](Workload use) { return choose_vertex_method({large, {}}, use).name; };
-  EXPECT_EQ(taken(Workload::all), taken(Workload::element));
+  EXPECT_EQ(taken(Workload::all), taken(Workload::springs));
   EXPECT_NE(taken(Workload::springs), taken(Workload::element));
+  EXPECT_EQ(taken(Workload::assembly), taken(Workload::element));
 }
 
 TEST(Auto, LooksAtTheSize) {
   CsrGraph large;
   large.offsets.assign(2'000'001, 0);
-  const std::string small = choose_vertex_method({test::path(3), {}}, Workload::springs).name;
-  EXPECT_NE(choose_vertex_method({large, {}}, Workload::springs).name, small);
+  const std::string small = choose_vertex_method({test::path(3), {}}, Workload::element).name;
+  EXPECT_NE(choose_vertex_method({large, {}}, Workload::element).name, small);
+}
+
+TEST(Auto, KnowsLatticesByTheirCoordinates) {
+  Lattice lattice;
+  const auto taken = [&] {
+    return choose_vertex_method({lattice.graph, lattice.points}, Workload::all).name;
+  };
+  EXPECT_EQ(taken(), "bfs");
+  for (Point& point : lattice.points) point[0] = std::sqrt(point[0]);  // graded
+  EXPECT_EQ(taken(), "bfs");
+  for (Point& point : lattice.points) point = {point[0] + point[1], point[0] - 0.7 * point[1], 0};  // turned
+  EXPECT_EQ(taken(), "hilbert-fronts");
+}
+
+TEST(Auto, JudgesLargeGraphsByTheirFirstTouches) {
+  const CsrGraph graph = test::grid(50, 50, 50);
+  std::vector<Point> points;
+  for (Index v = 0; v < graph.size(); ++v)
+    points.push_back({1.0 * (v % 50), 1.0 * (v / 50 % 50), 1.0 * (v / 2500)});
+  const Permutation rows = Permutation::identity(graph.size());
+  const Permutation hilbert = order_graph("hilbert", {graph, points}).permutation;
+  const CsrGraph along = renumbered(graph, hilbert.old_to_new());
+  for (const Workload use : {Workload::all, Workload::spmv, Workload::springs}) {
+    EXPECT_THAT(reason_to_keep(graph, hilbert, "hilbert", use),
+                testing::HasSubstr("lines that a sweep first reads out of order is 0.00 as it is and 0."));
+    EXPECT_EQ(reason_to_keep(along, hilbert.inverse(), "rows", use), "");
+  }
 }
 
 TEST(Auto, MethodsAskedForByNameGiveNoReason) {

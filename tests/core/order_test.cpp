@@ -231,8 +231,13 @@ TEST(OrderVertices, ChoosesByTheUse) {
     return order_vertices(problem.view(), "auto", {.workload = workload}, points).method;
   };
   EXPECT_EQ(chosen(Workload::bandwidth, problem.points).name, "rcm");
-  EXPECT_EQ(chosen(Workload::all, problem.points).name, "hilbert");
-  EXPECT_EQ(chosen(Workload::all, {}).name, "spectral");
+  EXPECT_EQ(chosen(Workload::all, problem.points).name, "bfs");  // on a lattice
+  problem.points.front() = {0.1, 0.2, 0.3};
+  for (std::size_t v = 1; v < problem.points.size(); ++v) {
+    for (double& x : problem.points[v]) x += 0.001 * static_cast<double>(v);
+  }
+  EXPECT_EQ(chosen(Workload::all, problem.points).name, "hilbert-fronts");
+  EXPECT_EQ(chosen(Workload::all, {}).name, "bfs");
   EXPECT_FALSE(chosen(Workload::all, {}).reason.empty());
   EXPECT_EQ(order_vertices(problem.view(), "rcm").method, (MethodChoice{"rcm", ""}));
   const auto known = names_of(vertex_methods());
@@ -489,8 +494,9 @@ TEST(OrderMesh, IsTheOrderOfTheVertexGraphAndThenOfTheElements) {
     }
   }
   const MeshOrder automatic = order_mesh({.points = mesh.points, .cells = cells});
-  EXPECT_EQ(automatic.vertices.method.name, "original");  // a bar, end to end
-  EXPECT_EQ(automatic.cells.method.name, "original");
+  EXPECT_EQ(automatic.vertices.method, order_vertices(graph, "auto", {}, mesh.points).method);
+  EXPECT_EQ(automatic.cells.method,
+            order_elements(cells, automatic.vertices.permutation, "auto", {}, mesh.points).method);
 }
 
 TEST(OrderMesh, TakesTheNumberOfVerticesFromThePoints) {
