@@ -165,7 +165,7 @@ def test_signals_end_both_processes(med, number):
         while "State:\tS" not in status.read_text():
             time.sleep(0.01)
         process.send_signal(number)
-        _, stderr = process.communicate(timeout=30)
+        _, stderr = process.communicate(timeout=120)
     assert process.returncode == -number
     assert stderr == f"meshorder: stopped by {number.name}; unfinished outputs are removed\n"
     assert not pathlib.Path(f"/proc/{child}").exists()
