@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,6 +15,9 @@ namespace {
 
 constexpr Index kChunk = 2048;  // vertices: fewer cost springs 2 %, four times as many cost products 3 %
 constexpr Index kSection = 32 * kChunk;  // vertices that one thread takes
+constexpr Index kAheadOfOffset = 24;
+constexpr Index kAheadOfRow = 8;
+constexpr Index kAheadOfPlaces = 4;
 
 /// Renumbers the chunks of a section one after the other. Loops over neighbours write without a branch, which
 /// would be unpredictable.
@@ -54,45 +56,34 @@ class Section {
   void find_neighbours(Index begin, Index end) {
     const std::span<const Index> vertices = order_.new_to_old();
     const std::span<const Index> place_of = order_.old_to_new();
-    std::size_t pairs = 0;
+    Index found = 0;
     seeds_.clear();
     for (Index place = begin; place < end; ++place) {
-      prefetch_ahead(place);
+      // what later places need; in a function of its own GCC 12 takes it for code without effect
+      if (place + kAheadOfOffset < index_size(vertices)) {
+        prefetch_offsets(graph_.offsets, vertices.subspan(place + kAheadOfOffset, 1));
+        prefetch_rows(graph_.offsets, graph_.neighbours, vertices.subspan(place + kAheadOfRow, 1));
+        for (const Index u : graph_[vertices[place + kAheadOfPlaces]])
+          __builtin_prefetch(place_of.data() + u);
+      }
       const std::span<const Index> row = graph_[vertices[place]];
-      if (pairs_.size() < pairs + row.size()) pairs_.resize(2 * (pairs + row.size()));
+      if (neighbours_.size() < found + row.size()) neighbours_.resize(2 * (found + row.size()));
       if (earlier_.size() < row.size()) earlier_.resize(row.size());
-      std::size_t earlier = 0;
+      Index earlier = 0;
+      starts_[place - begin] = found;
       for (const Index u : row) {
         const Index there = place_of[u];
-        pairs_[pairs] = {there - begin, place - begin};
-        pairs += there >= begin && there < end ? 1 : 0;
+        neighbours_[found] = there - begin;
+        found += there >= begin && there < end ? 1 : 0;
         earlier_[earlier] = there;
         earlier += there < begin ? 1 : 0;
       }
       if (earlier == 0) continue;
       Index earliest = begin;
-      for (std::size_t k = 0; k < earlier; ++k) earliest = std::min(earliest, number_at(earlier_[k]));
+      for (Index k = 0; k < earlier; ++k) earliest = std::min(earliest, number_at(earlier_[k]));
       seeds_.emplace_back(earliest, place - begin);
     }
-    // each row gets its entries as they come, which is in the order of their places
-    const std::span found = std::span(pairs_).first(pairs);
-    starts_.fill(0);
-    for (const auto& [row, entry] : found) ++starts_[row + 2];
-    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
-    neighbours_.resize(std::max(neighbours_.size(), pairs));
-    for (const auto& [row, entry] : found) neighbours_[starts_[row + 1]++] = entry;
-  }
-
-  /// Asks for what the rows of the next places need: where they begin, their entries, and these's places.
-  void prefetch_ahead(Index place) const {
-    constexpr Index kAhead = 6;
-    const std::span<const Index> vertices = order_.new_to_old();
-    if (place + 3 * kAhead >= index_size(vertices)) return;
-    __builtin_prefetch(graph_.offsets.data() + vertices[place + 3 * kAhead]);
-    const Offset* const row = graph_.offsets.data() + vertices[place + 2 * kAhead];
-    __builtin_prefetch(graph_.neighbours.data() + row[0]);
-    __builtin_prefetch(graph_.neighbours.data() + row[1] - 1);
-    for (const Index u : graph_[vertices[place + kAhead]]) __builtin_prefetch(order_.old_to_new().data() + u);
+    starts_[end - begin] = found;
   }
 
   /// Returns the new number of a place before the chunk; of one before the section, which another thread
@@ -103,10 +94,9 @@ class Section {
   const Permutation& order_;
   Index begin_;
   std::span<Index> places_;
-  std::vector<std::pair<Index, Index>> pairs_;  ///< neighbours in the chunk
   std::vector<Index> earlier_;                  ///< neighbours of one vertex before the chunk
   std::vector<std::pair<Index, Index>> seeds_;  ///< earliest neighbour before the chunk, vertex
-  std::array<Index, kChunk + 2> starts_;        ///< of each vertex of the chunk in `neighbours_`
+  std::array<Index, kChunk + 1> starts_;        ///< of each vertex of the chunk in `neighbours_`
   std::vector<Index> neighbours_;
   std::array<Index, kChunk + 1> queue_;
   std::array<char, kChunk> is_queued_;

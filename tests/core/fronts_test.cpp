@@ -27,10 +27,9 @@ Permutation fronts_by_definition(const CsrGraph& graph, const Permutation& order
   for (Index begin = 0; begin < graph.size(); begin += kChunk) {
     const Index end = std::min(graph.size(), begin + kChunk);
     const Index section = begin / kSection * kSection;
-    const auto neighbours = [&](Index v) {  // as places in the order, rising
+    const auto neighbours = [&](Index v) {  // as places in the order
       std::vector<Index> places;
       for (const Index u : graph[v]) places.push_back(order.old_to_new()[u]);
-      std::ranges::sort(places);
       return places;
     };
     std::vector<std::pair<Index, Index>> seeds;
@@ -54,7 +53,7 @@ Permutation fronts_by_definition(const CsrGraph& graph, const Permutation& order
     for (const auto& [earliest, place] : seeds) enqueue(place);
     for (Index first = begin; first < end; ++first) {
       for (; !queue.empty(); queue.pop_front()) {
-        for (const Index there : neighbours(queue.front())) {
+        for (const Index there : neighbours(order.new_to_old()[queue.front()])) {
           if (there >= begin && there < end) enqueue(there);
         }
       }
