@@ -12,40 +12,88 @@ namespace {
 
 constexpr Index kEntriesInLine = 8;  // doubles
 constexpr Index kLinesBefore = 3;
-constexpr Index kRecent = 32;  // first touches
-constexpr Index kUntouched = -1;
+constexpr Index kRecent = 32;    // first touches
+constexpr Index kWindow = 8192;  // rows
+constexpr Index kWindowsForOne = 8;
+
+/// Counts first touches and those that are jumps, window by window.
+class FirstTouches {
+ public:
+  FirstTouches(GraphRef graph, const Permutation& order)
+      : graph_(graph), order_(order), touched_((std::size_t(graph.size()) + 7) / kEntriesInLine, -1) {}
+
+  void sweep(Index begin, Index end) {
+    const Index before = time_;  // lines that rows before the window have touched get this time
+    time_ += kRecent + 1;
+    for (Index row = begin; row < end; ++row) {
+      poll_in_loop(row);
+      prefetch_row(graph_, order_.new_to_old(), row);
+      found_.assign(1, row / kEntriesInLine);
+      for (const Index u : graph_[order_.new_to_old()[row]]) {
+        const Index line = order_.old_to_new()[u] / kEntriesInLine;
+        if (touched_[line] < before) found_.push_back(line);
+      }
+      std::sort(found_.begin(), found_.end());
+      for (const Index line : found_) {
+        if (touched_[line] >= before) continue;
+        if (is_read_before(line, begin)) {
+          touched_[line] = before;
+          continue;
+        }
+        jumps_ += is_jump(line) ? 1 : 0;
+        ++lines_;
+        touched_[line] = time_++;
+      }
+    }
+  }
+
+  [[nodiscard]] double share() const { return lines_ > 0 ? static_cast<double>(jumps_) / lines_ : 0; }
+
+ private:
+  /// Whether a row before `begin` reads a line.
+  [[nodiscard]] bool is_read_before(Index line, Index begin) const {
+    if (begin == 0) return false;
+    const Index first = line * kEntriesInLine;
+    if (first < begin) return true;
+    const auto is_before = [&](Index u) { return order_.old_to_new()[u] < begin; };
+    for (Index row = first; row < std::min(first + kEntriesInLine, graph_.size()); ++row) {
+      if (std::ranges::any_of(graph_[order_.new_to_old()[row]], is_before)) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool is_jump(Index line) const {
+    for (Index near = std::max(0, line - kLinesBefore); near < line; ++near) {
+      if (touched_[near] >= time_ - kRecent) return false;
+    }
+    return true;
+  }
+
+  GraphRef graph_;
+  const Permutation& order_;
+  std::vector<Index> touched_;  ///< of each line: when, −1 for never
+  Index time_ = 0;
+  Index lines_ = 0;
+  Index jumps_ = 0;
+  std::vector<Index> found_;
+};
 
 }  // namespace
 
 double jump_share(GraphRef graph, const Permutation& order) {
-  if (graph.size() == 0) return 0;
-  const Index lines = (graph.size() - 1) / kEntriesInLine + 1;
-  std::vector<Index> touched(static_cast<std::size_t>(lines), kUntouched);  // the how many-th
-  Index touches = 0;
-  const auto is_jump = [&](Index line) {
-    for (Index before = std::max(0, line - kLinesBefore); before < line; ++before) {
-      if (touched[before] != kUntouched && touched[before] >= touches - kRecent) return false;
-    }
-    return true;
-  };
-  Index jumps = 0;
-  std::vector<Index> found;
-  for (Index row = 0; row < graph.size(); ++row) {
-    poll_in_loop(row);
-    prefetch_row(graph, order.new_to_old(), row);
-    found.assign(1, row / kEntriesInLine);
-    for (const Index u : graph[order.new_to_old()[row]]) {
-      const Index line = order.old_to_new()[u] / kEntriesInLine;
-      if (touched[line] == kUntouched) found.push_back(line);
-    }
-    std::sort(found.begin(), found.end());
-    for (const Index line : found) {
-      if (touched[line] != kUntouched) continue;
-      jumps += is_jump(line) ? 1 : 0;
-      touched[line] = touches++;
-    }
+  FirstTouches touches(graph, order);
+  touches.sweep(0, graph.size());
+  return touches.share();
+}
+
+double sampled_jump_share(GraphRef graph, const Permutation& order) {
+  FirstTouches touches(graph, order);
+  constexpr Index kApart = kWindow * kWindowsForOne;
+  for (Offset begin = 0; begin < graph.size(); begin += kApart) {
+    const auto first = static_cast<Index>(begin);
+    touches.sweep(first, first + std::min(kWindow, graph.size() - first));
   }
-  return static_cast<double>(jumps) / lines;
+  return touches.share();
 }
 
 }  // namespace meshorder

@@ -67,8 +67,8 @@ std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string
     return sentence("the bandwidth", std::to_string(before.max), method, std::to_string(after.max));
   }
   const bool is_large = graph.size() >= kBeyondCaches;
-  const double old_jumps = is_large ? jump_share(graph, as_is) : 0;
-  const double new_jumps = is_large ? jump_share(graph, order) : 0;
+  const double old_jumps = is_large ? sampled_jump_share(graph, as_is) : 0;
+  const double new_jumps = is_large ? sampled_jump_share(graph, order) : 0;
   if (new_jumps > old_jumps + kNotable) {
     return sentence("the share of lines that a sweep first reads out of order", with_digits(old_jumps, 2),
                     method, with_digits(new_jumps, 2));
