@@ -20,6 +20,8 @@ def _as_array(values: Any, name: str) -> NDArray[Any]:
         if np.ma.is_masked(values):
             raise InvalidArgument(f"{name}: a masked array has entries without a value; fill them first")
         values = values.data
+    if hasattr(values, "index_select") and hasattr(values, "detach"):
+        values = values.detach().cpu()  # a tensor of PyTorch
     if getattr(values, "__dlpack_device__", None) is not None and not isinstance(values, np.ndarray):
         if int(values.__dlpack_device__()[0]) != 1:
             raise InvalidArgument(f"{name}: the array is on a GPU; bring it to the CPU first, by .cpu() or .get()")

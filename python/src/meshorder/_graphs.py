@@ -102,7 +102,7 @@ class Order:
             InvalidArgument: an asymmetric pattern, a graph of another size, ``side`` below 1.
             ImportError: matplotlib is not installed; the extra ``plot`` brings it.
         """
-        offsets, neighbours = graph_arrays(graph)
+        offsets, neighbours, _ = graph_arrays(graph, mirror=True)
         return _plots.patterns(self, offsets, neighbours, side, axes)
 
 
@@ -191,8 +191,15 @@ class Quality:
         return _plots.quality(self, axes)
 
 
-def graph_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any]]:
+def graph_arrays(graph: Any, mirror: bool = False) -> tuple[NDArray[Any], NDArray[Any], Any]:
     """Returns the offsets and neighbours of a graph in one of the forms that `meshorder.order` takes.
+
+    Args:
+        graph: the graph.
+        mirror: True: edges of PyTorch that have a direction are taken in both.
+
+    Returns:
+        The two arrays, and where the weight of each entry is among those given: an array of places, or all in order.
 
     Raises:
         InvalidArgument: none of these forms, a matrix that is not square, arrays of other types than integers.
@@ -201,17 +208,32 @@ def graph_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any]]:
         matrix = graph.tocsr()
         if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
             raise InvalidArgument(f"graph: expected a square matrix, not one of shape {matrix.shape}")
-        return integers(matrix.indptr, "indptr"), integers(matrix.indices, "indices")
+        return integers(matrix.indptr, "indptr"), integers(matrix.indices, "indices"), slice(None)
     if hasattr(graph, "adjacency") and hasattr(graph, "number_of_nodes"):
-        return networkx_arrays(graph)
-    if hasattr(graph, "crow_indices"):
-        return integers(graph.crow_indices(), "crow_indices"), integers(graph.col_indices(), "col_indices")
+        return *networkx_arrays(graph), slice(None)
     if isinstance(graph, (tuple, list)) and len(graph) == 2:
-        return integers(graph[0], "indptr"), integers(graph[1], "indices")
-    raise InvalidArgument(
-        "graph: expected a SciPy matrix, (indptr, indices), a networkx graph or a torch matrix in CSR form, "
-        f"not {type(graph).__name__}"
-    )
+        return integers(graph[0], "indptr"), integers(graph[1], "indices"), slice(None)
+    from .hosts import find_host  # which imports this module
+
+    host = find_host(graph)
+    found = None if host is None else host.graph(mirror)
+    if found is None:
+        raise InvalidArgument(
+            "graph: expected a SciPy matrix, (indptr, indices), a networkx graph, or an edge_index, sparse matrix or Data "
+            f"of PyTorch, not {type(graph).__name__}"
+        )
+    return found
+
+
+def _weights(weights: Any, places: Any) -> NDArray[Any] | None:
+    """Returns weights in the order of the entries of `graph_arrays`."""
+    if weights is None:
+        return None
+    given = reals(weights, "weights")
+    if not isinstance(places, slice) and len(given) != len(places):
+        raise InvalidArgument(f"weights: expected {len(places)}, one for each entry, not {len(given)}")
+    moved: NDArray[Any] = given[places]
+    return moved
 
 
 def networkx_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any]]:
@@ -226,8 +248,8 @@ def networkx_arrays(graph: Any) -> tuple[NDArray[Any], NDArray[Any]]:
 
 def order_graph(graph: Any, method: str, points: Any, weights: Any, options: dict[str, Any]) -> Order:
     """Orders a graph or matrix; see `meshorder.order`."""
-    offsets, neighbours = graph_arrays(graph)
-    given_weights = None if weights is None else reals(weights, "weights")
+    offsets, neighbours, places = graph_arrays(graph)
+    given_weights = _weights(weights, places)
     coordinates = None if points is None else as_points(points)
     with prepared(options) as given:
         return Order._of(_core.order(offsets, neighbours, given_weights, coordinates, method, given))
@@ -261,8 +283,8 @@ def fiedler(graph: Any, *, weights: Any = None, tolerance: float = 1e-8, **optio
         >>> round(meshorder.fiedler(path).lambda2, 6)
         0.585786
     """
-    offsets, neighbours = graph_arrays(graph)
-    given_weights = None if weights is None else reals(weights, "weights")
+    offsets, neighbours, places = graph_arrays(graph)
+    given_weights = _weights(weights, places)
     with prepared({**options, "tolerance": tolerance}) as given:
         made = _core.fiedler(offsets, neighbours, given_weights, given)
     made["components"] = [FiedlerComponent(*component) for component in made["components"]]
@@ -289,7 +311,7 @@ def quality(graph: Any, order: Order | Permutation | None = None) -> Quality:
         >>> meshorder.quality(star, meshorder.Permutation(new_to_old=[0, 3, 1, 2])).bandwidth
         2
     """
-    offsets, neighbours = graph_arrays(graph)
+    offsets, neighbours, _ = graph_arrays(graph, mirror=True)
     permutation = order.permutation if isinstance(order, Order) else order
     made = _core.quality(offsets, neighbours, None if permutation is None else permutation._handle, {})
     return Quality(**made)

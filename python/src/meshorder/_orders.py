@@ -46,7 +46,7 @@ def order(
         [[2, 1, 0], [1, 2, 1], [0, 1, 2]]
     """
     host = find_host(graph)
-    if host is None:
+    if host is None or host.takes_weights:
         return order_graph(graph, method, points, weights, options)
     if points is not None or weights is not None:
         raise InvalidArgument("order: points and weights are for graphs; a mesh has its own points, and no weights")

@@ -127,6 +127,8 @@ class Permutation:
             InvalidArgument: ``a`` has another number of entries, ``out`` does not fit, or ``axis`` or ``out`` is given
                 with something that is no array.
         """
+        if hasattr(a, "index_select"):
+            return self._move_tensor(a, axis, out)
         if hasattr(a, "iloc"):
             return self._move_pandas(a, axis, out)
         if hasattr(a, "tocsr") and hasattr(a, "nnz"):
@@ -153,6 +155,17 @@ class Permutation:
     def _check_shape(self, shape: tuple[int, ...], axis: int) -> None:
         if axis not in range(-len(shape), len(shape)) or shape[axis] != len(self):
             raise InvalidArgument(f"move: axis {axis!r} of the shape {shape} for a permutation of {len(self)}")
+
+    def _move_tensor(self, a: Any, axis: int, out: Any) -> Any:
+        from .hosts import torch  # which imports this module
+
+        _refuse(0, out, "a tensor")
+        self._check_shape(tuple(a.shape), axis)
+        if not torch.is_sparse(a):
+            return torch.moved_rows(a, self, axis)
+        _refuse(axis, out, "a matrix")
+        self._check_shape(tuple(a.shape), 1)
+        return torch.moved_matrix(a, self, self)
 
     def _move_pandas(self, a: Any, axis: int, out: Any) -> Any:
         _refuse(0, out, "a pandas object")
@@ -187,6 +200,12 @@ class Permutation:
         Raises:
             InvalidArgument: a number outside 0 … n−1, an array of other types, an ``out`` that does not fit.
         """
+        if hasattr(numbers, "index_select"):
+            from .hosts import torch  # which imports this module
+
+            if out is not None:
+                raise InvalidArgument("renumber: a tensor has no out; it is for arrays")
+            return torch.renumbered(numbers, self)
         if out is None:
             out = integers(numbers, "numbers", rank=None).copy()
         elif not isinstance(out, np.ndarray) or not out.flags.c_contiguous or not out.flags.writeable:

@@ -18,6 +18,9 @@ _MODULES = {
     "skfem": "skfem",
     "trimesh": "trimesh",
     "gmsh": "gmsh",
+    "torch": "torch",
+    "torch_sparse": "torch",
+    "torch_geometric": "pyg",
     "builtins": "arrays",
 }
 
@@ -46,7 +49,7 @@ def host_of(mesh: Any) -> Host:
     found = find_host(mesh)
     if found is None:
         raise InvalidArgument(
-            "mesh: expected (points, cells) or a mesh of meshorder, meshio, PyVista, VTK, scikit-fem, trimesh or Gmsh, "
-            f"not {type(mesh).__name__}{'; meshorder.read makes a mesh of a file' if isinstance(mesh, str) else ''}"
+            "mesh: expected (points, cells), a mesh of meshorder, meshio, PyVista, VTK, scikit-fem, trimesh or Gmsh, or a graph "
+            f"of PyTorch, not {type(mesh).__name__}{'; meshorder.read makes a mesh of a file' if isinstance(mesh, str) else ''}"
         )
     return found

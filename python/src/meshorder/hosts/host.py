@@ -42,7 +42,10 @@ class Host(abc.ABC):
         given: the mesh itself.
         points: one row of one to three coordinates for each vertex.
         cells: the cells, in one of the forms that `meshorder.order_mesh` takes.
+        takes_weights: whether `meshorder.order` takes points and weights with it, as with a graph.
     """
+
+    takes_weights = False
 
     given: Any
     points: Any
@@ -67,6 +70,14 @@ class Host(abc.ABC):
     def cell_sets(self) -> Mapping[str, Any]:
         """Returns the sets of cells by name: arrays of cell numbers."""
         return {}
+
+    def graph(self, mirror: bool) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]] | None:
+        """Returns the offsets and neighbours of a graph, and the place of each entry in what was given; None for meshes.
+
+        Args:
+            mirror: True: edges that have a direction are taken in both.
+        """
+        return None
 
     def order(self, vertices: str, elements: str, options: dict[str, Any]) -> MeshOrder:
         """Finds new places for the vertices and cells; see `meshorder.order_mesh`."""
