@@ -66,6 +66,7 @@ packages_to_test=(
   libxinerama1         "Gmsh's Python module, which pip installs"
   libpetsc-real-dev    "the plugin for PETSc"
   calculix-ccx         "solves decks before and after they are ordered"
+  python3-torch        "graphs of PyTorch, which Python orders"
   python3-jsonschema   "checks JSON against its schemas"
   locales              "a locale with decimal commas"
   valgrind             "finds reads of what was never written"

@@ -1,8 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Brings users' arrays into the form that the library reads: contiguous, in the machine's byte order.
 
-An array that has this form is returned as it is; others are copied. All functions raise InvalidArgument for masked
-entries, arrays on a GPU, ragged lists and wrong types and ranks.
+An array that has this form is returned as it is; others are copied, and PyTorch's tensors brought from their device. All
+functions raise InvalidArgument for masked entries, other arrays on a GPU, ragged lists and wrong types and ranks.
 """
 
 from __future__ import annotations

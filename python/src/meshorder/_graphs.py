@@ -295,7 +295,8 @@ def quality(graph: Any, order: Order | Permutation | None = None) -> Quality:
     """Measures how near the ends of edges are in the order that a graph's vertices have, or in another one. O(entries).
 
     Args:
-        graph: a graph or matrix in a form that `order` takes, but no mesh. Its pattern must be symmetric.
+        graph: a graph or matrix in a form that `order` takes, but no mesh. Its pattern must be symmetric; edges of an
+            edge_index or Data count in both directions.
         order: the order to measure, which is not carried out; None: the order that the vertices have.
 
     Returns:

@@ -19,9 +19,10 @@ def order(
 
     Args:
         graph: a square SciPy matrix (CSR is read in place, others are converted), ``(indptr, indices)``, a networkx
-            graph (vertices in the order of its nodes) or a torch matrix in CSR form; or a mesh that `reorder` takes,
-            whose vertices are ordered. A matrix gives its pattern only: its values and diagonal are ignored, as are
-            the weights of a networkx graph.
+            graph (vertices in the order of its nodes), a square sparse tensor of PyTorch in COO or CSR form or an
+            edge_index, whose vertices are 0 … its largest number; or a mesh or graph that `reorder` takes, whose
+            vertices are ordered. A matrix gives its pattern only: its values and diagonal are ignored, as are the
+            weights of a networkx graph.
         method: "auto", which chooses by the size and the ``workload``, or the name of one of `methods`.
         points: one row of one to three coordinates for each vertex, which "hilbert" and "morton" need and "auto" uses;
             or None.
@@ -109,9 +110,11 @@ def reorder(
             ``gmsh.model``; or a tuple of arrays, ``(points, cells)``, ``(points, cells, point_data)`` or
             ``(points, cells, point_data, cell_data)``. The cells have a form that `order_mesh` takes, the data are
             dicts of arrays with a row for each point or cell; where cells are in blocks, an entry of ``cell_data`` has
-            an array for each block.
+            an array for each block. Or a graph: an edge_index or sparse tensor of PyTorch, or a Data, HeteroData or Batch
+            of PyTorch Geometric, with all that belongs to its nodes, edges and faces.
         vertices: method for the vertices: "auto" or the name of one of `methods`.
         elements: method for the elements, the cells of the highest dimension: "auto" or one of ``methods("elements")``.
+            The edges of a graph go by their new target, then source, with "auto", and stay with "original".
         group_by: name of an array of whole numbers on cells or vertices: cells and vertices with the same number stay
             together, groups ascend. "cells:NAME" and "vertices:NAME" tell arrays of one name apart; "sets" groups by
             the sets of cells.
@@ -121,11 +124,13 @@ def reorder(
         format: for a `Mesh` only, name of the format that it will be written in, some of which group cells by type;
             None: the one that it was read from.
         inplace: True changes and returns the mesh itself, or the arrays of the tuple. Gmsh's model needs it,
-            scikit-fem's meshes refuse it.
+            scikit-fem's meshes and tensors refuse it.
         **options: see `Options`.
 
     Returns:
-        The mesh in its new order, of the same type, and its orders.
+        The mesh in its new order, of the same type, and its orders. Those of a graph are of its nodes, type after type,
+        and of its edges, type after type, then its faces. A UserWarning names tensors that may belong to the nodes or
+        faces and were kept.
 
     Raises:
         InvalidArgument: an object that is no mesh or cannot be reordered, faulty arrays, an unknown method or array, a

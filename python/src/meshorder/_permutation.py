@@ -114,9 +114,10 @@ class Permutation:
         """Moves data of the items to their new places: entry k of the result is entry ``new_to_old[k]`` of ``a``.
 
         Args:
-            a: an array with n entries along ``axis``, a list or tuple of n entries, a pandas Series or DataFrame with n
-                entries along ``axis``, or an n × n SciPy matrix, whose rows and columns both move. Unchanged.
-            axis: the axis of an array or of a pandas object that the items lie along.
+            a: an array or a tensor of PyTorch with n entries along ``axis``, a list or tuple of n entries, a pandas
+                Series or DataFrame with n entries along ``axis``, or an n × n matrix of SciPy or PyTorch (COO or CSR),
+                whose rows and columns both move. Unchanged. Tensors stay on their device, and gradients flow through.
+            axis: the axis of an array, a tensor or a pandas object that the items lie along.
             out: for arrays, where to write the result: of the same shape and dtype, C-contiguous, without memory in
                 common with ``a``.
 
@@ -184,18 +185,19 @@ class Permutation:
         result = type(matrix)((moved[2], moved[1], moved[0]), shape=matrix.shape)
         return result.asformat(a.format)
 
-    def renumber(self, numbers: Any, out: NDArray[Any] | None = None) -> NDArray[Any]:
+    def renumber(self, numbers: Any, out: NDArray[Any] | None = None) -> Any:
         """Replaces numbers of items, such as a mesh's connectivity, by their new numbers.
 
         Entry i of the result is ``old_to_new[numbers[i]]``. A number keeps its place; `move` changes places.
 
         Args:
-            numbers: integers in 0 … n−1, of any shape. Unchanged unless it is ``out``.
-            out: a C-contiguous array of 32- or 64-bit integers of the same shape, to write to; ``out=numbers`` works in
-                place. None: a new array.
+            numbers: integers in 0 … n−1, of any shape, also a tensor of PyTorch. Unchanged unless it is ``out``.
+            out: for arrays, a C-contiguous array of 32- or 64-bit integers of the same shape, to write to;
+                ``out=numbers`` works in place. None: a new array.
 
         Returns:
-            ``out``, or a new array of the type of ``numbers``, which is int32 for integers of less than 32 bits.
+            ``out``, or a new array of the type of ``numbers``, which is int32 for integers of less than 32 bits; of a
+            tensor a tensor of its type, on its device.
 
         Raises:
             InvalidArgument: a number outside 0 … n−1, an array of other types, an ``out`` that does not fit.

@@ -38,7 +38,7 @@ class PygGraph(Host):
             self._sizes = [store.num_nodes for store in data.node_stores]
         for store, size in zip(data.node_stores, self._sizes):
             if size is None:
-                raise InvalidArgument(f"data: {_name(store)} does not tell its number of nodes; set its num_nodes")
+                raise InvalidArgument(f"{_name(store)}: the number of nodes is not known; set its num_nodes")
         starts = np.cumsum([0, *self._sizes], dtype=np.int64)
         #: first node and number of nodes of each type, by its key
         self._nodes = {store._key: (starts[k], self._sizes[k]) for k, store in enumerate(data.node_stores)}
@@ -108,12 +108,13 @@ class PygGraph(Host):
         return MeshOrder(dataclasses.replace(found, permutation=nodes), self._order_of_cells(nodes.old_to_new, elements))
 
     def _order_of_cells(self, new: NDArray[np.int32], elements: str) -> Order:
-        orders = [tensors.order_of_edges(*new[ends], elements) for ends in self._edges]
         whole = tensors.order_of_edges(new[:0], new[:0], elements)
-        blocks = [order.new_to_old for order in orders]
+        blocks: list[NDArray[Any]] = [
+            tensors.order_of_edges(new[ends[0]], new[ends[1]], elements).new_to_old for ends in self._edges
+        ]
         if self._face is not None:
             count, corners = self._face.shape[1], np.sort(new[self._face], axis=0)
-            blocks.append(np.arange(count) if elements == "original" else np.lexsort(corners).astype(np.int64))
+            blocks.append(np.arange(count) if elements == "original" else np.lexsort(corners))
             if whole.reason:
                 whole = dataclasses.replace(whole, reason=f"{whole.reason}; faces by their largest corners")
         starts = np.cumsum([0, *map(len, blocks)])
@@ -122,8 +123,9 @@ class PygGraph(Host):
 
     def _groups(self, given: Any) -> NDArray[Any] | None:
         """Returns groups that keep the graphs of a batch apart, and within them the groups given."""
-        groups = [store.get("batch") for store in self.given.node_stores]
-        found = [] if any(part is None for part in groups) else [np.concatenate([tensors.to_numpy(part) for part in groups])]
+        batches = [store.get("batch") for store in self.given.node_stores]
+        whole = bool(batches) and all(batch is not None for batch in batches)
+        found = [np.concatenate([tensors.to_numpy(batch) for batch in batches])] if whole else []
         found += [] if given is None else [integers(given, "groups")]
         if len(found) == 2 and len(found[0]) == len(found[1]):
             return np.unique(np.stack(found), axis=1, return_inverse=True)[1].reshape(-1)
@@ -164,36 +166,36 @@ class PygGraph(Host):
             raise InvalidArgument(f"data: {_name(store, key)} is a SparseTensor of torch_sparse; pass its edge_index instead")
         if tensors.is_sparse(value) and key in ("adj", "adj_t"):
             return tensors.moved_matrix(value, *(ends if key == "adj" else ends[::-1]))
-        owner = self._owner(store, key, value)
-        rows = of[owner] if owner else None
+        count, axis = self._rows(store, key, value)
+        owner = self._owner(store, key, count)
+        places = of[owner] if owner else None
         if tensors.is_sparse(value):
-            return value if rows is None else tensors.moved_matrix(value, rows, Permutation.identity(value.shape[1]))
-        if rows is not None:
-            axis = self.given.__cat_dim__(key, value, store) if hasattr(value, "shape") else 0
-            moved = rows.move(value, axis)
-        else:
-            moved = value
-        if tensors.is_tensor(value):
-            if self._holds_nodes(store, key, value):
-                if store._key is None:
-                    return ends[0].renumber(moved)
-                import torch
+            return value if places is None else tensors.moved_matrix(value, places, Permutation.identity(value.shape[1]))
+        moved = value if places is None else places.move(value, axis)
+        if not hasattr(value, "shape"):
+            return moved
+        if not self._holds_nodes(store, key, value):
+            doubts += self._doubts(store, key, value, owner, count)
+            return moved
+        if store._key is None:
+            return ends[0].renumber(moved)
+        both = [end.renumber(row) for end, row in zip(ends, moved)]
+        return tensors.stacked(both)
 
-                return torch.stack([end.renumber(row) for end, row in zip(ends, moved)])
-            doubts += self._doubts(store, key, value, owner)
-        return moved
-
-    def _owner(self, store: Any, key: str, value: Any) -> str | None:
-        """Returns what a value has a row for each of: "nodes", "edges" or "faces"; None for other values."""
-        if key == "num_nodes" or key.endswith("ptr"):
+    def _owner(self, store: Any, key: str, rows: int) -> str | None:
+        """Returns what a value of so many rows has a row for each of: "nodes", "edges" or "faces"; None for others."""
+        if rows < 0 or key.endswith("ptr"):
             return None
-        if self._face is not None and "face" in key and self._rows(store, key, value) == self._face.shape[1]:
+        if self._face is not None and "face" in key and rows == self._face.shape[1]:
             return "faces"
         return "nodes" if store.is_node_attr(key) else "edges" if store.is_edge_attr(key) else None
 
-    def _rows(self, store: Any, key: str, value: Any) -> int:
-        shape = getattr(value, "shape", ())
-        return int(shape[self.given.__cat_dim__(key, value, store)]) if shape else -1
+    def _rows(self, store: Any, key: str, value: Any) -> tuple[int, int]:
+        """Returns the number of rows of a value and the axis that they lie along; −1 rows for values without."""
+        if isinstance(value, (list, tuple)):
+            return len(value), 0
+        axis = self.given.__cat_dim__(key, value, store) if getattr(value, "shape", ()) else None
+        return (int(value.shape[axis]), axis) if isinstance(axis, int) else (-1, 0)
 
     def _holds_nodes(self, store: Any, key: str, value: Any) -> bool:
         """Returns whether a batch would add numbers of nodes to a tensor.
@@ -208,9 +210,9 @@ class PygGraph(Host):
             raise InvalidArgument(f"data: {_name(store, key)} holds numbers that are not of nodes; such data cannot move")
         return bool(step.any())
 
-    def _doubts(self, store: Any, key: str, value: Any, owner: str | None) -> list[str]:
-        """Returns a warning where name and shape do not tell whether a tensor moves."""
-        rows, name = self._rows(store, key, value), _name(store, key)
+    def _doubts(self, store: Any, key: str, value: Any, owner: str | None, rows: int) -> list[str]:
+        """Returns a warning where name and shape do not tell whether a value moves."""
+        name = _name(store, key)
         if owner == "nodes" and store._key is None and rows == store.num_edges:
             sure = key in _OF_NODES or key.endswith("mask") or "node" in key
             return [] if sure else [f"{name} has a row for each node, or edge: it was moved with the nodes"]

@@ -164,12 +164,19 @@ def renumbered(numbers: Any, permutation: Permutation) -> Any:
     return torch.tensor(permutation.old_to_new, dtype=numbers.dtype, device=numbers.device)[numbers.long()]
 
 
+def stacked(rows: Any) -> Any:
+    """Returns tensors, or arrays, as the rows of one."""
+    import torch
+
+    return torch.stack(rows) if is_tensor(rows[0]) else np.stack(rows)
+
+
 def moved_matrix(matrix: Any, rows: Permutation, columns: Permutation) -> Any:
     """Returns a sparse matrix with its rows and columns in their new places, in its form and on its device."""
     import torch
 
     old = entries(matrix)
-    ends = torch.stack([renumbered(end, places) for end, places in zip(old.indices(), (rows, columns))])
+    ends = stacked([renumbered(end, places) for end, places in zip(old.indices(), (rows, columns))])
     moved = torch.sparse_coo_tensor(ends, old.values(), matrix.shape).coalesce()
     return moved if matrix.layout == torch.sparse_coo else moved.to_sparse_csr()
 
