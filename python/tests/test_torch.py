@@ -369,6 +369,13 @@ def test_adjacency_in_sparse_form(geometric):
     p = torch.tensor(order.vertices.new_to_old).long()
     assert torch.equal(moved.adj_t.to_dense(), matrix.to_dense()[p][:, p])
     assert order.vertices.permutation == meshorder.order(data, "rcm").permutation
+    given.adj = matrix.to_dense()
+    assert torch.equal(meshorder.reorder(given, vertices="rcm")[0].adj, given.adj[p][:, p])
+    given.edge_attr = torch.rand(matrix._nnz())
+    with pytest.raises(InvalidArgument, match="edge_attr belongs to the entries of a sparse matrix"):
+        meshorder.reorder(given)
+    with pytest.raises(InvalidArgument, match="expected 3 × 3 nodes"):
+        meshorder.reorder(geometric.data.Data(x=torch.rand(3, 1), adj_t=matrix))
 
 
 def test_what_may_not_move_is_said(geometric):
@@ -376,13 +383,15 @@ def test_what_may_not_move_is_said(geometric):
     data.face = torch.randint(50, (3, 20))
     data.colour = torch.rand(20)
     data.train_idx = torch.arange(10)
+    data.distance = torch.rand(50, 50)
     with pytest.warns(UserWarning) as said:
         moved, order = meshorder.reorder(data, vertices="scrambled")
     words = sorted(str(one.message) for one in said)
-    assert len(words) == 3, words
+    assert len(words) == 4, words
     assert "colour was kept: 'face' in its name would move it" in words[0]
-    assert "strength has a row for each node, or edge" in words[1]
-    assert "train_idx was kept" in words[2]
+    assert "distance has a row and a column for each node: only its rows" in words[1]
+    assert "strength has a row for each node, or edge" in words[2]
+    assert "train_idx was kept" in words[3]
     assert all(one.filename == __file__ for one in said)
     assert torch.equal(moved.colour, data.colour) and torch.equal(moved.train_idx, data.train_idx)
     with warnings.catch_warnings():

@@ -165,7 +165,6 @@ class Permutation:
         if not torch.is_sparse(a):
             return torch.moved_rows(a, self, axis)
         _refuse(axis, out, "a matrix")
-        self._check_shape(tuple(a.shape), 1)
         return torch.moved_matrix(a, self, self)
 
     def _move_pandas(self, a: Any, axis: int, out: Any) -> Any:

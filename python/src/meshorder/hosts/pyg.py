@@ -20,7 +20,7 @@ from . import torch as tensors
 from .host import Host, Request, parts
 
 #: names of what belongs to nodes also where there are as many edges
-_OF_NODES = ("x", "y", "z", "pos", "batch", "norm", "normal", "feat", "n_id", "n_asset")
+_OF_NODES = ("x", "y", "z", "pos", "batch", "norm", "normal", "feat", "n_id")
 
 
 class PygGraph(Host):
@@ -60,7 +60,7 @@ class PygGraph(Host):
         start, count = np.hsplit(self._columns(store), 2)
         shape = tuple(store.edge_index.shape)
         if len(shape) != 2 or shape[0] != 2:
-            raise InvalidArgument(f"data: {_name(store, 'edge_index')}: expected the shape (2, E), not {shape}")
+            raise InvalidArgument(f"{_name(store, 'edge_index')}: expected the shape (2, E), not {shape}")
         return tensors.node_numbers(store.edge_index, _name(store, "edge_index"), count) + start
 
     def _points(self) -> NDArray[Any] | None:
@@ -76,8 +76,11 @@ class PygGraph(Host):
         for store in self.given.edge_stores:
             for key, matrix in store.items("adj", "adj_t"):
                 if tensors.is_sparse(matrix):  # others are refused when they would move
-                    ends = tensors.to_numpy(tensors.entries(matrix.detach()).indices())
-                    pairs.append((ends[::-1] if key == "adj_t" else ends) + self._columns(store)[:, :1])
+                    ends, (start, count) = tensors.to_numpy(tensors.entries(matrix.detach()).indices()), self._columns(store).T
+                    shape = tuple(matrix.shape[::-1] if key == "adj_t" else matrix.shape)
+                    if shape != tuple(count):
+                        raise InvalidArgument(f"{_name(store, key)}: expected {count[0]} × {count[1]} nodes, not {shape}")
+                    pairs.append((ends[::-1] if key == "adj_t" else ends) + start[:, np.newaxis])
         if not pairs and self._face is not None:
             pairs = [np.stack([self._face.ravel(), np.roll(self._face, 1, axis=0).ravel()])]
         return np.concatenate([np.zeros((2, 0), dtype=np.int64), *pairs], axis=1)
@@ -163,17 +166,21 @@ class PygGraph(Host):
     ) -> Any:
         """Returns a value of a store with its rows moved and its node numbers renewed."""
         if type(value).__name__ == "SparseTensor":
-            raise InvalidArgument(f"data: {_name(store, key)} is a SparseTensor of torch_sparse; pass its edge_index instead")
-        if tensors.is_sparse(value) and key in ("adj", "adj_t"):
-            return tensors.moved_matrix(value, *(ends if key == "adj" else ends[::-1]))
+            raise InvalidArgument(f"{_name(store, key)} is a SparseTensor of torch_sparse; pass its edge_index instead")
         count, axis = self._rows(store, key, value)
+        if tensors.is_sparse(value) and "adj" in key:
+            return tensors.moved_matrix(value, *(ends[::-1] if key.endswith("_t") else ends))
         owner = self._owner(store, key, count)
         places = of[owner] if owner else None
+        if owner and places is None:
+            raise InvalidArgument(f"{_name(store, key)} belongs to the entries of a sparse matrix; pass an edge_index instead")
         if tensors.is_sparse(value):
             return value if places is None else tensors.moved_matrix(value, places, Permutation.identity(value.shape[1]))
         moved = value if places is None else places.move(value, axis)
         if not hasattr(value, "shape"):
             return moved
+        if owner == "nodes" and "adj" in key and value.shape[1:2] == (count,):
+            return ends[0].move(moved, 1)
         if not self._holds_nodes(store, key, value):
             doubts += self._doubts(store, key, value, owner, count)
             return moved
@@ -207,12 +214,14 @@ class PygGraph(Host):
         step = np.asarray(step).ravel()
         sizes = [self._nodes[end][1] for end in _ends(store)]
         if step.any() and step.tolist() != sizes[: 1 if store._key is None else 2]:
-            raise InvalidArgument(f"data: {_name(store, key)} holds numbers that are not of nodes; such data cannot move")
+            raise InvalidArgument(f"{_name(store, key)} holds numbers that are not of nodes; such data cannot move")
         return bool(step.any())
 
     def _doubts(self, store: Any, key: str, value: Any, owner: str | None, rows: int) -> list[str]:
         """Returns a warning where name and shape do not tell whether a value moves."""
         name = _name(store, key)
+        if owner == "nodes" and value.shape[1:2] == (rows,) and rows > 1 and key not in _OF_NODES:
+            return [f"{name} has a row and a column for each node: only its rows were moved; 'adj' in its name moves both"]
         if owner == "nodes" and store._key is None and rows == store.num_edges:
             sure = key in _OF_NODES or key.endswith("mask") or "node" in key
             return [] if sure else [f"{name} has a row for each node, or edge: it was moved with the nodes"]

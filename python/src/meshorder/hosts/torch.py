@@ -175,6 +175,8 @@ def moved_matrix(matrix: Any, rows: Permutation, columns: Permutation) -> Any:
     """Returns a sparse matrix with its rows and columns in their new places, in its form and on its device."""
     import torch
 
+    if tuple(matrix.shape[:2]) != (len(rows), len(columns)):
+        raise InvalidArgument(f"a matrix of shape {tuple(matrix.shape)} cannot move as {len(rows)} × {len(columns)} items")
     old = entries(matrix)
     ends = stacked([renumbered(end, places) for end, places in zip(old.indices(), (rows, columns))])
     moved = torch.sparse_coo_tensor(ends, old.values(), matrix.shape).coalesce()
