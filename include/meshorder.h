@@ -52,15 +52,16 @@ enum {
 typedef int32_t mo_type;
 enum { MO_INT32 = 0, MO_UINT32 = 1, MO_INT64 = 2, MO_UINT64 = 3, MO_FLOAT = 4, MO_DOUBLE = 5 };
 
-/** An array that is read during the call. A null pointer to this structure, or size 0, stands for no array.
- */
+/** An array that is read during the call, aligned as its type. A null pointer to this structure, or size 0,
+ * stands for no array. */
 typedef struct mo_in {
   const void* data;
   int64_t size; /**< numbers, not bytes; >= 0 */
   mo_type type;
 } mo_in;
 
-/** An array that is written during the call. A null pointer to this structure: the result is not wanted. */
+/** An array that is written during the call, aligned as its type. A null pointer to this structure: the
+ * result is not wanted. */
 typedef struct mo_out {
   void* data;
   int64_t size; /**< numbers; must be that of the result */
@@ -160,6 +161,18 @@ MO_API mo_status mo_order_mesh(const mo_in* cell_offsets, const mo_in* cell_vert
                                const mo_out* vertex_old_to_new, const mo_out* cell_new_to_old,
                                const mo_out* cell_old_to_new, mo_result* vertex_result,
                                mo_result* cell_result);
+
+/**
+ * Orders a list of edges by the places of their ends, the larger first: a loop over them then touches new
+ * vertices nearly in their order. The ends are neither moved nor renumbered.
+ *
+ * @param ends               2 for each edge, from `base` on
+ * @param vertex_new_to_old  the order of the vertices, a bijection from `base` on
+ * @param base               0 or 1
+ * @param new_to_old         one integer for each edge: the old number of the edge at each new place
+ */
+MO_API mo_status mo_order_edges(const mo_in* ends, const mo_in* vertex_new_to_old, int32_t base,
+                                const mo_out* new_to_old);
 
 /**
  * Computes the Fiedler vector of every connected component: norm 1 and sum 0 in each, but for

@@ -95,6 +95,20 @@ MESHORDER_API Order order_elements(const CellsView& cells, const Permutation& ve
                                    std::string_view method = "auto", const OrderOptions& options = {},
                                    const PointsView& points = {});
 
+/// Orders a list of edges by the places of their ends, the larger first, ties by number: `lexmax` for edges.
+///
+/// A loop over the edges then touches new vertices nearly in their order, whatever method ordered these:
+/// springs that go by the smaller end run up to 1.5 times slower in orders along curves.
+///
+/// @param ends      2 m numbers in 0 … n − 1: the ends of one edge after another
+/// @param vertices  order of the n vertices
+/// @param run       threads, progress
+/// @return permutation of the m edges; `ends` are neither moved nor renumbered
+/// @throws InvalidArgument for an odd number of ends, and ends out of range
+/// @note O(m log m). Determinism as above.
+MESHORDER_API Permutation order_edges(const IndexView& ends, const Permutation& vertices,
+                                      const Run& run = {});
+
 /// Orders the vertices of a mesh, by the graph that joins those of a common element, and then its cells.
 ///
 /// @param mesh     n vertices, m cells

@@ -38,6 +38,7 @@ nb::dict described(const Quality& quality) {
   result["bandwidth"] = quality.bandwidth;
   result["profile"] = quality.profile;
   result["histogram_log2"] = quality.histogram_log2;
+  result["jump_share"] = quality.jump_share;
   return result;
 }
 

@@ -53,6 +53,30 @@ def test_every_kind_of_sparse_matrix_gives_the_same_order(kind, of):
     )
 
 
+def test_edges_go_by_the_larger_of_their_places(graph):
+    edges = np.argwhere(sp.triu(graph, 1).toarray())
+    vertices = meshorder.order(graph, "scrambled").permutation
+    order = meshorder.order_edges(edges, vertices)
+    moved = np.sort(vertices.renumber(order.move(edges)), axis=1)
+    assert np.array_equal(moved, moved[np.lexsort(moved.T)])
+    for wrong in (edges.ravel(), edges[:, :1], edges + 10**6, edges - 1.5):
+        with pytest.raises(meshorder.InvalidArgument):
+            meshorder.order_edges(wrong, vertices)
+
+
+def test_arrays_at_odd_addresses_are_read(graph):
+    matrix = sp.csr_array(graph)
+
+    def odd(a):
+        room = np.empty(a.nbytes + 1, dtype=np.uint8)[1:]
+        room[:] = np.frombuffer(a.tobytes(), dtype=np.uint8)
+        return room.view(a.dtype)
+
+    assert not odd(matrix.indptr).flags.aligned
+    order = meshorder.order((odd(matrix.indptr), odd(matrix.indices)), "rcm")
+    assert order.permutation == meshorder.order(matrix, "rcm").permutation
+
+
 def test_quality_is_that_of_the_moved_matrix(graph):
     order = meshorder.order(graph, "rcm")
     moved = sp.coo_array(order.permutation.move(graph))

@@ -51,6 +51,17 @@ bool is_real(mo_type type) { return type == MO_FLOAT || type == MO_DOUBLE; }
 constexpr const char* kIntegers = "MO_INT32, MO_UINT32, MO_INT64 and MO_UINT64";
 constexpr const char* kReals = "MO_FLOAT and MO_DOUBLE";
 
+/// Throws for an address that no array of that type has.
+void check_alignment(const void* data, mo_type type, const char* name) {
+  const std::size_t alignment = type == MO_INT32 || type == MO_UINT32 || type == MO_FLOAT
+                                    ? alignof(std::int32_t)
+                                : type == MO_DOUBLE ? alignof(double)
+                                                    : alignof(std::int64_t);
+  if (reinterpret_cast<std::uintptr_t>(data) % alignment == 0) return;
+  fail(name, "the address is not a multiple of " + std::to_string(alignment) +
+                 ": copy the array to an aligned one");
+}
+
 // Arrays that are read.
 
 /// Returns true if there is an array. Throws for one without an address or with a negative size.
@@ -58,6 +69,7 @@ bool is_given(const mo_in* array, const char* name) {
   if (array == nullptr || array->size == 0) return false;
   if (array->size < 0) fail(name, "the size is " + std::to_string(array->size) + ", must not be negative");
   if (array->data == nullptr) fail(name, "the data of " + std::to_string(array->size) + " numbers is null");
+  check_alignment(array->data, array->type, name);
   return true;
 }
 
@@ -126,6 +138,7 @@ void check_room(const mo_out* array, std::size_t count, const char* name) {
     fail(name, "room for " + std::to_string(array->size) + " numbers, must be for " + std::to_string(count));
   }
   if (array->data == nullptr && count > 0) fail(name, "the data is null");
+  check_alignment(array->data, array->type, name);
 }
 
 void check_integers(const mo_out* array, std::size_t count, const char* name) {
@@ -407,6 +420,20 @@ mo_status mo_order_mesh(const mo_in* cell_offsets, const mo_in* cell_vertices, c
     write(cells.permutation.old_to_new(), base, cell_old_to_new, "cell_old_to_new");
     write(report_of(vertices), vertex_result);
     write(report_of(cells), cell_result);
+  });
+}
+
+mo_status mo_order_edges(const mo_in* ends, const mo_in* vertex_new_to_old, int32_t base,
+                         const mo_out* new_to_old) {
+  return guarded([&] {
+    if (vertex_new_to_old == nullptr) fail("vertex_new_to_old", "the map is null");
+    const IndexView given = integers(ends, "ends");
+    check_integers(new_to_old, given.size() / 2, "new_to_old");
+    const Permutation vertices =
+        permutation_of(integers(vertex_new_to_old, "vertex_new_to_old"), base_of(base));
+    std::vector<std::int64_t> from_zero(given.size());
+    for (std::size_t k = 0; k < given.size(); ++k) from_zero[k] = given[k] - base;
+    write(order_edges(from_zero, vertices).new_to_old(), base, new_to_old, "new_to_old");
   });
 }
 

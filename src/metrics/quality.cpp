@@ -2,6 +2,7 @@
 #include "base/arena.hpp"
 #include "graph/clean_graph.hpp"
 #include "metrics/edge_span.hpp"
+#include "metrics/first_touches.hpp"
 #include "metrics/sparsity_pattern.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/quality.hpp>
@@ -17,7 +18,8 @@ Quality quality_of(GraphRef graph, const Permutation& order) {
           .mean_log2_span = span.mean_log2,
           .bandwidth = span.max,
           .profile = profile(graph, order),
-          .histogram_log2 = span_histogram_log2(graph, order)};
+          .histogram_log2 = span_histogram_log2(graph, order),
+          .jump_share = jump_share(graph, order)};
 }
 
 inline namespace v0_2 {

@@ -77,6 +77,13 @@ Order order_elements(const CellsView& cells, const Permutation& vertices, std::s
   });
 }
 
+Permutation order_edges(const IndexView& ends, const Permutation& vertices, const Run& run) {
+  if (ends.size() % 2 != 0)
+    throw InvalidArgument("order_edges: " + std::to_string(ends.size()) + " ends, must be two for each edge");
+  return order_elements(CellsView::uniform(Shape::line, 2, ends), vertices, "lexmax", {.run = run})
+      .permutation;
+}
+
 MeshOrder order_mesh(const MeshView& mesh, const MeshMethods& methods, const OrderOptions& options) {
   return in_call(options.run, [&] {
     const Stopwatch vertex_time;

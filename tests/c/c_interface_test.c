@@ -196,6 +196,33 @@ static void test_mesh(void) {
                       NULL, NULL, NULL) == MO_INVALID_ARGUMENT);
 }
 
+/* A path 1 - 2 - 3 - 4 whose vertices are taken in the order 2, 4, 1, 3. */
+static void test_edges(void) {
+  static const int64_t pairs[6] = {1, 2, 3, 2, 3, 4};
+  static const int32_t order[4] = {2, 4, 1, 3};
+  const mo_in ends = {pairs, COUNT(pairs), MO_INT64};
+  const mo_in odd = {pairs, 5, MO_INT64};
+  const mo_in outside = {pairs, COUNT(pairs), MO_INT64};
+  const mo_in vertices = in32(order, COUNT(order));
+  int32_t new_to_old[3];
+  const mo_out edges = out32(new_to_old, 3);
+  CHECK(mo_order_edges(&ends, &vertices, 1, &edges) == MO_OK);
+  /* places (2, 0), (3, 0), (3, 1) */
+  CHECK(new_to_old[0] == 1 && new_to_old[1] == 2 && new_to_old[2] == 3);
+  CHECK(mo_order_edges(&odd, &vertices, 1, &edges) == MO_INVALID_ARGUMENT);
+  CHECK(mo_order_edges(&outside, &vertices, 0, &edges) == MO_INVALID_ARGUMENT);
+  CHECK(mo_order_edges(&ends, NULL, 1, &edges) == MO_INVALID_ARGUMENT);
+}
+
+/* An address between those that an array can have. */
+static void test_alignment(void) {
+  static int32_t room[9];
+  const mo_in offsets = {(const char*)room + 1, 3, MO_INT32};
+  const mo_in none = {NULL, 0, MO_INT32};
+  CHECK(mo_order_graph(&offsets, &none, NULL, NULL, 0, NULL, NULL, NULL, NULL) == MO_INVALID_ARGUMENT);
+  CHECK(strstr(mo_last_error(), "offsets: the address is not a multiple of 4") != NULL);
+}
+
 static void test_fiedler(void) {
   enum { LENGTH = 10 };
   const double lambda2 = 0.0978869674096928558; /* 2 - 2 cos(pi / 10) */
@@ -447,6 +474,8 @@ int main(void) {
   test_order_of_any_integers();
   test_defaults();
   test_mesh();
+  test_edges();
+  test_alignment();
   test_fiedler();
   test_mistakes();
   test_smaller_structures();

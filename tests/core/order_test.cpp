@@ -18,7 +18,9 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace meshorder {
@@ -474,6 +476,30 @@ TEST(OrderElements, RefusesFaultyCells) {
   EXPECT_THAT(refused(CellsView::mixed(falling, first)), HasSubstr("offset 2 is less"));
   EXPECT_THAT(refused(CellsView::mixed(offsets, tets)), HasSubstr("number of entries, 8"));
   EXPECT_THAT(refusal([&] { (void)order_elements({}, four, "best"); }), HasSubstr("'best'; known are auto"));
+}
+
+TEST(OrderEdges, GoesByTheLargerPlaceOfTheTwo) {
+  const CsrGraph graph = test::random_connected(200, 500, 8);
+  const Permutation vertices = test::shuffled(200, 3);
+  std::vector<Index> ends;
+  std::vector<std::tuple<Index, Index, Index>> expected;  // larger place, smaller place, edge
+  for (Index v = 0; v < 200; ++v) {
+    for (const Index u : graph[v]) {
+      if (u > v) continue;
+      const auto [low, high] = std::minmax(vertices.old_to_new()[u], vertices.old_to_new()[v]);
+      expected.emplace_back(high, low, static_cast<Index>(expected.size()));
+      ends.insert(ends.end(), {v, u});
+    }
+  }
+  std::ranges::sort(expected);
+  const Permutation order = order_edges(ends, vertices);
+  ASSERT_EQ(order.size(), index_size(expected));
+  for (Index k = 0; k < order.size(); ++k) EXPECT_EQ(order.new_to_old()[k], std::get<2>(expected[k]));
+  EXPECT_EQ(order_edges({}, vertices).size(), 0);
+  EXPECT_THAT(refusal([&] { (void)order_edges(std::span(ends).first(3), vertices); }),
+              HasSubstr("two for each"));
+  ends[5] = 200;
+  EXPECT_THAT(refusal([&] { (void)order_edges(ends, vertices); }), HasSubstr("200"));
 }
 
 TEST(OrderMesh, IsTheOrderOfTheVertexGraphAndThenOfTheElements) {

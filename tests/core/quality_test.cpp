@@ -69,7 +69,8 @@ TEST(Quality, OfAPathIsThatOfEdgesOfSpanOne) {
                               .mean_log2_span = 0,
                               .bandwidth = 1,
                               .profile = 49,
-                              .histogram_log2 = {49}}));
+                              .histogram_log2 = {49},
+                              .jump_share = 1.0 / 7}));
 }
 
 TEST(Quality, OfAGridInRowsIsKnown) {

@@ -27,7 +27,7 @@ from ._graphs import Fiedler, FiedlerComponent, Order, Quality, fiedler, quality
 from ._meshes import Mesh, MeshOrder
 from ._methods import MethodInfo, load_methods, methods, register, unregister
 from ._options import Options
-from ._orders import order, order_mesh, reorder
+from ._orders import order, order_edges, order_mesh, reorder
 from ._payoff import Advice, Calibration, Candidate, Comparison, advise, calibrate, compare
 from ._permutation import Permutation
 from ._show import show
@@ -37,7 +37,7 @@ __all__ = [
     "Advice", "Calibration", "Candidate", "Comparison", "Error", "Fiedler", "FiedlerComponent", "InputError",
     "InternalError", "InvalidArgument", "Mesh", "MeshOrder", "MethodInfo", "Options", "Order", "Permutation",
     "Quality", "Stopped", "TooLarge", "Unavailable", "__version__", "advise", "build_info", "calibrate", "compare",
-    "fiedler", "load_methods", "make_mesh", "methods", "order", "order_mesh", "quality", "read", "register",
+    "fiedler", "load_methods", "make_mesh", "methods", "order", "order_edges", "order_mesh", "quality", "read", "register",
     "reorder", "show", "to_bytes", "unregister", "write",
 ]  # fmt: skip
 

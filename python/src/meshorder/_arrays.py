@@ -33,7 +33,7 @@ def _as_array(values: Any, name: str) -> NDArray[Any]:
 
 
 def _native(array: NDArray[Any], dtype: Any) -> NDArray[Any]:
-    return np.ascontiguousarray(array, dtype=dtype)
+    return np.require(array, dtype=dtype, requirements=["C", "A"])
 
 
 def integers(values: Any, name: str, rank: int | None = 1) -> NDArray[Any]:

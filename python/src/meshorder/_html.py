@@ -85,6 +85,7 @@ def quality(of: Quality) -> str:
         "edges": f"{of.edges:,}",
         "mean span": f"{of.mean_span:,.1f}",
         "mean log₂ span": f"{of.mean_log2_span:.2f}",
+        "lines first read out of order": f"{100 * of.jump_share:.0f} %",
         "bandwidth": f"{of.bandwidth:,}",
         "profile": f"{of.profile:,}",
     }

@@ -5,9 +5,13 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
+from . import _arrays
 from ._errors import InvalidArgument
 from ._graphs import Order, order_graph
 from ._meshes import MeshOrder, order_arrays
+from ._permutation import Permutation
 from .hosts import find_host, host_of
 from .hosts.host import Request
 
@@ -52,6 +56,33 @@ def order(
     if points is not None or weights is not None:
         raise InvalidArgument("order: points and weights are for graphs; a mesh has its own points, and no weights")
     return host.order(method, "original", options).vertices
+
+
+def order_edges(edges: Any, vertices: Permutation) -> Permutation:
+    """Orders a list of edges by the new places of their ends, the larger first.
+
+    A loop over the edges then touches new vertices nearly in their order, whatever method ordered these.
+
+    Args:
+        edges: one row of two vertex numbers for each edge.
+        vertices: the order of the vertices.
+
+    Returns:
+        The order of the edges: ``vertices.renumber(order.move(edges))`` is the new list.
+
+    Raises:
+        InvalidArgument: ``edges`` have another shape, or a number that is no vertex.
+
+    Example::
+
+        order = meshorder.order(matrix).permutation
+        edges = order.renumber(meshorder.order_edges(edges, order).move(edges))
+    """
+    pairs = _arrays.integers(edges, "edges", rank=2)
+    if pairs.shape[1] != 2:
+        raise InvalidArgument(f"edges: expected two vertices for each, not the shape {pairs.shape}")
+    places = np.sort(vertices.renumber(pairs), axis=1)
+    return Permutation(new_to_old=np.lexsort((places[:, 0], places[:, 1])))
 
 
 def order_mesh(
