@@ -117,7 +117,7 @@ void add_seed_option(CLI::App& subcommand, std::uint64_t& seed) {
       ->capture_default_str();
 }
 
-void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
+void add_workload_option(CLI::App& subcommand, OrderOptions& options) {
   subcommand
       .add_option_function<std::string>(
           "--for", [&options](const std::string& use) { options.workload = parse_workload(use); },
@@ -125,6 +125,10 @@ void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
               join(kWorkloads, [](Workload use) { return to_string(use); }))
       ->type_name("USE")
       ->default_str(std::string(to_string(options.workload)));
+}
+
+void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
+  add_workload_option(subcommand, options);
   add_seed_option(subcommand, options.seed);
   subcommand
       .add_option("--tolerance", options.tolerance,

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
 class App;
@@ -46,6 +47,7 @@ void add_order(CLI::App& subcommand);
 void add_apply(CLI::App& subcommand);
 void add_info(CLI::App& subcommand);
 void add_compare(CLI::App& subcommand);
+void add_try(CLI::App& subcommand);
 void add_openfoam(CLI::App& subcommand);
 void add_calibrate(CLI::App& subcommand);
 void add_methods(CLI::App& subcommand);
@@ -55,6 +57,10 @@ void add_simulate(CLI::App& subcommand);
 void add_reproduce(CLI::App& subcommand);
 void add_serve_steps(CLI::App& subcommand);
 void add_report(CLI::App& subcommand);
+
+/// Takes the words after `--` off the arguments of `try`: they are the program that it runs, and no options
+/// of this one.
+void take_program_to_try(std::vector<std::string>& arguments);
 
 /// What --quiet leaves, in the words of the help; of a subcommand that does nothing but list something.
 inline constexpr const char* kQuiet = "Print nothing but errors, and the object of --json";
@@ -68,6 +74,9 @@ void add_reading_options(CLI::App& subcommand);
 
 /// Adds --seed.
 void add_seed_option(CLI::App& subcommand, std::uint64_t& seed);
+
+/// Adds --for.
+void add_workload_option(CLI::App& subcommand, OrderOptions& options);
 
 /// Adds --for, --seed and --tolerance.
 void add_ordering_options(CLI::App& subcommand, OrderOptions& options);

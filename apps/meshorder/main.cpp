@@ -44,6 +44,7 @@ constexpr std::array kSubcommands{
     Subcommand{"apply", meshorder::command::add_apply},
     Subcommand{"info", meshorder::command::add_info},
     Subcommand{"compare", meshorder::command::add_compare},
+    Subcommand{"try", meshorder::command::add_try},
     Subcommand{"openfoam", meshorder::command::add_openfoam},
     Subcommand{"calibrate", meshorder::command::add_calibrate},
     Subcommand{"simulate", meshorder::command::add_simulate},
@@ -62,6 +63,7 @@ void describe(CLI::App& app) {
       "  meshorder order  dragon.veg -o ordered.veg   order by the method chosen for the mesh\n"
       "  meshorder info   dragon.veg                  counts and spans; is it in a good order?\n"
       "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
+      "  meshorder try wing.su2 -- SU2_CFD wing.cfg {} your own program in several orders\n"
       "  meshorder openfoam cavity                    order the cells of an OpenFOAM case\n"
       "  meshorder calibrate                          measure this machine, for what info predicts\n"
 #ifdef MESHORDER_HAS_LAB
@@ -96,6 +98,7 @@ int run(std::vector<std::string> arguments) {
     meshorder::command::write_stderr(app.help());
     return kBadInput;
   }
+  meshorder::command::take_program_to_try(arguments);
   if (const auto fault = meshorder::command::option_without_value(arguments))
     return report_failure(*fault, kBadInput);
   arguments = meshorder::command::with_words_as_options(std::move(arguments));

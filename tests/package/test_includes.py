@@ -129,6 +129,7 @@ MAY_OPEN = {
     "src/payoff/machine.cpp", "lab/study/folder_lock.cpp", "lab/study/study_turns.cpp", "lab/models/cache.cpp",
     "apps/meshorder/standard_streams.cpp", "apps/meshorder-models/surface.cpp",
     "apps/meshorder/output_deputy.cpp", "apps/meshorder/restrictions.cpp", "src/io/stream/scratch.cpp",
+    "apps/meshorder/trial_program.cpp",
 }
 
 

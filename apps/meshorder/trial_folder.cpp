@@ -1,0 +1,222 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "trial_folder.hpp"
+
+#include "base/input_file.hpp"
+#include "io/stream/output_place.hpp"
+#include <meshorder/error.hpp>
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <functional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace meshorder::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMostCopied = std::uintmax_t{64} << 20U;
+constexpr std::size_t kMostFiles = 10'000;
+
+bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
+
+/// Calls `take` with the files below a folder, and the links to folders, by their paths in it.
+void for_each_file(const fs::path& folder, const std::function<void(const fs::directory_entry&)>& take) {
+  std::error_code code;
+  constexpr auto kOptions = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator entry(folder, kOptions, code), end; !code && entry != end;
+       entry.increment(code)) {
+    if (is_hidden(entry->path())) {
+      entry.disable_recursion_pending();
+    } else if (std::error_code ignored; entry->is_symlink(ignored) || entry->is_regular_file(ignored)) {
+      take(*entry);
+    }
+  }
+}
+
+}  // namespace
+
+TrialFolder::TrialFolder(const fs::path& mesh, const std::vector<std::string>& with)
+    : name_(mesh.filename().string()) {
+  fs::create_directory(run());
+  find_companions(meshorder::folder_of(fs::absolute(mesh)), with);
+  companions_.erase(name_);
+  for (auto& [name, companion] : companions_) place(name, companion);
+  fs::copy_file(mesh, add_order(0) / name_);
+  complete_order(0);
+}
+
+fs::path TrialFolder::folder_of_order(std::size_t order) const {
+  return private_.path() / fmt::format("order{}", order);
+}
+
+TrialFolder::Stamp TrialFolder::stamp_of(const fs::path& path, bool follow) {
+  struct stat status {};
+  const int failed = follow ? ::stat(path.c_str(), &status) : ::lstat(path.c_str(), &status);
+  if (failed != 0) return {};
+#ifdef __APPLE__
+  const timespec time = status.st_mtimespec;
+#else
+  const timespec time = status.st_mtim;
+#endif
+  return {status.st_ino, static_cast<std::uint64_t>(status.st_size), time.tv_sec, time.tv_nsec};
+}
+
+std::size_t TrialFolder::hash_of(const fs::path& path) {
+  constexpr std::size_t kBlock = std::size_t{1} << 20U;
+  constexpr std::size_t kFactor = 1099511628211U;
+  InputFile file(path);
+  std::string block(kBlock, '\0');
+  std::size_t hash = 0;
+  for (std::size_t read = 0; (read = file.read(block)) > 0;)
+    hash = hash * kFactor + std::hash<std::string_view>{}(std::string_view(block).substr(0, read));
+  return hash;
+}
+
+void TrialFolder::find_companions(const fs::path& folder, const std::vector<std::string>& with) {
+  std::vector<std::pair<std::uintmax_t, std::string>> sizes;
+  const auto add = [&](const fs::directory_entry& entry) {
+    std::error_code ignored;
+    const std::string name = entry.path().lexically_relative(folder).string();
+    const bool is_file = entry.is_regular_file(ignored);
+    if (!is_file && !entry.is_directory(ignored)) return;  // a link that leads nowhere, a device
+    sizes.emplace_back(is_file ? entry.file_size(ignored) : kMostCopied, name);
+    companions_[name].source = entry.path();
+    if (companions_.size() <= kMostFiles) return;
+    throw InvalidArgument(fmt::format(
+        "{}: more than {} files are beside the mesh; name those that the program needs by --with, or "
+        "put the mesh and them into a folder of their own",
+        folder.string(), kMostFiles));
+  };
+  if (with.empty()) for_each_file(folder, add);
+  for (const std::string& name : with) {
+    const fs::directory_entry entry(folder / name);
+    if (name.find('/') != std::string::npos || name == ".." || !entry.exists())
+      throw InvalidArgument(fmt::format("--with {}: there is no such file or folder beside the mesh", name));
+    if (entry.is_regular_file() || entry.is_symlink()) add(entry);
+    if (entry.is_directory() && !entry.is_symlink()) for_each_file(entry.path(), add);
+  }
+  std::sort(sizes.begin(), sizes.end());
+  std::uintmax_t copied = 0;
+  for (const auto& [size, name] : sizes) {
+    if (name == name_) continue;
+    companions_[name].is_copied = size < kMostCopied && copied + size <= kMostCopied;
+    copied += size;
+  }
+}
+
+void TrialFolder::place(const std::string& name, Companion& companion) const {
+  const fs::path here = run() / name;
+  std::error_code ignored;
+  fs::create_directories(here.parent_path(), ignored);
+  fs::remove_all(here, ignored);
+  if (companion.is_copied) {
+    fs::copy_file(companion.source, here, ignored);  // one that cannot be read, the program cannot either
+  } else {
+    fs::create_symlink(companion.source, here, ignored);
+    companion.there = stamp_of(companion.source, true);
+  }
+  companion.here = stamp_of(here, false);
+}
+
+fs::path TrialFolder::add_order(std::size_t order) {
+  fs::create_directory(folder_of_order(order));
+  if (orders_.size() <= order) orders_.resize(order + 1);
+  return folder_of_order(order);
+}
+
+void TrialFolder::complete_order(std::size_t order) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_of_order(order))) {
+    const std::string name = entry.path().filename().string();
+    orders_[order][name] = {stamp_of(entry.path(), false), hash_of(entry.path())};
+    // a file beside the mesh that belongs to it: a part of order 0
+    const auto companion = companions_.find(name);
+    if (companion == companions_.end()) continue;
+    const fs::path original = folder_of_order(0) / name;
+    fs::copy_file(companion->second.source, original);
+    fs::remove(run() / name);
+    orders_[0][name] = {stamp_of(original, false), hash_of(original)};
+    companions_.erase(companion);
+  }
+}
+
+void TrialFolder::drop_order(std::size_t order) {
+  fs::remove_all(folder_of_order(order));
+  orders_.resize(order);
+}
+
+bool TrialFolder::is_same(std::size_t a, std::size_t b) const {
+  return std::equal(orders_[a].begin(), orders_[a].end(), orders_[b].begin(), orders_[b].end(),
+                    [](const auto& x, const auto& y) {
+                      return x.first == y.first && x.second.hash == y.second.hash &&
+                             x.second.stamp.size == y.second.stamp.size;
+                    });
+}
+
+void TrialFolder::begin_run(std::size_t order) {
+  for (const auto& [name, file] : orders_[order]) fs::rename(folder_of_order(order) / name, run() / name);
+}
+
+void TrialFolder::end_run(std::size_t order, const fs::path& kept) {
+  std::string changed;
+  if (!kept.empty()) keep(kept);
+  for (auto& [name, file] : orders_[order]) {
+    const fs::path here = run() / name;
+    const Stamp now = stamp_of(here, false);
+    if (now != file.stamp && (!fs::is_regular_file(fs::symlink_status(here)) || hash_of(here) != file.hash))
+      changed = name;
+    file.stamp = now;
+    std::error_code ignored;
+    fs::rename(here, folder_of_order(order) / name, ignored);
+  }
+  if (!changed.empty()) {
+    throw InvalidArgument(
+        fmt::format("the program changes its mesh, {}: only programs that leave it as it is can be tried, "
+                    "for instance one "
+                    "that works on a copy",
+                    changed));
+  }
+  remove_new();
+  restore();
+}
+
+void TrialFolder::keep(const fs::path& kept) const {
+  constexpr auto kOptions = fs::copy_options::recursive | fs::copy_options::copy_symlinks;
+  fs::create_directories(kept);
+  fs::copy(run(), kept, kOptions);
+  if (fs::exists(output())) fs::copy(output(), kept / "out", kOptions);
+  fs::copy_file(log().string() + ".out", kept / "stdout.txt", fs::copy_options::overwrite_existing);
+  fs::copy_file(log().string() + ".err", kept / "stderr.txt", fs::copy_options::overwrite_existing);
+}
+
+void TrialFolder::remove_new() const {
+  std::error_code ignored;
+  fs::remove_all(output(), ignored);
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(run()))
+    found.push_back(entry.path());
+  // from the back: what is in a folder comes before it
+  for (auto path = found.rbegin(); path != found.rend(); ++path) {
+    const std::string name = path->lexically_relative(run()).string();
+    if (!companions_.contains(name)) fs::remove(*path, ignored);  // leaves folders that are not empty
+  }
+}
+
+void TrialFolder::restore() {
+  for (auto& [name, companion] : companions_) {
+    if (!companion.is_copied && stamp_of(companion.source, true) != companion.there &&
+        !fs::is_directory(companion.source)) {
+      throw InvalidArgument(fmt::format(
+          "{}: it changed while the program ran, which reached it by a link as it is large; have the program "
+          "write to {{out}}",
+          companion.source.string()));
+    }
+    if (stamp_of(run() / name, false) != companion.here) place(name, companion);
+  }
+}
+
+}  // namespace meshorder::command

@@ -1,0 +1,88 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/stream/private_folder.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <ctime>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace meshorder::command {
+
+/// A private folder in which a program runs on a mesh in one order after another, with copies of the files
+/// beside the mesh. A run finds the same files at the same paths as every other, and what it leaves is
+/// removed.
+///
+/// Files beside the mesh are copied, the smallest first, up to 64 MiB; the larger ones are links, and so are
+/// links to folders. Hidden ones are left out. A program can write into what is linked: this is noticed after
+/// the run, but not prevented.
+class TrialFolder {
+ public:
+  /// @param mesh  the mesh as it is, order 0
+  /// @param with  names of files and folders beside the mesh to copy; empty: all
+  /// Throws InvalidArgument for a name that is not there and for more than 10,000 files.
+  TrialFolder(const std::filesystem::path& mesh, const std::vector<std::string>& with);
+
+  /// Returns the program's current directory.
+  [[nodiscard]] std::filesystem::path run() const { return private_.path() / "run"; }
+  /// Returns the prefix of the files that get what the program prints.
+  [[nodiscard]] std::filesystem::path log() const { return private_.path() / "log"; }
+  /// Returns a path for outputs at which nothing is when a run begins.
+  [[nodiscard]] std::filesystem::path output() const { return private_.path() / "out"; }
+
+  /// Makes and returns the folder of an order, into which its files are written.
+  std::filesystem::path add_order(std::size_t order);
+  /// Takes note of the files that were written for an order.
+  void complete_order(std::size_t order);
+  /// Removes the files of the order that was added last.
+  void drop_order(std::size_t order);
+  /// Returns whether two orders have the same files.
+  [[nodiscard]] bool is_same(std::size_t a, std::size_t b) const;
+
+  /// Puts the files of an order in place.
+  void begin_run(std::size_t order);
+  /// Takes them away again, restores the files beside the mesh and removes everything else. Where `kept` is
+  /// not empty, first copies what the program wrote to this folder. Throws InvalidArgument if the program
+  /// changed its mesh or a file that is linked.
+  void end_run(std::size_t order, const std::filesystem::path& kept = {});
+
+ private:
+  /// By which a change of a file is noticed.
+  struct Stamp {
+    std::uint64_t inode = 0;
+    std::uint64_t size = 0;
+    std::int64_t seconds = 0;
+    std::int64_t nanoseconds = 0;
+    bool operator==(const Stamp&) const = default;
+  };
+  struct Companion {
+    std::filesystem::path source;
+    bool is_copied = true;
+    Stamp here;   ///< of the copy
+    Stamp there;  ///< of the file that is linked
+  };
+  struct MeshFile {
+    Stamp stamp;
+    std::size_t hash = 0;
+  };
+
+  static Stamp stamp_of(const std::filesystem::path& path, bool follow);
+  static std::size_t hash_of(const std::filesystem::path& path);
+  [[nodiscard]] std::filesystem::path folder_of_order(std::size_t order) const;
+  void find_companions(const std::filesystem::path& folder, const std::vector<std::string>& with);
+  void place(const std::string& name, Companion& companion) const;
+  void keep(const std::filesystem::path& kept) const;
+  void remove_new() const;
+  void restore();
+
+  PrivateFolder private_;
+  std::string name_;  ///< of the mesh
+  std::map<std::string, Companion> companions_;
+  std::vector<std::map<std::string, MeshFile>> orders_;
+};
+
+}  // namespace meshorder::command

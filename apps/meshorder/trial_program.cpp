@@ -1,0 +1,310 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "trial_program.hpp"
+
+#include "base/input_file.hpp"
+#include "base/stopwatch.hpp"
+#include "base/text.hpp"
+#include "payoff/quantities.hpp"
+#include <meshorder/error.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+
+namespace meshorder::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kEndings{SIGINT, SIGTERM, SIGHUP};
+constexpr int kCannotExecute = 127;
+constexpr std::size_t kLongestLine = 300;
+
+bool is_executable(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored) && ::access(path.c_str(), X_OK) == 0;
+}
+
+double seconds_of(const timeval& time) {
+  constexpr double kMicro = 1e-6;
+  return static_cast<double>(time.tv_sec) + kMicro * static_cast<double>(time.tv_usec);
+}
+
+sigset_t awaited_signals() {
+  sigset_t signals;
+  ::sigemptyset(&signals);
+  ::sigaddset(&signals, SIGCHLD);
+  for (const int signal : kEndings) ::sigaddset(&signals, signal);
+  return signals;
+}
+
+/// Waits for one of the blocked signals, for at most a tenth of a second; returns it, 0 if none came.
+int wait_for_signal(const sigset_t& signals) {
+#ifdef __linux__
+  constexpr timespec kLongest{.tv_sec = 0, .tv_nsec = 100'000'000};
+  return std::max(0, ::sigtimedwait(&signals, nullptr, &kLongest));
+#else
+  constexpr timespec kStep{.tv_sec = 0, .tv_nsec = 1'000'000};
+  (void)::nanosleep(&kStep, nullptr);
+  sigset_t pending;
+  ::sigpending(&pending);
+  for (const int signal : kEndings) {
+    if (::sigismember(&signals, signal) == 1 && ::sigismember(&pending, signal) == 1) return signal;
+  }
+  return 0;
+#endif
+}
+
+// ---- the child
+
+/// Says by its errno why the child could not begin.
+[[noreturn]] void give_up(int report) {
+  const int error = errno;
+  (void)!::write(report, &error, sizeof error);
+  ::_exit(kCannotExecute);
+}
+
+void open_as(const char* path, int flags, int descriptor, int report) {
+  constexpr mode_t kOwn = 0600;
+  const int opened = ::open(path, flags, kOwn);
+  if (opened < 0 || ::dup2(opened, descriptor) < 0) give_up(report);
+  if (opened != descriptor) ::close(opened);
+}
+
+/// What the child needs, made before the fork: afterwards it calls system functions alone.
+struct Prepared {
+  explicit Prepared(const TrialCommand& command)
+      : folder(command.folder.string()),
+        out(command.log.string() + ".out"),
+        err(command.log.string() + ".err"),
+        directory("PWD=" + folder) {
+    for (const std::string& word : command.words) words.push_back(word.c_str());
+    words.push_back(nullptr);
+    for (char** entry = environ; *entry != nullptr; ++entry) {
+      if (!std::string_view(*entry).starts_with("PWD=")) environment.push_back(*entry);
+    }
+    environment.push_back(directory.c_str());
+    environment.push_back(nullptr);
+  }
+  std::string folder;
+  std::string out;
+  std::string err;
+  std::string directory;
+  std::vector<const char*> words;
+  std::vector<const char*> environment;
+};
+
+[[noreturn]] void become(const Prepared& prepared, const sigset_t& signals_before, pid_t parent, int report) {
+  (void)::setpgid(0, 0);
+#ifdef __linux__
+  (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(kCannotExecute);
+#else
+  (void)parent;
+#endif
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGCHLD, SIGXFSZ})
+    (void)std::signal(signal, SIG_DFL);
+  if (::chdir(prepared.folder.c_str()) != 0) give_up(report);
+  open_as("/dev/null", O_RDONLY, STDIN_FILENO, report);
+  constexpr int kAnew = O_WRONLY | O_CREAT | O_TRUNC;
+  open_as(prepared.out.c_str(), kAnew, STDOUT_FILENO, report);
+  open_as(prepared.err.c_str(), kAnew, STDERR_FILENO, report);
+  ::sigprocmask(SIG_SETMASK, &signals_before, nullptr);
+  // NOLINTBEGIN(cppcoreguidelines-pro-type-const-cast): execve changes neither
+  ::execve(prepared.words.front(), const_cast<char* const*>(prepared.words.data()),
+           const_cast<char* const*>(prepared.environment.data()));
+  // NOLINTEND(cppcoreguidelines-pro-type-const-cast)
+  give_up(report);
+}
+
+// ---- the process that waits
+
+/// Returns the children of this process that have not been waited for; none where the system does not say.
+std::vector<pid_t> children() {
+  std::vector<pid_t> result;
+#ifdef __linux__
+  const fs::path name = "children";
+  std::error_code code;
+  for (fs::directory_iterator task("/proc/self/task", code), end; !code && task != end;
+       task.increment(code)) {
+    std::ifstream list(task->path() / name);
+    for (pid_t child = 0; list >> child;) result.push_back(child);
+  }
+#endif
+  return result;
+}
+
+/// The processes of a run.
+class Processes {
+ public:
+  explicit Processes(pid_t program) : program_(program) {}
+
+  /// Takes in those that have ended; returns whether the program is among them.
+  bool reap(TrialRun& run) {
+    bool has_ended = false;
+    int status = 0;
+    struct rusage usage {};
+    for (pid_t ended = 0; (ended = ::wait4(-1, &status, WNOHANG, &usage)) > 0;) {
+      add(usage, run);
+      if (ended != program_) continue;
+      has_ended = true;
+      run.exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+      run.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    }
+    return has_ended;
+  }
+
+  void kill_program() const { ::kill(-program_, SIGKILL); }
+
+  /// Ends what the program left running, also what went out of its process group, and counts it.
+  void end_others(TrialRun& run) const {
+    const pid_t group = program_;
+    (void)::kill(-group, SIGKILL);
+    int status = 0;
+    struct rusage usage {};
+    for (std::vector<pid_t> left = children(); !left.empty(); left = children()) {
+      for (const pid_t child : left) (void)::kill(child, SIGKILL);
+      for (const pid_t child : left) {
+        if (::wait4(child, &status, 0, &usage) != child) continue;
+        add(usage, run);
+        ++run.left_behind;
+      }
+    }
+  }
+
+ private:
+  static void add(const struct rusage& usage, TrialRun& run) {
+    run.processor_seconds += seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+#ifdef __APPLE__
+    constexpr std::int64_t kUnit = 1;
+#else
+    constexpr std::int64_t kUnit = 1024;
+#endif
+    run.peak_bytes = std::max(run.peak_bytes, kUnit * static_cast<std::int64_t>(usage.ru_maxrss));
+  }
+
+  pid_t program_;
+};
+
+/// Waits until the program ends, or ends it; returns the signal that interrupted this, or 0.
+int await(Processes& processes, double timeout_seconds, TrialRun& run) {
+  const Stopwatch stopwatch;
+  const sigset_t awaited = awaited_signals();
+  int interruption = 0;
+  while (!processes.reap(run)) {
+    const int signal = wait_for_signal(awaited);
+    if (signal != 0 && signal != SIGCHLD) interruption = signal;
+    if (timeout_seconds > 0 && stopwatch.seconds() > timeout_seconds) run.timed_out = true;
+    if (interruption != 0 || run.timed_out) processes.kill_program();
+  }
+  run.wall_seconds = stopwatch.seconds();
+  return interruption;
+}
+
+/// Returns the last line of a file that is not blank, at most `kLongestLine` bytes of it.
+std::string last_line(const fs::path& path) {
+  constexpr std::uint64_t kTail = 4096;
+  const InputFile file(path);
+  std::string tail(std::min(kTail, file.size()), '\0');
+  tail.resize(file.read_at(file.size() - tail.size(), tail));
+  const std::size_t last = tail.find_last_not_of(" \t\r\n");
+  if (last == std::string::npos) return {};
+  tail.resize(last + 1);
+  const std::size_t before = tail.find_last_of('\n');
+  const std::string_view line =
+      trimmed(std::string_view(tail).substr(before == std::string::npos ? 0 : before + 1));
+  return std::string(utf8_prefix(line, kLongestLine));
+}
+
+}  // namespace
+
+TrialSignals::TrialSignals() {
+  (void)std::signal(SIGCHLD, SIG_DFL);
+  const sigset_t signals = awaited_signals();
+  ::pthread_sigmask(SIG_BLOCK, &signals, &before_);
+#ifdef __linux__
+  (void)::prctl(PR_SET_CHILD_SUBREAPER, 1);
+#endif
+}
+
+TrialSignals::~TrialSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+std::string find_program(const std::string& name) {
+  if (name.find('/') != std::string::npos) {
+    if (is_executable(name)) return fs::absolute(name).lexically_normal().string();
+    throw InvalidArgument(fmt::format("{}: there is no such program that may be executed", name));
+  }
+  const char* const path = std::getenv("PATH");
+  std::string_view folders = path == nullptr ? "/usr/bin:/bin" : path;
+  while (!name.empty() && !folders.empty()) {
+    const fs::path candidate = fs::path(next_word(folders, ":")) / name;
+    if (is_executable(candidate)) return fs::absolute(candidate).lexically_normal().string();
+  }
+  throw InvalidArgument(
+      fmt::format("{}: no folder of PATH has such a program; write ./{} for one of this folder", name, name));
+}
+
+TrialRun run_program(const TrialCommand& command) {
+  const Prepared prepared(command);
+  std::array<int, 2> report{};
+  if (::pipe(report.data()) != 0 || ::fcntl(report[1], F_SETFD, FD_CLOEXEC) != 0)
+    throw InternalError(fmt::format("no pipe can be made: {}", std::strerror(errno)));
+  sigset_t signals_before;
+  ::pthread_sigmask(SIG_SETMASK, nullptr, &signals_before);
+  for (const int signal : kEndings) ::sigdelset(&signals_before, signal);
+  ::sigdelset(&signals_before, SIGCHLD);
+  const pid_t parent = ::getpid();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::close(report[0]);
+    become(prepared, signals_before, parent, report[1]);
+  }
+  const int fork_error = errno;
+  ::close(report[1]);
+  if (child < 0) {
+    ::close(report[0]);
+    throw InternalError(fmt::format("no process can be started: {}", std::strerror(fork_error)));
+  }
+  (void)::setpgid(child, child);
+  TrialRun run;
+  Processes processes(child);
+  const int interruption = await(processes, command.timeout_seconds, run);
+  processes.end_others(run);
+  int error = 0;
+  const bool was_executed = ::read(report[0], &error, sizeof error) != sizeof error;
+  ::close(report[0]);
+  if (interruption != 0) {
+    ::raise(interruption);  // which is blocked: it waits
+    throw Interrupted();
+  }
+  if (!was_executed)
+    throw InvalidArgument(
+        fmt::format("{}: it cannot be executed: {}", command.words.front(), std::strerror(error)));
+  return run;
+}
+
+std::string failure_of(const TrialRun& run, const TrialCommand& command) {
+  if (run.timed_out) return fmt::format("no end within {}", duration(command.timeout_seconds));
+  std::string line = last_line(command.log.string() + ".err");
+  if (line.empty()) line = last_line(command.log.string() + ".out");
+  const std::string how = run.signal != 0 ? fmt::format("ended by signal {}", run.signal)
+                                          : fmt::format("exit status {}", run.exit_status);
+  return line.empty() ? how : how + ": " + line;
+}
+
+}  // namespace meshorder::command

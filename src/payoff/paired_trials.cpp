@@ -1,0 +1,149 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/paired_trials.hpp"
+
+#include "base/median.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace meshorder {
+namespace {
+
+constexpr std::size_t kFewestRounds = 3;  // before an order is dropped: the median then ignores an outlier
+constexpr std::size_t kFewestPairs = 6;   // before an interval is believed
+constexpr double kTail = 0.003;           // of a single check, on each side
+constexpr double kTrimmed = 0.2;
+constexpr double kBetweenChecks = 1.2;
+constexpr double kLeastSpread = 0.003;
+
+/// Returns the probability that Student's t exceeds `t` > 0, by the finite series of Abramowitz and Stegun,
+/// "Handbook of Mathematical Functions", 1964, 26.7.3 and 26.7.4.
+double student_tail(double t, int degrees) {
+  const double angle = std::atan(t / std::sqrt(degrees));
+  const double cosine = std::cos(angle);
+  const bool is_odd = degrees % 2 == 1;
+  double term = is_odd ? cosine : 1;
+  double sum = degrees == 1 ? 0 : term;
+  for (int k = is_odd ? 3 : 2; k < degrees - 1; k += 2) {
+    term *= cosine * cosine * (k - 1) / k;
+    sum += term;
+  }
+  const double within =
+      is_odd ? 2 / std::numbers::pi * (angle + std::sin(angle) * sum) : std::sin(angle) * sum;
+  return (1 - within) / 2;
+}
+
+/// Returns the standard deviation of values that few outliers disturb, from the median of their distances to
+/// their median.
+double spread(const std::vector<double>& values) {
+  constexpr double kOfNormal = 1.4826;
+  const double middle = median(values);
+  std::vector<double> distances;
+  distances.reserve(values.size());
+  for (const double value : values) distances.push_back(std::abs(value - middle));
+  return kOfNormal * median(distances);
+}
+
+}  // namespace
+
+double student_quantile(double tail, int degrees) {
+  double low = 0;
+  double high = 1;
+  while (student_tail(high, degrees) > tail) high *= 2;
+  constexpr int kSteps = 60;
+  for (int step = 0; step < kSteps; ++step) {
+    const double middle = (low + high) / 2;
+    (student_tail(middle, degrees) > tail ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+Speedup speedup_of(std::vector<double> logs) {
+  if (logs.empty()) return {};
+  if (logs.size() < kFewestPairs) return {.ratio = std::exp(median(std::move(logs)))};
+  std::sort(logs.begin(), logs.end());
+  const auto cut = static_cast<std::ptrdiff_t>(kTrimmed * static_cast<double>(logs.size()));
+  const auto first = logs.begin() + cut;
+  const auto last = logs.end() - cut;
+  const auto kept = static_cast<double>(last - first);
+  const double mean = std::accumulate(first, last, 0.0) / kept;
+  std::fill(logs.begin(), first, *first);  // the variance is that of the values with the ends moved in
+  std::fill(last, logs.end(), *(last - 1));
+  const double middle = std::accumulate(logs.begin(), logs.end(), 0.0) / static_cast<double>(logs.size());
+  double squares = 0;
+  for (const double log : logs) squares += (log - middle) * (log - middle);
+  const double width =
+      student_quantile(kTail, static_cast<int>(kept) - 1) * std::sqrt(squares / (kept * (kept - 1)));
+  return {.ratio = std::exp(mean), .low = std::exp(mean - width), .high = std::exp(mean + width)};
+}
+
+PairedTrials::PairedTrials(std::size_t candidates)
+    : logs_(candidates + 1), left_(candidates), next_check_(kFewestPairs) {
+  std::iota(left_.begin(), left_.end(), std::size_t{1});
+}
+
+std::vector<std::size_t> PairedTrials::next_round() const {
+  if (left_.empty() || verdict_ != TrialVerdict::undecided) return {};
+  std::vector<std::size_t> round{0};
+  round.insert(round.end(), left_.begin(), left_.end());
+  const auto start = static_cast<std::ptrdiff_t>(rounds_ % round.size());
+  std::rotate(round.begin(), round.begin() + start, round.end());
+  return round;
+}
+
+void PairedTrials::add_round(std::span<const double> times) {
+  for (const std::size_t candidate : left_) logs_[candidate].push_back(std::log(times[0] / times[candidate]));
+  ++rounds_;
+  if (left_.size() > 1 && rounds_ >= kFewestRounds) drop_losers();
+  if (left_.size() == 1) check();
+}
+
+void PairedTrials::exclude(std::size_t candidate) { std::erase(left_, candidate); }
+
+std::optional<std::size_t> PairedTrials::best() const {
+  if (left_.empty()) return std::nullopt;
+  return *std::max_element(left_.begin(), left_.end(),
+                           [&](std::size_t a, std::size_t b) { return median(logs_[a]) < median(logs_[b]); });
+}
+
+Speedup PairedTrials::speedup(std::size_t candidate) const { return speedup_of(logs_[candidate]); }
+
+void PairedTrials::drop_losers() {
+  std::stable_sort(left_.begin(), left_.end(),
+                   [&](std::size_t a, std::size_t b) { return median(logs_[a]) > median(logs_[b]); });
+  const std::vector<double>& best = logs_[left_.front()];
+  std::vector<double> spreads;  // of the differences between an order and the best one
+  for (const std::size_t candidate : left_) {
+    if (candidate == left_.front()) continue;
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < best.size(); ++i) differences.push_back(best[i] - logs_[candidate][i]);
+    spreads.push_back(spread(differences));
+  }
+  const auto rounds = static_cast<double>(best.size());
+  const double error =
+      std::max(median(spreads) * std::sqrt(rounds / (rounds - 1)), kLeastSpread) / std::sqrt(rounds);
+  const double least = median(best) - 2 * error;
+  std::erase_if(left_, [&](std::size_t candidate) { return median(logs_[candidate]) < least; });
+  const std::size_t most = std::max<std::size_t>(1, (logs_.size() - 1) >> (rounds_ / 2));
+  if (left_.size() > most) left_.resize(most);
+}
+
+void PairedTrials::check() {
+  const std::size_t pairs = logs_[left_.front()].size();
+  if (pairs < next_check_) return;
+  while (next_check_ <= pairs)
+    next_check_ = std::max(next_check_ + 1,
+                           static_cast<std::size_t>(kBetweenChecks * static_cast<double>(next_check_)));
+  const Speedup found = speedup_of(logs_[left_.front()]);
+  if (found.low > 1 / (1 + kTie) && found.high < 1 + kTie) {
+    verdict_ = TrialVerdict::tie;
+  } else if (found.low > 1 && found.ratio > 1 + kTie) {
+    verdict_ = TrialVerdict::faster;
+  } else if (found.high < 1 && found.ratio < 1 / (1 + kTie)) {
+    verdict_ = TrialVerdict::slower;
+  }
+}
+
+}  // namespace meshorder
