@@ -299,7 +299,7 @@ TrialRun run_program(const TrialCommand& command) {
 }
 
 std::string failure_of(const TrialRun& run, const TrialCommand& command) {
-  if (run.timed_out) return fmt::format("no end within {}", duration(command.timeout_seconds));
+  if (run.timed_out) return fmt::format("no end within {} (--timeout)", duration(command.timeout_seconds));
   std::string line = last_line(command.log.string() + ".err");
   if (line.empty()) line = last_line(command.log.string() + ".out");
   const std::string how = run.signal != 0 ? fmt::format("ended by signal {}", run.signal)

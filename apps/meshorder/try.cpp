@@ -147,11 +147,14 @@ class Trial {
     refuse_if_all_fail();
     for (std::vector<std::size_t> round = report_.trials.next_round(); fits(round);
          round = report_.trials.next_round()) {
+      progress_.stage(fmt::format("running in {} orders", round.size()),
+                      report_.run_seconds / arguments_.budget_seconds, 1);
       std::vector<double> times(report_.orders.size(), 1);
       for (const std::size_t order : round) times[order] = timed_run(order);
       report_.trials.add_round(times);
     }
     refuse_if_all_fail();
+    note_short_runs();
   }
 
   [[nodiscard]] const TrialReport& report() const { return report_; }
@@ -236,6 +239,14 @@ class Trial {
     throw InvalidArgument(fmt::format("{} runs in no other order than the file's own; in {}: {}",
                                       fs::path(program_).filename().string(), orders[1].name,
                                       orders[1].fault));
+  }
+
+  void note_short_runs() {
+    constexpr double kShort = 0.05;
+    if (last_seconds_[0] >= kShort) return;
+    notes_.push_back(
+        fmt::format("a run takes {}, of which much is the start of the program; a larger mesh says more",
+                    duration(last_seconds_[0])));
   }
 
   [[nodiscard]] bool fits(const std::vector<std::size_t>& round) const {
@@ -431,7 +442,8 @@ void add_try(CLI::App& subcommand) {
       .add_option("--methods", arguments->methods,
                   "Orders to try, VERTICES or VERTICES/ELEMENTS, separated by commas (default:\n" +
                       join(kDefaultOrders, std::string_view(",")) + ")")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   subcommand
       .add_option("--budget", arguments->budget_seconds,
                   "Seconds for all runs of the program; orders that it does not suffice for are left out")
@@ -474,6 +486,7 @@ void add_try(CLI::App& subcommand) {
           "Names of the files and folders beside the mesh that the program needs, separated by commas\n"
           "(default: all that are not hidden)")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("NAMES");
   subcommand
       .add_option("--keep", arguments->keep,

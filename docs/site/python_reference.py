@@ -28,6 +28,7 @@ SECTIONS = {
     "_meshes": "Meshes",
     "_files": "Meshes from arrays and files",
     "_payoff": "What orders are worth",
+    "_try": "What orders are worth to a function of yours",
     "_methods": "Methods",
     "_errors": "Errors",
     "_core": "Version",

@@ -31,14 +31,15 @@ from ._orders import order, order_edges, order_mesh, reorder
 from ._payoff import Advice, Calibration, Candidate, Comparison, advise, calibrate, compare
 from ._permutation import Permutation
 from ._show import show
+from ._try import Trial, TriedOrder, try_orders
 
 
 __all__ = [
     "Advice", "Calibration", "Candidate", "Comparison", "Error", "Fiedler", "FiedlerComponent", "InputError",
     "InternalError", "InvalidArgument", "Mesh", "MeshOrder", "MethodInfo", "Options", "Order", "Permutation",
-    "Quality", "Stopped", "TooLarge", "Unavailable", "__version__", "advise", "build_info", "calibrate", "compare",
-    "fiedler", "load_methods", "make_mesh", "methods", "order", "order_edges", "order_mesh", "quality", "read", "register",
-    "reorder", "show", "to_bytes", "unregister", "write",
+    "Quality", "Stopped", "TooLarge", "Trial", "TriedOrder", "Unavailable", "__version__", "advise", "build_info",
+    "calibrate", "compare", "fiedler", "load_methods", "make_mesh", "methods", "order", "order_edges", "order_mesh",
+    "quality", "read", "register", "reorder", "show", "to_bytes", "try_orders", "unregister", "write",
 ]  # fmt: skip
 
 

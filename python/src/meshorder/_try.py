@@ -1,0 +1,426 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Runs a function of the caller's on a mesh or matrix in several orders, and says in which it runs faster."""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time as clocks
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple, Union
+
+import numpy as np
+
+from ._errors import InvalidArgument
+from ._orders import order, reorder
+from ._permutation import Permutation
+from .hosts import find_host
+
+#: what `try_orders` tries unless ``methods`` names others, as `meshorder try` does
+_DEFAULT = ("auto", "hilbert", "rcm", "spectral-fronts", "hilbert-fronts")
+_CLOCKS = {"cpu": clocks.process_time, "wall": clocks.perf_counter}
+
+# the rule of src/payoff/paired_trials.cpp, which has the reasons
+_TIE = 0.015
+_FEWEST_ROUNDS = 3
+_FEWEST_PAIRS = 6
+_TAIL = 0.003
+_TRIMMED = 0.2
+_BETWEEN_CHECKS = 1.2
+_LEAST_SPREAD = 0.003
+_LEAST_TIME = 1e-6
+
+# a first run, some rounds to choose among the orders, and some pairs for the best
+_RUNS_OF_BEST = 15
+_RUNS_OF_EACH = 3
+
+
+def _student_tail(t: float, degrees: int) -> float:
+    """The probability that Student's t exceeds t > 0, by Abramowitz and Stegun, 1964, 26.7.3 and 26.7.4."""
+    angle = math.atan(t / math.sqrt(degrees))
+    odd = degrees % 2 == 1
+    term = math.cos(angle) if odd else 1.0
+    total = 0.0 if degrees == 1 else term
+    for k in range(3 if odd else 2, degrees - 1, 2):
+        term *= math.cos(angle) ** 2 * (k - 1) / k
+        total += term
+    within = 2 / math.pi * (angle + math.sin(angle) * total) if odd else math.sin(angle) * total
+    return (1 - within) / 2
+
+
+def _student_quantile(tail: float, degrees: int) -> float:
+    low, high = 0.0, 1.0
+    while _student_tail(high, degrees) > tail:
+        high *= 2
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if _student_tail(middle, degrees) > tail else (low, middle)
+    return (low + high) / 2
+
+
+class _Speedup(NamedTuple):
+    ratio: float = 1.0
+    low: float = 0.0
+    high: float = math.inf
+
+
+def _speedup_of(logs: Sequence[float]) -> _Speedup:
+    """The speedup from logarithms of paired ratios, by their trimmed mean (Yuen, 1974)."""
+    if not logs:
+        return _Speedup()
+    if len(logs) < _FEWEST_PAIRS:
+        return _Speedup(math.exp(statistics.median(logs)))
+    values = np.sort(logs)
+    cut = int(_TRIMMED * len(values))
+    kept = len(values) - 2 * cut
+    mean = float(values[cut : len(values) - cut].mean())
+    values = np.clip(values, values[cut], values[len(values) - cut - 1])
+    squares = float(((values - values.mean()) ** 2).sum())
+    width = _student_quantile(_TAIL, kept - 1) * math.sqrt(squares / (kept * (kept - 1)))
+    return _Speedup(math.exp(mean), math.exp(mean - width), math.exp(mean + width))
+
+
+def _spread(values: Sequence[float]) -> float:
+    middle = statistics.median(values)
+    return 1.4826 * statistics.median([abs(value - middle) for value in values])
+
+
+class _PairedTrials:
+    """Decides by paired runs which of several candidates, 1 …, is faster than 0."""
+
+    def __init__(self, candidates: int) -> None:
+        self.logs: list[list[float]] = [[] for _ in range(candidates + 1)]
+        self.left = list(range(1, candidates + 1))
+        self.verdict = "undecided"
+        self._rounds = 0
+        self._next_check = _FEWEST_PAIRS
+
+    def next_round(self) -> list[int]:
+        """What is to be run next, in this order; empty when the trial has ended."""
+        if not self.left or self.verdict != "undecided":
+            return []
+        each = [0, *self.left]
+        start = self._rounds % len(each)
+        return each[start:] + each[:start]
+
+    def add_round(self, times: dict[int, float]) -> None:
+        for candidate in self.left:
+            self.logs[candidate].append(math.log(times[0] / times[candidate]))
+        self._rounds += 1
+        if len(self.left) > 1 and self._rounds >= _FEWEST_ROUNDS:
+            self._drop_losers()
+        if len(self.left) == 1:
+            self._check()
+
+    def exclude(self, candidate: int) -> None:
+        if candidate in self.left:
+            self.left.remove(candidate)
+
+    def best(self) -> int | None:
+        return max(self.left, key=self._median, default=None)
+
+    def _median(self, candidate: int) -> float:
+        return statistics.median(self.logs[candidate] or [0.0])
+
+    def _drop_losers(self) -> None:
+        self.left.sort(key=self._median, reverse=True)
+        best = self.logs[self.left[0]]
+        n = len(best)
+        spreads = [_spread([b - x for b, x in zip(best, self.logs[c])]) for c in self.left[1:]]
+        error = max(statistics.median(spreads) * math.sqrt(n / (n - 1)), _LEAST_SPREAD) / math.sqrt(n)
+        least = statistics.median(best) - 2 * error
+        self.left = [candidate for candidate in self.left if self._median(candidate) >= least]
+        self.left = self.left[: max(1, (len(self.logs) - 1) >> (self._rounds // 2))]
+
+    def _check(self) -> None:
+        pairs = len(self.logs[self.left[0]])
+        if pairs < self._next_check:
+            return
+        while self._next_check <= pairs:
+            self._next_check = max(self._next_check + 1, int(_BETWEEN_CHECKS * self._next_check))
+        found = _speedup_of(self.logs[self.left[0]])
+        if found.low > 1 / (1 + _TIE) and found.high < 1 + _TIE:
+            self.verdict = "tie"
+        elif found.low > 1 and found.ratio > 1 + _TIE:
+            self.verdict = "faster"
+        elif found.high < 1 and found.ratio < 1 / (1 + _TIE):
+            self.verdict = "slower"
+
+
+@dataclass(frozen=True)
+class TriedOrder:
+    """An order in which a function was run.
+
+    Attributes:
+        name: "original", or the order's name: "rcm", "hilbert/hilbert"; "auto" has that of what it chose.
+        time: the median of its runs, in seconds; or of the numbers that ``time`` gave. None if none counts.
+        ratio: how many times as fast as in the original order the function ran; None if it did not.
+        interval: the lowest and the highest ratio by a 95 % interval; None for fewer than six runs.
+        runs: how many runs count.
+        order_seconds: what making the order took.
+        fault: why the order is out of the trial, a sentence; None if it is not.
+    """
+
+    name: str
+    time: float | None
+    ratio: float | None
+    interval: tuple[float, float] | None
+    runs: int
+    order_seconds: float
+    fault: str | None
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What `try_orders` found.
+
+    Attributes:
+        verdict: "faster": the function runs faster in ``best``; "slower": it does not run as fast in any other order
+            as in the original one; "tie": no order changes its time by more than 1.5 %; "undecided": no order makes it
+            faster by more than its times vary.
+        best: name of the best order besides the original one; None if there is no other.
+        ratio: how many times as fast the function runs in it; 1 if there is none.
+        interval: a 95 % interval of the ratio, None for fewer than six runs.
+        orders: what was tried, the original order first.
+        ordered: the mesh or matrix in the best order if the verdict is "faster", else as it was given.
+        left_out: the orders that the budget left no time for.
+    """
+
+    verdict: str
+    best: str | None
+    ratio: float
+    interval: tuple[float, float] | None
+    orders: list[TriedOrder]
+    ordered: Any = field(repr=False, compare=False)
+    left_out: list[str]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Returns everything but ``ordered``, ready for JSON."""
+        result = {name: getattr(self, name) for name in ("verdict", "best", "ratio", "interval", "left_out")}
+        return {**result, "orders": [dict(vars(tried)) for tried in self.orders]}
+
+    def __str__(self) -> str:
+        rows = [f"{'order':<20} {'time':>10} {'ratio':>7} {'95 %':>13} {'runs':>5}"]
+        for tried in self.orders:
+            if tried.fault or tried.time is None or tried.ratio is None:
+                rows.append(f"{tried.name:<20} {tried.fault or 'not timed'}")
+                continue
+            rows.append(
+                f"{tried.name:<20} {tried.time:>10.4g} {tried.ratio:>7.3f} {_range(tried.interval):>13} {tried.runs:>5}"
+            )
+        return "\n".join([self._sentence(), "", *rows])
+
+    def _sentence(self) -> str:
+        if self.best is None:
+            return "no order was tried but the original one"
+        interval = _range(self.interval)
+        found = f"{self.best}, {self.ratio:.3f}×" + (f" ({interval})" if interval else "")
+        if self.verdict == "faster":
+            return f"{self.ratio:.2f}× faster ({interval}) in {self.best}"
+        if self.verdict == "slower":
+            return f"fastest in the original order; the best other one is {found}"
+        by = "1.5 %" if self.verdict == "tie" else "the times vary"
+        return f"no order tried is faster by more than {by}; the best one is {found}"
+
+
+def _range(interval: tuple[float, float] | None) -> str:
+    return f"{interval[0]:.3f}–{interval[1]:.3f}" if interval else ""
+
+
+#: how a run is timed; see `try_orders`
+TimeOf = Union[str, Callable[[Any], float]]
+
+
+class _Candidate:
+    """An order, the object in it and its runs."""
+
+    def __init__(self, name: str, ordered: Any, seconds: float) -> None:
+        self.name = name
+        self.ordered = ordered
+        self.order_seconds = seconds
+        self.times: list[float] = []
+        self.last = 0.0  # by the clock
+        self.fault: str | None = None
+
+
+class _Runner:
+    """Runs the function and compares what it returns with what it returned first."""
+
+    def __init__(self, function: Callable[[Any], Any], time: TimeOf, tolerance: float | None) -> None:
+        if isinstance(time, str) and time not in _CLOCKS:
+            raise InvalidArgument(f"time: expected 'cpu', 'wall' or a function, not {time!r}")
+        self._function = function
+        self._time = time
+        self._tolerance = tolerance
+        self._first: Any = None
+        self.spent = 0.0
+
+    def run(self, candidate: _Candidate) -> float:
+        clock = _CLOCKS[self._time] if isinstance(self._time, str) else clocks.process_time
+        began, at = clocks.perf_counter(), clock()
+        result = self._function(candidate.ordered)
+        taken = clock() - at
+        candidate.last = clocks.perf_counter() - began
+        self.spent += candidate.last
+        if not isinstance(self._time, str):
+            taken = float(self._time(result))
+            if not taken > 0:
+                raise InvalidArgument(f"time: a time of {taken} cannot be compared")
+        candidate.fault = self._difference(result)
+        candidate.times.append(max(taken, _LEAST_TIME))
+        return candidate.times[-1]
+
+    def _difference(self, result: Any) -> str | None:
+        if self._tolerance is None:
+            return None
+        if self._first is None:
+            self._first = np.array(result, dtype=float)
+        found = np.asarray(result, dtype=float)
+        if found.shape != self._first.shape:
+            return f"the results differ: shape {found.shape} instead of {self._first.shape}"
+        wrong = ~np.isclose(found, self._first, rtol=self._tolerance, atol=0, equal_nan=True)
+        if not wrong.any():
+            return None
+        return f"the results differ: {found[wrong].flat[0]:.6g} instead of {self._first[wrong].flat[0]:.6g}"
+
+
+def _stays(moved: Permutation) -> bool:
+    return bool(np.array_equal(moved.new_to_old, np.arange(len(moved))))
+
+
+def _ordered(given: Any, name: str, options: dict[str, Any]) -> tuple[str, Any, bool]:
+    """The name of an order, the object in it, and whether nothing has moved."""
+    vertices, _, elements = name.partition("/")
+    if find_host(given) is None:
+        if not hasattr(given, "tocsr"):
+            raise InvalidArgument(f"try_orders: expected a mesh or a SciPy matrix, not {type(given).__name__}")
+        if elements:
+            raise InvalidArgument(f"methods: {name}: a matrix has no elements")
+        found = order(given, vertices, **options)
+        return found.method, found.permutation.move(given), _stays(found.permutation)
+    elements = elements or ("original" if vertices == "original" else "auto" if vertices == "auto" else "lexmax")
+    moved, both = reorder(given, vertices=vertices, elements=elements, **options)
+    kept = _stays(both.vertices.permutation) and _stays(both.cells.permutation)
+    shown = both.vertices.method if both.cells.method == "lexmax" else f"{both.vertices.method}/{both.cells.method}"
+    return shown if name == "auto" else name, moved, kept
+
+
+def _candidates(
+    given: Any, names: Sequence[str] | None, most: int, options: dict[str, Any]
+) -> tuple[list[_Candidate], list[str]]:
+    """The orders to try, and those that there is no time for."""
+    found: list[_Candidate] = []
+    left_out: list[str] = []
+    for name in _DEFAULT if names is None else names:
+        if any(candidate.name == name for candidate in found):
+            continue
+        if len(found) >= most:
+            left_out.append(name)
+            continue
+        began = clocks.perf_counter()
+        try:
+            shown, ordered, kept = _ordered(given, name, options)
+        except InvalidArgument:
+            if names is not None or name == "auto":
+                raise
+            continue  # a geometric order of what has no coordinates
+        if not kept and all(candidate.name != shown for candidate in found):
+            found.append(_Candidate(shown, ordered, clocks.perf_counter() - began))
+    return found, left_out
+
+
+def try_orders(
+    mesh: Any, function: Callable[[Any], Any], methods: Sequence[str] | None = None, *, budget: float = 120.0,
+    time: TimeOf = "cpu", tolerance: float | None = None, **options: Any,
+) -> Trial:  # fmt: skip
+    """Runs a function on a mesh or matrix as it is and in other orders, and says in which it runs faster.
+
+    The function runs once in each order, then in rounds, in the original order and in those that are left, until it is
+    clear which is the best and whether it is faster, or the budget ends. Orders that are all the same are called
+    different in fewer than one of twenty trials, as by the command ``meshorder try``.
+
+    Args:
+        mesh: a mesh that `reorder` takes, except for Gmsh's model, or a SciPy matrix.
+        function: is called with the mesh or matrix in one of the orders, of the type that `reorder` returns, and must
+            leave it as it is.
+        methods: the orders to try, "rcm" or "rcm/lexmax" with a method for the elements. None: "auto", and hilbert,
+            rcm, spectral-fronts and hilbert-fronts where they are possible.
+        budget: seconds for all runs of the function.
+        time: what counts: "cpu", the processor time of this process; "wall", the time by the clock; or a function that
+            returns a number > 0 for what ``function`` returned.
+        tolerance: None, or the relative difference up to which the numbers that ``function`` returns must be those of
+            its first run; an order in which they are not is out of the trial.
+        **options: for the orders; see `Options`.
+
+    Returns:
+        What was found, which prints as a sentence and a table.
+
+    Raises:
+        InvalidArgument: an object that is no mesh or matrix, an unknown method or time, results that differ in all
+            orders; as `reorder`. What the function raises passes through.
+
+    Example:
+        >>> import scipy.sparse
+        >>> matrix = scipy.sparse.random_array((200, 200), density=0.02, format="csr", rng=1)
+        >>> trial = meshorder.try_orders(matrix, lambda a: a @ a, ["rcm"], budget=0.2)
+        >>> trial.verdict in ("faster", "slower", "tie", "undecided")
+        True
+    """
+    if not budget > 0:
+        raise InvalidArgument(f"budget: expected seconds > 0, not {budget!r}")
+    if not callable(function):
+        raise InvalidArgument("function: expected a function that takes the mesh")
+    runner = _Runner(function, time, tolerance)
+    original = _Candidate("original", mesh, 0.0)
+    runner.run(original)
+    most = max(1, int((min(budget / max(original.last, _LEAST_TIME), 1e6) - _RUNS_OF_BEST) / _RUNS_OF_EACH))
+    found, left_out = _candidates(mesh, methods, most, options)
+    candidates = [original, *found]
+    trials = _PairedTrials(len(found))
+
+    def run(number: int) -> float:
+        taken = runner.run(candidates[number])
+        fault = candidates[number].fault
+        if fault and number == 0:
+            raise InvalidArgument(f"{fault}, in two runs in the original order; give a larger tolerance")
+        if fault:
+            trials.exclude(number)
+        return taken
+
+    for number in range(1, len(candidates)):
+        run(number)
+    for candidate in candidates:
+        candidate.times.clear()  # those of first runs
+    if found and not trials.left:
+        raise InvalidArgument(f"the function works in no other order; in {found[0].name} {found[0].fault}")
+    while each := trials.next_round():
+        if runner.spent + sum(candidates[number].last for number in each) > budget:
+            break
+        trials.add_round({number: run(number) for number in each})
+    return _result(candidates, trials, left_out)
+
+
+def _result(candidates: list[_Candidate], trials: _PairedTrials, left_out: list[str]) -> Trial:
+    tried = []
+    for number, candidate in enumerate(candidates):
+        speedup = _speedup_of(trials.logs[number]) if number else _Speedup(1.0, 1.0, 1.0)
+        timed = bool(candidate.times)
+        tried.append(
+            TriedOrder(
+                candidate.name,
+                statistics.median(candidate.times) if timed else None,
+                speedup.ratio if timed else None,
+                (speedup.low, speedup.high) if timed and speedup.high < math.inf else None,
+                len(candidate.times),
+                candidate.order_seconds,
+                candidate.fault,
+            )
+        )
+    best = trials.best()
+    if best is None:
+        return Trial("undecided", None, 1.0, None, tried, candidates[0].ordered, left_out)
+    ordered = candidates[best if trials.verdict == "faster" else 0].ordered
+    return Trial(
+        trials.verdict, tried[best].name, tried[best].ratio or 1.0, tried[best].interval, tried, ordered, left_out
+    )

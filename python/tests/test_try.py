@@ -1,0 +1,153 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""What orders are worth to a function of the caller's: synthetic times, results, and bad arguments."""
+
+import json
+
+import meshorder
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from conftest import lattice, tetrahedra
+from meshorder import InvalidArgument, _try
+
+
+def mean_span(matrix):
+    entries = sp.coo_array(matrix)
+    return np.abs(entries.row - entries.col).mean()
+
+
+class Solver:
+    """Returns the seconds that it claims: fewer in a good order, and varying by so much."""
+
+    def __init__(self, gain, spread=0.01, limit=500):
+        self.gain = gain
+        self.spread = spread
+        self.limit = limit
+        self.random = np.random.default_rng(1)
+
+    def __call__(self, matrix):
+        in_order = mean_span(matrix) < self.limit
+        return float((1 / self.gain if in_order else 1) * np.exp(self.spread * self.random.standard_normal()))
+
+
+def tried(solver, methods=("rcm", "scrambled"), budget=0.5):
+    return meshorder.try_orders(lattice(30, 20, 9), solver, methods, budget=budget, time=lambda seconds: seconds)
+
+
+def test_a_gain_is_found_and_the_matrix_in_that_order_returned():
+    trial = tried(Solver(1.2))
+    assert trial.verdict == "faster" and trial.best == "rcm"
+    low, high = trial.interval
+    assert 1.1 < low < trial.ratio < high < 1.3
+    assert mean_span(trial.ordered) < 500
+    original, rcm, scrambled = trial.orders
+    assert (original.name, original.ratio, original.order_seconds) == ("original", 1, 0)
+    assert rcm.runs >= 6 and rcm.order_seconds > 0
+    assert scrambled.runs == 3 and scrambled.interval is None
+    assert str(trial).startswith("1.2")
+    assert "faster (" in str(trial) and "scrambled" in str(trial)
+    assert json.loads(json.dumps(trial.as_dict()))["orders"][1]["name"] == "rcm"
+
+
+@pytest.mark.parametrize(
+    "gain, verdict, words", [(1, "tie", "by more than 1.5 %"), (0.8, "slower", "original order")]
+)
+def test_no_gain_is_called_none(gain, verdict, words):
+    given = lattice(30, 20, 9)
+    trial = meshorder.try_orders(given, Solver(gain, 0.002), ["rcm"], time=lambda seconds: seconds)
+    assert trial.verdict == verdict
+    assert trial.ordered is given
+    assert words in str(trial)
+
+
+def test_the_budget_ends_what_is_not_decided():
+    trial = tried(Solver(1, 0.2), ["rcm"], 0.05)
+    assert trial.verdict == "undecided"
+    assert "vary" in str(trial)
+
+
+def test_meshes_come_as_reorder_returns_them():
+    points, cells = tetrahedra(4)
+    seen = []
+
+    def solver(mesh):
+        seen.append(mesh)
+        return 1.0
+
+    trial = meshorder.try_orders((points, cells), solver, budget=1, time=lambda seconds: seconds)
+    assert trial.verdict == "tie"
+    assert {order.name for order in trial.orders} >= {"original", "rcm", "hilbert"}
+    assert all(isinstance(mesh, tuple) and mesh[0].shape == points.shape for mesh in seen)
+    assert seen[0][0] is points
+    trial = meshorder.try_orders((points, cells), solver, ["rcm/original"], budget=1, time=lambda seconds: seconds)
+    assert [order.name for order in trial.orders] == ["original", "rcm/original"]
+
+
+def test_processor_time_and_the_clock_count(graph):
+    for time in ("cpu", "wall"):
+        trial = meshorder.try_orders(graph, lambda a: (a @ a).sum(), ["rcm"], budget=0.2, time=time)
+        assert trial.orders[0].time > 0
+
+
+def test_geometric_orders_are_left_out_where_there_are_no_coordinates(graph):
+    trial = meshorder.try_orders(graph, lambda a: 1.0, budget=0.5, time=lambda seconds: seconds)
+    assert not any("hilbert" in order.name for order in trial.orders)
+    with pytest.raises(InvalidArgument, match="coordinates"):
+        meshorder.try_orders(graph, lambda a: 1.0, ["hilbert"], budget=0.5)
+
+
+def test_results_must_agree(graph):
+    assert meshorder.try_orders(graph, lambda a: a.sum(), ["rcm"], budget=0.05, tolerance=1e-9).best == "rcm"
+    with pytest.raises(InvalidArgument, match="no other order; in rcm the results differ"):
+        meshorder.try_orders(graph, mean_span, ["rcm"], budget=0.05, tolerance=1e-9)
+    numbers = iter([1.0, 1.0, 2.0])
+    with pytest.raises(InvalidArgument, match="in two runs in the original order"):
+        meshorder.try_orders(graph, lambda a: next(numbers), ["rcm"], budget=1, tolerance=1e-9)
+
+
+def test_exceptions_of_the_function_pass_through(graph):
+    with pytest.raises(ZeroDivisionError):
+        meshorder.try_orders(graph, lambda a: 1 / 0)
+
+
+@pytest.mark.parametrize(
+    "arguments, match",
+    [
+        ({"budget": 0}, "budget"),
+        ({"time": "clock"}, "time: expected 'cpu', 'wall' or a function"),
+        ({"methods": ["best"]}, "best"),
+        ({"methods": ["rcm/lexmax"]}, "a matrix has no elements"),
+        ({"time": lambda result: 0}, "cannot be compared"),
+    ],
+)
+def test_bad_arguments(graph, arguments, match):
+    with pytest.raises(InvalidArgument, match=match):
+        meshorder.try_orders(graph, lambda a: None, **{"budget": 0.1, **arguments})
+    with pytest.raises(InvalidArgument, match="a SciPy matrix"):
+        meshorder.try_orders("mesh.msh", lambda a: None, ["rcm"])
+    with pytest.raises(InvalidArgument, match="function"):
+        meshorder.try_orders(graph, "solver")
+
+
+def test_orders_that_are_all_the_same_are_rarely_called_different():
+    wrong = 0
+    random = np.random.default_rng(1)
+    for _ in range(200):
+        trials = _try._PairedTrials(5)
+        runs = 6
+        while (each := trials.next_round()) and runs + len(each) <= 120:
+            disturbed = {k: random.random() < 0.05 for k in each}
+            trials.add_round({
+                k: np.exp(0.02 * random.standard_normal()) * (1 + disturbed[k] * random.random() / 2) for k in each
+            })  # fmt: skip
+            runs += len(each)
+        wrong += trials.verdict in ("faster", "slower")
+    assert wrong <= 10
+
+
+def test_intervals_are_those_of_the_command():
+    """The numbers that tests/payoff/paired_trials_test.cpp expects of the C++ code."""
+    for tail, degrees, expected in ((0.025, 1, 12.7062), (0.025, 2, 4.30265), (0.005, 3, 5.84091), (0.001, 7, 4.78529)):
+        assert _try._student_quantile(tail, degrees) == pytest.approx(expected, rel=1e-5)
+    found = _try._speedup_of([0.10, 0.11, 0.09, 0.10, 0.12, 0.08, 0.10, 0.11, 0.09, -3])
+    assert found == pytest.approx((1.1033305, 1.0794101, 1.1277810), abs=1e-6)

@@ -1,0 +1,321 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""`meshorder try`: a stand-in program whose time depends on the order of its mesh, and programs that misbehave."""
+import json
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import time
+
+import meshes
+import pytest
+from conftest import MESHORDER
+
+# reads a Medit mesh; computes for so many milliseconds if neighbours have near numbers, and for others if not
+SOLVER = """
+import sys, time
+words = open(sys.argv[1]).read().split()
+at = words.index("Triangles")
+triangles = [[int(x) for x in words[k:k + 3]] for k in range(at + 2, at + 2 + 4 * int(words[at + 1]), 4)]
+span = sum(max(t) - min(t) for t in triangles) / len(triangles)
+milliseconds = float(sys.argv[2 if span < 40 else 3])
+while time.process_time() < milliseconds / 1e3:
+    pass
+print("span", span)
+print("seconds:", milliseconds / 1e3)
+print("step 1: 99 iterations\\nstep 2:", 14 if span < 40 else 17, "iterations")
+print("energy = +1.25D+00")
+"""
+
+
+def write_lattice(path, side=12):
+    """A square of triangles, its vertices in random order."""
+    number = list(range(side * side))
+    random.Random(1).shuffle(number)
+    place = {new: old for old, new in enumerate(number)}
+    lines = ["MeshVersionFormatted 2", "Dimension 3", "Vertices", str(side * side)]
+    lines += [f"{place[v] // side} {place[v] % side} 0 0" for v in range(side * side)]
+    corners = [(i * side + j, i * side + j + 1, (i + 1) * side + j, (i + 1) * side + j + 1)
+               for i in range(side - 1) for j in range(side - 1)]
+    triangles = [t for a, b, c, d in corners for t in ((a, b, c), (b, c, d))]
+    lines += ["Triangles", str(len(triangles))]
+    lines += [" ".join(str(number[v] + 1) for v in t) + " 1" for t in triangles]
+    path.write_text("\n".join([*lines, "End"]) + "\n")
+
+
+class Folder:
+    """The folder of a mesh; what a trial leaves in it or among the temporary files is noticed."""
+
+    def __init__(self, command, temporary):
+        self.command = command
+        self.path = command.folder
+        self.temporary = temporary
+        self.environment = {**os.environ, "TMPDIR": str(temporary)}
+        write_lattice(self.path / "mesh.mesh")
+        (self.path / "solver.py").write_text(SOLVER)
+        self.before = self.contents()
+
+    def contents(self):
+        return {path: path.read_bytes() for path in self.path.rglob("*") if path.is_file()}
+
+    def check_untouched(self):
+        assert self.contents() == self.before
+        assert not list(self.temporary.iterdir())
+
+    def json(self, *arguments):
+        done = self.command.run("try", *arguments, env=self.environment)
+        assert done.returncode == 0, done.stderr
+        self.check_untouched()
+        return json.loads(done.stdout)
+
+    def fails(self, *arguments):
+        done = self.command.run("try", *arguments, env=self.environment)
+        assert done.returncode == 2, done.stderr
+        assert done.stdout == ""
+        line, = done.stderr.splitlines()
+        self.check_untouched()
+        return line
+
+
+@pytest.fixture
+def folder(tmp_path):
+    from conftest import Command
+    (tmp_path / "work").mkdir()
+    (tmp_path / "temporary").mkdir()
+    return Folder(Command(tmp_path / "work"), tmp_path / "temporary")
+
+
+def solver(in_order, as_it_is):
+    return ("--", sys.executable, "-S", "-E", "solver.py", "{}", in_order, as_it_is)
+
+
+def shell(script):
+    return ("--", "/bin/sh", "-c", script, "sh", "{}")
+
+
+def by_name(result):
+    return {order["name"]: order for order in result["orders"]}
+
+
+def test_a_program_that_runs_twice_as_fast_is_found(folder):
+    result = folder.json("mesh.mesh", "--budget", "30", "--json", *solver(60, 240))
+    assert result["verdict"] == "faster"
+    assert result["best"] in ("bfs", "rcm", "hilbert", "spectral-fronts", "hilbert-fronts")
+    best = by_name(result)[result["best"]]
+    low, high = best["interval"]
+    assert 1.3 < low < best["ratio"] < high
+    assert result["order_command"].startswith("meshorder order mesh.mesh -o ordered-mesh.mesh")
+    assert result["runs_to_pay"] >= 1
+    assert result["finding"].startswith(f"{pathlib.Path(sys.executable).name} runs ")
+    assert all(order["peak_bytes"] > 1e6 and order["runs"] >= 1 for order in result["orders"])
+    command = result["order_command"].split()[1:]
+    folder.command.ok(*command)
+    assert (folder.path / "ordered-mesh.mesh").exists()
+
+
+def test_text_begins_with_the_finding(folder):
+    done = folder.command.ok("try", "mesh.mesh", "--budget", "10", "--methods", "rcm", *solver(60, 240))
+    assert " runs " in done.stdout.splitlines()[0] and "× faster (" in done.stdout.splitlines()[0]
+    assert "\noriginal " in done.stdout and "\nrcm " in done.stdout and "█" in done.stdout
+
+
+def test_what_the_program_prints_can_be_its_time(folder):
+    result = folder.json("mesh.mesh", "--time", r"seconds: (\S+)", "--budget", "20", "--json", *solver(20, 40))
+    assert result["verdict"] == "faster" and result["runs_to_pay"] is None
+    for name, order in by_name(result).items():
+        assert order["time"] == (0.04 if name == "original" else 0.02)
+    # exactly the same in all orders
+    result = folder.json("mesh.mesh", "--time", r"seconds: (\S+)", "--budget", "20", "--json", *solver(20, 20))
+    assert result["verdict"] == "tie"
+    assert "by more than 1.5 %" in result["finding"]
+    result = folder.json("mesh.mesh", "--time", r"seconds: (\S+)", "--budget", "20", "--json", *solver(40, 20))
+    assert result["verdict"] == "slower"
+    assert "fastest in the file's own order" in result["finding"]
+
+
+def test_counts_are_the_last_that_are_printed(folder):
+    result = folder.json("mesh.mesh", "--count", r"(\d+) iterations", "--methods", "rcm", "--budget", "5", "--json",
+                         *solver(10, 10))
+    assert {name: order["count"] for name, order in by_name(result).items()} == {"original": 17, "rcm": 14}
+
+
+def test_the_clock_can_count(folder):
+    result = folder.json("mesh.mesh", "--time", "wall", "--methods", "rcm", "--budget", "20", "--json",
+                         *shell('grep -q "^132 " $1; sleep 0.2'))
+    assert by_name(result)["original"]["time"] > 0.2
+    result = folder.json("mesh.mesh", "--methods", "rcm", "--budget", "5", "--json", *shell("sleep 0.2"))
+    assert by_name(result)["original"]["time"] < 0.1
+
+
+def test_processor_time_of_children_counts(folder):
+    script = f"{sys.executable} -S -E solver.py $1 150 150 & wait"
+    result = folder.json("mesh.mesh", "--methods", "rcm", "--budget", "5", "--json", *shell(script))
+    assert by_name(result)["rcm"]["time"] > 0.14
+
+
+def test_results_must_agree(folder):
+    arguments = ("mesh.mesh", "--methods", "rcm", "--budget", "5", "--json")
+    result = folder.json(*arguments, "--same", r"energy = (\S+)", *solver(10, 10))
+    assert by_name(result)["rcm"]["fault"] is None
+    fault = folder.fails(*arguments, "--same", r"span (\S+)", *solver(10, 10))
+    assert "no other order" in fault and "results differ" in fault
+    assert folder.json(*arguments, "--same", r"span (\S+)", "--tolerance", "1", *solver(10, 10))
+
+
+def test_files_must_agree(folder):
+    arguments = ("mesh.mesh", "--methods", "rcm", "--budget", "5", "--json")
+    write = 'echo "total 1.0000001 ok" > result.txt; cp result.txt $2'
+    command = ("--", "/bin/sh", "-c", write, "sh", "{}", "{out}")
+    assert folder.json(*arguments, "--same-file", "result.txt", *command)
+    assert folder.json(*arguments, "--same-file", "{out}", *command)
+    assert "such file" in folder.fails(*arguments, "--same-file", "other.txt", *command)
+    assert "in the folder" in folder.fails(*arguments, "--same-file", "../x", *command)
+    assert "results differ" in folder.fails(*arguments, "--same-file", "copy", *shell("cp $1 copy"))
+
+
+def test_an_order_that_fails_is_out(folder):
+    result = folder.json("mesh.mesh", "--methods", "scrambled,rcm", "--budget", "10", "--json", "--time",
+                         r"seconds: (\S+)", "--", "/bin/sh", "-c",
+                         f"{sys.executable} -S -E solver.py $1 10 20 > log; cat log; "
+                         "cmp -s $1 first || { test -e first || exit 0; }", "sh", "{}")
+    assert by_name(result)["rcm"]["fault"] is None
+
+
+def test_every_run_finds_the_same_files(folder):
+    (folder.path / "sub").mkdir()
+    (folder.path / "sub" / "include.txt").write_text("kept")
+    (folder.path / ".hidden").write_text("not copied")
+    folder.before = folder.contents()
+    script = ("test ! -e left -a ! -e sub/left -a ! -e .hidden || { echo found >&2; exit 1; }; "
+              "test $(cat sub/include.txt) = kept || { echo changed >&2; exit 1; }; "
+              "touch left sub/left; echo changed > sub/include.txt; rm solver.py; mkdir -p new/deep; touch new/deep/x")
+    folder.json("mesh.mesh", "--methods", "rcm", "--budget", "3", "--json", *shell(script))
+
+
+def test_named_files_alone_are_copied(folder):
+    script = "test -e solver.py -a ! -e other.txt"
+    (folder.path / "other.txt").write_text("")
+    folder.before = folder.contents()
+    folder.json("mesh.mesh", "--with", "solver.py", "--methods", "rcm", "--budget", "3", "--json", *shell(script))
+    assert "--with nothing.txt" in folder.fails("mesh.mesh", "--with", "nothing.txt", *shell(script))
+
+
+def test_a_large_file_that_the_program_writes_is_noticed(folder):
+    with open(folder.path / "large", "wb") as large:
+        large.truncate(65 << 20)
+    done = folder.command.run("try", "mesh.mesh", *shell("echo >> large"), env=folder.environment)
+    assert done.returncode == 2 and "changed while the program ran" in done.stderr
+
+
+def test_a_mesh_of_several_files_moves_as_one(folder):
+    meshes.write_tetgen(folder.path)
+    folder.before = folder.contents()
+    result = folder.json("mesh.node", "--methods", "rcm,scrambled", "--budget", "3", "--json",
+                         *shell("test -e mesh.ele && cat mesh.ele $1 > /dev/null"))
+    assert result["orders"][0]["runs"] >= 1
+
+
+def test_words_of_the_program_are_its_own(folder):
+    script = 'test "$1" = mesh -a "$2" = mesh.mesh -a "$3" = "[a,b]" -a "$4" = --json= -a "$5" = "" || exit 1'
+    folder.json("mesh.mesh", "--methods", "rcm", "--budget", "2", "--json", "--", "/bin/sh", "-c", script, "sh",
+                "{stem}", "{}", "[a,b]", "--json=", "")
+
+
+def test_first_outputs_can_be_kept(folder):
+    done = folder.command.ok("try", "mesh.mesh", "--keep", "kept", "--methods", "rcm,hilbert/original", "--budget", "2",
+                             *shell("echo written > result; echo said"))
+    assert "kept" in done.stdout
+    for name in ("original", "rcm", "hilbert_original"):
+        assert (folder.path / "kept" / name / "result").read_text() == "written\n"
+        assert (folder.path / "kept" / name / "stdout.txt").read_text() == "said\n"
+        assert (folder.path / "kept" / name / "mesh.mesh").exists()
+    assert "there already" in folder.command.fails("try", "mesh.mesh", "--keep", "kept", *shell("true"))
+
+
+def test_orders_that_the_budget_leaves_no_time_for_are_named(folder):
+    done = folder.command.run("try", "mesh.mesh", "--budget", "2", "--json", *solver(150, 150), env=folder.environment)
+    assert done.returncode == 0
+    result = json.loads(done.stdout)
+    assert result["left_out"] and len(result["orders"]) == 2
+    assert result["run_seconds"] < 4
+    assert any("there is no time for" in note for note in result["notes"])
+
+
+@pytest.mark.parametrize("arguments, fault", [
+    (("mesh.mesh",), "there is no program to try"),
+    (("mesh.mesh", "--", "true"), "has no {}"),
+    (("mesh.mesh", "--", "./nothing", "{}"), "./nothing: there is no such program"),
+    (("mesh.mesh", "--", "no-such-program", "{}"), "no folder of PATH"),
+    (("mesh.mesh", "--", "./solver.py", "{}"), "may be executed"),
+    (("none.mesh", "--", "cat", "{}"), "none.mesh: there is no such file"),
+    (("mesh.xyz", "--", "cat", "{}"), "unknown extension"),
+    (("mesh.pvtu", "--", "cat", "{}"), "lists pieces"),
+    (("mesh.mesh", "--methods", "best", "--", "cat", "{}"), "--methods best"),
+    (("mesh.mesh", "--time", "(", "--", "cat", "{}"), "no regular expression"),
+    (("mesh.mesh", "--same", "(a)(b)", "--", "cat", "{}"), "several groups"),
+    (("mesh.mesh", "--time", "seconds (.*)", "--", "cat", "{}"), "no line that the program printed matches"),
+    (("mesh.mesh", "--count", "MeshVersion(.*)", "--", "cat", "{}"), "captures 'Formatted 2', which is no number"),
+    (("mesh.mesh", *shell("echo first >&2; echo last >&2; exit 3")), "exit status 3: last"),
+    (("mesh.mesh", *shell("kill -9 $$")), "ended by signal 9"),
+    (("mesh.mesh", "--timeout", "0.3", *shell("sleep 60 & sleep 61")), "no end within 300 ms"),
+    (("mesh.mesh", *shell("echo >> $1")), "changes its mesh"),
+    (("mesh.mesh", *shell("rm $1")), "changes its mesh"),
+    (("mesh.mesh", *shell("cp $1 x; mv x $1; echo >> $1")), "changes its mesh"),
+])
+def test_bad_input_is_one_line(folder, arguments, fault):
+    assert fault in folder.fails(*arguments)
+
+
+def test_orders_that_need_coordinates_are_left_out(folder):
+    entries = [(i, i) for i in range(1, 40)] + [(i + 1, i) for i in range(1, 39)]
+    lines = ["%%MatrixMarket matrix coordinate real symmetric", f"39 39 {len(entries)}"]
+    (folder.path / "a.mtx").write_text("\n".join([*lines, *(f"{i} {j} 1.5" for i, j in entries)]) + "\n")
+    folder.before = folder.contents()
+    command = ("a.mtx", "--budget", "2", "--json", *shell("cat $1 > /dev/null"))
+    result = folder.json("--methods", "scrambled", *command)
+    assert set(by_name(result)) == {"original", "scrambled"}
+    result = folder.json(*command)
+    assert "hilbert" not in by_name(result)
+    assert any(note.startswith("hilbert is left out") for note in result["notes"])
+    assert "coordinates" in folder.fails("--methods", "hilbert", *command)
+
+
+def test_results_that_vary_by_themselves_are_refused(folder):
+    fault = folder.fails("mesh.mesh", "--methods", "rcm", "--same", "(.*)", "--budget", "5",
+                         *shell("date +%N | sed s/^0*//"))
+    assert "vary" in fault or "results differ" in fault
+
+
+def is_running(marker):
+    for process in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if marker.encode() in process.read_bytes():
+                return True
+        except OSError:
+            pass
+    return False
+
+
+def test_what_the_program_leaves_running_is_ended(folder):
+    seconds = f"{random.randrange(10**6, 10**7)}.5"
+    result = folder.json("mesh.mesh", "--methods", "rcm", "--budget", "2", "--json", *shell(f"setsid sleep {seconds} & true"))
+    assert any("leaves processes running" in note for note in result["notes"])
+    assert not is_running(seconds)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_the_program_and_leaves_nothing(folder, number):
+    seconds = f"{random.randrange(10**6, 10**7)}.5"
+    running = subprocess.Popen([MESHORDER, "try", "mesh.mesh", *shell(f"sleep {seconds} & sleep 60")], cwd=folder.path,
+                               env=folder.environment, stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 60
+    while not is_running(f"sleep\0{seconds}") and time.monotonic() < deadline:
+        time.sleep(0.02)
+    running.send_signal(number)
+    _, stderr = running.communicate(timeout=60)
+    assert running.returncode == -number
+    assert stderr.startswith("meshorder: stopped by SIG")
+    assert not is_running(f"sleep\0{seconds}")
+    folder.check_untouched()
