@@ -272,6 +272,7 @@ class Trial {
         add_order(name);
       }
     }
+    if (!are_own_.empty()) notes_.push_back("no other order than the file's own: " + join(are_own_));
     if (!report_.left_out.empty()) {
       notes_.push_back(fmt::format("there is no time for {}: a run takes {}, and --budget allows {:.0f}",
                                    join(report_.left_out), duration(last_seconds_[0]), runs));
@@ -306,7 +307,7 @@ class Trial {
     bool is_known = is_own;
     for (std::size_t other = 1; other < number; ++other)
       is_known = is_known || folder_.is_same(other, number);
-    if (is_own) notes_.push_back(fmt::format("{} keeps the file's own order", name));
+    if (is_own) are_own_.push_back(name);
     if (is_known) {
       folder_.drop_order(number);
     } else {
@@ -356,6 +357,7 @@ class Trial {
   TrialFolder folder_;
   TrialReport report_;
   Notes notes_;
+  std::vector<std::string> are_own_;  ///< orders that keep everything where it is
   std::vector<double> last_seconds_;  ///< of each order's last run, by the clock
 };
 

@@ -122,41 +122,41 @@ def test_text_begins_with_the_finding(folder):
 
 
 def test_what_the_program_prints_can_be_its_time(folder):
-    result = folder.json("mesh.mesh", "--time", r"seconds: (\S+)", "--budget", "20", "--json", *solver(20, 40))
+    result = folder.json("mesh.mesh", "--time", r"seconds: (\S+)", "--budget", "9", "--json", *solver(20, 40))
     assert result["verdict"] == "faster" and result["runs_to_pay"] is None
     for name, order in by_name(result).items():
         assert order["time"] == (0.04 if name == "original" else 0.02)
     # exactly the same in all orders
-    result = folder.json("mesh.mesh", "--time", r"seconds: (\S+)", "--budget", "20", "--json", *solver(20, 20))
+    result = folder.json("mesh.mesh", "--time", r"seconds: (\S+)", "--budget", "9", "--json", *solver(20, 20))
     assert result["verdict"] == "tie"
     assert "by more than 1.5 %" in result["finding"]
-    result = folder.json("mesh.mesh", "--time", r"seconds: (\S+)", "--budget", "20", "--json", *solver(40, 20))
+    result = folder.json("mesh.mesh", "--time", r"seconds: (\S+)", "--budget", "9", "--json", *solver(40, 20))
     assert result["verdict"] == "slower"
     assert "fastest in the file's own order" in result["finding"]
 
 
 def test_counts_are_the_last_that_are_printed(folder):
-    result = folder.json("mesh.mesh", "--count", r"(\d+) iterations", "--methods", "rcm", "--budget", "5", "--json",
+    result = folder.json("mesh.mesh", "--count", r"(\d+) iterations", "--methods", "rcm", "--budget", "3", "--json",
                          *solver(10, 10))
     assert {name: order["count"] for name, order in by_name(result).items()} == {"original": 17, "rcm": 14}
 
 
 def test_the_clock_can_count(folder):
-    result = folder.json("mesh.mesh", "--time", "wall", "--methods", "rcm", "--budget", "20", "--json",
-                         *shell('grep -q "^132 " $1; sleep 0.2'))
+    result = folder.json("mesh.mesh", "--time", "wall", "--methods", "rcm", "--budget", "4", "--json",
+                         *shell("sleep 0.2"))
     assert by_name(result)["original"]["time"] > 0.2
-    result = folder.json("mesh.mesh", "--methods", "rcm", "--budget", "5", "--json", *shell("sleep 0.2"))
+    result = folder.json("mesh.mesh", "--methods", "rcm", "--budget", "3", "--json", *shell("sleep 0.2"))
     assert by_name(result)["original"]["time"] < 0.1
 
 
 def test_processor_time_of_children_counts(folder):
     script = f"{sys.executable} -S -E solver.py $1 150 150 & wait"
-    result = folder.json("mesh.mesh", "--methods", "rcm", "--budget", "5", "--json", *shell(script))
+    result = folder.json("mesh.mesh", "--methods", "rcm", "--budget", "3", "--json", *shell(script))
     assert by_name(result)["rcm"]["time"] > 0.14
 
 
 def test_results_must_agree(folder):
-    arguments = ("mesh.mesh", "--methods", "rcm", "--budget", "5", "--json")
+    arguments = ("mesh.mesh", "--methods", "rcm", "--budget", "3", "--json")
     result = folder.json(*arguments, "--same", r"energy = (\S+)", *solver(10, 10))
     assert by_name(result)["rcm"]["fault"] is None
     fault = folder.fails(*arguments, "--same", r"span (\S+)", *solver(10, 10))
@@ -165,7 +165,7 @@ def test_results_must_agree(folder):
 
 
 def test_files_must_agree(folder):
-    arguments = ("mesh.mesh", "--methods", "rcm", "--budget", "5", "--json")
+    arguments = ("mesh.mesh", "--methods", "rcm", "--budget", "3", "--json")
     write = 'echo "total 1.0000001 ok" > result.txt; cp result.txt $2'
     command = ("--", "/bin/sh", "-c", write, "sh", "{}", "{out}")
     assert folder.json(*arguments, "--same-file", "result.txt", *command)
@@ -268,7 +268,7 @@ def test_bad_input_is_one_line(folder, arguments, fault):
     assert fault in folder.fails(*arguments)
 
 
-def test_orders_that_need_coordinates_are_left_out(folder):
+def test_orders_that_move_nothing_are_left_out(folder):
     entries = [(i, i) for i in range(1, 40)] + [(i + 1, i) for i in range(1, 39)]
     lines = ["%%MatrixMarket matrix coordinate real symmetric", f"39 39 {len(entries)}"]
     (folder.path / "a.mtx").write_text("\n".join([*lines, *(f"{i} {j} 1.5" for i, j in entries)]) + "\n")
@@ -277,13 +277,15 @@ def test_orders_that_need_coordinates_are_left_out(folder):
     result = folder.json("--methods", "scrambled", *command)
     assert set(by_name(result)) == {"original", "scrambled"}
     result = folder.json(*command)
-    assert "hilbert" not in by_name(result)
-    assert any(note.startswith("hilbert is left out") for note in result["notes"])
-    assert "coordinates" in folder.fails("--methods", "hilbert", *command)
+    assert set(by_name(result)) <= {"original", "rcm", "spectral-fronts"}
+    assert any(note.startswith("no other order") and "auto" in note for note in result["notes"])
+    result = folder.json("--methods", "hilbert", *command)
+    assert result["best"] is None and result["verdict"] == "undecided"
+    assert "no other order" in result["finding"]
 
 
 def test_results_that_vary_by_themselves_are_refused(folder):
-    fault = folder.fails("mesh.mesh", "--methods", "rcm", "--same", "(.*)", "--budget", "5",
+    fault = folder.fails("mesh.mesh", "--methods", "rcm", "--same", r"(\d+)", "--budget", "5",
                          *shell("date +%N | sed s/^0*//"))
     assert "vary" in fault or "results differ" in fault
 
