@@ -155,7 +155,7 @@ class Processes {
   explicit Processes(pid_t program) : program_(program) {}
 
   /// Takes in those that have ended; returns whether the program is among them.
-  bool reap(TrialRun& run) {
+  bool reap(TrialRun& run) const {
     bool has_ended = false;
     int status = 0;
     struct rusage usage {};
@@ -195,14 +195,15 @@ class Processes {
 #else
     constexpr std::int64_t kUnit = 1024;
 #endif
-    run.peak_bytes = std::max(run.peak_bytes, kUnit * static_cast<std::int64_t>(usage.ru_maxrss));
+    const long peak = usage.ru_maxrss;  // NOLINT(cppcoreguidelines-pro-type-union-access): as glibc has it
+    run.peak_bytes = std::max(run.peak_bytes, kUnit * std::int64_t{peak});
   }
 
   pid_t program_;
 };
 
 /// Waits until the program ends, or ends it; returns the signal that interrupted this, or 0.
-int await(Processes& processes, double timeout_seconds, TrialRun& run) {
+int await(const Processes& processes, double timeout_seconds, TrialRun& run) {
   const Stopwatch stopwatch;
   const sigset_t awaited = awaited_signals();
   int interruption = 0;
@@ -282,7 +283,7 @@ TrialRun run_program(const TrialCommand& command) {
   }
   (void)::setpgid(child, child);
   TrialRun run;
-  Processes processes(child);
+  const Processes processes(child);
   const int interruption = await(processes, command.timeout_seconds, run);
   processes.end_others(run);
   int error = 0;
