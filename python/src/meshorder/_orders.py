@@ -28,7 +28,7 @@ def order(
             vertices are ordered. A matrix gives its pattern only: its values and diagonal are ignored, as are the
             weights of a networkx graph.
         method: "auto", which chooses by the size and the ``workload``, or the name of one of `methods`.
-        points: one row of one to three coordinates for each vertex, which "hilbert" and "morton" need and "auto" uses;
+        points: one row of one to three coordinates for each vertex, which orders along curves ("hilbert", "morton") need and "auto" uses;
             or None.
         weights: one for each entry of the graph, in the order of its arrays, > 0, finite and equal on both sides of the
             diagonal; None: all are 1.
