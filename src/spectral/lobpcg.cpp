@@ -14,6 +14,7 @@ namespace {
 constexpr Index kRows = 2048;       // in a chunk for threads; what a pass touches stays in the L2 cache
 constexpr double kCalm = 0.01;      // change of a Ritz value in an iteration
 constexpr int kLeastUntilCalm = 4;  // iterations, in which noise becomes smooth
+constexpr double kSettled = 0.2;    // residual by Ritz value; above it a value that rests falls on later
 
 /// Numbers that are added up entry by entry.
 template <std::size_t N>
@@ -135,23 +136,35 @@ Ritz rayleigh_ritz(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& energy, i
   return ritz;
 }
 
-/// ‖r‖² and ‖x‖² of the first column.
-using Norms = Sums<2>;
+/// ‖r‖² of each column, and then ‖x‖².
+template <int M>
+using Norms = Sums<std::size_t{2} * M>;
+
+/// ‖r‖ / ‖x‖ of each column.
+template <int M>
+std::array<double, M> residuals_of(Norms<M>& norms) {
+  std::array<double, M> result;
+  for (int m = 0; m < M; ++m) result[m] = std::sqrt(norms[m] / norms[M + m]);
+  return result;
+}
 
 /// r = L x − λ B x in row v, and its part in the norms.
 template <int M>
 void residual_of_row(const WithImage<M>& x, const std::array<double, M>& values, double mass, Index v,
-                     VectorBlock<M>& r, Norms& norms) {
-  for (int m = 0; m < M; ++m) r[v][m] = x.images[v][m] - values[m] * mass * x.vectors[v][m];
-  norms[0] += r[v][0] * r[v][0];
-  norms[1] += x.vectors[v][0] * x.vectors[v][0];
+                     VectorBlock<M>& r, Norms<M>& norms) {
+  for (int m = 0; m < M; ++m) {
+    r[v][m] = x.images[v][m] - values[m] * mass * x.vectors[v][m];
+    norms[m] += r[v][m] * r[v][m];
+    norms[M + m] += x.vectors[v][m] * x.vectors[v][m];
+  }
 }
 
 /// x ← S c, p ← the part of that which is not from x, the same for the images, and r = L x − λ B x. Returns
-/// ‖r‖ / ‖x‖ of the first column.
+/// ‖r‖ / ‖x‖ of each column.
 template <int M, int C, int N = SearchSpace<M, C>::kSize>
-double update(SearchSpace<M, C>& s, const Eigen::MatrixXd& coefficients, const std::array<double, M>& values,
-              const EigenProblem& problem, VectorBlock<M>& r) {
+std::array<double, M> update(SearchSpace<M, C>& s, const Eigen::MatrixXd& coefficients,
+                             const std::array<double, M>& values, const EigenProblem& problem,
+                             VectorBlock<M>& r) {
   std::array<std::array<double, M>, N> c;
   for (int i = 0; i < N; ++i) {
     for (int m = 0; m < M; ++m) c[i][m] = coefficients(i, m);
@@ -167,8 +180,8 @@ double update(SearchSpace<M, C>& s, const Eigen::MatrixXd& coefficients, const s
       part(s.p)[v][m] = direction;
     }
   };
-  auto norms = sum_over_chunks<Norms>(problem.size(), kRows, [&](Index begin, Index end) {
-    Norms part;
+  auto norms = sum_over_chunks<Norms<M>>(problem.size(), kRows, [&](Index begin, Index end) {
+    Norms<M> part;
     for (Index v = begin; v < end; ++v) {
       combine(v, kVectors);
       combine(v, kImages);
@@ -177,14 +190,14 @@ double update(SearchSpace<M, C>& s, const Eigen::MatrixXd& coefficients, const s
     return part;
   });
   problem.add_up(norms.values);
-  return std::sqrt(norms[0] / norms[1]);
+  return residuals_of<M>(norms);
 }
 
 /// Computes L x afresh, since images that follow x by recurrence drift by rounding, and with it the Rayleigh
 /// quotients and r. Returns what `update` does.
 template <int M>
-double refresh(WithImage<M>& x, const EigenProblem& problem, std::array<double, M>& values,
-               VectorBlock<M>& r) {
+std::array<double, M> refresh(WithImage<M>& x, const EigenProblem& problem, std::array<double, M>& values,
+                              VectorBlock<M>& r) {
   problem.apply(x.vectors, x.images);
   using Quotients = Sums<std::size_t{2} * M>;
   auto quotients = sum_over_chunks<Quotients>(problem.size(), kRows, [&](Index begin, Index end) {
@@ -199,13 +212,13 @@ double refresh(WithImage<M>& x, const EigenProblem& problem, std::array<double, 
   });
   problem.add_up(quotients.values);
   for (int m = 0; m < M; ++m) values[m] = quotients[M + m] > 0 ? quotients[m] / quotients[M + m] : 0;
-  auto norms = sum_over_chunks<Norms>(problem.size(), kRows, [&](Index begin, Index end) {
-    Norms part;
+  auto norms = sum_over_chunks<Norms<M>>(problem.size(), kRows, [&](Index begin, Index end) {
+    Norms<M> part;
     for (Index v = begin; v < end; ++v) residual_of_row<M>(x, values, problem.mass(v), v, r, part);
     return part;
   });
   problem.add_up(norms.values);
-  return std::sqrt(norms[0] / norms[1]);
+  return residuals_of<M>(norms);
 }
 
 /// Makes the vectors B-orthogonal to constants, and their images.
@@ -256,29 +269,36 @@ LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorB
   prepare(problem, total_mass[0], s.x);
   if constexpr (Companions > 0) prepare(problem, total_mass[0], s.companions);
   LobpcgResult result;
-  result.residual = search();
+  std::array<double, M> residuals = search();
   int calm = 0;  // iterations in a row that hardly changed a Ritz value
-  const auto converged = [&] { return result.residual <= options.tolerance * values[0]; };
+  const auto converged = [&] { return residuals[0] <= options.tolerance * values[0]; };
+  const auto settled = [&] {
+    for (int m = 0; m < M; ++m) {
+      if (residuals[m] > kSettled * values[m]) return false;
+    }
+    return true;
+  };
   const auto done = [&] {
-    return options.until_calm ? result.iterations >= kLeastUntilCalm && calm >= 2 : converged();
+    return options.until_calm ? result.iterations >= kLeastUntilCalm && calm >= 2 && settled() : converged();
   };
   for (;; ++result.iterations) {
     report("eigenvector");
     const bool last = result.iterations >= options.max_iterations || options.limit.is_over();
     if (last || done()) {
-      result.residual = refresh<M>(s.x, problem, values, r);
+      residuals = refresh<M>(s.x, problem, values, r);
       if (last || done()) break;
     }
     const std::array<double, M> before = values;
     problem.precondition(r, s.w.vectors);
     prepare(problem, total_mass[0], s.w);
-    result.residual = search();
+    residuals = search();
     ++calm;
     for (int m = 0; m < M; ++m) {
       if (std::abs(before[m] - values[m]) > kCalm * before[m]) calm = 0;
     }
   }
   result.eigenvalue = values[0];
+  result.residual = residuals[0];
   result.converged = converged();
   x = std::move(s.x.vectors);
   return result;

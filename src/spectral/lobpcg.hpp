@@ -13,7 +13,7 @@ struct LobpcgOptions {
   double tolerance = 0.1;    ///< on ‖L x − λ B x‖ / (λ ‖x‖) of the first column
   int max_iterations = 500;  ///< more are not made; the result says whether it converged
   TimeLimit limit = {};      ///< ends the iteration like max_iterations
-  bool until_calm = false;   ///< ends it where all Ritz values change by less than 1 %, not by the tolerance
+  bool until_calm = false;   ///< ends it where all columns settle, not by the tolerance
 };
 
 struct LobpcgResult {

@@ -26,9 +26,11 @@ LobpcgResult lowest_eigenvector(EigenProblem& problem, double slack, const Lobpc
   constexpr int kRounds = 5;  // each but the last one finds a lower eigenvalue
   // what is lower by more than this is another eigenvalue: x is within the tolerance of one
   const double nearly_equal = 1 - std::clamp(options.tolerance, 1e-6, 0.1);
+  double rows = static_cast<double>(x.size());
+  problem.add_up({&rows, 1});  // of all processes: they have to decide alike
+  const bool is_small = rows <= kSmallProblem;
   LobpcgResult result = lobpcg<1, 1>(problem, options, x, std::move(companion));
   for (std::uint64_t round = 1; round <= kRounds; ++round) {
-    const bool is_small = x.size() <= static_cast<std::size_t>(kSmallProblem);
     if (!result.converged || (!is_small && result.eigenvalue * slack <= kDoubtful)) break;
     StartBlock block(x.size());
     for (std::size_t v = 0; v < x.size(); ++v) block[v][0] = x[v][0];
