@@ -29,7 +29,8 @@ const std::set<std::string_view> kDataSections{"NodeData", "ElementData", "Eleme
 
 /// Sections without numbers of nodes or elements, kept verbatim. $Parametrizations has triangles over nodes
 /// of its own.
-const std::set<std::string_view> kVerbatimSections{"Comments", "InterpolationScheme", "Parametrizations"};
+const std::set<std::string_view> kVerbatimSections{"Comment", "Comments", "InterpolationScheme",
+                                                   "Parametrizations"};
 
 /// Moves to the line $EndName, $ENDName in version 1, and returns the text before it.
 std::string_view body(ReadContext& reading, std::string_view section) {
@@ -238,7 +239,7 @@ void read_section(ReadContext& reading, const std::string& name) {
     if (has_format) source.fail("a second section $MeshFormat", "a file has one");
     return read_format(reading);
   }
-  if (!has_format && name != "Comments") {
+  if (!has_format && name != "Comment" && name != "Comments") {
     source.fail("$" + name + " comes before $MeshFormat", "a Gmsh file begins with $MeshFormat");
   }
   if (name == "PhysicalNames") return read_names(reading);
