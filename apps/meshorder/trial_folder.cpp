@@ -187,7 +187,15 @@ void TrialFolder::end_run(std::size_t order, const fs::path& kept) {
 void TrialFolder::keep(const fs::path& kept) const {
   constexpr auto kOptions = fs::copy_options::recursive | fs::copy_options::copy_symlinks;
   fs::create_directories(kept);
-  fs::copy(run(), kept, kOptions);
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(run())) {
+    const fs::path name = entry.path().lexically_relative(run());
+    const auto companion = companions_.find(name.string());
+    const bool is_as_it_was =
+        companion != companions_.end() && stamp_of(entry.path(), false) == companion->second.here;
+    if (is_as_it_was || fs::is_directory(entry.symlink_status())) continue;
+    fs::create_directories((kept / name).parent_path());
+    fs::copy(entry.path(), kept / name, kOptions);
+  }
   if (fs::exists(output())) fs::copy(output(), kept / "out", kOptions);
   fs::copy_file(log().string() + ".out", kept / "stdout.txt", fs::copy_options::overwrite_existing);
   fs::copy_file(log().string() + ".err", kept / "stderr.txt", fs::copy_options::overwrite_existing);
@@ -199,10 +207,10 @@ void TrialFolder::remove_new() const {
   std::vector<fs::path> found;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(run()))
     found.push_back(entry.path());
-  // from the back: what is in a folder comes before it
-  for (auto path = found.rbegin(); path != found.rend(); ++path) {
-    const std::string name = path->lexically_relative(run()).string();
-    if (!companions_.contains(name)) fs::remove(*path, ignored);  // leaves folders that are not empty
+  std::reverse(found.begin(), found.end());  // what is in a folder comes after it, and goes first
+  for (const fs::path& path : found) {
+    const std::string name = path.lexically_relative(run()).string();
+    if (!companions_.contains(name)) fs::remove(path, ignored);  // leaves folders that are not empty
   }
 }
 

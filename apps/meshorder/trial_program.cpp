@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array kEndings{SIGINT, SIGTERM, SIGHUP};
 constexpr int kCannotExecute = 127;
-constexpr std::size_t kLongestLine = 300;
+constexpr std::size_t kMostOfLine = 300;
 
 bool is_executable(const fs::path& path) {
   std::error_code ignored;
@@ -217,7 +217,7 @@ int await(const Processes& processes, double timeout_seconds, TrialRun& run) {
   return interruption;
 }
 
-/// Returns the last line of a file that is not blank, at most `kLongestLine` bytes of it.
+/// Returns the last line of a file that is not blank, at most `kMostOfLine` bytes of it.
 std::string last_line(const fs::path& path) {
   constexpr std::uint64_t kTail = 4096;
   const InputFile file(path);
@@ -229,7 +229,7 @@ std::string last_line(const fs::path& path) {
   const std::size_t before = tail.find_last_of('\n');
   const std::string_view line =
       trimmed(std::string_view(tail).substr(before == std::string::npos ? 0 : before + 1));
-  return std::string(utf8_prefix(line, kLongestLine));
+  return std::string(utf8_prefix(line, kMostOfLine));
 }
 
 }  // namespace

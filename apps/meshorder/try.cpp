@@ -290,10 +290,11 @@ class Trial {
     TriedOrder order{.name = name, .methods = order_named(name), .by_auto = name == "auto"};
     if (is_there(order.methods)) return;
     const std::size_t number = report_.orders.size();
-    const TrialCommand command = ordering(order, folder_.add_order(number) / file_name());
+    const fs::path output = folder_.add_order(number) / file_name();
+    const TrialCommand command = ordering(order, output);
     const TrialRun run = run_program(command);
     if (!run.succeeded()) {
-      const std::string line = fault_of_order(run, command);
+      const std::string line = replaced(fault_of_order(run, command), output.string(), arguments_.input);
       if (order.by_auto || !arguments_.methods.empty()) throw CommandError(line, kBadInput);
       notes_.push_back(fmt::format("{} is left out: {}", name, line));
       folder_.drop_order(number);
@@ -377,6 +378,8 @@ void check(const TryArguments& arguments) {
   (void)output_format_of(arguments.input);
   if (!fs::is_regular_file(arguments.input))
     throw InputError(arguments.input, "there is no such file", "give the file of a mesh");
+  if (without_gz(arguments.input) != arguments.input)
+    throw InputError(arguments.input, "it is compressed, and orders of it would not be", "gunzip it first");
   for (const std::string& name : arguments.methods) {
     if (name != "auto") check_order(name);
   }

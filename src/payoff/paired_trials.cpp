@@ -60,20 +60,21 @@ double student_quantile(double tail, int degrees) {
   return (low + high) / 2;
 }
 
-Speedup speedup_of(std::vector<double> logs) {
-  if (logs.empty()) return {};
-  if (logs.size() < kFewestPairs) return {.ratio = std::exp(median(std::move(logs)))};
-  std::sort(logs.begin(), logs.end());
-  const auto cut = static_cast<std::ptrdiff_t>(kTrimmed * static_cast<double>(logs.size()));
-  const auto first = logs.begin() + cut;
-  const auto last = logs.end() - cut;
+Speedup speedup_of(std::vector<double> log_ratios) {
+  if (log_ratios.empty()) return {};
+  if (log_ratios.size() < kFewestPairs) return {.ratio = std::exp(median(std::move(log_ratios)))};
+  std::sort(log_ratios.begin(), log_ratios.end());
+  const auto cut = static_cast<std::ptrdiff_t>(kTrimmed * static_cast<double>(log_ratios.size()));
+  const auto first = log_ratios.begin() + cut;
+  const auto last = log_ratios.end() - cut;
   const auto kept = static_cast<double>(last - first);
   const double mean = std::accumulate(first, last, 0.0) / kept;
-  std::fill(logs.begin(), first, *first);  // the variance is that of the values with the ends moved in
-  std::fill(last, logs.end(), *(last - 1));
-  const double middle = std::accumulate(logs.begin(), logs.end(), 0.0) / static_cast<double>(logs.size());
+  std::fill(log_ratios.begin(), first, *first);  // the variance is that of the values with the ends moved in
+  std::fill(last, log_ratios.end(), *(last - 1));
+  const double middle =
+      std::accumulate(log_ratios.begin(), log_ratios.end(), 0.0) / static_cast<double>(log_ratios.size());
   double squares = 0;
-  for (const double log : logs) squares += (log - middle) * (log - middle);
+  for (const double log : log_ratios) squares += (log - middle) * (log - middle);
   const double width =
       student_quantile(kTail, static_cast<int>(kept) - 1) * std::sqrt(squares / (kept * (kept - 1)));
   return {.ratio = std::exp(mean), .low = std::exp(mean - width), .high = std::exp(mean + width)};

@@ -1,5 +1,6 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """`meshorder try`: a stand-in program whose time depends on the order of its mesh, and programs that misbehave."""
+import gzip
 import json
 import os
 import pathlib
@@ -54,6 +55,7 @@ class Folder:
         self.temporary = temporary
         self.environment = {**os.environ, "TMPDIR": str(temporary)}
         write_lattice(self.path / "mesh.mesh")
+        (self.path / "mesh.mesh.gz").write_bytes(gzip.compress((self.path / "mesh.mesh").read_bytes()))
         (self.path / "solver.py").write_text(SOLVER)
         self.before = self.contents()
 
@@ -230,7 +232,8 @@ def test_first_outputs_can_be_kept(folder):
     for name in ("original", "rcm", "hilbert_original"):
         assert (folder.path / "kept" / name / "result").read_text() == "written\n"
         assert (folder.path / "kept" / name / "stdout.txt").read_text() == "said\n"
-        assert (folder.path / "kept" / name / "mesh.mesh").exists()
+        assert {path.name for path in (folder.path / "kept" / name).iterdir()} == {
+            "mesh.mesh", "result", "stdout.txt", "stderr.txt"}
     assert "there already" in folder.command.fails("try", "mesh.mesh", "--keep", "kept", *shell("true"))
 
 
@@ -250,6 +253,7 @@ def test_orders_that_the_budget_leaves_no_time_for_are_named(folder):
     (("mesh.mesh", "--", "no-such-program", "{}"), "no folder of PATH"),
     (("mesh.mesh", "--", "./solver.py", "{}"), "may be executed"),
     (("none.mesh", "--", "cat", "{}"), "none.mesh: there is no such file"),
+    (("mesh.mesh.gz", "--", "cat", "{}"), "compressed"),
     (("mesh.xyz", "--", "cat", "{}"), "unknown extension"),
     (("mesh.pvtu", "--", "cat", "{}"), "lists pieces"),
     (("mesh.mesh", "--methods", "best", "--", "cat", "{}"), "--methods best"),
