@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kBadInput = 2;
+constexpr int kFaultyInput = 2;
 constexpr double kLeastTime = 1e-6;
 constexpr std::array kDefaultOrders{"auto", "hilbert", "rcm", "spectral-fronts", "hilbert-fronts"};
 // options of `order` that are passed on to it
@@ -295,7 +295,7 @@ class Trial {
     const TrialRun run = run_program(command);
     if (!run.succeeded()) {
       const std::string line = replaced(fault_of_order(run, command), output.string(), arguments_.input);
-      if (order.by_auto || !arguments_.methods.empty()) throw CommandError(line, kBadInput);
+      if (order.by_auto || !arguments_.methods.empty()) throw CommandError(line, kFaultyInput);
       notes_.push_back(fmt::format("{} is left out: {}", name, line));
       folder_.drop_order(number);
       return;

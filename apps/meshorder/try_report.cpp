@@ -55,13 +55,13 @@ std::string number(double ratio) {
 }
 
 /// Returns "1.08–1.16", "" where too few pairs were run.
-std::string interval(const Speedup& speedup) {
+std::string interval(const TimeRatio& speedup) {
   return std::isinf(speedup.high) ? "" : number(speedup.low) + "–" + number(speedup.high);
 }
 
 /// Returns "rcm, 1.02× (0.97–1.07)".
 std::string with_ratio(const TrialReport& report, std::size_t order) {
-  const Speedup speedup = report.trials.speedup(order);
+  const TimeRatio speedup = report.trials.speedup(order);
   const std::string range = interval(speedup);
   return fmt::format("{}, {}×{}", report.orders[order].name, number(speedup.ratio),
                      range.empty() ? range : " (" + range + ")");
@@ -102,7 +102,7 @@ nlohmann::ordered_json order_json(const TrialReport& report, std::size_t number)
   if (!order.times.empty()) result["time"] = median(order.times);
   if (order.count >= 0) result["count"] = order.count;
   if (!order.fault.empty()) result["fault"] = order.fault;
-  const Speedup speedup = number == 0 ? Speedup{1, 1, 1} : report.trials.speedup(number);
+  const TimeRatio speedup = number == 0 ? TimeRatio{1, 1, 1} : report.trials.speedup(number);
   if (!order.times.empty()) result["ratio"] = speedup.ratio;
   if (!order.times.empty() && !std::isinf(speedup.high)) result["interval"] = {speedup.low, speedup.high};
   return result;
@@ -131,7 +131,7 @@ std::string trial_in_words(const TrialReport& report) {
   const std::string found = with_ratio(report, *best);
   switch (report.trials.verdict()) {
     case TrialVerdict::faster: {
-      const Speedup speedup = report.trials.speedup(*best);
+      const TimeRatio speedup = report.trials.speedup(*best);
       const std::optional<double> runs = runs_to_pay(report, *best);
       return fmt::format("{} runs {}× faster ({}) in {}; `{}` makes it{}", program, number(speedup.ratio),
                          interval(speedup), report.orders[*best].name,
@@ -165,7 +165,7 @@ void print_trial(const Console& console, const TrialReport& report) {
     } else if (order.times.empty()) {
       console.print("{:<20} {:>9}", name, "not timed");
     } else {
-      const Speedup speedup = i == 0 ? Speedup{} : report.trials.speedup(i);
+      const TimeRatio speedup = i == 0 ? TimeRatio{} : report.trials.speedup(i);
       console.print("{:<20} {:>9} {:>7.3f} {:>11} {:>5}{} {:>9}  {}", name,
                     time_cell(report, median(order.times)), speedup.ratio, interval(speedup),
                     order.times.size(), has_counts ? fmt::format(" {:>8.6g}", order.count) : "",

@@ -60,7 +60,7 @@ double student_quantile(double tail, int degrees) {
   return (low + high) / 2;
 }
 
-Speedup speedup_of(std::vector<double> log_ratios) {
+TimeRatio time_ratio_of(std::vector<double> log_ratios) {
   if (log_ratios.empty()) return {};
   if (log_ratios.size() < kFewestPairs) return {.ratio = std::exp(median(std::move(log_ratios)))};
   std::sort(log_ratios.begin(), log_ratios.end());
@@ -109,7 +109,7 @@ std::optional<std::size_t> PairedTrials::best() const {
                            [&](std::size_t a, std::size_t b) { return median(logs_[a]) < median(logs_[b]); });
 }
 
-Speedup PairedTrials::speedup(std::size_t candidate) const { return speedup_of(logs_[candidate]); }
+TimeRatio PairedTrials::speedup(std::size_t candidate) const { return time_ratio_of(logs_[candidate]); }
 
 void PairedTrials::drop_losers() {
   std::stable_sort(left_.begin(), left_.end(),
@@ -137,7 +137,7 @@ void PairedTrials::check() {
   while (next_check_ <= pairs)
     next_check_ = std::max(next_check_ + 1,
                            static_cast<std::size_t>(kBetweenChecks * static_cast<double>(next_check_)));
-  const Speedup found = speedup_of(logs_[left_.front()]);
+  const TimeRatio found = time_ratio_of(logs_[left_.front()]);
   if (found.low > 1 / (1 + kTie) && found.high < 1 + kTie) {
     verdict_ = TrialVerdict::tie;
   } else if (found.low > 1 && found.ratio > 1 + kTie) {

@@ -14,7 +14,7 @@ inline constexpr double kTie = 0.015;
 
 /// How many times as fast a program runs in an order as in the file's own, with an interval that holds the
 /// true number in 95 of 100 trials, although it is looked at again and again.
-struct Speedup {
+struct TimeRatio {
   double ratio = 1;
   double low = 0;
   double high = std::numeric_limits<double>::infinity();
@@ -30,7 +30,7 @@ double student_quantile(double tail, int degrees);
 /// Returns the speedup from logarithms of the ratios of paired times (own order / this order), by their mean
 /// without the largest and the smallest fifth (Yuen, "The two-sample trimmed t for unequal population
 /// variances", 1974; here for one sample of differences). The interval is without bounds for fewer than six.
-Speedup speedup_of(std::vector<double> log_ratios);
+TimeRatio time_ratio_of(std::vector<double> log_ratios);
 
 /// Decides by paired runs in which of several orders a program runs faster than in the file's own.
 ///
@@ -67,7 +67,7 @@ class PairedTrials {
   /// Returns what the best candidate is worth; undecided before one is left and checked.
   [[nodiscard]] TrialVerdict verdict() const { return verdict_; }
 
-  [[nodiscard]] Speedup speedup(std::size_t candidate) const;
+  [[nodiscard]] TimeRatio speedup(std::size_t candidate) const;
   /// Returns the number of pairs with the file's own order.
   [[nodiscard]] std::size_t pairs(std::size_t candidate) const { return logs_[candidate].size(); }
 

@@ -62,7 +62,7 @@ TEST(PairedTrials, QuantilesAreThoseOfTables) {
 }
 
 TEST(PairedTrials, FewPairsHaveNoInterval) {
-  const Speedup speedup = speedup_of(std::vector<double>(5, std::log(2.0)));
+  const TimeRatio speedup = time_ratio_of(std::vector<double>(5, std::log(2.0)));
   EXPECT_DOUBLE_EQ(speedup.ratio, 2);
   EXPECT_EQ(speedup.low, 0);
   EXPECT_TRUE(std::isinf(speedup.high));
@@ -70,10 +70,10 @@ TEST(PairedTrials, FewPairsHaveNoInterval) {
 
 TEST(PairedTrials, AnOutlierHardlyMovesASpeedup) {
   std::vector<double> logs{0.10, 0.11, 0.09, 0.10, 0.12, 0.08, 0.10, 0.11, 0.09, 0.10};
-  const Speedup before = speedup_of(logs);
+  const TimeRatio before = time_ratio_of(logs);
   EXPECT_NEAR(before.ratio, std::exp(0.1), 1e-3);
   logs.back() = -3;
-  const Speedup after = speedup_of(logs);
+  const TimeRatio after = time_ratio_of(logs);
   EXPECT_NEAR(after.ratio, before.ratio, 0.01);
   // as python/tests/test_try.py expects of the same rule
   EXPECT_NEAR(after.ratio, 1.1033305, 1e-6);
