@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/point.hpp"
+#include "metrics/first_touches.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/judgement.hpp"
 
@@ -92,6 +93,14 @@ Coordinates coordinates_of(const VertexInput& input) {
   return is_lattice(input.points, n) ? Coordinates::lattice : Coordinates::general;
 }
 
+/// Whether the points are on a lattice, and few lines are first read out of order as its vertices are
+/// numbered.
+bool is_lattice_read_forward(const VertexInput& input) {
+  constexpr double kFew = 0.1;
+  return coordinates_of(input) == Coordinates::lattice &&
+         sampled_jump_share(input.graph, Permutation::identity(input.graph.size())) < kFew;
+}
+
 }  // namespace
 
 MethodChoice choose_vertex_method(const VertexInput& input, Workload workload) {
@@ -109,6 +118,12 @@ MethodChoice choose_element_method(const ElementInput& /*input*/, Workload /*wor
 
 Order auto_vertices(const VertexInput& input, const OrderOptions& options) {
   MethodChoice choice = choose_vertex_method(input, options.workload);
+  if (choice.name == "bfs" && is_lattice_read_forward(input)) {
+    return {.permutation = Permutation::identity(input.graph.size()),
+            .method = {
+                "original",
+                "bfs is no better: the points are on a lattice, whose lines a sweep already reads forward"}};
+  }
   Order result = order_graph(choice.name, input, options);
   if (std::string reason = reason_to_keep(input.graph, result.permutation, choice.name, options.workload);
       !reason.empty()) {

@@ -184,6 +184,9 @@ TEST(Auto, LooksAtTheSize) {
 }
 
 TEST(Auto, KnowsLatticesByTheirCoordinates) {
+  const Lattice rows(false);
+  EXPECT_THAT(order_graph("auto", {rows.graph, rows.points}).method.reason,
+              testing::HasSubstr("is no better: the points are on a lattice"));
   Lattice lattice;
   const auto taken = [&] {
     return choose_vertex_method({lattice.graph, lattice.points}, Workload::all).name;
