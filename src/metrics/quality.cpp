@@ -19,7 +19,7 @@ Quality quality_of(GraphRef graph, const Permutation& order) {
           .bandwidth = span.max,
           .profile = profile(graph, order),
           .histogram_log2 = span_histogram_log2(graph, order),
-          .jump_share = jump_share(graph, order)};
+          .jump_share = graph.edge_count() > 0 ? jump_share(graph, order) : 0};
 }
 
 inline namespace v0_2 {

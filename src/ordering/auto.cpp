@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/point.hpp"
+#include "metrics/edge_span.hpp"
 #include "metrics/first_touches.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/judgement.hpp"
@@ -93,12 +94,16 @@ Coordinates coordinates_of(const VertexInput& input) {
   return is_lattice(input.points, n) ? Coordinates::lattice : Coordinates::general;
 }
 
-/// Whether the points are on a lattice, and few lines are first read out of order as its vertices are
-/// numbered.
-bool is_lattice_read_forward(const VertexInput& input) {
+/// Whether the points are on a lattice whose vertices are numbered about as well as by `order`: a sweep reads
+/// few lines out of order, and spans are at most half as long again.
+bool is_well_numbered_lattice(const VertexInput& input, const Permutation& order) {
   constexpr double kFew = 0.1;
-  return coordinates_of(input) == Coordinates::lattice &&
-         sampled_jump_share(input.graph, Permutation::identity(input.graph.size())) < kFew;
+  constexpr double kAlike = 1.5;
+  if (coordinates_of(input) != Coordinates::lattice) return false;
+  const Permutation as_is = Permutation::identity(input.graph.size());
+  return static_cast<double>(span_size(input.graph, as_is).sum) <=
+             kAlike * static_cast<double>(span_size(input.graph, order).sum) &&
+         sampled_jump_share(input.graph, as_is) < kFew;
 }
 
 }  // namespace
@@ -118,15 +123,12 @@ MethodChoice choose_element_method(const ElementInput& /*input*/, Workload /*wor
 
 Order auto_vertices(const VertexInput& input, const OrderOptions& options) {
   MethodChoice choice = choose_vertex_method(input, options.workload);
-  if (choice.name == "bfs" && is_lattice_read_forward(input)) {
-    return {.permutation = Permutation::identity(input.graph.size()),
-            .method = {
-                "original",
-                "bfs is no better: the points are on a lattice, whose lines a sweep already reads forward"}};
-  }
   Order result = order_graph(choice.name, input, options);
-  if (std::string reason = reason_to_keep(input.graph, result.permutation, choice.name, options.workload);
-      !reason.empty()) {
+  std::string reason =
+      choice.name == "bfs" && is_well_numbered_lattice(input, result.permutation)
+          ? "bfs is no better: the points are on a lattice, whose lines a sweep already reads forward"
+          : reason_to_keep(input.graph, result.permutation, choice.name, options.workload);
+  if (!reason.empty()) {
     choice = {"original", std::move(reason)};
     result.permutation = Permutation::identity(input.graph.size());
   }

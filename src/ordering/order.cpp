@@ -80,6 +80,11 @@ Order order_elements(const CellsView& cells, const Permutation& vertices, std::s
 Permutation order_edges(const IndexView& ends, const Permutation& vertices, const Run& run) {
   if (ends.size() % 2 != 0)
     throw InvalidArgument("order_edges: " + std::to_string(ends.size()) + " ends, must be two for each edge");
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    if (ends[k] >= 0 && ends[k] < vertices.size()) continue;
+    throw InvalidArgument("order_edges: end " + std::to_string(k) + " is " + std::to_string(ends[k]) +
+                          ", outside 0 … " + std::to_string(vertices.size() - 1));
+  }
   return order_elements(CellsView::uniform(Shape::line, 2, ends), vertices, "lexmax", {.run = run})
       .permutation;
 }

@@ -53,7 +53,7 @@ Permutation fronts_by_definition(const CsrGraph& graph, const Permutation& order
     for (const auto& [earliest, place] : seeds) enqueue(place);
     for (Index first = begin; first < end; ++first) {
       for (; !queue.empty(); queue.pop_front()) {
-        for (const Index there : neighbours(order.new_to_old()[queue.front()])) {
+        for (const Index there : neighbours(queue.front())) {
           if (there >= begin && there < end) enqueue(there);
         }
       }
