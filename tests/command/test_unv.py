@@ -163,6 +163,17 @@ def test_steps_go_to_another_format_and_back(command, tmp_path):
     assert [row[1] for row in heat[0].values()] == [1] * len(points)
 
 
+def test_elements_of_other_types_are_named(command, tmp_path):
+    points, cells = block(1)
+    write_unv(tmp_path / "a.unv", points, cells)
+    text = (tmp_path / "a.unv").read_text()
+    for known in (TRIANGLE, QUAD, WEDGE, HEXAHEDRON):
+        text = text.replace(f"{known:10}", f"{300:10}")
+    (tmp_path / "a.unv").write_text(text)
+    assert "its only elements are of types that are no cells here (300); nothing can be reordered" in \
+        command.fails("order", "a.unv", "-o", "b.unv")
+
+
 @needs_openfoam
 def test_openfoam_makes_the_same_mesh(command, tmp_path):
     points, cells = block(4)

@@ -461,6 +461,9 @@ TEST(Nastran, RefusesFaultsWithTheirLine) {
   }
   EXPECT_THAT(test::read_error(folder.file("a.bdf", "BEGIN BULK\nENDDATA\n")), HasSubstr("has no GRID"));
   EXPECT_THAT(test::read_error(folder.file("a.bdf", "GRID,1,,0.,0.,0.\n")), HasSubstr("has no elements"));
+  EXPECT_THAT(
+      test::read_error(folder.file("a.bdf", "GRID,1,,0.,0.,0.\nCORD2R,3\nCIHEX1,1,1,1\nCELAS2,2,1.,1\n")),
+      HasSubstr("its only elements are of types that are no cells here (CIHEX1, CELAS2)"));
   EXPECT_THAT(test::read_error(folder.file("a.bdf", "+,1,,0.,0.,0.\n")),
               HasSubstr("a.bdf:1: expected a card"));
   EXPECT_THAT(test::read_error(folder.file("a.bdf", std::string_view("GRID\0,1", 7))),

@@ -287,6 +287,14 @@ TEST(Vtu, ValuesStandAfterCommentsAndInformationToo) {
   expect_same(read_mesh(folder.file("b.vtu", text)), plain);
 }
 
+TEST(Vtu, AnEmptyNumberOfComponentsIsOne) {
+  const TemporaryFolder folder;
+  const std::string text = with(kSmallVtu, "NaN -inf", "3 4");
+  expect_same(
+      read_mesh(folder.file("a.vtu", with(text, "Name=\"heat\"", "Name=\"heat\" NumberOfComponents=\"\""))),
+      read_mesh(folder.file("b.vtu", text)));
+}
+
 TEST(Vtu, MixedLineEndsAreRead) {
   std::string text = kSmallVtu;
   int i = 0;

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <set>
 #include <string>
 #include <utility>
@@ -240,10 +241,26 @@ class DeckReader {
 
   // ---- the end
 
+  /// Returns the names of elements that are no cells: they begin with C, as coordinate systems do.
+  [[nodiscard]] std::vector<std::string> other_elements() const {
+    std::vector<std::string> names;
+    std::ranges::copy_if(others_.list, std::back_inserter(names), [](const std::string& name) {
+      return name.starts_with('C') && !name.starts_with("CORD");
+    });
+    return names;
+  }
+
   void finish() {
     const std::string& path = file_.path();
     if (mesh_.vertex_count() == 0) throw InputError(path, "has no GRID", kNoMesh);
-    if (mesh_.cell_count() == 0) throw InputError(path, "has no elements that are cells", kNoMesh);
+    if (mesh_.cell_count() == 0) {
+      if (const std::vector<std::string> elements = other_elements(); !elements.empty()) {
+        throw InputError(path,
+                         "its only elements are of types that are no cells here (" + join(elements) + ")",
+                         "nothing can be reordered");
+      }
+      throw InputError(path, "has no elements that are cells", kNoMesh);
+    }
     resolve_nodes();
     place_nodes();
     mesh_.dimension = 3;

@@ -482,6 +482,12 @@ class UnvReader {
     if (file_->nodes.size() == 0)
       throw InputError(in_.file(), "has no nodes (dataset 2411, 781 or 15)", no_mesh);
     if (file_->elements.size() == 0) {
+      if (!other_types_.empty()) {
+        throw InputError(
+            in_.file(),
+            fmt::format("its only elements are of types that are no cells here ({})", join(other_types_)),
+            "nothing can be reordered");
+      }
       throw InputError(in_.file(), "has no elements that are cells (dataset 2412 or 780)", no_mesh);
     }
     resolve_nodes();

@@ -175,8 +175,9 @@ class PieceJoiner {
     for (const Index row : rows) {
       if (!ids.empty() && !kept.empty() && ids[kept.back()] == ids[row]) {
         if (pieces_.points[kept.back()] != pieces_.points[row]) {
-          throw error_(fmt::format("the point of the global id {} has two places", ids[row]),
-                       "the pieces are of different meshes, or of different runs");
+          throw error_(
+              fmt::format("the point of the global id {} has two places", ids[row]),
+              "the pieces are of different meshes or runs, or the ids are not those of the whole mesh");
         }
       } else {
         kept.push_back(row);

@@ -206,7 +206,8 @@ class VtuReader {
   }
 
   [[nodiscard]] std::int64_t components_of(const VtuElement& array) const {
-    return array.attribute("NumberOfComponents") == nullptr ? 1 : file_->count(array, "NumberOfComponents");
+    const std::string* const given = array.attribute("NumberOfComponents");
+    return given == nullptr || given->empty() ? 1 : file_->count(array, "NumberOfComponents");
   }
 
   /// Returns the array of that name, null if there is none.
