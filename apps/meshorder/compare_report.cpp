@@ -23,11 +23,11 @@ constexpr const char* kFloor = "band";
 double of_floor(const KernelTimes& times, const KernelTimes& floor) { return floor.speedup / times.speedup; }
 
 void print_quality(const Console& console, const Comparison& comparison) {
-  console.print("\n{:<11} {:<14} {:>8} {:>12} {:>10} {:>10}", "vertices", "elements", "cost", "span: mean",
+  console.print("\n{:<15} {:<12} {:>8} {:>12} {:>10} {:>10}", "vertices", "elements", "cost", "span: mean",
                 "max", "mean log2");
   const auto print_row = [&](const std::string& vertices, const std::string& elements,
                              const std::string& cost, const EdgeSpan& span) {
-    console.print("{:<11} {:<14} {:>8} {:>12.1f} {:>10} {:>10.2f}", vertices, elements, cost, span.mean,
+    console.print("{:<15} {:<12} {:>8} {:>12.1f} {:>10} {:>10.2f}", vertices, elements, cost, span.mean,
                   with_commas(span.max), span.mean_log2);
   };
   for (const ComparedOrder& c : comparison.orders) {
@@ -41,7 +41,7 @@ void print_quality(const Console& console, const Comparison& comparison) {
 }
 
 std::string row_head(const std::string& vertices, const std::string& elements) {
-  return fmt::format("{:<11} {:<14}", vertices, elements);
+  return fmt::format("{:<15} {:<12}", vertices, elements);
 }
 
 /// A table with a row for each order and columns for each kernel.

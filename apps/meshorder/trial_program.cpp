@@ -49,7 +49,10 @@ sigset_t awaited_signals() {
   sigset_t signals;
   ::sigemptyset(&signals);
   ::sigaddset(&signals, SIGCHLD);
-  for (const int signal : kEndings) ::sigaddset(&signals, signal);
+  for (const int signal : kEndings) {
+    struct sigaction now {};  // what is ignored, as under nohup, does not end a trial
+    if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_IGN) ::sigaddset(&signals, signal);
+  }
   return signals;
 }
 

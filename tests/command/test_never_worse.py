@@ -43,7 +43,7 @@ def test_a_good_order_is_kept(command, lattice, tmp_path, use):
     result = command.json("order", "rows.vtu", "-o", "out.vtu", "--maps", "m", "--for", use)
     assert (numpy.load(tmp_path / "m.vertices.old_to_new.npy") == numpy.arange(result["vertices"]["count"])).all()
     assert (result["vertices"]["method"], result["vertices"]["chosen_by"], result["vertices"]["kept"]) == ("original", "auto", True)
-    assert f"hilbert is no better: the mean edge span is {before:.1f} as it is" in result["vertices"]["because"]
+    assert f"hilbert-fronts is no better: the mean edge span is {before:.1f} as it is" in result["vertices"]["because"]
     assert spans(graph_of(tmp_path / "out.vtu")).mean() == before
 
 
