@@ -164,7 +164,7 @@ def test_steps_go_to_another_format_and_back(command, tmp_path):
 
 
 def test_elements_of_other_types_are_named(command, tmp_path):
-    points, cells = block(1)
+    points, cells = block(2)
     write_unv(tmp_path / "a.unv", points, cells)
     text = (tmp_path / "a.unv").read_text()
     for known in (TRIANGLE, QUAD, WEDGE, HEXAHEDRON):
