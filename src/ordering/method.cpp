@@ -32,9 +32,9 @@ struct BuiltInElementMethod {
 };
 
 /// A method, then fronts within its chunks.
-template <Order (*kMethod)(const VertexInput&, const OrderOptions&)>
+template <Order (*Method)(const VertexInput&, const OrderOptions&)>
 Order then_fronts(const VertexInput& input, const OrderOptions& options) {
-  Order result = kMethod(input, options);
+  Order result = Method(input, options);
   result.permutation = in_fronts(input.graph, result.permutation);
   return result;
 }

@@ -26,7 +26,7 @@ LobpcgResult lowest_eigenvector(EigenProblem& problem, double slack, const Lobpc
   constexpr int kRounds = 5;  // each but the last one finds a lower eigenvalue
   // what is lower by more than this is another eigenvalue: x is within the tolerance of one
   const double nearly_equal = 1 - std::clamp(options.tolerance, 1e-6, 0.1);
-  double rows = static_cast<double>(x.size());
+  auto rows = static_cast<double>(x.size());
   problem.add_up({&rows, 1});  // of all processes: they have to decide alike
   const bool is_small = rows <= kSmallProblem;
   LobpcgResult result = lobpcg<1, 1>(problem, options, x, std::move(companion));
