@@ -13,8 +13,8 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kChunk = 2048;  // vertices: fewer cost springs 2 %, four times as many cost products 3 %
-constexpr Index kSection = 32 * kChunk;  // vertices that one thread takes
+constexpr Index kInChunk = 2048;  // vertices: fewer cost springs 2 %, four times as many cost products 3 %
+constexpr Index kInSection = 32 * kInChunk;  // vertices that one thread takes
 constexpr Index kAheadOfOffset = 24;
 constexpr Index kAheadOfRow = 8;
 constexpr Index kAheadOfPlaces = 4;
@@ -96,10 +96,10 @@ class Section {
   std::span<Index> places_;
   std::vector<Index> earlier_;                  ///< neighbours of one vertex before the chunk
   std::vector<std::pair<Index, Index>> seeds_;  ///< earliest neighbour before the chunk, vertex
-  std::array<Index, kChunk + 1> starts_;        ///< of each vertex of the chunk in `neighbours_`
+  std::array<Index, kInChunk + 1> starts_;      ///< of each vertex of the chunk in `neighbours_`
   std::vector<Index> neighbours_;
-  std::array<Index, kChunk + 1> queue_;
-  std::array<char, kChunk> is_queued_;
+  std::array<Index, kInChunk + 1> queue_;
+  std::array<char, kInChunk> is_queued_;
 };
 
 }  // namespace
@@ -107,10 +107,10 @@ class Section {
 Permutation in_fronts(GraphRef graph, const Permutation& order) {
   std::vector<Index> places(order.new_to_old().size());
   std::vector<Index> new_to_old(places.size());
-  for_each_chunk(order.size(), kSection, [&](Index /*section*/, Index begin, Index end) {
+  for_each_chunk(order.size(), kInSection, [&](Index /*section*/, Index begin, Index end) {
     Section section(graph, order, begin, places);
     for (Index next = begin; next < end;) {
-      const Index chunk = std::exchange(next, next + std::min(kChunk, end - next));
+      const Index chunk = std::exchange(next, next + std::min(kInChunk, end - next));
       section.renumber_chunk(chunk, next);
     }
     for (Index place = begin; place < end; ++place) new_to_old[places[place]] = order.new_to_old()[place];
