@@ -499,7 +499,8 @@ TEST(OrderEdges, GoesByTheLargerPlaceOfTheTwo) {
   EXPECT_THAT(refusal([&] { (void)order_edges(std::span(ends).first(3), vertices); }),
               HasSubstr("two for each"));
   ends[5] = 200;
-  EXPECT_THAT(refusal([&] { (void)order_edges(ends, vertices); }), HasSubstr("end 5 is 200, outside 0 … 199"));
+  EXPECT_THAT(refusal([&] { (void)order_edges(ends, vertices); }),
+              HasSubstr("end 5 is 200, outside 0 … 199"));
 }
 
 TEST(OrderMesh, IsTheOrderOfTheVertexGraphAndThenOfTheElements) {
