@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/graphs.hpp"
 
+#include "base/point.hpp"
 #include "graph/join_limit.hpp"
 #include "mesh/procedural.hpp"
 #include "mesh/simplices.hpp"
