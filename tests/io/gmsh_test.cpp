@@ -191,7 +191,7 @@ TEST(Gmsh, ReadsAllOfVersion1) {
   EXPECT_THAT(written(with_comments), EndsWith("$ENDELM\n$Comments\nhe said $End\n$ENDComments\n"));
   // GetFEM writes it in the singular
   const std::string singular = "$Comment\nversion 2.1 of 1999\n$EndComment\n";
-  EXPECT_THAT(written(read_text(singular + std::string(kGmsh1))), HasSubstr(singular));
+  EXPECT_THAT(written(read_text(std::string(kGmsh1) + singular)), HasSubstr(singular));
 }
 
 TEST(Gmsh, EndsANameAtItsSecondQuoteAndKeepsTheRest) {
