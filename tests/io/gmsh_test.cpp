@@ -190,7 +190,7 @@ TEST(Gmsh, ReadsAllOfVersion1) {
   const Mesh with_comments = read_text(std::string(kGmsh1) + "$Comments\nhe said $End\n$ENDComments\n");
   EXPECT_THAT(written(with_comments), EndsWith("$ENDELM\n$Comments\nhe said $End\n$ENDComments\n"));
   // GetFEM writes it in the singular
-  const std::string singular = "$Comment\nversion 2.1 of 1999\n$EndComment\n";
+  const std::string singular = "$Comment\nversion 2.1 of 1999\n$ENDComment\n";
   EXPECT_THAT(written(read_text(std::string(kGmsh1) + singular)), HasSubstr(singular));
 }
 
