@@ -133,16 +133,6 @@ class Case {
     return fs::exists(poly_mesh / "owner") || fs::exists(poly_mesh / "owner.gz");
   }
 
-  /// Returns a word that a shell reads as this text.
-  static std::string in_shell(const std::string& text) {
-    constexpr std::string_view kPlain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./,:=@%";
-    if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-    std::string quoted = "'";
-    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
-  }
-
   void find_meshes() {
     if (parallel_) {
       for (std::size_t p = 0; is_folder(folder_ / fmt::format("processor{}", p)); ++p) {

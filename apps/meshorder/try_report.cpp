@@ -3,6 +3,7 @@
 
 #include "base/median.hpp"
 #include "payoff/quantities.hpp"
+#include "wording.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -19,16 +20,6 @@ namespace fs = std::filesystem;
 bool is_in_seconds(const TrialReport& report) { return report.time == "cpu" || report.time == "wall"; }
 
 bool is_faster(const TrialReport& report) { return report.trials.verdict() == TrialVerdict::faster; }
-
-/// Returns a word that a shell reads as this text.
-std::string in_shell(const std::string& text) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./,:=@%";
-  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
 
 /// Returns the command that makes an order.
 std::string command_for(const TrialReport& report, const TriedOrder& order) {

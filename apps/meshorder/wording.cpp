@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <string_view>
 #include <utility>
 
 namespace meshorder::command {
@@ -124,6 +125,15 @@ void note_convergence(const std::vector<FiedlerComponent>& components, const std
         "after {} iterations; the order follows the best vector found",
         of, with_commas(component.size), component.residual / component.lambda2, component.iterations));
   }
+}
+
+std::string in_shell(const std::string& text) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./,:=@%";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 }  // namespace meshorder::command
