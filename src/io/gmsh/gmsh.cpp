@@ -42,11 +42,10 @@ std::string_view body(ReadContext& reading, std::string_view section) {
   for (std::size_t at = all.find("$E", begin); at != std::string_view::npos; at = all.find("$E", at + 1)) {
     const std::string_view line = all.substr(at);
     const char before = at == 0 ? '\n' : all[at - 1];
-    const std::size_t after = at + end.size();
-    const bool ends =
-        after == all.size() || std::string_view(" \t\r\n").find(all[after]) != std::string_view::npos;
     const bool named = line.starts_with(end) || (reading.metadata.is_version_1() && line.starts_with(end_1));
-    if ((before != '\n' && before != '\r') || !named || !ends) continue;
+    if ((before != '\n' && before != '\r') || !named) continue;
+    const std::string_view rest = line.substr(end.size());
+    if (!rest.empty() && std::string_view(" \t\r\n").find(rest.front()) == std::string_view::npos) continue;
     source.scanner.seek(static_cast<std::int64_t>(at));
     return all.substr(begin, at - begin);
   }
