@@ -283,9 +283,10 @@ void confine(const Files& files) {
   if (::getppid() != parent) std::_Exit(1);
 #endif
   // never destroyed here: what they hold is the other process's to remove
-  deputy.release()->serve_this_process();
-  if (const PrivateFolder* const folder = unpacked.release())
-    (void)::setenv("TMPDIR", folder->path().c_str(), 1);
+  static OutputDeputy* const own_deputy = deputy.release();
+  static const PrivateFolder* const own_folder = unpacked.release();
+  own_deputy->serve_this_process();
+  if (own_folder != nullptr) (void)::setenv("TMPDIR", own_folder->path().c_str(), 1);
   give_up_rights(reach);
   work = of_child;
 }
