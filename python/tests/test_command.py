@@ -70,7 +70,7 @@ def cells_by_corners(mesh, values=None):
 
 def test_what_the_package_lacks_is_refused_in_one_line(tmp_path):
     here = listed_subcommands(COMMAND)
-    assert here == ["order", "apply", "info", "compare", "openfoam", "calibrate", "methods"]
+    assert here == ["order", "apply", "info", "compare", "try", "openfoam", "calibrate", "methods"]
     full = pathlib.Path(__file__).parents[2] / "build" / "bin" / "meshorder"
     others = {"simulate", "reproduce", "report", "models"}
     if full.exists():
