@@ -283,6 +283,7 @@ void confine(const Files& files) {
   if (::getppid() != parent) std::_Exit(1);
 #endif
   // never destroyed here: what they hold is the other process's to remove
+  // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): keeps in reach what is not destroyed
   static OutputDeputy* const own_deputy = deputy.release();
   static const PrivateFolder* const own_folder = unpacked.release();
   own_deputy->serve_this_process();

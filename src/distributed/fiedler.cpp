@@ -190,9 +190,8 @@ std::vector<double> solve(const Communicator& communicator, SharedLevel finest, 
   const std::uint64_t seed =
       options.seed + static_cast<std::uint64_t>(communicator.rank()) * 0x9e3779b97f4a7c15U;
   const LobpcgResult solved = lowest_eigenvector(
-      problem, hierarchy.levels().front().slack,
-      {.tolerance = options.tolerance, .max_iterations = options.max_iterations, .limit = {}}, seed, x,
-      std::move(companion));
+      problem, {.tolerance = options.tolerance, .max_iterations = options.max_iterations, .limit = {}}, seed,
+      x, std::move(companion));
   report.lambda2 = solved.eigenvalue;
   report.residual = solved.residual;
   report.iterations = solved.iterations;

@@ -53,16 +53,14 @@ bool SharedHierarchy::coarsen(GlobalIndex few) {
   const RowChunks all_rows = RowChunks::whole(fine.laplacian.size());
   Aggregation aggregation =
       communicator_.together([&] { return aggregate(fine.laplacian, all_rows, kStrength, fine.masses); });
-  fine.aggregate_of = aggregation.aggregate_of;
-  const std::vector<double> slacks = communicator_.gathered(aggregation.slack);
-  fine.slack = *std::max_element(slacks.begin(), slacks.end());
+  fine.aggregation = aggregation;
   const Layout layout = Layout::of_sizes(communicator_.gathered(GlobalIndex{aggregation.count()}));
 
   // the aggregates of other ranks
   const std::vector<GlobalIndex> names = communicator_.together([&] {
     std::vector<GlobalIndex> result;
     result.reserve(fine.rows());
-    for (const Index aggregate : fine.aggregate_of)
+    for (const Index aggregate : fine.aggregation.aggregate_of)
       result.push_back(layout.begin(communicator_.rank()) + aggregate);
     return result;
   });
@@ -79,7 +77,7 @@ bool SharedHierarchy::coarsen(GlobalIndex few) {
     coarse.masses.assign(static_cast<std::size_t>(aggregation.count()), 0);
     for (std::size_t v = 0; v < fine.rows(); ++v) {
       const double mass = fine.masses.empty() ? 1 : fine.masses[v];
-      coarse.masses[static_cast<std::size_t>(fine.aggregate_of[v])] += mass;
+      coarse.masses[static_cast<std::size_t>(fine.aggregation.aggregate_of[v])] += mass;
     }
   });
   const bool is_worthwhile =
@@ -174,12 +172,12 @@ void SharedHierarchy::cycle(std::size_t level, const VectorBlock<M>& b, VectorBl
   VectorBlock<M> coarse(static_cast<std::size_t>(coarse_rows), std::array<double, M>{});
   for (Index v = 0; v < here.laplacian.size(); ++v) {
     const auto residual = residual_of_row<M>(here.laplacian, v, b, x);
-    auto& sum = coarse[static_cast<std::size_t>(here.aggregate_of[static_cast<std::size_t>(v)])];
+    auto& sum = coarse[static_cast<std::size_t>(here.aggregation.aggregate_of[static_cast<std::size_t>(v)])];
     for (std::size_t m = 0; m < M; ++m) sum[m] += residual[m];
   }
   coarse = coarse_correction<M>(level + 1, std::move(coarse));
   for (std::size_t v = 0; v < here.rows(); ++v) {
-    const auto& correction = coarse[static_cast<std::size_t>(here.aggregate_of[v])];
+    const auto& correction = coarse[static_cast<std::size_t>(here.aggregation.aggregate_of[v])];
     for (std::size_t m = 0; m < M; ++m) x[v][m] += kOverCorrection * correction[m];
   }
   fetch_others(here, x);
@@ -199,7 +197,7 @@ StartBlock SharedHierarchy::nested_start(std::uint64_t seed) {
     const SharedLevel& here = levels_[level];
     StartBlock finer(here.rows());
     for (std::size_t v = 0; v < here.rows(); ++v)
-      finer[v] = x[static_cast<std::size_t>(here.aggregate_of[v])];
+      finer[v] = x[static_cast<std::size_t>(here.aggregation.aggregate_of[v])];
     x = std::move(finer);
     smooth(here, x);
     if (level > 0) {

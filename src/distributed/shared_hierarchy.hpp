@@ -18,12 +18,11 @@ namespace meshorder::distributed {
 
 /// The rows that a rank has of the Laplacian of a graph, and the way to the next coarser one.
 struct SharedLevel {
-  Layout layout;                         ///< of the rows' numbers
-  Halo halo;                             ///< of the neighbours on other ranks
-  Laplacian laplacian;                   ///< own rows; columns are these and behind them the halo's numbers
-  std::vector<double> masses = {};       ///< as of `Level`, of the own rows
-  std::vector<Index> aggregate_of = {};  ///< own coarser vertex of each own row
-  double slack = 0;                      ///< as of `Level`, the largest of all ranks; of shared levels alone
+  Layout layout;                    ///< of the rows' numbers
+  Halo halo;                        ///< of the neighbours on other ranks
+  Laplacian laplacian;              ///< own rows; columns are these and behind them the halo's numbers
+  std::vector<double> masses = {};  ///< as of `Level`, of the own rows
+  Aggregation aggregation = {};     ///< of the own rows
 
   [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(laplacian.size()); }
 };

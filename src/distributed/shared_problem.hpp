@@ -2,6 +2,7 @@
 #pragma once
 
 #include "distributed/shared_hierarchy.hpp"
+#include "spectral/hiding.hpp"
 #include "spectral/lobpcg.hpp"
 
 #include <algorithm>
@@ -27,6 +28,11 @@ class SharedProblem : public EigenProblem {
   }
   void precondition(const VectorBlock<2>& r, VectorBlock<2>& w) override {
     hierarchy_.cycle<2>(level_, r, w);
+  }
+  [[nodiscard]] bool may_hide(double eigenvalue) const override {
+    const SharedLevel& level = hierarchy_.levels()[level_];
+    const bool here = meshorder::may_hide(level.laplacian, level.aggregation, level.masses, eigenvalue);
+    return hierarchy_.communicator().sum(here ? 1 : 0) > 0;
   }
   void add_up(std::span<double> sums) const override {
     constexpr std::size_t kMost = 32;

@@ -10,20 +10,10 @@ namespace {
 
 constexpr Index kFree = -1;
 
-/// The least weight of a strong neighbour of v.
-double strong_weight(const Laplacian& laplacian, Index v, double strength) {
-  if (!laplacian.is_weighted()) return 1.0;
-  double largest = 0;
-  for (Offset k = laplacian.offsets[v]; k < laplacian.offsets[v + 1]; ++k) {
-    largest = std::max(largest, laplacian.weights[k]);
-  }
-  return std::max(strength * largest, 1e-300);
-}
-
 struct Counts {
-  Index aggregates = 0;
   Index alone = 0;
-  double slack = 0;
+  std::vector<Index> founders;  ///< of the aggregates
+  std::vector<double> slacks;   ///< of the aggregates
 };
 
 /// A vertex that joins an aggregate through an edge to a founding member.
@@ -34,23 +24,26 @@ struct Joining {
   double weight;
 };
 
-/// The largest mass that hangs on an edge by which a vertex came to its aggregate, divided by its weight.
+/// The slack of each aggregate of the rows from `begin` on, see `aggregate`.
 ///
-/// @param founding_weight  of the edge to the founder, for the rows from `begin` on; 0: none
-double slack_of(const std::vector<Joining>& joinings, std::span<const double> founding_weight,
-                std::span<const double> masses, Index begin) {
+/// @param founding_weight  of the edge to the founder, for each row; 0: none
+std::vector<double> slacks_of(const std::vector<Joining>& joinings, std::span<const double> founding_weight,
+                              std::span<const double> masses, Index begin,
+                              const std::vector<Index>& aggregate_of, Index count) {
   const auto mass = [&](Index v) { return masses.empty() ? 1.0 : masses[v]; };
   std::vector<double> hanging(founding_weight.size());
-  double slack = 0;
+  std::vector<double> slacks(static_cast<std::size_t>(count));
   for (const Joining& joining : joinings) {
-    slack = std::max(slack, mass(joining.vertex) / joining.weight);
+    slacks[joining.aggregate] = std::max(slacks[joining.aggregate], mass(joining.vertex) / joining.weight);
     hanging[joining.through - begin] += mass(joining.vertex);
   }
   for (std::size_t k = 0; k < hanging.size(); ++k) {
     if (founding_weight[k] == 0) continue;
-    slack = std::max(slack, (mass(begin + static_cast<Index>(k)) + hanging[k]) / founding_weight[k]);
+    const Index v = begin + static_cast<Index>(k);
+    double& slack = slacks[aggregate_of[v]];
+    slack = std::max(slack, (mass(v) + hanging[k]) / founding_weight[k]);
   }
-  return slack;
+  return slacks;
 }
 
 /// Aggregates the rows begin … end−1, numbers from 0.
@@ -58,7 +51,7 @@ Counts aggregate_rows(const Laplacian& laplacian, std::span<const double> masses
                       double strength, std::vector<Index>& of) {
   Counts counts;
   std::vector<double> founding_weight(static_cast<std::size_t>(end - begin));
-  Index& count = counts.aggregates;
+  std::vector<Index>& founders = counts.founders;
   const auto inside = [&](Index u) { return u >= begin && u < end; };
 
   // found aggregates where there is a neighbourhood and all of it is free
@@ -78,10 +71,11 @@ Counts aggregate_rows(const Laplacian& laplacian, std::span<const double> masses
     for (Offset k = laplacian.offsets[v]; k < laplacian.offsets[v + 1]; ++k) {
       const Index u = laplacian.neighbours[k];
       if (!inside(u) || laplacian.weight(k) < least) continue;
-      of[u] = count;
+      of[u] = index_size(founders);
       founding_weight[u - begin] = laplacian.weight(k);
     }
-    of[v] = count++;
+    of[v] = index_size(founders);
+    founders.push_back(v);
   }
 
   // the rest joins the founded aggregate that pulls it most
@@ -108,17 +102,43 @@ Counts aggregate_rows(const Laplacian& laplacian, std::span<const double> masses
     }
   }
   for (const Joining& joining : joinings) of[joining.vertex] = joining.aggregate;
-  for (const Index v : alone) of[v] = count++;
+  for (const Index v : alone) {
+    of[v] = index_size(founders);
+    founders.push_back(v);
+  }
   counts.alone = index_size(alone);
-  counts.slack = slack_of(joinings, founding_weight, masses, begin);
+  counts.slacks = slacks_of(joinings, founding_weight, masses, begin, of, index_size(founders));
   return counts;
 }
 
 }  // namespace
 
+double strong_weight(const Laplacian& laplacian, Index v, double strength) {
+  if (!laplacian.is_weighted()) return 1.0;
+  double largest = 0;
+  for (Offset k = laplacian.offsets[v]; k < laplacian.offsets[v + 1]; ++k) {
+    largest = std::max(largest, laplacian.weights[k]);
+  }
+  return std::max(strength * largest, 1e-300);
+}
+
+Members members_of(const Aggregation& aggregation, Index rows) {
+  Members result;
+  result.starts.assign(Offset{aggregation.count()} + 1, 0);
+  for (Index v = 0; v < rows; ++v) ++result.starts[aggregation.aggregate_of[v] + 1];
+  std::partial_sum(result.starts.begin(), result.starts.end(), result.starts.begin());
+  std::vector<Index> next(result.starts.begin(), result.starts.end() - 1);
+  result.members.resize(rows);
+  for (Index v = 0; v < rows; ++v) {
+    result.members[next[aggregation.aggregate_of[v]]++] = v;
+  }
+  return result;
+}
+
 Aggregation aggregate(const Laplacian& laplacian, const RowChunks& chunks, double strength,
                       std::span<const double> masses) {
   Aggregation result;
+  result.strength = strength;
   std::vector<Index>& of = result.aggregate_of;
   of.assign(laplacian.size(), kFree);
   result.first_of_chunk.assign(Offset{chunks.count()} + 1, 0);
@@ -127,9 +147,11 @@ Aggregation aggregate(const Laplacian& laplacian, const RowChunks& chunks, doubl
     counts[chunk] = aggregate_rows(laplacian, masses, begin, end, strength, of);
   });
   for (Index chunk = 0; chunk < chunks.count(); ++chunk) {
-    result.first_of_chunk[chunk + 1] = counts[chunk].aggregates;
+    result.first_of_chunk[chunk + 1] = index_size(counts[chunk].founders);
+    result.founders.insert(result.founders.end(), counts[chunk].founders.begin(),
+                           counts[chunk].founders.end());
     result.alone += counts[chunk].alone;
-    result.slack = std::max(result.slack, counts[chunk].slack);
+    result.slacks.insert(result.slacks.end(), counts[chunk].slacks.begin(), counts[chunk].slacks.end());
   }
   std::partial_sum(result.first_of_chunk.begin(), result.first_of_chunk.end(), result.first_of_chunk.begin());
   chunks.for_each([&](Index chunk, Index begin, Index end) {

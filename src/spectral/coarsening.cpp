@@ -85,25 +85,6 @@ Laplacian joined(std::vector<LaplacianRows> parts) {
   return result;
 }
 
-/// Vertices by aggregate: those of a are `members[starts[a]] … members[starts[a + 1] − 1]`.
-struct Members {
-  std::vector<Index> starts;
-  std::vector<Index> members;
-};
-
-Members members_of(const Aggregation& aggregation, Index rows) {
-  Members result;
-  result.starts.assign(Offset{aggregation.count()} + 1, 0);
-  for (Index v = 0; v < rows; ++v) ++result.starts[aggregation.aggregate_of[v] + 1];
-  std::partial_sum(result.starts.begin(), result.starts.end(), result.starts.begin());
-  std::vector<Index> next(result.starts.begin(), result.starts.end() - 1);
-  result.members.resize(rows);
-  for (Index v = 0; v < rows; ++v) {
-    result.members[next[aggregation.aggregate_of[v]]++] = v;
-  }
-  return result;
-}
-
 }  // namespace
 
 SparseRows transposed(const SparseRows& a) {

@@ -52,8 +52,7 @@ FiedlerComponent solve_component(Laplacian laplacian, std::span<const Index> ver
       if (x.empty()) x = column(start, 0);
     }
     LevelProblem problem(hierarchy, 0);
-    solved = lowest_eigenvector(problem, hierarchy.levels().front().slack,
-                                {options.tolerance, options.max_iterations, limit}, options.seed, x,
+    solved = lowest_eigenvector(problem, {options.tolerance, options.max_iterations, limit}, options.seed, x,
                                 std::move(companion));
   }
   for (std::size_t k = 0; k < x.size(); ++k) values[vertices[k]] = x[k][0];

@@ -3,19 +3,21 @@
 
 #include "spectral/coarsening.hpp"
 #include "spectral/dense.hpp"
+#include "spectral/hiding.hpp"
 #include "spectral/relaxation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <utility>
 
 namespace meshorder {
 namespace {
 
-constexpr Index kDenseSize = 60;  // a dense eigensolver takes half a millisecond there
+constexpr Index kDenseSize = 60;     // a dense eigensolver takes half a millisecond there
+constexpr Index kSmallGraph = 1024;  // a search takes less than a millisecond there
+constexpr Index kExactSize = 128;    // counting eigenvalues by pivots takes a tenth of a millisecond there
 
 /// Makes the next coarser level of `fine`, and in `fine` the way to it; false when that is not worth it.
 bool coarsen(Level& fine, bool smoothed, Level& coarse) {
@@ -27,7 +29,6 @@ bool coarsen(Level& fine, bool smoothed, Level& coarse) {
     aggregation = aggregate(fine.laplacian, fine.chunks, kStrength, fine.masses);
   }
   if (aggregation.count() > kWorthwhile * n) return false;
-  fine.slack = aggregation.slack;
   if (smoothed) {
     fine.prolongation = smoothed_prolongation(fine.laplacian, aggregation);
     // where smoothing fills the coarse graph it is left out
@@ -48,8 +49,8 @@ bool coarsen(Level& fine, bool smoothed, Level& coarse) {
     fine.prolongation = {};
     coarse.laplacian = collapsed(fine.laplacian, fine.chunks, aggregation);
     for (Index v = 0; v < n; ++v) coarse.masses[aggregation.aggregate_of[v]] += fine.mass(v);
-    fine.aggregate_of = std::move(aggregation.aggregate_of);
   }
+  fine.aggregation = std::move(aggregation);
   coarse.chunks = RowChunks(coarse.laplacian);
   return true;
 }
@@ -96,11 +97,11 @@ template <int M>
 void restrict_residual(const Level& level, const VectorBlock<M>& b, const VectorBlock<M>& x,
                        VectorBlock<M>& result) {
   std::fill(result.begin(), result.end(), std::array<double, M>{});
-  if (!level.aggregate_of.empty()) {
+  if (!level.is_smoothed()) {
     level.chunks.for_each_piece([&](Index begin, Index end) {  // aggregates keep to their chunks
       for (Index v = begin; v < end; ++v) {
         const auto residual = residual_of_row<M>(level.laplacian, v, b, x);
-        for (int m = 0; m < M; ++m) result[level.aggregate_of[v]][m] += residual[m];
+        for (int m = 0; m < M; ++m) result[level.aggregation.aggregate_of[v]][m] += residual[m];
       }
     });
     return;
@@ -140,9 +141,15 @@ void Hierarchy::coarsen_all(bool smoothed) {
   const Laplacian& coarsest = levels_.back().laplacian;
   if (coarsest.size() <= kDenseSize) {
     coarsest_inverse_ = dense_inverse(coarsest);
-  } else {
-    levels_.front().slack = std::numeric_limits<double>::infinity();
   }
+}
+
+bool Hierarchy::may_hide(int level, double eigenvalue) const {
+  const Level& fine = levels_[level];
+  const Index n = fine.laplacian.size();
+  if (n <= kExactSize) return has_two_below(fine.laplacian, fine.masses, eigenvalue);
+  return !has_exact_coarsest() || (level == 0 && n <= kSmallGraph) ||
+         meshorder::may_hide(fine.laplacian, fine.aggregation, fine.masses, eigenvalue);
 }
 
 template <int M>
@@ -159,8 +166,8 @@ void Hierarchy::add_prolonged(int level, double scale, const VectorBlock<M>& coa
   const SparseRows& p = here.prolongation;
   here.chunks.for_each_piece([&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
-      if (!here.aggregate_of.empty()) {
-        for (int m = 0; m < M; ++m) fine[v][m] += scale * coarse[here.aggregate_of[v]][m];
+      if (!here.is_smoothed()) {
+        for (int m = 0; m < M; ++m) fine[v][m] += scale * coarse[here.aggregation.aggregate_of[v]][m];
         continue;
       }
       for (Offset k = p.offsets[v]; k < p.offsets[v + 1]; ++k) {
@@ -194,7 +201,7 @@ void Hierarchy::cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x,
     coarse_b.resize(levels_[level + 1].laplacian.size());
     restrict_residual<M>(here, b, x, coarse_b);
     two_cycles<M>(level + 1, coarse_b, coarse_x, second_x, workspace);
-    add_prolonged<M>(level, here.aggregate_of.empty() ? 1 : kOverCorrection, coarse_x, x);
+    add_prolonged<M>(level, here.is_smoothed() ? 1 : kOverCorrection, coarse_x, x);
   }
   backward_gauss_seidel<M>(here, entry_of_b, x);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "graph/laplacian.hpp"
+#include "spectral/aggregation.hpp"
 #include "spectral/coarsening.hpp"
 #include "spectral/row_chunks.hpp"
 
@@ -19,13 +20,11 @@ constexpr double kOverCorrection = 2;  ///< of plain coarsening; 1.5 to 3 serve 
 struct Level {
   Laplacian laplacian;
   RowChunks chunks;
-  std::vector<double> masses;       ///< see `mass`; empty where all are 1
-  std::vector<Index> aggregate_of;  ///< plain coarsening: the coarser vertex of each vertex
-  SparseRows prolongation;          ///< smoothed coarsening: the way from the next coarser level
-  /// Of the aggregation that makes the next coarser level, see `aggregate`; infinite on the finest level
-  /// where the hierarchy has no exact coarsest one.
-  double slack = 0;
+  std::vector<double> masses;  ///< see `mass`; empty where all are 1
+  Aggregation aggregation;     ///< makes the vertices of the next coarser level
+  SparseRows prolongation;     ///< smoothed coarsening: the way from the next coarser level; else empty
 
+  [[nodiscard]] bool is_smoothed() const { return prolongation.rows() > 0; }
   /// How many vertices of the finest graph v stands for.
   [[nodiscard]] double mass(Index v) const { return masses.empty() ? 1.0 : masses[v]; }
 };
@@ -85,6 +84,11 @@ class Hierarchy {
 
   /// Whether coarsening came down to a graph that a dense solver takes.
   [[nodiscard]] bool has_exact_coarsest() const noexcept { return coarsest_inverse_.size() > 0; }
+
+  /// Whether coarser levels may not show a vector with a smaller eigenvalue: an aggregate may hide it, see
+  /// hiding.hpp, or there is no exact coarsest level. Up to 128 vertices the answer is exact; a finest level
+  /// of up to 1,024 always may, as a search takes less than a millisecond there.
+  [[nodiscard]] bool may_hide(int level, double eigenvalue) const;
 
  private:
   void coarsen_all(bool smoothed);

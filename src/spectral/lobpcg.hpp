@@ -45,6 +45,9 @@ class EigenProblem {
   /// w ≈ L⁺ r
   virtual void precondition(const VectorBlock<1>& r, VectorBlock<1>& w) = 0;
   virtual void precondition(const VectorBlock<2>& r, VectorBlock<2>& w) = 0;
+  /// Whether an eigenvector with a smaller eigenvalue than this may be hidden from `precondition`, and so
+  /// from what was found by coarser graphs. The same on all processes.
+  [[nodiscard]] virtual bool may_hide(double eigenvalue) const = 0;
   /// Adds up sums over the rows of each process, the same on all of them.
   virtual void add_up(std::span<double> sums) const = 0;
 
@@ -69,6 +72,9 @@ class LevelProblem : public EigenProblem {
   }
   void precondition(const VectorBlock<2>& r, VectorBlock<2>& w) override {
     hierarchy_.cycle<2>(level_, r, w, two_);
+  }
+  [[nodiscard]] bool may_hide(double eigenvalue) const override {
+    return hierarchy_.may_hide(level_, eigenvalue);
   }
   void add_up(std::span<double> /*sums*/) const override {}
 

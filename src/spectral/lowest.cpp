@@ -21,17 +21,14 @@ int find_lower(EigenProblem& problem, double least, const LobpcgOptions& options
   return found.iterations;
 }
 
-LobpcgResult lowest_eigenvector(EigenProblem& problem, double slack, const LobpcgOptions& options,
-                                std::uint64_t seed, VectorBlock<1>& x, VectorBlock<1> companion) {
+LobpcgResult lowest_eigenvector(EigenProblem& problem, const LobpcgOptions& options, std::uint64_t seed,
+                                VectorBlock<1>& x, VectorBlock<1> companion) {
   constexpr int kRounds = 5;  // each but the last one finds a lower eigenvalue
   // what is lower by more than this is another eigenvalue: x is within the tolerance of one
   const double nearly_equal = 1 - std::clamp(options.tolerance, 1e-6, 0.1);
-  auto rows = static_cast<double>(x.size());
-  problem.add_up({&rows, 1});  // of all processes: they have to decide alike
-  const bool is_small = rows <= kSmallProblem;
   LobpcgResult result = lobpcg<1, 1>(problem, options, x, std::move(companion));
   for (std::uint64_t round = 1; round <= kRounds; ++round) {
-    if (!result.converged || (!is_small && result.eigenvalue * slack <= kDoubtful)) break;
+    if (!result.converged || !problem.may_hide(nearly_equal * result.eigenvalue)) break;
     StartBlock block(x.size());
     for (std::size_t v = 0; v < x.size(); ++v) block[v][0] = x[v][0];
     const int more = find_lower(problem, nearly_equal * result.eigenvalue, options, seed + round, block);

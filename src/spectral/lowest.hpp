@@ -7,8 +7,6 @@
 
 namespace meshorder {
 
-constexpr double kDoubtful = 0.25;     ///< λ · slack from which an aggregate may hide an eigenvector
-constexpr Index kSmallProblem = 4096;  ///< vertices up to which the search costs next to nothing
 constexpr int kSearchIterations = 40;  ///< of `find_lower`; about six are needed
 
 /// Looks for an eigenvalue below `least`: iterates column 0 of `x` beside a random vector until nothing
@@ -25,13 +23,12 @@ int find_lower(EigenProblem& problem, double least, const LobpcgOptions& options
 ///
 /// A small residual says that λ is near an eigenvalue, not which: where most eigenvalues are about equal, as
 /// those of cliques, even random vectors have one. Coarse graphs find the right one unless an aggregate hides
-/// it, which λ · slack says, see `aggregate`. There, and on all small graphs, `find_lower` follows, and the
-/// solution goes on from what it finds. That takes about as long as the solution; elsewhere nothing is added.
+/// it, see `EigenProblem::may_hide`. There `find_lower` follows, and the solution goes on from what it finds.
+/// That takes about as long as the solution; elsewhere 2 to 5 % are added.
 ///
-/// @param slack  of the finest level of the hierarchy that preconditions the problem
 /// @param seed   of the random vectors
 /// @return iterations: those that x went through
-LobpcgResult lowest_eigenvector(EigenProblem& problem, double slack, const LobpcgOptions& options,
-                                std::uint64_t seed, VectorBlock<1>& x, VectorBlock<1> companion);
+LobpcgResult lowest_eigenvector(EigenProblem& problem, const LobpcgOptions& options, std::uint64_t seed,
+                                VectorBlock<1>& x, VectorBlock<1> companion);
 
 }  // namespace meshorder

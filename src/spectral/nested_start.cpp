@@ -12,10 +12,10 @@ namespace meshorder {
 
 namespace {
 
-constexpr Index kFew = 300;           // vertices on which a search takes a third of a millisecond
-constexpr Index kSmallShare = 50;     // of such a share of the graph, it costs nothing beside the rest
-constexpr double kVeryDoubtful = 4;   // smoothed coarsening hides less
-constexpr double kNearlyEqual = 0.9;  // of an eigenvalue that is no other one
+constexpr Index kFew = 300;                  // vertices on which a search takes a third of a millisecond
+constexpr Index kSmallShare = 50;            // of such a share of the graph, it costs nothing beside the rest
+constexpr double kSmoothedHides = 1.0 / 16;  // of what plain coarsening would hide
+constexpr double kNearlyEqual = 0.9;         // of an eigenvalue that is no other one
 
 }  // namespace
 
@@ -56,10 +56,11 @@ StartBlock nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimi
     const LobpcgResult found = lobpcg<kStartColumns>(hierarchy, level, coarse_search(limit), x);
     const bool is_small =
         levels[level].laplacian.size() <= std::max(kFew, levels[0].laplacian.size() / kSmallShare);
-    if (found.eigenvalue * levels[level].slack <= (is_small ? kDoubtful : kVeryDoubtful)) continue;
+    const double least = kNearlyEqual * found.eigenvalue;
+    if (!hierarchy.may_hide(level, least * (is_small ? 1 : kSmoothedHides))) continue;
     LevelProblem problem(hierarchy, level);
     const LobpcgOptions search{.max_iterations = kSearchIterations, .limit = limit};
-    find_lower(problem, kNearlyEqual * found.eigenvalue, search, seed + 1, x);
+    find_lower(problem, least, search, seed + 1, x);
   }
   return x;
 }

@@ -2,12 +2,19 @@
 #include "spectral/aggregation.hpp"
 
 #include "graph/traversal.hpp"
+#include "spectral/hiding.hpp"
+#include "support/clustered_graphs.hpp"
+#include "support/dense.hpp"
 #include "support/sample_graphs.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
 #include <set>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -103,6 +110,89 @@ TEST(Aggregation, CountsWhoIsAloneInItsChunk) {
 TEST(Aggregation, OfOneVertexIsOne) {
   EXPECT_EQ(aggregated(test::combinatorial_laplacian(test::path(1))).count(), 1);
   EXPECT_EQ(aggregated(test::combinatorial_laplacian(test::path(0))).count(), 0);
+}
+
+/// Eigenvalues of L x = μ M x on some vertices, cut out of their graph, rising.
+Eigen::VectorXd eigenvalues_of_part(const Laplacian& laplacian, const std::vector<double>& masses,
+                                    const std::vector<Index>& vertices) {
+  const Eigen::MatrixXd whole = test::dense(laplacian);
+  const auto n = static_cast<Eigen::Index>(vertices.size());
+  Eigen::MatrixXd part = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      if (i != j) part(i, j) = whole(vertices[i], vertices[j]);
+    }
+  }
+  part.diagonal() = -part.rowwise().sum();
+  Eigen::VectorXd inverse_roots(n);
+  for (Eigen::Index i = 0; i < n; ++i) inverse_roots[i] = 1 / std::sqrt(masses[vertices[i]]);
+  part = inverse_roots.asDiagonal() * part * inverse_roots.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(part, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+TEST(Aggregation, HidesWhatDenseSolversFindWithinAggregates) {
+  int hidden = 0;
+  int shown = 0;
+  for (std::uint64_t seed = 0; seed < 260; ++seed) {
+    const test::ClusteredGraph clustered = test::clustered_graph(seed);
+    Laplacian laplacian = test::combinatorial_laplacian(clustered.graph);
+    laplacian.weights = clustered.weights;
+    const Index n = laplacian.size();
+    for (Index v = 0; v < n; ++v) {
+      laplacian.diagonal[v] = 0;
+      for (Offset k = laplacian.offsets[v]; k < laplacian.offsets[v + 1]; ++k)
+        laplacian.diagonal[v] += laplacian.weight(k);
+    }
+    std::vector<double> masses(n);
+    for (Index v = 0; v < n; ++v) masses[v] = seed % 2 == 0 ? 1 : 1 + (v * 7919 % 13);
+    const Aggregation aggregation = aggregate(laplacian, RowChunks::whole(n), kStrength, masses);
+    double second = std::numeric_limits<double>::infinity();  // the smallest of all aggregates
+    for (Index a = 0; a < aggregation.count(); ++a) {
+      std::vector<Index> members;
+      for (Index v = 0; v < n; ++v) {
+        if (aggregation.aggregate_of[v] == a) members.push_back(v);
+      }
+      if (members.size() > 1) second = std::min(second, eigenvalues_of_part(laplacian, masses, members)[1]);
+    }
+    const double scale = *std::max_element(laplacian.diagonal.begin(), laplacian.diagonal.end());
+    for (const double share : {0.00117, 0.1317, 0.4117, 0.9017, 0.9917, 1.0117, 1.1017, 4.017, 100.17}) {
+      const double eigenvalue = share * second * kDoubtful;
+      if (eigenvalue < 1e-10 * scale) continue;  // rounding hides it
+      const bool hides = may_hide(laplacian, aggregation, masses, eigenvalue);
+      if (share < 1) {
+        EXPECT_FALSE(hides) << clustered.name << ", seed " << seed << ", " << share;
+      }
+      if (share > 2.001) {  // slack is right up to a factor of 2
+        EXPECT_TRUE(hides) << clustered.name << ", seed " << seed << ", " << share;
+      }
+      ++(hides ? hidden : shown);
+    }
+    std::vector<Index> all(n);
+    std::iota(all.begin(), all.end(), Index{0});
+    const double lambda2 = eigenvalues_of_part(laplacian, masses, all)[1];
+    if (lambda2 < 1e-10 * scale) continue;
+    EXPECT_FALSE(has_two_below(laplacian, masses, 0.999 * lambda2)) << clustered.name << ", seed " << seed;
+    EXPECT_TRUE(has_two_below(laplacian, masses, 1.001 * lambda2)) << clustered.name << ", seed " << seed;
+  }
+  EXPECT_GT(hidden, 500);
+  EXPECT_GT(shown, 500);
+}
+
+TEST(Aggregation, OfTwoCliquesAndABridgeMayHideTheirDifference) {
+  // all are one aggregate: the founder is an end of the bridge, everyone else of the other clique hangs on it
+  constexpr Index kSize = 20;
+  std::vector<Edge> edges;
+  for (Index first : {Index{0}, kSize}) {
+    for (Index u = first; u < first + kSize; ++u) {
+      for (Index v = first; v < u; ++v) edges.push_back({u, v});
+    }
+  }
+  edges.push_back({0, kSize});
+  const Laplacian laplacian = test::combinatorial_laplacian(graph_from_edges(2 * kSize, edges));
+  const Aggregation aggregation = aggregated(laplacian);
+  ASSERT_EQ(aggregation.count(), 1);
+  EXPECT_TRUE(may_hide(laplacian, aggregation, {}, 20));
+  EXPECT_FALSE(may_hide(laplacian, aggregation, {}, 0.02));
 }
 
 }  // namespace

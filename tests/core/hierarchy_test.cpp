@@ -85,7 +85,7 @@ TEST(Hierarchy, CoarseOperatorsAreGalerkinProducts) {
     SCOPED_TRACE(name);
     const Hierarchy hierarchy = hierarchy_of(graph);
     for (int level = 0; level + 1 < static_cast<int>(hierarchy.levels().size()); ++level) {
-      if (hierarchy.levels()[level].aggregate_of.empty()) ++smoothed;
+      if (hierarchy.levels()[level].is_smoothed()) ++smoothed;
       const Eigen::MatrixXd p = dense_prolongation(hierarchy, level);
       EXPECT_LE((p.rowwise().sum().array() - 1).abs().maxCoeff(), 1e-14) << "constants stay constant";
       const Eigen::MatrixXd coarse = test::dense(hierarchy.levels()[level + 1].laplacian);
