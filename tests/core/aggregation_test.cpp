@@ -113,14 +113,13 @@ TEST(Aggregation, OfOneVertexIsOne) {
 }
 
 /// Eigenvalues of L x = μ M x on some vertices, cut out of their graph, rising.
-Eigen::VectorXd eigenvalues_of_part(const Laplacian& laplacian, const std::vector<double>& masses,
+Eigen::VectorXd eigenvalues_of_part(const Eigen::MatrixXd& laplacian, const std::vector<double>& masses,
                                     const std::vector<Index>& vertices) {
-  const Eigen::MatrixXd whole = test::dense(laplacian);
   const auto n = static_cast<Eigen::Index>(vertices.size());
   Eigen::MatrixXd part = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) {
-      if (i != j) part(i, j) = whole(vertices[i], vertices[j]);
+      if (i != j) part(i, j) = laplacian(vertices[i], vertices[j]);
     }
   }
   part.diagonal() = -part.rowwise().sum();
@@ -133,7 +132,7 @@ Eigen::VectorXd eigenvalues_of_part(const Laplacian& laplacian, const std::vecto
 TEST(Aggregation, HidesWhatDenseSolversFindWithinAggregates) {
   int hidden = 0;
   int shown = 0;
-  for (std::uint64_t seed = 0; seed < 260; ++seed) {
+  for (std::uint64_t seed = 0; seed < 78; ++seed) {
     const test::ClusteredGraph clustered = test::clustered_graph(seed);
     Laplacian laplacian = test::combinatorial_laplacian(clustered.graph);
     laplacian.weights = clustered.weights;
@@ -146,13 +145,14 @@ TEST(Aggregation, HidesWhatDenseSolversFindWithinAggregates) {
     std::vector<double> masses(n);
     for (Index v = 0; v < n; ++v) masses[v] = seed % 2 == 0 ? 1 : 1 + (v * 7919 % 13);
     const Aggregation aggregation = aggregate(laplacian, RowChunks::whole(n), kStrength, masses);
+    const Eigen::MatrixXd dense = test::dense(laplacian);
     double second = std::numeric_limits<double>::infinity();  // the smallest of all aggregates
     for (Index a = 0; a < aggregation.count(); ++a) {
       std::vector<Index> members;
       for (Index v = 0; v < n; ++v) {
         if (aggregation.aggregate_of[v] == a) members.push_back(v);
       }
-      if (members.size() > 1) second = std::min(second, eigenvalues_of_part(laplacian, masses, members)[1]);
+      if (members.size() > 1) second = std::min(second, eigenvalues_of_part(dense, masses, members)[1]);
     }
     const double scale = *std::max_element(laplacian.diagonal.begin(), laplacian.diagonal.end());
     for (const double share : {0.00117, 0.1317, 0.4117, 0.9017, 0.9917, 1.0117, 1.1017, 4.017, 100.17}) {
@@ -169,13 +169,13 @@ TEST(Aggregation, HidesWhatDenseSolversFindWithinAggregates) {
     }
     std::vector<Index> all(n);
     std::iota(all.begin(), all.end(), Index{0});
-    const double lambda2 = eigenvalues_of_part(laplacian, masses, all)[1];
+    const double lambda2 = eigenvalues_of_part(dense, masses, all)[1];
     if (lambda2 < 1e-10 * scale) continue;
     EXPECT_FALSE(has_two_below(laplacian, masses, 0.999 * lambda2)) << clustered.name << ", seed " << seed;
     EXPECT_TRUE(has_two_below(laplacian, masses, 1.001 * lambda2)) << clustered.name << ", seed " << seed;
   }
-  EXPECT_GT(hidden, 500);
-  EXPECT_GT(shown, 500);
+  EXPECT_GT(hidden, 150);
+  EXPECT_GT(shown, 150);
 }
 
 TEST(Aggregation, OfTwoCliquesAndABridgeMayHideTheirDifference) {
