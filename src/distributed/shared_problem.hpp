@@ -31,8 +31,10 @@ class SharedProblem : public EigenProblem {
   }
   [[nodiscard]] bool may_hide(double eigenvalue) const override {
     const SharedLevel& level = hierarchy_.levels()[level_];
-    const bool here = meshorder::may_hide(level.laplacian, level.aggregation, level.masses, eigenvalue);
-    return hierarchy_.communicator().sum(here ? 1 : 0) > 0;
+    const Communicator& communicator = hierarchy_.communicator();
+    const bool here = communicator.together(
+        [&] { return meshorder::may_hide(level.laplacian, level.aggregation, level.masses, eigenvalue); });
+    return communicator.sum(here ? 1 : 0) > 0;
   }
   void add_up(std::span<double> sums) const override {
     constexpr std::size_t kMost = 32;

@@ -24,7 +24,7 @@ int find_lower(EigenProblem& problem, double least, const LobpcgOptions& options
 /// A small residual says that λ is near an eigenvalue, not which: where most eigenvalues are about equal, as
 /// those of cliques, even random vectors have one. Coarse graphs find the right one unless an aggregate hides
 /// it, see `EigenProblem::may_hide`. There `find_lower` follows, and the solution goes on from what it finds.
-/// That takes about as long as the solution; elsewhere 2 to 5 % are added.
+/// That takes about as long as the solution; elsewhere little is added.
 ///
 /// @param seed   of the random vectors
 /// @return iterations: those that x went through
