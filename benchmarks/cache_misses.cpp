@@ -41,8 +41,8 @@ void predict(const mo::Mesh& mesh, const mo::Caches& caches) {
 bool run(const mo::Mesh& mesh, const std::string& kernel_name, int runs) {
   for (const mo::Kernel kernel : mo::kKernels) {
     if (mo::to_string(kernel) != kernel_name) continue;
-    mo::KernelBench bench(mesh);
-    for (int i = 0; i < runs; ++i) bench.run(kernel);
+    const auto bench = mo::prepare_kernels(mo::KernelSet::plain, mesh, mo::vertex_graph(mesh));
+    for (int i = 0; i < runs; ++i) bench->run(kernel);
     return true;
   }
   return false;

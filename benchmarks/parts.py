@@ -63,7 +63,7 @@ class Mesh:
 
     def misses(self, piece):
         """Misses of each kernel and cache."""
-        report = run(self.options.program, "info", piece, "--json", "--cache", ",".join(CACHES), "--machine", "zen5", "-q")
+        report = run(self.options.program, "info", piece, "--json", "--cache", ",".join(CACHES), "--machine", "zen3", "-q")
         return [json.loads(report)["reuse"][kernel]["misses"] for kernel in KERNELS]
 
     def in_serial_order(self, piece, new_to_old):

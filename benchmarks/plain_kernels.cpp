@@ -142,8 +142,8 @@ std::vector<Kernel> kernels() {
          const auto n = w.starts.size() - 1;
          mo::plain::relax(matrix(w), std::span<const double>(w.x).first(n), std::span(w.y).first(n));
        }},
-      {"elements", [](Workspace& w) { mo::plain::press(w.tetrahedra, w.positions, w.y); }},
-      {"assembly", [](Workspace& w) { mo::plain::assemble(w.tetrahedra, w.positions, matrix(w)); }},
+      {"elements", [](Workspace& w) { mo::plain::press<4>(w.tetrahedra, w.positions, w.y); }},
+      {"assembly", [](Workspace& w) { mo::plain::assemble<4>(w.tetrahedra, w.positions, matrix(w)); }},
       {"springs",
        [](Workspace& w) {
          mo::plain::springs(w.ends, std::span<const double>(w.lengths), std::span<const double>(w.positions),

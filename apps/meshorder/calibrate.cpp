@@ -54,9 +54,7 @@ std::string in_columns(const KernelCosts& costs) {
     misses += cell(costs.miss[i], 8);
     jumps += cell(costs.jump[i], 8);
   }
-  std::string waits;
-  for (const double wait : costs.wait) waits += cell(wait, 7);
-  return cell(costs.access, 7) + misses + jumps + cell(costs.repeat, 8) + waits + cell(costs.stall, 7);
+  return cell(costs.access, 7) + misses + jumps + cell(costs.turn, 7);
 }
 
 /// Prints two lines for each kernel, of tetrahedra and of triangles.
@@ -90,12 +88,10 @@ void print_calibration(const Console& console, const Calibration& calibration) {
                 calibration.read_bandwidth_all, calibration.threads);
   console.print(
       "\nWhat a kernel pays, in ns: an access; a miss and, in addition, a jump of the first cache, the\n"
-      "second, half of the last and all of it; an addition to what was added to just before (repeat);\n"
-      "from the second cache on, the first of jumps that are close together, in place of a jump (wait);\n"
-      "a load that has left the first cache while the rest comes from memory (stall). The second line\n"
-      "of each kernel is of triangles");
-  console.print("{:<14}{:>7}{:>32}{:>32}{:>8}{:>21}{:>7}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps",
-                "repeat", "waits", "stall", "condition", "error", "floor");
+      "second, half of the last and all of it; a loop that ends elsewhere than the time before (turn).\n"
+      "The second line of each kernel is of triangles");
+  console.print("{:<14}{:>7}{:>32}{:>32}{:>7}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps", "turn",
+                "condition", "error", "floor");
   print_costs(console, calibration.model, calibration.quality);
   if (calibration.threads > 1) {
     console.print("on {} threads, in elapsed ns:", calibration.threads);
@@ -171,7 +167,7 @@ void add_calibrate(CLI::App& subcommand) {
       "Measure this machine, so that `info` predicts times for it: what a thread gets of the caches,\n"
       "latencies, bandwidths, and what misses cost each kernel on one thread and on all. The result is\n"
       "kept for this processor and this build in $MESHORDER_CACHE, else in $XDG_CACHE_HOME/meshorder,\n"
-      "else in ~/.cache/meshorder. `info` does it by itself the first time, 20 to 40 s, unless --machine\n"
+      "else in ~/.cache/meshorder. `info` does it by itself the first time, 40 to 60 s, unless --machine\n"
       "or $MESHORDER_MACHINE names another machine.");
   subcommand.footer(
       "Examples:\n"

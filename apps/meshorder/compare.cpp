@@ -37,6 +37,7 @@ struct CompareArguments : Common {
   double budget_seconds = TimingOptions{}.budget_seconds;
   std::string caches;  ///< empty: the machine's, unless that takes long
   std::string machine;
+  KernelSet kernels = KernelSet::plain;
 };
 
 std::vector<std::string> default_methods() {
@@ -71,15 +72,16 @@ std::vector<ComparedOrder> orders_of(const std::vector<std::string>& names) {
 
 /// Times the kernels in all orders and on the band, in interleaved rounds.
 KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<ComparedOrder>& orders,
-                  const Band& band, int threads, const TimingOptions& options) {
+                  const Band& band, KernelSet kernels, int threads, const TimingOptions& options) {
   KernelTable table;
   table.threads = threads;
   const auto prepare = [&](Index i) {
-    if (i == index_size(orders)) return KernelBench(band.mesh, band.graph, threads);
+    if (i == index_size(orders)) return prepare_kernels(kernels, band.mesh, band.graph, threads);
     Mesh ordered = mesh;
     apply_reordering(ordered, orders[i].order);
-    KernelBench bench(ordered, renumbered(graph, orders[i].order.vertices.permutation.old_to_new()), threads);
-    table.redundancy.push_back(bench.redundancy());
+    auto bench = prepare_kernels(
+        kernels, ordered, renumbered(graph, orders[i].order.vertices.permutation.old_to_new()), threads);
+    table.redundancy.push_back(bench->redundancy());
     return bench;
   };
   Timings timings = time_orders(index_size(orders) + 1, prepare, options);
@@ -95,6 +97,7 @@ void run(const CompareArguments& arguments) {
   Comparison comparison;
   comparison.caches = arguments.caches.empty() ? choose_machine(arguments.machine).model.caches
                                                : parse_caches(arguments.caches);
+  comparison.kernel_set = arguments.kernels;
   comparison.orders = orders_of(arguments.methods.empty() ? default_methods() : arguments.methods);
   confine({.meshes = {arguments.input}});
   Progress progress(!console.quiet());
@@ -127,7 +130,8 @@ void run(const CompareArguments& arguments) {
   if (arguments.threads > 1) thread_counts.push_back(arguments.threads);
   timing.budget_seconds /= static_cast<double>(thread_counts.size());
   for (const int threads : thread_counts) {
-    comparison.kernels.push_back(timed(mesh, graph, comparison.orders, band, threads, timing));
+    comparison.kernels.push_back(
+        timed(mesh, graph, comparison.orders, band, arguments.kernels, threads, timing));
   }
 
   progress.finish();
@@ -170,6 +174,7 @@ void add_compare(CLI::App& subcommand) {
       ->capture_default_str();
   add_cache_option(subcommand, arguments->caches);
   add_machine_option(subcommand, arguments->machine);
+  add_kernels_option(subcommand, arguments->kernels);
   add_ordering_options(subcommand, arguments->ordering);
   add_reading_options(subcommand);
   add_common(subcommand, *arguments);

@@ -98,8 +98,8 @@ void print_reuse(Console& console, const Comparison& comparison) {
 
 void print_kernels(const Console& console, const Comparison& comparison, const KernelTable& table) {
   console.print(
-      "\nKernels on {} thread{}: best milliseconds, speedup over scrambled, time divided by the band's",
-      table.threads, table.threads == 1 ? "" : "s");
+      "\nKernels ({}) on {} thread{}: best milliseconds, speedup over scrambled, time divided by the band's",
+      to_string(comparison.kernel_set), table.threads, table.threads == 1 ? "" : "s");
   std::vector<std::string> rows = row_heads(comparison);
   rows.push_back(row_head(kFloor, kFloor));
   const auto cells = [&](std::size_t i, std::size_t k) {
@@ -180,7 +180,8 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
                           {"pace", table.steadiness.pace},
                           {"repeat", table.steadiness.repeat}});
   }
-  return {{"threads", comparison.kernels.back().threads},
+  return {{"kernel_set", to_string(comparison.kernel_set)},
+          {"threads", comparison.kernels.back().threads},
           {"caches", comparison.caches.level_bytes},
           {"methods", methods},
           {"floor", floor},

@@ -37,6 +37,7 @@ struct KernelTable {
 /// The orders, the first of which is the reference, and the band of the mesh's size, a lower bound.
 struct Comparison {
   Caches caches;  ///< for which misses are predicted
+  KernelSet kernel_set = KernelSet::plain;
   std::vector<ComparedOrder> orders;
   EdgeSpan floor_span;
   std::vector<KernelTable> kernels;

@@ -43,6 +43,7 @@ struct InfoArguments : Common {
   std::string machine;
   bool all_threads = false;
   bool measure = false;
+  KernelSet kernels = KernelSet::plain;
 };
 
 /// Seconds from the command's start until --measure is done, for meshes of up to about 300 thousand vertices.
@@ -78,7 +79,9 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
   if (!arguments.caches.empty()) options.caches = parse_caches(arguments.caches);
   options.graph_seconds = graph_seconds;
   if (arguments.caches.empty()) options.reuse_as_is = reuse;
-  options.predict = is_predicted(arguments, simplices) && machine.model.threads == options.threads;
+  options.kernels = arguments.kernels;
+  options.predict = arguments.kernels == KernelSet::plain && is_predicted(arguments, simplices) &&
+                    machine.model.threads == options.threads;
   const bool is_measured = arguments.measure && has_elements(simplices);
   if (!options.predict && !is_measured) return std::nullopt;
   if (is_measured) {
@@ -157,6 +160,9 @@ void run(const InfoArguments& arguments) {
   const Stopwatch since_start;
   // refused before anything takes time
   if (!arguments.caches.empty()) (void)parse_caches(arguments.caches);
+  if (arguments.kernels == KernelSet::tuned && !arguments.measure) {
+    throw CommandError("--kernels tuned: these are not predicted; give --measure, too", 2);
+  }
   MachineChoice machine = choose_machine(arguments.machine, arguments.all_threads && !arguments.measure);
   confine({.meshes = {arguments.input}});
   Progress progress(!console.quiet());
@@ -273,6 +279,7 @@ void add_info(CLI::App& subcommand) {
       "--measure", arguments->measure,
       "Run the kernels for a few seconds, in the mesh's order and in a better one, instead of\n"
       "predicting the gain");
+  add_kernels_option(subcommand, arguments->kernels);
   add_reading_options(subcommand);
   add_common(subcommand, *arguments, std::string(kQuiet) + ": status 0 says that the file can be read");
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });

@@ -26,6 +26,16 @@ void add_all_threads_option(CLI::App& subcommand, bool& all_threads) {
                       "--threads. Predictions need a calibration of this machine");
 }
 
+void add_kernels_option(CLI::App& subcommand, KernelSet& kernels) {
+  subcommand
+      .add_option_function<std::string>(
+          "--kernels", [&kernels](const std::string& name) { kernels = parse_kernels(name); },
+          "Kernels to run: plain, as most programs have them, or tuned, which prefetch and work on blocks\n"
+          "as the simulators of `meshorder simulate` do, and run alike in all good orders")
+      ->type_name("SET")
+      ->default_str("plain");
+}
+
 namespace {
 
 /// What MESHORDER_CALIBRATION_SECONDS says, else what `meshorder calibrate` takes.
@@ -42,7 +52,7 @@ MachineChoice calibrated(MachineChoice choice, bool all_threads, Progress& progr
   if (!choice.stands_in) return choice;
   if (!choice.fault.empty()) notes.push_back(choice.fault + "; this machine is measured anew");
   if (!quiet) {
-    write_stderr("meshorder: measuring this machine once, 20 to 40 s; `--machine zen5` predicts without\n");
+    write_stderr("meshorder: measuring this machine once, 40 to 60 s; `--machine zen3` predicts without\n");
   }
   progress.stage("measuring this machine", 0, 0.9);
   Run run;

@@ -5,6 +5,7 @@
 #include "payoff/machine_choice.hpp"
 #include "progress.hpp"
 #include <meshorder/io.hpp>
+#include <meshorder/payoff.hpp>
 
 #include <string>
 
@@ -15,6 +16,9 @@ void add_machine_option(CLI::App& subcommand, std::string& machine);
 
 /// Adds --all-threads, likewise.
 void add_all_threads_option(CLI::App& subcommand, bool& all_threads);
+
+/// Adds --kernels, plain or tuned.
+void add_kernels_option(CLI::App& subcommand, KernelSet& kernels);
 
 /// Returns the machine to predict for. Where it only stands in for this machine, which is not calibrated,
 /// this machine is calibrated and the result is kept for the next time. A line on stderr says so, unless

@@ -258,8 +258,8 @@ void add_order(CLI::App& subcommand) {
       .add_flag(
           "--predict", arguments->predict,
           "The same without timing: take the order whose predicted times on --machine are the least. Gives\n"
-          "the same order whenever it is called with the same costs; the first time on a machine, 20 to\n"
-          "40 s go into calibrating it")
+          "the same order whenever it is called with the same costs; the first time on a machine\n"
+          "calibrates it, 40 to 60 s")
       ->excludes("--measure");
   add_machine_option(subcommand, arguments->machine);
   add_all_threads_option(subcommand, arguments->all_threads);

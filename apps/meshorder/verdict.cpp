@@ -43,11 +43,13 @@ nlohmann::ordered_json costs_json(const OrderCosts& costs) {
 void print_verdict(const Console& console, const Advice& advice) {
   const bool predicted = advice.as_is.costs.predicted.has_value();
   const bool measured = advice.as_is.costs.measured.has_value();
-  console.print("\nKernels: time in the mesh's order, and how many times faster they run in another,\n{}",
-                measured ? "measured here" + on_threads(advice.threads) + (predicted ? " (predicted)" : "")
-                         : "predicted for " + advice.machine);
+  console.print(
+      "\nKernels ({}): time in the mesh's order, and how many times faster they run in another,\n{}",
+      to_string(advice.kernel_set),
+      measured ? "measured here" + on_threads(advice.threads) + (predicted ? " (predicted)" : "")
+               : "predicted for " + advice.machine);
   std::string header = fmt::format("{:<14}{:>10}", "", "as it is");
-  for (const Candidate& candidate : advice.candidates) header += fmt::format("{:>18}", methods_of(candidate));
+  for (const Candidate& candidate : advice.candidates) header += fmt::format("{:>24}", methods_of(candidate));
   console.print("{}", header);
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     std::string row =
@@ -55,7 +57,7 @@ void print_verdict(const Console& console, const Advice& advice) {
     for (const Candidate& candidate : advice.candidates) {
       const std::string of_model = factor_cell(advice.as_is.costs.predicted, candidate.costs.predicted, k);
       const std::string of_clock = factor_cell(advice.as_is.costs.measured, candidate.costs.measured, k);
-      row += fmt::format("{:>18}", predicted && measured ? fmt::format("{} ({})", of_clock, of_model)
+      row += fmt::format("{:>24}", predicted && measured ? fmt::format("{} ({})", of_clock, of_model)
                                    : measured            ? of_clock
                                                          : of_model);
     }
@@ -103,6 +105,7 @@ nlohmann::ordered_json to_json(const Advice& advice) {
           {"by", advice.as_is.costs.measured ? "measurement" : "prediction"},
           {"machine",
            advice.machine.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(advice.machine)},
+          {"kernel_set", to_string(advice.kernel_set)},
           {"threads", advice.threads},
           {"kernels", kernels},
           {"as_it_is", costs_json(advice.as_is.costs)},

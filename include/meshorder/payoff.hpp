@@ -23,10 +23,20 @@ inline namespace v0_2 {
 
 /// The hot loops of simulators that are predicted and measured.
 enum class Kernel : std::uint8_t {
-  spmv,      ///< product of the stiffness matrix with a vector: 3×3 blocks
-  element,   ///< elastic forces of the elements
-  assembly,  ///< assembly of the stiffness matrix
+  spmv,      ///< product of a sparse matrix, which has an entry for each edge, with a vector
+  element,   ///< forces of the elements
+  assembly,  ///< assembly of the matrix
   springs,   ///< forces of springs along the edges
+};
+
+/// How these loops are written. What an order is worth depends on it.
+enum class KernelSet : std::uint8_t {
+  /// As most programs have them: one loop, no prefetching, no blocking. One unknown a vertex in the matrix,
+  /// linear elements, edges by their smaller end.
+  plain,
+  /// As the simulators of this project have them: elastic elements with 3×3 blocks in the matrix, which
+  /// prefetch, and take eight elements or edges at a time. They run alike in all good orders.
+  tuned,
 };
 
 /// All values of `Kernel`. Arrays by kernel have this order.
@@ -34,6 +44,10 @@ inline constexpr std::array kKernels{Kernel::spmv, Kernel::element, Kernel::asse
 
 /// Returns "spmv", "element", "assembly" or "springs". Valid for the life of the program.
 MESHORDER_API std::string_view to_string(Kernel kernel);
+
+/// Returns "plain" or "tuned"; the one of that name. The latter throws InvalidArgument for other names.
+MESHORDER_API std::string_view to_string(KernelSet kernels);
+MESHORDER_API KernelSet parse_kernels(std::string_view name);
 
 /// Milliseconds of one run of each kernel, when it is repeated.
 using KernelMilliseconds = std::array<double, kKernels.size()>;
@@ -79,12 +93,13 @@ struct Advice {
   /// they are, and where nothing was measured.
   std::string doubt = {};
   /// What the predicted times are those of: "this machine, calibrated 2026-11-22", a machine's name, or "this
-  /// machine's caches at the costs of zen5"; empty where nothing was predicted.
+  /// machine's caches at the costs of zen3"; empty where nothing was predicted.
   std::string machine = {};
   /// By kernel, the share by which two times of the same problem differ on that machine, below which no
   /// difference counts; 0 where that is not known.
   std::array<double, kKernels.size()> floor = {};
-  int threads = 1;  ///< that shared each run
+  int threads = 1;                          ///< that shared each run
+  KernelSet kernel_set = KernelSet::plain;  ///< whose times these are
 };
 
 /// Returns the verdict in one English sentence: which kernel loses most as the mesh is, which order mends it
@@ -96,12 +111,12 @@ struct PayoffOptions {
   /// The candidates; empty: what `auto` takes for all kernels, and for springs where that differs.
   std::vector<MeshMethods> methods = {};
   bool predict = true;  ///< gives the same times on every run
-  /// What to predict for: a machine whose costs ship with the library ("zen5"), or "this": this machine as
-  /// `calibrate` measured it, else its caches with the costs of one of those: of the same family of
-  /// processors, "zen5" where none is. Empty: what the environment variable MESHORDER_MACHINE says, else
-  /// "this".
+  /// What to predict for: a machine whose costs ship with the library ("zen3"), or "this": this machine as
+  /// `calibrate` measured it, else its caches with the costs of "zen3". Empty: what the environment variable
+  /// MESHORDER_MACHINE says, else "this".
   std::string machine = {};
-  bool measure = false;  ///< runs the kernels here
+  bool measure = false;                  ///< runs the kernels here
+  KernelSet kernels = KernelSet::plain;  ///< predictions are of the plain ones alone
   /// Judge the kernels as all threads share their runs, not as one runs them. To predict this needs a
   /// calibration of this machine on as many threads; the costs that ship are those of one.
   bool all_threads = false;
@@ -119,7 +134,8 @@ struct PayoffOptions {
 ///         less than `Advice::floor`, count as equal
 /// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for types and machines that
 /// are
-///         not known, where neither prediction nor measurement is asked for, and where the costs of all
+///         not known, where neither prediction nor measurement is asked for, where tuned kernels are to be
+///         predicted, and where the costs of all
 ///         threads are asked for and not known
 /// @note Orders and, to predict, about a second for a million tetrahedra and candidate; to measure, the
 ///       budget. Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex of a

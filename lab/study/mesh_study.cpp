@@ -12,6 +12,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 namespace meshorder {
@@ -40,10 +41,11 @@ double best_seconds(tbb::task_arena& threads, Prepare prepare, Call call) {
 }
 
 /// The mesh's kernels in one order.
-KernelBench bench_of(const Mesh& mesh, const CsrGraph& graph, const MeshOrder& order) {
+std::unique_ptr<KernelBench> bench_of(const Mesh& mesh, const CsrGraph& graph, const MeshOrder& order) {
   Mesh ordered = mesh;
   apply_reordering(ordered, order);
-  return {ordered, renumbered(graph, order.vertices.permutation.old_to_new())};
+  return prepare_kernels(KernelSet::plain, ordered,
+                         renumbered(graph, order.vertices.permutation.old_to_new()));
 }
 
 Mesh points_and_cells(const Mesh& mesh) {

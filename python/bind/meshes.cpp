@@ -104,11 +104,13 @@ nb::dict described(const Candidate& candidate) {
 
 using MethodPairs = std::vector<std::pair<std::string, std::string>>;
 
-PayoffOptions payoff_options(const MethodPairs& methods, bool predict, bool measure, double budget,
-                             const std::string& machine, bool all_threads, const OrderOptions& order) {
+PayoffOptions payoff_options(const MethodPairs& methods, bool predict, bool measure,
+                             const std::string& kernels, double budget, const std::string& machine,
+                             bool all_threads, const OrderOptions& order) {
   PayoffOptions options{.predict = predict,
                         .machine = machine,
                         .measure = measure,
+                        .kernels = parse_kernels(kernels),
                         .all_threads = all_threads,
                         .budget_seconds = budget,
                         .order = order};
@@ -147,11 +149,12 @@ nb::tuple calibrated(double seconds, bool keep, const nb::dict& options) {
 /// options.
 template <class Answer>
 auto answering(Answer (*question)(const MeshView&, const PayoffOptions&)) {
-  return [question](const Mesh& self, const MethodPairs& methods, bool predict, bool measure, double budget,
-                    const std::string& machine, bool all_threads, const nb::dict& options) {
+  return [question](const Mesh& self, const MethodPairs& methods, bool predict, bool measure,
+                    const std::string& kernels, double budget, const std::string& machine, bool all_threads,
+                    const nb::dict& options) {
     const Options given_options(options);
-    return question(view(self), payoff_options(methods, predict, measure, budget, machine, all_threads,
-                                               given_options.order()));
+    return question(view(self), payoff_options(methods, predict, measure, kernels, budget, machine,
+                                               all_threads, given_options.order()));
   };
 }
 

@@ -144,9 +144,15 @@ def test_comparison_and_advice(mesh):
     measured = meshorder.compare(mesh, ["rcm"], measure=True, predict=False, budget=0)
     assert all(time > 0 for candidate in measured for time in candidate.milliseconds.values())
     assert all(candidate.measured and not candidate.predicted for candidate in measured)
-    advice = meshorder.advise(mesh, machine="zen4")
-    assert advice.machine == "zen4"
-    assert advice.as_is.predicted != meshorder.advise(mesh, machine="zen5").as_is.predicted
+    advice = meshorder.advise(mesh, machine="zen3")
+    assert advice.machine == "zen3"
+    tuned = meshorder.compare(mesh, ["rcm"], measure=True, kernels="tuned", budget=0)
+    assert all(candidate.measured and not candidate.predicted for candidate in tuned)
+    assert meshorder.advise(mesh, measure=True, kernels="tuned", budget=0).as_is.measured
+    with pytest.raises(InvalidArgument, match="tuned kernels are not predicted"):
+        meshorder.advise(mesh, kernels="tuned")
+    with pytest.raises(InvalidArgument, match="known are plain, tuned"):
+        meshorder.compare(mesh, kernels="fast")
     with pytest.raises(InvalidArgument, match="zen"):
         meshorder.compare(mesh, machine="zen9")
     assert str(advice) == advice.verdict and set(advice.kernels) == {"spmv", "element", "assembly", "springs"}
@@ -166,7 +172,7 @@ def test_calibration(mesh, tmp_path, monkeypatch):
     assert on_all.threads == threads and on_all.machine.startswith("this machine")
     assert len(meshorder.compare(mesh, "rcm", measure=True, predict=False, budget=0, all_threads=True)) == 2
     with pytest.raises(meshorder.InvalidArgument, match="those of one thread"):
-        meshorder.advise(mesh, machine="zen5", all_threads=True, threads=2)
+        meshorder.advise(mesh, machine="zen3", all_threads=True, threads=2)
     with pytest.raises(InvalidArgument):
         meshorder.calibrate(0)
 

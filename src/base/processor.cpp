@@ -26,10 +26,6 @@ std::map<std::string, std::string> facts_of_first_processor(std::istream& cpuinf
   return facts;
 }
 
-bool is_zen3_or_4(const ProcessorFamily& family) {
-  return family.maker == "AuthenticAMD" && family.family == 0x19;
-}
-
 }  // namespace
 
 std::string processor_name(std::istream& cpuinfo, const std::string& architecture) {
@@ -65,20 +61,9 @@ ProcessorFamily family_of_this_machine() {
   return processor_family(cpuinfo);
 }
 
-bool is_zen3(const ProcessorFamily& family) { return is_zen3_or_4(family) && !is_zen4(family); }
-
 bool is_zen4(const ProcessorFamily& family) {
-  return is_zen3_or_4(family) &&
+  return family.maker == "AuthenticAMD" && family.family == 0x19 &&
          ((family.model >= 0x10 && family.model <= 0x1f) || (family.model >= 0x60 && family.model <= 0xaf));
-}
-
-bool is_zen5(const ProcessorFamily& family) {
-  return family.maker == "AuthenticAMD" && family.family == 0x1a;
-}
-
-bool is_sapphire_rapids(const ProcessorFamily& family) {
-  return family.maker == "GenuineIntel" && family.family == 6 &&
-         (family.model == 0x8f || family.model == 0xcf);
 }
 
 }  // namespace meshorder

@@ -16,20 +16,32 @@
 // there.
 namespace meshorder::plain {
 
+/// The vertices that a thread adds to: all of them, or a range. Threads share a loop over elements or edges
+/// by each computing those that touch a vertex of its range, and adding to these vertices alone.
+struct AllVertices {
+  [[nodiscard]] static constexpr bool has(Index /*v*/) { return true; }
+};
+struct VertexRange {
+  Index begin = 0;
+  Index end = 0;
+
+  [[nodiscard]] bool has(Index v) const { return begin <= v && v < end; }
+};
+
 /// A matrix in compressed sparse rows.
-template <class Number, class Column>
+template <class Number, class Column, class Start = Column>
 struct Matrix {
-  std::span<const Column> starts;   ///< rows + 1
+  std::span<const Start> starts;    ///< rows + 1
   std::span<const Column> columns;  ///< rising in each row
   std::span<Number> values;
 };
 
 /// y = A x.
-template <class Number, class Column>
-void multiply(const Matrix<Number, Column>& a, std::span<const Number> x, std::span<Number> y) {
+template <class Number, class Column, class Start>
+void multiply(const Matrix<Number, Column, Start>& a, std::span<const Number> x, std::span<Number> y) {
   for (std::size_t row = 0; row < y.size(); ++row) {
     Number sum = 0;
-    for (Column k = a.starts[row]; k < a.starts[row + 1]; ++k) sum += a.values[k] * x[a.columns[k]];
+    for (Start k = a.starts[row]; k < a.starts[row + 1]; ++k) sum += a.values[k] * x[a.columns[k]];
     y[row] = sum;
   }
 }
@@ -67,74 +79,101 @@ void relax(const Matrix<Number, Column>& a, std::span<const Number> b, std::span
 }
 
 /// Forces of springs of stiffness 1: `ends` has two vertices for each of `lengths`.
-template <class Number>
+template <class Number, class Owned = AllVertices>
 void springs(std::span<const Index> ends, std::span<const Number> lengths, std::span<const Number> positions,
-             std::span<Number> forces) {
+             std::span<Number> forces, const Owned& owned = {}) {
   for (std::size_t s = 0; s < lengths.size(); ++s) {
     const std::size_t i = 3 * std::size_t(ends[2 * s]);
     const std::size_t j = 3 * std::size_t(ends[2 * s + 1]);
     std::array<Number, 3> edge{};
     for (int c = 0; c < 3; ++c) edge[c] = positions[j + c] - positions[i + c];
     const Number length = std::sqrt(edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]);
-    const Number tension = (length - lengths[s]) / length;
-    for (int c = 0; c < 3; ++c) {
-      forces[i + c] += tension * edge[c];
-      forces[j + c] -= tension * edge[c];
+    const Number tension = length > 0 ? (length - lengths[s]) / length : 0;
+    if (owned.has(ends[2 * s])) {
+      for (int c = 0; c < 3; ++c) forces[i + c] += tension * edge[c];
+    }
+    if (owned.has(ends[2 * s + 1])) {
+      for (int c = 0; c < 3; ++c) forces[j + c] -= tension * edge[c];
     }
   }
 }
 
-/// Six times the gradients of a tetrahedron's barycentric coordinates times its volume, and six times its
-/// volume.
+/// The volume of a tetrahedron (negative if its corners turn the other way), area of a triangle or length of
+/// a line, and its derivative by the position of each corner: the volume times the gradient of that corner's
+/// barycentric coordinate.
+template <int kCorners>
 struct Gradients {
-  std::array<std::array<double, 3>, 4> of_corner;
-  double volume;
+  std::array<std::array<double, 3>, kCorners> of_corner{};
+  double volume = 0;
 };
 
-inline Gradients gradients(const Index* tetrahedron, std::span<const double> positions) {
-  const auto edge = [&](int corner, int c) {
-    return positions[3 * std::size_t(tetrahedron[corner]) + c] -
-           positions[3 * std::size_t(tetrahedron[0]) + c];
+template <int kCorners>
+Gradients<kCorners> gradients(const Index* simplex, std::span<const double> positions) {
+  using Vector = std::array<double, 3>;
+  const auto cross = [](const Vector& a, const Vector& b) {
+    return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   };
-  Gradients g{};
-  for (int corner = 1; corner < 4; ++corner) {
-    const int next = corner % 3 + 1;
-    const int last = next % 3 + 1;
-    for (int c = 0; c < 3; ++c) {
-      const int d = (c + 1) % 3;
-      const int e = (c + 2) % 3;
-      g.of_corner[corner][c] = edge(next, d) * edge(last, e) - edge(next, e) * edge(last, d);
-      g.of_corner[0][c] -= g.of_corner[corner][c];
-    }
+  const auto dot = [](const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  const auto inverse = [](double x) { return x > 0 ? 1 / x : 0; };
+  std::array<Vector, kCorners - 1> edge{};  // from the first corner
+  for (int a = 1; a < kCorners; ++a) {
+    for (int c = 0; c < 3; ++c)
+      edge[a - 1][c] =
+          positions[3 * std::size_t(simplex[a]) + c] - positions[3 * std::size_t(simplex[0]) + c];
   }
-  for (int c = 0; c < 3; ++c) g.volume += edge(1, c) * g.of_corner[1][c];
+  Gradients<kCorners> g;
+  if constexpr (kCorners == 4) {
+    g.of_corner = {Vector{}, cross(edge[1], edge[2]), cross(edge[2], edge[0]), cross(edge[0], edge[1])};
+    for (int a = 1; a < 4; ++a) {
+      for (double& x : g.of_corner[a]) x /= 6;
+    }
+    g.volume = dot(edge[0], g.of_corner[1]);
+  } else if constexpr (kCorners == 3) {
+    const Vector normal = cross(edge[0], edge[1]);
+    const double twice = std::sqrt(dot(normal, normal));
+    g.of_corner = {Vector{}, cross(edge[1], normal), cross(normal, edge[0])};
+    for (int a = 1; a < 3; ++a) {
+      for (double& x : g.of_corner[a]) x *= inverse(2 * twice);
+    }
+    g.volume = twice / 2;
+  } else {
+    g.volume = std::sqrt(dot(edge[0], edge[0]));
+    for (int c = 0; c < 3; ++c) g.of_corner[1][c] = edge[0][c] * inverse(g.volume);
+  }
+  for (int a = 1; a < kCorners; ++a) {
+    for (int c = 0; c < 3; ++c) g.of_corner[0][c] -= g.of_corner[a][c];
+  }
   return g;
 }
 
-/// Pressure of 6 in tetrahedra, element by element: six times the gradient of the volume.
-inline void press(std::span<const Index> tetrahedra, std::span<const double> positions,
-                  std::span<double> forces) {
-  for (std::size_t e = 0; e < tetrahedra.size(); e += 4) {
-    const Gradients g = gradients(tetrahedra.data() + e, positions);
-    for (int corner = 0; corner < 4; ++corner) {
+/// Forces of a pressure of 1 in tetrahedra, a tension of 1 in triangles or lines, which would rather be
+/// larger: element by element, each of kCorners vertices.
+template <int kCorners, class Owned = AllVertices>
+void press(std::span<const Index> simplices, std::span<const double> positions, std::span<double> forces,
+           const Owned& owned = {}) {
+  for (std::size_t e = 0; e < simplices.size(); e += kCorners) {
+    const Gradients<kCorners> g = gradients<kCorners>(simplices.data() + e, positions);
+    for (int corner = 0; corner < kCorners; ++corner) {
+      if (!owned.has(simplices[e + corner])) continue;
       for (int c = 0; c < 3; ++c)
-        forces[3 * std::size_t(tetrahedra[e + corner]) + c] += g.of_corner[corner][c];
+        forces[3 * std::size_t(simplices[e + corner]) + c] += g.of_corner[corner][c];
     }
   }
 }
 
 /// Linear elements for the Laplacian, entries found by a search along their row.
-template <class Column>
-void assemble(std::span<const Index> tetrahedra, std::span<const double> positions,
-              const Matrix<double, Column>& a) {
-  for (std::size_t e = 0; e < tetrahedra.size(); e += 4) {
-    const Gradients g = gradients(tetrahedra.data() + e, positions);
-    const double scale = 1 / (6 * std::abs(g.volume));
-    for (int i = 0; i < 4; ++i) {
-      const Column start = a.starts[tetrahedra[e + i]];
-      for (int j = 0; j < 4; ++j) {
-        Column k = start;
-        while (a.columns[k] != Column(tetrahedra[e + j])) ++k;
+template <int kCorners, class Column, class Start, class Owned = AllVertices>
+void assemble(std::span<const Index> simplices, std::span<const double> positions,
+              const Matrix<double, Column, Start>& a, const Owned& owned = {}) {
+  for (std::size_t e = 0; e < simplices.size(); e += kCorners) {
+    const Gradients<kCorners> g = gradients<kCorners>(simplices.data() + e, positions);
+    const double scale = g.volume != 0 ? 1 / std::abs(g.volume) : 0;
+    for (int i = 0; i < kCorners; ++i) {
+      if (!owned.has(simplices[e + i])) continue;
+      const Start start = a.starts[simplices[e + i]];
+      for (int j = 0; j < kCorners; ++j) {
+        Start k = start;
+        while (a.columns[k] != Column(simplices[e + j])) ++k;
         double product = 0;
         for (int c = 0; c < 3; ++c) product += g.of_corner[i][c] * g.of_corner[j][c];
         a.values[k] += scale * product;

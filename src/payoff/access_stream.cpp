@@ -17,34 +17,25 @@ namespace meshorder {
 AccessStream::AccessStream(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices)
     : kernel_(kernel), graph_(graph), simplices_(simplices) {
   const Offset n = graph.size();
-  const Offset blocks = n + static_cast<Offset>(graph.neighbours.size());
-  const Offset corners = simplices.dimension + 1;
-  const Offset elements = corners == 1 ? 0 : simplices.size();
-  const Offset batches = (elements + kBatch - 1) / kBatch;
-  if (kernel == Kernel::spmv || kernel == Kernel::assembly) values_ = place(kBlockBytes * blocks);
+  const Offset entries = n + static_cast<Offset>(graph.neighbours.size());
+  const bool has_matrix = kernel == Kernel::spmv || kernel == Kernel::assembly;
+  if (has_matrix) {
+    starts_ = place(kStartBytes * (n + 1));
+    columns_ = place(kColumnBytes * entries);
+    values_ = place(kEntryBytes * entries);
+  }
   if (kernel == Kernel::spmv) {
-    offsets_ = place(static_cast<Offset>(sizeof(Offset)) * (n + 1));
-    columns_ = place(static_cast<Offset>(sizeof(Index)) * blocks);
-    x_ = place(kVectorBytes * n);
-    y_ = place(kVectorBytes * n);
+    x_ = place(kEntryBytes * n);
+    y_ = place(kEntryBytes * n);
   } else {
-    positions_ = place(kPaddedBytes * n);
+    positions_ = place(kPointBytes * n);
   }
-  if (kernel == Kernel::element || kernel == Kernel::springs) forces_ = place(kPaddedBytes * n);
-  if (kernel == Kernel::element || kernel == Kernel::assembly) {
-    const int d = simplices.dimension;
-    vertices_of_batch_ = static_cast<Offset>(sizeof(Index)) * kBatch * corners;
-    geometry_of_batch_ = static_cast<Offset>(sizeof(double)) * kBatch * (d * (d + 1) / 2 + 1);
-    vertices_ = place(batches * vertices_of_batch_);
-    geometry_ = place(batches * geometry_of_batch_);
-  }
-  if (kernel == Kernel::assembly) {
-    map_ = place(static_cast<Offset>(sizeof(Index)) * elements * corners * corners);
-  }
+  if (!has_matrix) forces_ = place(kPointBytes * n);
+  if (kernel == Kernel::element || kernel == Kernel::assembly)
+    elements_ = place(kColumnBytes * static_cast<Offset>(simplices.vertices.size()));
   if (kernel == Kernel::springs) {
-    const Offset springs = (graph.edge_count() + kBatch - 1) / kBatch * kBatch;
-    ends_ = place(static_cast<Offset>(2 * sizeof(Index)) * springs);
-    rest_lengths_ = place(static_cast<Offset>(sizeof(double)) * springs);
+    ends_ = place(2 * kColumnBytes * graph.edge_count());
+    lengths_ = place(kEntryBytes * graph.edge_count());
   }
   if (lines_ > kMaxIndex) {
     throw InvalidArgument("access stream: " + std::to_string(lines_) +
@@ -58,117 +49,61 @@ AccessStream::Array AccessStream::place(Offset bytes) {
   return array;
 }
 
-Offset AccessStream::gather_count() const {
-  const auto lines_in = [](Offset byte, Offset count) {
-    return (byte + count - 1) / kLineBytes - byte / kLineBytes + 1;
-  };
-  const Offset corners = simplices_.dimension + 1;
-  const Offset elements = corners == 1 ? 0 : simplices_.size();
-  const auto in_batches = [](Offset count) { return (count + kBatch - 1) / kBatch * kBatch; };
-  switch (kernel_) {
-    case Kernel::spmv: {
-      Offset count = 0;
-      for (Index v = 0; v < graph_.size(); ++v)
-        count += (index_size(graph_[v]) + 1) * lines_in(kVectorBytes * v, kVectorBytes);
-      return count;
-    }
-    case Kernel::element:
-      return 2 * corners * in_batches(elements);
-    case Kernel::assembly:
-      // nine doubles lie in two lines, wherever they begin
-      return corners * in_batches(elements) + 2 * corners * corners * elements;
-    case Kernel::springs:
-      return 4 * in_batches(graph_.edge_count());
-  }
-  return 0;
-}
-
 namespace {
 
-/// See RunReuse::repeats.
-Offset repeated_additions(SimplicesRef simplices) {
-  // the halves of a register hold lanes 0 … 3 and 4 … 7, and the first of both are added first
-  constexpr std::array<Index, kBatch> kLanes{0, 4, 1, 5, 2, 6, 3, 7};
-  const Index corners = simplices.dimension + 1;
-  if (corners == 1) return 0;
-  Offset repeats = 0;
-  Index last = -1;
-  Index last_but_one = -1;
-  for (Offset first = 0; first < simplices.size(); first += kBatch) {
-    for (Index a = 0; a < corners; ++a) {
-      for (const Index lane : kLanes) {
-        const Offset simplex = std::min(first + lane, simplices.size() - 1);
-        const Index v = simplices.vertices[corners * simplex + a];
-        repeats += v == last || v == last_but_one ? 1 : 0;
-        last_but_one = last;
-        last = v;
+/// Foresees how long a loop is, as a processor does that keeps some thousands of what followed the last
+/// branches.
+class LoopLengths {
+ public:
+  void add(Index length) {
+    std::uint32_t before = 0;
+    for (std::size_t i = 0; i < last_.size(); ++i) {
+      before = (before ^ static_cast<std::uint32_t>(last_[(count_ + i) % last_.size()])) * 0x9E3779B1U;
+      before ^= before >> 15U;
+    }
+    Index& foreseen = followed_[before >> kShift];
+    turns_ += foreseen != length ? 1 : 0;
+    foreseen = length;
+    last_[count_++ % last_.size()] = length;
+  }
+
+  [[nodiscard]] Offset turns() const noexcept { return turns_; }
+
+ private:
+  static constexpr unsigned kShift = 19;
+
+  std::array<Index, 8> last_{};
+  std::vector<Index> followed_ = std::vector<Index>(std::size_t{1} << (32 - kShift), -1);
+  std::size_t count_ = 0;
+  Offset turns_ = 0;
+};
+
+/// See RunReuse::turns. Of large meshes every eighth stretch of elements is looked at.
+Offset turns_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings) {
+  LoopLengths lengths;
+  if (kernel == Kernel::spmv) {
+    for (Index v = 0; v < graph.size(); ++v) lengths.add(graph.degree(v));
+    return lengths.turns();
+  }
+  if (kernel != Kernel::assembly || simplices.dimension == 0) return 0;
+  constexpr int kSampledFrom = 4;
+  constexpr Offset kStretch = 4096;
+  const Offset stride = halvings < kSampledFrom ? kStretch : 8 * kStretch;
+  const Offset corners = simplices.dimension + 1;
+  Offset counted = 0;
+  for (Offset begin = 0; begin < simplices.size(); begin += stride) {
+    poll();
+    const Offset end = std::min(begin + kStretch, simplices.size());
+    counted += end - begin;
+    for (Offset s = begin; s < end; ++s) {
+      const std::span<const Index> element = simplices.vertices.subspan(corners * s, corners);
+      for (const Index a : element) {
+        for (const Index b : element) lengths.add(entries_below(graph[a], b) + (b > a ? 1 : 0));
       }
     }
   }
-  return repeats;
-}
-
-/// Counts the sixteens that RunReuse::stalls tells of.
-class StallCount {
- public:
-  explicit StallCount(const AccessStream& product)
-      : product_(product),
-        first_line_(product.vector_lines().first),
-        streamed_before_(static_cast<std::size_t>(product.vector_lines().count), -kLeft) {}
-
-  /// Follows the product of these rows. Their stalls count if `counts`.
-  void visit(Index first, Index end, bool counts) {
-    product_.visit_rows(first, end, [&](Index line, Access how) {
-      if (how == Access::streamed) {
-        ++streamed_;
-        return;
-      }
-      Offset& before = streamed_before_[line - first_line_];
-      stalled_ |= streamed_ - before >= kLeft;
-      before = streamed_;
-      if (++gathered_ % kTogether == 0) {
-        stalls_ += stalled_ && counts ? 1 : 0;
-        stalled_ = false;
-        if (gathered_ % 0x10000 == 0) poll();
-      }
-    });
-  }
-
-  [[nodiscard]] Offset stalls() const noexcept { return stalls_; }
-
- private:
-  static constexpr Offset kTogether = 16;
-  static constexpr Offset kLeft = 512;
-
-  const AccessStream& product_;
-  Index first_line_;
-  std::vector<Offset> streamed_before_;  ///< the last access to each line of the vector
-  Offset streamed_ = 0;
-  Offset gathered_ = 0;
-  Offset stalls_ = 0;
-  bool stalled_ = false;
-};
-
-/// Returns RunReuse::stalls. Where at most a 16th of the lines is followed, it is estimated from every eighth
-/// stretch of rows, whose first rows are followed but not counted: they read more than a first level keeps.
-Offset stalled_gathers(const AccessStream& product, Index rows, int halvings) {
-  constexpr int kSampledFrom = 4;
-  constexpr Index kStretch = 1024;
-  constexpr Index kBefore = 128;
-  constexpr Index kStride = 8 * kStretch;
-  StallCount count(product);
-  if (halvings < kSampledFrom || rows < kStride) {
-    count.visit(0, rows, true);
-    return count.stalls();
-  }
-  Offset counted = 0;
-  for (Offset first = 0; first + kStretch <= rows; first += kStride) {
-    const auto begin = static_cast<Index>(first);
-    count.visit(begin, begin + kBefore, false);
-    count.visit(begin + kBefore, begin + kStretch, true);
-    counted += kStretch - kBefore;
-  }
-  return std::llround(static_cast<double>(count.stalls()) * rows / static_cast<double>(counted));
+  return std::llround(static_cast<double>(lengths.turns()) * static_cast<double>(simplices.size()) /
+                      static_cast<double>(std::max<Offset>(1, counted)));
 }
 
 /// Polls while a sample is told of accesses.
@@ -194,16 +129,15 @@ struct PolledSample {
 }  // namespace
 
 RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings) {
+  // a product gathers from few lines, and is soon followed
+  constexpr int kOfProduct = 2;
   const AccessStream stream(kernel, graph, simplices);
-  ReuseSample reuse(stream.line_count(), halvings);
+  ReuseSample reuse(stream.line_count(),
+                    kernel == Kernel::spmv ? std::max(0, halvings - kOfProduct) : halvings);
   PolledSample visitor{reuse};
   stream.visit_some(visitor);
-  return {std::move(reuse).repeated(),
-          kernel,
-          simplices.dimension,
-          stream.gather_count(),
-          kernel == Kernel::element ? repeated_additions(simplices) : 0,
-          kernel == Kernel::spmv ? stalled_gathers(stream, graph.size(), halvings) : 0};
+  return {std::move(reuse).repeated(), kernel, simplices.dimension,
+          turns_of(kernel, graph, simplices, halvings)};
 }
 
 int halvings_for(Offset simplices) {

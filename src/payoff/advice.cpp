@@ -67,24 +67,27 @@ TimingOptions for_seconds(double seconds) {
   return {.budget_seconds = std::max(0.0, seconds), .min_rounds = 2, .sample_seconds = 0.01};
 }
 
-/// In rounds that end by `seconds` on the stopwatch.
-Timings measured(const std::vector<Ordered>& orders, int threads, const Stopwatch& stopwatch,
-                 double seconds) {
-  std::vector<std::optional<KernelBench>> benches(orders.size());
+/// In rounds that end in time on the stopwatch.
+Timings measured(const std::vector<Ordered>& orders, const AdviceOptions& options,
+                 const Stopwatch& stopwatch) {
+  std::vector<std::unique_ptr<KernelBench>> benches(orders.size());
   for_each_chunk(index_size(orders), 1, [&](Index i, Index /*begin*/, Index /*end*/) {
-    benches[i].emplace(*orders[i].mesh, *orders[i].graph, threads);
+    benches[i] = prepare_kernels(options.kernels, *orders[i].mesh, *orders[i].graph, options.threads);
   });
   std::vector<KernelBench*> pointers;
   pointers.reserve(benches.size());
-  for (std::optional<KernelBench>& bench : benches) pointers.push_back(&bench.value());
-  return time_interleaved(pointers, for_seconds(seconds - stopwatch.seconds()));
+  for (const auto& bench : benches) pointers.push_back(bench.get());
+  return time_interleaved(pointers, for_seconds(*options.measure_within - stopwatch.seconds()));
 }
 
 /// For half a second an order, as many at a time as memory allows.
-Timings raced(const std::vector<Ordered>& orders, int threads, const OrderTimer& timer) {
+Timings raced(const std::vector<Ordered>& orders, const AdviceOptions& options) {
   constexpr double kSeconds = 0.5;
-  const auto prepare = [&](Index i) { return KernelBench(*orders[i].mesh, *orders[i].graph, threads); };
-  return timer(index_size(orders), prepare, for_seconds(kSeconds * static_cast<double>(orders.size())));
+  const auto prepare = [&](Index i) {
+    return prepare_kernels(options.kernels, *orders[i].mesh, *orders[i].graph, options.threads);
+  };
+  return options.race_timer(index_size(orders), prepare,
+                            for_seconds(kSeconds * static_cast<double>(orders.size())));
 }
 
 /// What is asked for of `compute_reordering`, one after another. `auto` judges an order for springs as it
@@ -194,10 +197,14 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
     throw InvalidArgument(fmt::format("advice: the costs are of {} threads, not of {}",
                                       options.machine.model.threads, options.threads));
   }
+  if (options.predict && options.kernels != KernelSet::plain) {
+    throw InvalidArgument("advice: tuned kernels are measured, not predicted");
+  }
   if (options.race_of > 0 && !options.predict) throw InvalidArgument("advice: a race without predictions");
   const Stopwatch since_call;
   Advice advice;
   advice.threads = options.threads;
+  advice.kernel_set = options.kernels;
   advice.as_is.vertices.name = advice.as_is.elements.name = "original";
   const CellSimplices simplices(mesh);
   std::vector<Ordered> orders(1);
@@ -259,8 +266,7 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   if (options.race_of > 0) keep_best(advice, orders, order_of, options.ordering.workload, options.race_of);
   if (measures) {
     report("measure");
-    const Timings timings = in_race ? raced(orders, options.threads, options.race_timer)
-                                    : measured(orders, options.threads, since_call, *options.measure_within);
+    const Timings timings = in_race ? raced(orders, options) : measured(orders, options, since_call);
     advice.doubt = reason_to_doubt(timings.steadiness);
     for_candidates([&](Candidate& candidate, std::size_t order) {
       KernelMilliseconds& milliseconds = candidate.costs.measured.emplace();

@@ -23,6 +23,7 @@ inline constexpr std::array<int, kKernels.size()> kRunsInTimeStep{100, 1, 1, 0};
 struct AdviceOptions {
   std::vector<MeshMethods> methods = {};  ///< as in `PayoffOptions`
   MachineChoice machine = choose_machine();
+  KernelSet kernels = KernelSet::plain;  ///< tuned ones are measured only
   int threads = 1;     ///< that share each run; to predict, as many as the machine's costs are of
   Caches caches = {};  ///< to predict for; empty: the machine's
   OrderOptions ordering = {};
@@ -45,8 +46,8 @@ struct AdviceOptions {
 };
 
 /// Computes the candidates and the times of the kernels in them and in the mesh's own order. `graph` is the
-/// vertex graph of `mesh`. Throws InvalidArgument if neither prediction nor measurement is wanted, and if the
-/// machine's costs are of another number of threads.
+/// vertex graph of `mesh`. Throws InvalidArgument if neither prediction nor measurement is wanted, if the
+/// machine's costs are of another number of threads, and if tuned kernels are to be predicted.
 Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options = {});
 
 /// Returns the factor up to which two times of a kernel count as equal: 1.05 for measured times and those

@@ -7,8 +7,8 @@
 #include "base/processor.hpp"
 #include "base/run_scope.hpp"
 #include "base/stopwatch.hpp"
-#include "kernels/simplices.hpp"
 #include "mesh/graphs.hpp"
+#include "mesh/simplices.hpp"
 #include "payoff/bandwidth.hpp"
 #include "payoff/calibration_lattices.hpp"
 #include "payoff/calibration_store.hpp"
@@ -25,8 +25,8 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -57,7 +57,7 @@ struct Prepared {
   std::vector<CsrGraph> graphs;
   std::vector<Simplices> simplices;
   std::vector<KernelReuse> reuse;
-  std::vector<std::optional<KernelBench>> benches;
+  std::vector<std::unique_ptr<KernelBench>> benches;
 
   Prepared(const CalibrationLattice& lattice, std::span<const LatticeOrder> some) { add(lattice, some); }
 
@@ -87,7 +87,7 @@ struct Prepared {
       const Index task = turn / index_size(some);
       const std::size_t i = first + static_cast<std::size_t>(order);
       if (task == 0) {
-        benches[i].emplace(meshes[order], graphs[i]);
+        benches[i] = prepare_kernels(KernelSet::plain, meshes[order], graphs[i]);
       } else if (place_of(i) == i) {
         const std::size_t k = kLongestFirst[task - 1];
         reuse[i][k] = reuse_of(kKernels[k], graphs[i], simplices[i], halvings_for_lattice(simplices[i]));
@@ -105,7 +105,7 @@ struct Prepared {
   /// Times all in interleaved rounds: on one thread by its processor time, on several by elapsed time.
   [[nodiscard]] Timings timed(int threads, const Rounds& rounds) {
     std::vector<KernelBench*> pointers;
-    for (std::optional<KernelBench>& bench : benches) pointers.push_back(&bench.value());
+    for (const auto& bench : benches) pointers.push_back(bench.get());
     return time_interleaved(pointers, {.budget_seconds = rounds.seconds,
                                        .min_rounds = rounds.least,
                                        .max_rounds = 40,
@@ -422,8 +422,8 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   const Offset fitting = static_cast<Offset>(usable_memory() / 4) / kBytesOfVertex;
   const auto largest = static_cast<Index>(std::clamp<Offset>(fitting, 1000, effort.vertices));
   // Rows of matrices that fill parts of the second cache and of the last, so that what streams misses one
-  // cache and not the next; vertices that fill them take the large ones.
-  constexpr Offset kRowBytes = 1140;
+  // cache and not the next.
+  constexpr Offset kRowBytes = 180;
   const auto rows_in = [&](Offset bytes, double part) {
     const auto rows = static_cast<Offset>(part * static_cast<double>(bytes) / kRowBytes);
     return static_cast<Index>(std::clamp<Offset>(rows, 300, largest / 4));

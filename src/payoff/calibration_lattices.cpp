@@ -2,8 +2,6 @@
 #include "payoff/calibration_lattices.hpp"
 
 #include "base/random.hpp"
-#include "kernels/positions.hpp"
-#include "kernels/simplices.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
@@ -43,7 +41,7 @@ Mesh make_sheet(Index size) {
 std::vector<LatticeOrder> orders_for(Index vertices, Offset row_bytes, const Caches& caches,
                                      std::size_t most) {
   std::vector<Index> windows;
-  constexpr Offset kPositionBytes = kPaddedStride * sizeof(double);
+  constexpr Offset kPositionBytes = 3 * sizeof(double);
   for (const Offset bytes : caches.level_bytes) {
     for (const Offset each : {row_bytes, 2 * kPositionBytes, kPositionBytes}) {
       const Offset window = bytes / 2 / each;
@@ -64,20 +62,8 @@ std::vector<LatticeOrder> orders_for(Index vertices, Offset row_bytes, const Cac
     result = std::move(some);
   }
   result.push_back({vertices, LatticeElements::shuffled});
-  result.insert(result.begin() + 1, {1, LatticeElements::apart});
+  result.insert(result.begin() + 1, {0});
   return result;
-}
-
-/// Each 32 elements as four times every fourth one of them; what is left at the end as it is.
-Permutation elements_apart(Index count) {
-  constexpr Index kApart = 4;
-  constexpr Index kTogether = kApart * kBatch;
-  std::vector<Index> new_to_old(static_cast<std::size_t>(count));
-  std::iota(new_to_old.begin(), new_to_old.end(), 0);
-  for (Index first = 0; first + kTogether <= count; first += kTogether) {
-    for (Index i = 0; i < kTogether; ++i) new_to_old[first + i] = first + i % kBatch * kApart + i / kBatch;
-  }
-  return Permutation::from_new_to_old(std::move(new_to_old));
 }
 
 }  // namespace
@@ -95,13 +81,19 @@ CalibrationLattice make_calibration_lattice(Index vertices, bool flat, const Cac
   apply_reordering(lattice.mesh, order);
   lattice.graph = renumbered(graph, order.vertices.permutation.old_to_new());
   const Index n = lattice.mesh.vertex_count();
-  // blocks of 3×3 numbers with their columns
-  const Offset blocks = (n + index_size(lattice.graph.neighbours)) / n;
-  lattice.orders = orders_for(n, blocks * (9 * Offset{sizeof(double)} + Offset{sizeof(Index)}), caches, most);
+  // numbers with their columns
+  const Offset entries = (n + index_size(lattice.graph.neighbours)) / n;
+  lattice.orders = orders_for(n, entries * Offset{sizeof(double) + sizeof(Index)}, caches, most);
   return lattice;
 }
 
 Mesh in_order(const CalibrationLattice& lattice, const LatticeOrder& order) {
+  if (order.window == 0) {
+    Mesh mesh = lattice.mesh;
+    apply_reordering(mesh,
+                     compute_reordering(mesh, lattice.graph, {.methods = {"bfs", "lexmax"}, .order = {}}));
+    return mesh;
+  }
   const Index n = lattice.mesh.vertex_count();
   std::vector<Index> old_to_new(static_cast<std::size_t>(n));
   std::iota(old_to_new.begin(), old_to_new.end(), 0);
@@ -123,9 +115,6 @@ Mesh in_order(const CalibrationLattice& lattice, const LatticeOrder& order) {
   const CsrGraph graph = renumbered(lattice.graph, moved.old_to_new());
   const char* const elements = order.elements == LatticeElements::shuffled ? "scrambled" : "lexmax";
   apply_reordering(mesh, compute_reordering(mesh, graph, {.methods = {"original", elements}, .order = {}}));
-  if (order.elements == LatticeElements::apart) {
-    apply_reordering(mesh, Permutation::identity(n), elements_apart(mesh.cell_count()));
-  }
   return mesh;
 }
 

@@ -9,12 +9,12 @@
 
 namespace meshorder {
 
-/// How the elements of a lattice are ordered: by `lexmax`; so, but each 32 of them as four times every fourth
-/// one, which takes those that share a vertex apart and touches the same lines; or shuffled all together.
-enum class LatticeElements { lexmax, apart, shuffled };
+/// How the elements of a lattice are ordered: by `lexmax`, or shuffled all together.
+enum class LatticeElements { lexmax, shuffled };
 
 /// How the vertices and elements of a lattice are ordered: along a Hilbert curve, then shuffled within ranges
-/// of `window` vertices (1: not at all), and the elements.
+/// of `window` vertices (1: not at all), and the elements. With a window of 0 breadth first, in which a
+/// lattice is so regular that loops end where they did the time before.
 struct LatticeOrder {
   Index window = 1;
   LatticeElements elements = LatticeElements::lexmax;
@@ -32,8 +32,8 @@ struct CalibrationLattice {
 /// Makes a lattice of about so many vertices: cubes of six tetrahedra each, or, flat, squares of two
 /// triangles. Its orders have windows of which half of one of these caches holds the vertices' positions,
 /// positions and forces, or rows of the matrix, and the whole of it, so that which cache is missed differs
-/// from order to order. At most `most` orders and the best one with its elements apart, which comes second:
-/// the two ends, and others between evenly.
+/// from order to order. At most `most` orders and the breadth-first one, which comes second: the two ends,
+/// and others between evenly.
 CalibrationLattice make_calibration_lattice(Index vertices, bool flat, const Caches& caches,
                                             std::size_t most);
 

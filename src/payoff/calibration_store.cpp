@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSchema = "meshorder calibration 6";
+constexpr const char* kSchema = "meshorder calibration 7";
 
 std::string sizes_text(const Caches& caches) { return caches.level_bytes.empty() ? "" : to_string(caches); }
 
@@ -55,8 +55,7 @@ double condition_from(const Json& json) {
 }
 
 Json to_json(const KernelCosts& costs) {
-  return {{"access", costs.access}, {"miss", costs.miss}, {"jump", costs.jump},
-          {"repeat", costs.repeat}, {"wait", costs.wait}, {"stall", costs.stall}};
+  return {{"access", costs.access}, {"miss", costs.miss}, {"jump", costs.jump}, {"turn", costs.turn}};
 }
 
 KernelCosts costs_from(const Json& json) {
@@ -66,10 +65,7 @@ KernelCosts costs_from(const Json& json) {
     sum += costs.miss[i] = number_from(json.at("miss").at(i));
     sum += costs.jump[i] = number_from(json.at("jump").at(i));
   }
-  sum += costs.repeat = number_from(json.at("repeat"));
-  for (std::size_t i = 0; i < costs.wait.size(); ++i)
-    sum += costs.wait[i] = number_from(json.at("wait").at(i));
-  sum += costs.stall = number_from(json.at("stall"));
+  sum += costs.turn = number_from(json.at("turn"));
   if (!(sum > 0)) throw InvalidArgument("has a kernel that costs nothing");
   return costs;
 }

@@ -1,30 +1,42 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/kernel_bench.hpp"
 
-#include "base/parallel.hpp"
-#include "kernels/apart.hpp"
-#include "kernels/elasticity.hpp"
-#include "kernels/positions.hpp"
-#include "kernels/spmv.hpp"
-#include "mesh/graphs.hpp"
+#include "payoff/plain_bench.hpp"
+#include "payoff/tuned_bench.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <utility>
 
 namespace meshorder {
-namespace {
+inline namespace v0_2 {
 
-// the values do not matter to the time; these are soft rubber's
-const Elasticity kMaterial{MaterialModel::stvk, Tangent::exact, Lame::from_young(1e6, 0.45), {}, {}};
-constexpr double kStiffness = 1e3;
+std::string_view to_string(Kernel kernel) { return to_string<Kernel>(kernel); }
+std::string_view to_string(KernelSet kernels) { return to_string<KernelSet>(kernels); }
+KernelSet parse_kernels(std::string_view name) { return parse<KernelSet>(name); }
 
-/// Waves of 2 % of the mesh's size along every axis: strains of up to 0.2, however fine the mesh.
-std::vector<Point> displacements(std::span<const Point> points) {
-  std::vector<Point> result(points.size());
+}  // namespace v0_2
+
+std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mesh& mesh, const CsrGraph& graph,
+                                             int threads) {
+  if (graph.size() != mesh.vertex_count()) {
+    throw InvalidArgument("kernels: a graph of " + std::to_string(graph.size()) + " vertices for a mesh of " +
+                          std::to_string(mesh.vertex_count()));
+  }
+  std::unique_ptr<KernelBench> bench;
+  if (kernels == KernelSet::plain) {
+    bench = std::make_unique<PlainBench>(mesh, graph);
+  } else {
+    bench = std::make_unique<TunedBench>(mesh, graph);
+  }
+  bench->share(threads);
+  return bench;
+}
+
+std::vector<Point> displaced(std::span<const Point> points) {
+  std::vector<Point> result(points.begin(), points.end());
   if (points.empty()) return result;
   Point low = points.front();
   Point high = points.front();
@@ -39,176 +51,10 @@ std::vector<Point> displacements(std::span<const Point> points) {
   for (std::size_t v = 0; v < points.size(); ++v) {
     for (int c = 0; c < 3; ++c) {
       const double along = points[v][(c + 1) % 3] - low[(c + 1) % 3];
-      result[v][c] = 0.02 * size * std::sin(wave * along + 1.0 + c) + 0.03 * (points[v][c] - low[c]);
+      result[v][c] += 0.02 * size * std::sin(wave * along + 1.0 + c) + 0.03 * (points[v][c] - low[c]);
     }
   }
   return result;
-}
-
-template <class Vector>
-std::size_t bytes_of(const Vector& vector) {
-  return vector.capacity() * sizeof(typename Vector::value_type);
-}
-
-}  // namespace
-
-KernelBench::KernelBench(const Mesh& mesh, const CsrGraph& graph, int threads) {
-  if (graph.size() != mesh.vertex_count()) {
-    throw InvalidArgument("kernels: a graph of " + std::to_string(graph.size()) + " vertices for a mesh of " +
-                          std::to_string(mesh.vertex_count()));
-  }
-  matrix_ = zero_block_csr(graph);
-  rest_ = rest_shapes(cut_into_simplices(mesh), mesh.points);
-  map_ = assembly_map(rest_, matrix_);
-  springs_ = springs_on_edges(graph, mesh.points);
-  positions_ = padded_positions(mesh.points);
-  forces_ = padded_zeros(mesh.vertex_count());
-  x_.assign(3 * mesh.points.size(), 0.0);
-  y_.assign(3 * mesh.points.size(), 0.0);
-  const std::vector<Point> moves = displacements(mesh.points);
-  for (std::size_t v = 0; v < moves.size(); ++v) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      x_[3 * v + c] = moves[v][c];
-      positions_[kPaddedStride * v + c] += moves[v][c];
-    }
-  }
-  if (threads > 1) share(threads);
-  // the matrix that spmv multiplies by
-  run(Kernel::assembly);
-}
-
-KernelBench::KernelBench(const Mesh& mesh, int threads) : KernelBench(mesh, vertex_graph(mesh), threads) {}
-
-void KernelBench::share(int threads) {
-  shares_.clear();
-  const std::vector<Index> bounds = balanced_ranges(matrix_.offsets, threads);
-  std::vector<OwnedBatches> of_elements;
-  std::vector<OwnedBatches> of_springs;
-  for_each_chunk(2, 1, [&](Index i, Index /*begin*/, Index /*end*/) {
-    if (i == 0) {
-      of_elements = owned_batches(rest_.vertices, rest_.dimension + 1, bounds);
-    } else {
-      of_springs = owned_batches(springs_.ends, 2, bounds);
-    }
-  });
-  shares_.resize(static_cast<std::size_t>(threads));
-  for_each_chunk(threads, 1, [&](Index part, Index /*begin*/, Index /*end*/) {
-    OwnedBlocks blocks = owned_blocks(rest_, map_, matrix_, of_elements[part], part);
-    shares_[part] = {std::move(of_elements[part]), std::move(blocks), std::move(of_springs[part])};
-  });
-  const Index room = std::max(shares_.back().elements.room, shares_.back().springs.room);
-  forces_ = reserved_apart<double>(Offset{kPaddedStride} * room, {positions_.data()});
-  forces_.assign(Offset{kPaddedStride} * room, 0.0);
-  matrix_.values.resize(9 * static_cast<std::size_t>(shares_.back().blocks.room), 0.0);
-}
-
-void KernelBench::run_shared(Kernel kernel) {
-  const Stiffness stiffness{map_, matrix_};
-  for_each_part(index_size(shares_), [&](Index part) {
-    const Share& share = shares_[part];
-    const Index begin = share.elements.begin;
-    const Index end = share.elements.end;
-    // each thread clears what it owns
-    const auto clear = [](AlignedVector<double>& values, Offset first, Offset last) {
-      std::fill(values.begin() + first, values.begin() + last, 0.0);
-    };
-    switch (kernel) {
-      case Kernel::spmv:
-        multiply_rows(matrix_, x_, y_, begin, end);
-        return;
-      case Kernel::element:
-        clear(forces_, Offset{kPaddedStride} * begin, Offset{kPaddedStride} * end);
-        add_elasticity(rest_, kMaterial, positions_, forces_, nullptr, share.elements, share.blocks);
-        return;
-      case Kernel::assembly:
-        clear(matrix_.values, 9 * matrix_.offsets[begin], 9 * matrix_.offsets[end]);
-        add_elasticity(rest_, kMaterial, positions_, {}, &stiffness, share.elements, share.blocks);
-        return;
-      case Kernel::springs:
-        clear(forces_, Offset{kPaddedStride} * begin, Offset{kPaddedStride} * end);
-        add_spring_forces(springs_, kStiffness, positions_, forces_, share.springs);
-        return;
-    }
-  });
-}
-
-double KernelBench::redundancy() const {
-  if (shares_.empty() || rest_.count == 0) return 0.0;
-  Offset computed = 0;
-  for (const Share& share : shares_) computed += static_cast<Offset>(share.elements.batches.size());
-  return static_cast<double>(computed - rest_.batches()) / static_cast<double>(rest_.batches());
-}
-
-void KernelBench::run(Kernel kernel) {
-  if (!shares_.empty()) return run_shared(kernel);
-  const Stiffness stiffness{map_, matrix_};
-  switch (kernel) {
-    case Kernel::spmv:
-      multiply(matrix_, x_, y_);
-      return;
-    case Kernel::element:
-      std::fill(forces_.begin(), forces_.end(), 0.0);
-      add_elasticity(rest_, kMaterial, positions_, forces_, nullptr);
-      return;
-    case Kernel::assembly:
-      matrix_.set_zero();
-      add_elasticity(rest_, kMaterial, positions_, {}, &stiffness);
-      return;
-    case Kernel::springs:
-      std::fill(forces_.begin(), forces_.end(), 0.0);
-      add_spring_forces(springs_, kStiffness, positions_, forces_);
-      return;
-  }
-}
-
-std::span<const double> KernelBench::result(Kernel kernel) const {
-  switch (kernel) {
-    case Kernel::spmv:
-      return y_;
-    case Kernel::assembly:
-      return std::span(matrix_.values).first(9 * static_cast<std::size_t>(matrix_.block_count()));
-    case Kernel::element:
-    case Kernel::springs:
-      break;
-  }
-  return std::span(forces_).first(positions_.size());
-}
-
-double KernelBench::streamed_bytes(Kernel kernel) const {
-  // what is cleared and then added to is written, read and written again
-  const std::size_t vertices = bytes_of(positions_) + 3 * bytes_of(forces_);
-  const std::size_t elements = bytes_of(rest_.vertices) + bytes_of(rest_.geometry);
-  std::size_t bytes = 0;
-  switch (kernel) {
-    case Kernel::spmv:
-      bytes = bytes_of(matrix_.values) + bytes_of(matrix_.columns) + bytes_of(matrix_.offsets) +
-              bytes_of(x_) + bytes_of(y_);
-      break;
-    case Kernel::element:
-      bytes = elements + vertices;
-      break;
-    case Kernel::assembly:
-      bytes = elements + bytes_of(positions_) + bytes_of(map_.blocks) + 3 * bytes_of(matrix_.values);
-      break;
-    case Kernel::springs:
-      bytes = bytes_of(springs_.ends) + bytes_of(springs_.rest_lengths) + vertices;
-      break;
-  }
-  return static_cast<double>(bytes);
-}
-
-std::size_t KernelBench::bytes() const {
-  std::size_t of_shares = 0;
-  for (const Share& share : shares_) {
-    of_shares += bytes_of(share.blocks.blocks);
-    for (const OwnedBatches* owned : {&share.elements, &share.springs}) {
-      of_shares += bytes_of(owned->batches) + bytes_of(owned->boundary) + bytes_of(owned->targets);
-    }
-  }
-  return of_shares + bytes_of(matrix_.offsets) + bytes_of(matrix_.columns) + bytes_of(matrix_.values) +
-         bytes_of(rest_.vertices) + bytes_of(rest_.geometry) + bytes_of(map_.blocks) +
-         bytes_of(springs_.ends) + bytes_of(springs_.rest_lengths) + bytes_of(positions_) +
-         bytes_of(forces_) + bytes_of(x_) + bytes_of(y_);
 }
 
 }  // namespace meshorder

@@ -1,13 +1,16 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/point.hpp"
+#include "base/polymorphic.hpp"
 #include "base/text.hpp"
-#include "kernels/assembly.hpp"
-#include "kernels/springs.hpp"
+#include "graph/csr_graph.hpp"
 #include <meshorder/mesh.hpp>
 #include <meshorder/payoff.hpp>
 
 #include <array>
+#include <cstddef>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -23,64 +26,60 @@ struct EnumNames<Kernel> {
                                     std::pair{Kernel::springs, "springs"}};
 };
 
+template <>
+struct EnumNames<KernelSet> {
+  static constexpr std::string_view kind = "kernels";
+  static constexpr std::array names{std::pair{KernelSet::plain, "plain"},
+                                    std::pair{KernelSet::tuned, "tuned"}};
+};
+
 /// What tables and figures call the kernels, as kKernels lists them.
 inline constexpr std::array<std::string_view, kKernels.size()> kKernelTitles{"SpMV", "element force",
                                                                              "assembly", "springs"};
 
-/// A mesh in one order, prepared to run its kernels repeatedly: the stiffness matrix on the vertex graph, the
-/// elements cut into simplices, a spring on every edge, and vertices displaced by a smooth function of their
-/// rest position. All orders of a mesh therefore compute the same physics, and no force, strain or matrix
-/// entry is trivial.
-class KernelBench {
+/// A mesh in one order, prepared to run its kernels repeatedly: a matrix on the vertex graph, the elements
+/// cut into simplices, a spring on every edge, and vertices displaced by a smooth function of their rest
+/// position. All orders of a mesh therefore compute the same physics, and no force, strain or matrix entry
+/// is trivial.
+class KernelBench : public Polymorphic {
  public:
-  /// `graph` is the mesh's vertex graph. Several `threads` share the work by ranges of vertices (see
-  /// owned_batches), with the same results, bit for bit. O(size of the mesh · log degree). Throws
-  /// InvalidArgument if the graph is of another mesh.
-  KernelBench(const Mesh& mesh, const CsrGraph& graph, int threads = 1);
-  explicit KernelBench(const Mesh& mesh, int threads = 1);
-
-  /// Shares the work of all runs from now on among so many threads, ≥ 2, in place of one.
-  void share(int threads);
+  /// Shares the work of all runs from now on among so many threads, ≥ 1, by ranges of vertices. Each thread
+  /// computes the elements and springs that touch its range, and adds to no other: the results are the same,
+  /// bit for bit.
+  virtual void share(int threads) = 0;
 
   /// Runs a kernel once; clears its results first.
-  void run(Kernel kernel);
+  virtual void run(Kernel kernel) = 0;
 
-  /// Returns the result of the kernel's last run: 3 doubles a vertex for spmv, 4 for forces (see
-  /// padded_positions), 9 a block for assembly. Elements and springs share the array of forces.
-  [[nodiscard]] std::span<const double> result(Kernel kernel) const;
-
-  [[nodiscard]] const BlockCsr& matrix() const noexcept { return matrix_; }
+  /// Returns the result of the kernel's last run, row by row: for spmv a product for each vertex, for
+  /// assembly the values of the matrix, else a force for each vertex. Elements and springs share the array.
+  [[nodiscard]] virtual std::span<const double> result(Kernel kernel) const = 0;
 
   /// Returns the bytes that one run moves if every array passes through the processor once. Divided by the
   /// memory's bandwidth, this is a lower bound on the time for a mesh much larger than the caches.
-  [[nodiscard]] double streamed_bytes(Kernel kernel) const;
+  [[nodiscard]] virtual double streamed_bytes(Kernel kernel) const = 0;
 
   /// Returns the memory held, in bytes.
-  [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] virtual std::size_t bytes() const = 0;
 
   /// Returns the share of elements that are computed in addition, because threads overlap: 0 on one thread,
-  /// 0.02 if every fiftieth batch is computed twice.
-  [[nodiscard]] double redundancy() const;
-
- private:
-  /// The work of one thread.
-  struct Share {
-    OwnedBatches elements;
-    OwnedBlocks blocks;
-    OwnedBatches springs;
-  };
-
-  void run_shared(Kernel kernel);
-
-  BlockCsr matrix_;
-  RestShapes rest_;
-  AssemblyMap map_;
-  Springs springs_;
-  AlignedVector<double> positions_;
-  AlignedVector<double> forces_;
-  AlignedVector<double> x_;
-  AlignedVector<double> y_;
-  std::vector<Share> shares_;  ///< empty for one thread
+  /// 0.02 if every fiftieth is computed twice.
+  [[nodiscard]] virtual double redundancy() const = 0;
 };
+
+/// Prepares the kernels. `graph` is the mesh's vertex graph. O(size of the mesh · log degree). Throws
+/// InvalidArgument if the graph is of another mesh.
+std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mesh& mesh, const CsrGraph& graph,
+                                             int threads = 1);
+
+/// The points, each moved by waves of 2 % of the mesh's size along every axis: strains of up to 0.2, however
+/// fine the mesh. O(n).
+std::vector<Point> displaced(std::span<const Point> points);
+
+/// Returns the bytes that a vector holds.
+template <class Vector>
+std::size_t bytes_of(const Vector& vector) {
+  return vector.capacity() * sizeof(typename Vector::value_type);
+}
 
 }  // namespace meshorder

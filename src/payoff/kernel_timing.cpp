@@ -123,12 +123,11 @@ Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOpti
   return {std::move(orders), watch.result()};
 }
 
-Timings time_orders(Index orders, const std::function<KernelBench(Index)>& prepare,
-                    const TimingOptions& options) {
+Timings time_orders(Index orders, const PrepareOrder& prepare, const TimingOptions& options) {
   if (orders <= 0) return {};
-  KernelBench reference = prepare(0);
+  const std::unique_ptr<KernelBench> reference = prepare(0);
   const std::size_t memory = options.memory_bytes > 0 ? options.memory_bytes : usable_memory() / 2;
-  const std::size_t fitting = memory / std::max<std::size_t>(1, reference.bytes());
+  const std::size_t fitting = memory / std::max<std::size_t>(1, reference->bytes());
   // beside the reference
   const Index group = static_cast<Index>(std::clamp<std::size_t>(fitting, 2, kMaxIndex)) - 1;
   const Index groups = std::max<Index>(1, (orders - 1 + group - 1) / group);
@@ -137,10 +136,10 @@ Timings time_orders(Index orders, const std::function<KernelBench(Index)>& prepa
   SteadinessWatch watch;
   Samples of_reference;
   for (Index first = 1; first == 1 || first < orders; first += group) {
-    std::vector<KernelBench> others;
+    std::vector<std::unique_ptr<KernelBench>> others;
     for (Index i = first; i < std::min(orders, first + group); ++i) others.push_back(prepare(i));
-    std::vector<KernelBench*> benches{&reference};
-    for (KernelBench& bench : others) benches.push_back(&bench);
+    std::vector<KernelBench*> benches{reference.get()};
+    for (const auto& bench : others) benches.push_back(bench.get());
     std::vector<Samples> samples =
         sample_interleaved(benches, options, options.budget_seconds / groups, watch);
     for (const Kernel kernel : kKernels) {

@@ -5,6 +5,7 @@
 #include "payoff/steadiness.hpp"
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -50,6 +51,9 @@ struct Timings {
   Steadiness steadiness;
 };
 
+/// Returns the kernels of order i, prepared.
+using PrepareOrder = std::function<std::unique_ptr<KernelBench>(Index)>;
+
 /// Times every kernel of the prepared orders in interleaved rounds, so that changes of the machine's speed
 /// affect all orders alike: a round takes a sample of every kernel in every order, kernel by kernel, and the
 /// next round begins with the next order. The first runs of a sample find another order's data in the caches
@@ -60,11 +64,10 @@ Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOpti
 /// The same for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0 is
 /// the reference. If all of them do not fit into the memory allowed, they are timed in groups, each with the
 /// reference, and share the budget; at least two benches must fit.
-Timings time_orders(Index orders, const std::function<KernelBench(Index)>& prepare,
-                    const TimingOptions& options = {});
+Timings time_orders(Index orders, const PrepareOrder& prepare, const TimingOptions& options = {});
 
 /// What times orders as `time_orders` does.
-using OrderTimer = std::function<Timings(Index orders, const std::function<KernelBench(Index)>& prepare,
-                                         const TimingOptions& options)>;
+using OrderTimer =
+    std::function<Timings(Index orders, const PrepareOrder& prepare, const TimingOptions& options)>;
 
 }  // namespace meshorder

@@ -16,9 +16,7 @@
 namespace meshorder {
 namespace {
 
-constexpr std::array kShipped{
-    ShippedMachine{"zen5", zen5_costs, is_zen5}, ShippedMachine{"zen4", zen4_costs, is_zen4},
-    ShippedMachine{"zen3", zen3_costs, is_zen3}, ShippedMachine{"xeon", xeon_costs, is_sapphire_rapids}};
+constexpr std::array kShipped{ShippedMachine{"zen3", zen3_costs}};
 constexpr std::string_view kThis = "this";
 
 /// The name itself, or what stands for an empty one.
@@ -41,15 +39,8 @@ std::string MachineChoice::in_words() const {
   return stands_in ? "this machine's caches at the costs of " + name : name;
 }
 
-const ShippedMachine& stand_in_for(const ProcessorFamily& family) {
-  const auto found = std::find_if(kShipped.begin(), kShipped.end(), [&](const ShippedMachine& machine) {
-    return machine.is_of_family(family);
-  });
-  return found == kShipped.end() ? kShipped.front() : *found;
-}
-
 MachineChoice not_calibrated() {
-  const ShippedMachine& machine = stand_in_for(family_of_this_machine());
+  const ShippedMachine& machine = kShipped.front();
   MachineChoice choice{std::string(machine.name), machine.costs(), {}, true, {}, {}};
   choice.model.caches = caches_of_this_machine();
   return choice;

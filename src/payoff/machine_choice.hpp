@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "base/processor.hpp"
 #include "payoff/calibration.hpp"
 #include "payoff/cost_model.hpp"
 
@@ -16,14 +15,10 @@ namespace meshorder {
 struct ShippedMachine {
   std::string_view name;
   const CostModel& (*costs)();
-  bool (*is_of_family)(const ProcessorFamily& family);
 };
 
+/// Returns them. The first stands in for a machine that is not calibrated.
 std::span<const ShippedMachine> shipped_machines();
-
-/// Returns the shipped machine that stands for an uncalibrated one: that of the same family of processors,
-/// the first where there is none.
-const ShippedMachine& stand_in_for(const ProcessorFamily& family);
 
 /// Returns " on 2 threads", nothing for one.
 std::string on_threads(int threads);
@@ -40,7 +35,7 @@ struct MachineChoice {
   std::string fault;  ///< see StoredCalibration
 
   /// Returns what times are predicted for: "this machine, calibrated 2026-11-22" (perhaps "this machine on 2
-  /// threads", and "while it was busy"), "zen5" or "this machine's caches at the costs of zen5".
+  /// threads", and "while it was busy"), "zen3" or "this machine's caches at the costs of zen3".
   [[nodiscard]] std::string in_words() const;
 };
 

@@ -32,6 +32,9 @@ Advice advise(const MeshView& mesh, const PayoffOptions& options) {
     if (!(options.budget_seconds >= 0)) {
       throw InvalidArgument("advise: a budget of " + std::to_string(options.budget_seconds) + " s");
     }
+    if (options.predict && options.kernels != KernelSet::plain) {
+      throw InvalidArgument("advise: tuned kernels are not predicted; measure them");
+    }
     const int threads = options.all_threads ? thread_count() : 1;
     const MachineChoice machine = choose_machine(options.machine, options.all_threads && options.predict);
     if (options.predict && machine.model.threads != threads) {
@@ -47,6 +50,7 @@ Advice advise(const MeshView& mesh, const PayoffOptions& options) {
     const CsrGraph graph = vertex_graph(copy);
     AdviceOptions inside{.methods = options.methods,
                          .machine = machine,
+                         .kernels = options.kernels,
                          .threads = threads,
                          .ordering = options.order,
                          .graph_seconds = stopwatch.seconds(),

@@ -127,7 +127,9 @@ def test_compare_on_two_threads(command):
             assert kernel["milliseconds"] > 0 and kernel["speedup"] > 0 and kernel["of_floor"] > 0
     assert all(kernel["speedup"] == 1 for kernel in scrambled["parallel_kernels"].values())
     text = command.ok(*arguments, "--threads", "2").stdout
-    assert "Kernels on 1 thread:" in text and "Kernels on 2 threads:" in text
+    assert "Kernels (plain) on 1 thread:" in text and "Kernels (plain) on 2 threads:" in text
+    assert result["kernel_set"] == "plain"
+    assert command.json(*arguments, "--kernels", "tuned")["kernel_set"] == "tuned"
     alone = command.json(*arguments, "--threads", "1")
     assert alone["threads"] == 1 and "parallel_kernels" not in alone["methods"][0]
 

@@ -221,7 +221,7 @@ def test_tables_for_people_are_those_of_json(command):
     arguments = ["compare", made, "--methods", "rcm", "--cache", "4K,64K", "--budget", "0.1"]
     reuse = command.json(*arguments)["methods"][1]["reuse"]
     text = command.ok(*arguments).stdout
-    rows = [line.split()[2:] for line in text.split("Predicted for each")[1].split("Kernels on")[0].splitlines()
+    rows = [line.split()[2:] for line in text.split("Predicted for each")[1].split("Kernels (")[0].splitlines()
             if line.startswith("rcm ")]
     shown = [word for row in rows for word in row]
     expected = []

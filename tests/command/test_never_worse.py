@@ -142,26 +142,26 @@ def test_a_race_needs_something_to_decide(command, lattice, tmp_path, arguments,
 
 def test_predictions_choose_the_same_order_on_every_run(command, model, tmp_path):
     command.ok("order", model("grid", "--size", "24"), "-o", "random.vtu", "--vertices", "scrambled", "--elements", "scrambled")
-    arguments = ["random.vtu", "-o", "out.vtu", "--predict", "--machine", "zen4", "--for", "element"]
+    arguments = ["random.vtu", "-o", "out.vtu", "--predict", "--machine", "zen3", "--for", "assembly"]
     result = command.json("order", *arguments)
     race = result["race"]
-    assert race["machine"] == "zen4" and race["by"] == "prediction" and 1 <= len(race["orders"]) <= 3
+    assert race["machine"] == "zen3" and race["by"] == "prediction" and 1 <= len(race["orders"]) <= 3
     assert all(order["measured_milliseconds"] is None for order in race["orders"])
-    predicted = {(order["vertices"], order["elements"]): order["predicted_milliseconds"]["element"] for order in race["orders"]}
+    predicted = {(order["vertices"], order["elements"]): order["predicted_milliseconds"]["assembly"] for order in race["orders"]}
     taken = result["vertices"]["method"], result["cells"]["method"]
     assert predicted[taken] <= 1.1 * min(predicted.values())
-    assert predicted[taken] < race["as_it_is"]["predicted_milliseconds"]["element"]
-    assert "for zen4" in result["vertices"]["because"]
+    assert predicted[taken] < race["as_it_is"]["predicted_milliseconds"]["assembly"]
+    assert "for zen3" in result["vertices"]["because"]
     first = (tmp_path / "out.vtu").read_bytes()
     assert command.json("order", *arguments)["vertices"]["method"] == taken[0]
     assert (tmp_path / "out.vtu").read_bytes() == first
 
 
 def test_a_machine_without_predictions_is_refused(command, lattice, tmp_path):
-    assert "--predict" in command.fails("order", "random.vtu", "-o", "out.vtu", "--machine", "zen5")
+    assert "--predict" in command.fails("order", "random.vtu", "-o", "out.vtu", "--machine", "zen3")
     # who does not predict needs no machine
     environment = {**os.environ, "MESHORDER_MACHINE": "cray"}
     assert command.run("order", "random.vtu", "-o", "out.vtu", env=environment).returncode == 0
     (tmp_path / "out.vtu").unlink()
-    assert "did you mean 'zen5'" in command.fails("order", "random.vtu", "-o", "out.vtu", "--predict", "--machine", "zen6")
+    assert "did you mean 'zen3'" in command.fails("order", "random.vtu", "-o", "out.vtu", "--predict", "--machine", "zen6")
     assert not (tmp_path / "out.vtu").exists()

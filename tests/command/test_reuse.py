@@ -29,10 +29,10 @@ def spmv_lines(points, cells):
         yield from lines_of("offsets", 8 * (v + 1), 8)
         for column in sorted(row):
             yield from lines_of("columns", 4 * block, 4)
-            yield from lines_of("values", 72 * block, 72)
-            yield from lines_of("x", 24 * column, 24, once=False)
+            yield from lines_of("values", 8 * block, 8)
+            yield from lines_of("x", 8 * column, 8, once=False)
             block += 1
-        yield from lines_of("y", 24 * v, 24)
+        yield from lines_of("y", 8 * v, 8)
 
 
 def misses_when_repeated(lines, capacity):

@@ -31,9 +31,9 @@ def test_the_order_that_was_advised_has_nothing_to_gain(command, scrambled):
 
 def test_verdict_keys(command, scrambled):
     result = command.json("info", scrambled)["verdict"]
-    assert set(result) == {"sentence", "by", "machine", "threads", "kernels", "as_it_is", "orders", "time_step"}
-    assert result["by"] == "prediction" and result["machine"] == "zen5" and result["threads"] == 1
-    assert "(predicted for zen5)" in result["sentence"]
+    assert set(result) == {"sentence", "by", "machine", "kernel_set", "threads", "kernels", "as_it_is", "orders", "time_step"}
+    assert result["by"] == "prediction" and result["machine"] == "zen3" and result["threads"] == 1
+    assert "(predicted for zen3)" in result["sentence"]
     assert set(result["kernels"]) == set(result["time_step"]) == KERNELS
     assert set(result["as_it_is"]["predicted_milliseconds"]) == KERNELS
     assert result["as_it_is"]["measured_milliseconds"] is None
@@ -57,6 +57,14 @@ def test_measuring_replaces_what_is_predicted(command, scrambled):
         assert all(ms > 0 for ms in costs["measured_milliseconds"].values())
     text = command.ok("info", scrambled, "--measure").stdout
     assert "measured here (predicted)" in text and "Verdict: " in text.splitlines()[-1]
+
+
+def test_tuned_kernels_are_measured_only(command, scrambled):
+    result = command.json("info", scrambled, "--measure", "--kernels", "tuned")["verdict"]
+    assert result["kernel_set"] == "tuned" and result["as_it_is"]["predicted_milliseconds"] is None
+    assert command.json("info", scrambled, "--measure")["verdict"]["kernel_set"] == "plain"
+    assert "give --measure, too" in command.fails("info", scrambled, "--kernels", "tuned")
+    assert "unknown kernels 'fast'; known are plain, tuned" in command.fails("info", scrambled, "--kernels", "fast")
 
 
 def test_predictions_are_the_same_on_every_run(command, scrambled):

@@ -12,7 +12,7 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # what is predicted is the same on every machine, and none is measured first
-os.environ["MESHORDER_MACHINE"] = "zen5"
+os.environ["MESHORDER_MACHINE"] = "zen3"
 MESHORDER = os.environ.get("MESHORDER", str(ROOT / "build" / "bin" / "meshorder"))
 INTERPOSER = pathlib.Path(MESHORDER).resolve().parents[1] / "lib" / "libmeshorder_faults.so"
 

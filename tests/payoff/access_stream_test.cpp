@@ -10,47 +10,35 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace meshorder {
 namespace {
 
-/// Input of a kernel, prepared as KernelBench does.
+/// Input of the plain kernels.
 struct Prepared {
   explicit Prepared(const Mesh& mesh)
-      : graph(vertex_graph(mesh)),
-        matrix(zero_block_csr(graph)),
-        simplices(cut_into_simplices(mesh)),
-        rest(rest_shapes(simplices, mesh.points)),
-        map(assembly_map(rest, matrix)),
-        springs(springs_on_edges(graph, mesh.points)) {}
+      : graph(vertex_graph(mesh)), simplices(cut_into_simplices(mesh)), starts(1, 0) {
+    for (Index v = 0; v < graph.size(); ++v) {
+      std::vector<Index> row(graph[v].begin(), graph[v].end());
+      row.push_back(v);
+      std::sort(row.begin(), row.end());
+      columns.insert(columns.end(), row.begin(), row.end());
+      starts.push_back(static_cast<Offset>(columns.size()));
+    }
+  }
 
   CsrGraph graph;
-  BlockCsr matrix;
   Simplices simplices;
-  RestShapes rest;
-  AssemblyMap map;
-  Springs springs;
+  std::vector<Offset> starts;
+  std::vector<Index> columns;
 };
 
-enum class Memory {
-  offsets,
-  columns,
-  values,
-  x,
-  y,
-  positions,
-  forces,
-  vertices,
-  geometry,
-  map,
-  ends,
-  lengths
-};
+enum class Memory { starts, columns, values, x, y, positions, forces, elements, ends, lengths };
 
 /// Accesses as the kernels' sources read, to the data that they are given.
 class Recorder {
@@ -70,10 +58,7 @@ class Recorder {
   void clear(Memory array, Offset bytes) {
     for (Offset line = 0; line < (bytes + 63) / 64; ++line) add({array, line}, Access::streamed);
   }
-  template <class Vertices>
-  void vertex_data(Memory array, const Vertices& vertices, Offset first, Offset count) {
-    for (Offset k = first; k < first + count; ++k) touch(array, Offset{32} * vertices[k], 32);
-  }
+  void point(Memory array, Index v) { touch(array, Offset{24} * v, 24); }
 
   std::vector<Line> lines;
   std::vector<Access> how;
@@ -88,53 +73,59 @@ class Recorder {
 };
 
 void multiply(const Prepared& p, Recorder& to) {
-  to.read(Memory::offsets, 0, 8);
-  for (Index v = 0; v < p.matrix.size(); ++v) {
-    to.read(Memory::offsets, 8 * (v + 1), 8);
-    for (Offset k = p.matrix.offsets[v]; k < p.matrix.offsets[v + 1]; ++k) {
+  to.read(Memory::starts, 0, 8);
+  for (Index v = 0; v < p.graph.size(); ++v) {
+    to.read(Memory::starts, Offset{8} * (v + 1), 8);
+    for (Offset k = p.starts[v]; k < p.starts[v + 1]; ++k) {
       to.read(Memory::columns, 4 * k, 4);
-      to.read(Memory::values, 72 * k, 72);
-      to.touch(Memory::x, Offset{24} * p.matrix.columns[k], 24);
+      to.read(Memory::values, 8 * k, 8);
+      to.touch(Memory::x, Offset{8} * p.columns[k], 8);
     }
-    to.read(Memory::y, Offset{24} * v, 24);
+    to.read(Memory::y, Offset{8} * v, 8);
   }
 }
 
 void add_elements(const Prepared& p, bool assembly, Recorder& to) {
-  const Offset corners = p.rest.dimension + 1;
-  if (p.rest.count == 0) return;
+  const Offset corners = p.simplices.dimension + 1;
+  if (corners == 1) return;
   if (assembly) {
-    to.clear(Memory::values, 72 * p.matrix.block_count());
+    to.clear(Memory::values, Offset{8} * std::ssize(p.columns));
   } else {
-    to.clear(Memory::forces, Offset{32} * p.graph.size());
+    to.clear(Memory::forces, Offset{24} * p.graph.size());
   }
-  Offset simplex = 0;
-  for (Offset batch = 0; batch < p.rest.batches(); ++batch) {
-    const Offset doubles = Offset{8} * p.rest.quantities();
-    to.read(Memory::geometry, 8 * batch * doubles, 8 * doubles);
-    to.read(Memory::vertices, 4 * batch * 8 * corners, 4 * 8 * corners);
-    to.vertex_data(Memory::positions, p.rest.vertices, batch * 8 * corners, 8 * corners);
-    if (!assembly) to.vertex_data(Memory::forces, p.rest.vertices, batch * 8 * corners, 8 * corners);
-    for (Offset lane = 0; assembly && lane < 8 && simplex < p.rest.count; ++lane, ++simplex) {
-      const Offset first = simplex * corners * corners;
-      to.read(Memory::map, 4 * first, 4 * corners * corners);
-      for (Offset a = 0; a < corners; ++a) {
-        for (Offset b = a; b < corners; ++b) {
-          to.touch(Memory::values, Offset{72} * p.map.blocks[first + a * corners + b], 72);
-          if (a != b) to.touch(Memory::values, Offset{72} * p.map.blocks[first + b * corners + a], 72);
-        }
+  for (Offset first = 0; first < std::ssize(p.simplices.vertices); first += corners) {
+    const auto element = std::span(p.simplices.vertices).subspan(first, corners);
+    to.read(Memory::elements, 4 * first, 4 * corners);
+    for (const Index v : element) to.point(Memory::positions, v);
+    for (const Index a : element) {
+      if (!assembly) {
+        to.point(Memory::forces, a);
+        continue;
+      }
+      to.touch(Memory::starts, Offset{8} * a, 8);
+      for (const Index b : element) {
+        Offset k = p.starts[a];
+        while (p.columns[k] != b) ++k;
+        to.touch(Memory::columns, 4 * p.starts[a], 4 * (k + 1 - p.starts[a]));
+        to.touch(Memory::values, 8 * k, 8);
       }
     }
   }
 }
 
 void add_springs(const Prepared& p, Recorder& to) {
-  to.clear(Memory::forces, Offset{32} * p.graph.size());
-  for (Offset first = 0; first < p.springs.count; first += 8) {
-    to.read(Memory::ends, 8 * first, 64);
-    to.vertex_data(Memory::positions, p.springs.ends, 2 * first, 16);
-    to.read(Memory::lengths, 8 * first, 64);
-    to.vertex_data(Memory::forces, p.springs.ends, 2 * first, 16);
+  to.clear(Memory::forces, Offset{24} * p.graph.size());
+  Offset spring = 0;
+  for (Index a = 0; a < p.graph.size(); ++a) {
+    for (const Index b : p.graph[a]) {
+      if (b < a) continue;
+      to.read(Memory::ends, 8 * spring, 8);
+      to.point(Memory::positions, a);
+      to.point(Memory::positions, b);
+      to.read(Memory::lengths, 8 * spring++, 8);
+      to.point(Memory::forces, a);
+      to.point(Memory::forces, b);
+    }
   }
 }
 
@@ -179,8 +170,6 @@ TEST(AccessStream, TouchesTheLinesThatTheKernelTouches) {
       const Recorder recorder = recorded(kernel, prepared);
       const std::vector<Recorder::Line>& expected = recorder.lines;
       EXPECT_EQ(how, recorder.how);
-      EXPECT_EQ(reuse_of(kernel, prepared.graph, prepared.simplices).gathers,
-                std::count(how.begin(), how.end(), Access::gathered));
       ASSERT_EQ(lines.size(), expected.size());
       std::map<Index, Recorder::Line> names;
       std::set<Recorder::Line> distinct;
@@ -256,87 +245,69 @@ TEST(ReuseOf, HasNoColdAccessesAndMissesTheLeastWithTheLargestCache) {
   }
 }
 
-TEST(ReuseOf, CountsAdditionsToAVertexThatHardlyLeftTheRegisters) {
+/// Lengths that are not what followed the same eight lengths the time before.
+Offset unforeseen(const std::vector<Offset>& lengths) {
+  std::map<std::vector<Offset>, Offset> followed;
+  std::vector<Offset> last(8, 0);
+  Offset turns = 0;
+  for (const Offset length : lengths) {
+    const auto found = followed.find(last);
+    turns += found == followed.end() || found->second != length ? 1 : 0;
+    followed[last] = length;
+    last.erase(last.begin());
+    last.push_back(length);
+  }
+  return turns;
+}
+
+TEST(ReuseOf, CountsLoopsThatDoNotEndWhereTheyAreForeseen) {
   for (const Mesh& mesh : {test::tetrahedral_bar(30), test::mixed_mesh()}) {
     const Prepared p(mesh);
-    // registers of eight doubles: all lanes of a corner, those of the lower and the upper half by turns
-    std::vector<Index> added;
-    for (Offset batch = 0; batch < p.rest.batches(); ++batch) {
-      for (int a = 0; a <= p.rest.dimension; ++a) {
-        for (int i = 0; i < kBatch / 2; ++i) {
-          added.push_back(p.rest.vertex(batch * kBatch + i, a));
-          added.push_back(p.rest.vertex(batch * kBatch + kBatch / 2 + i, a));
-        }
+    std::vector<Offset> rows;
+    for (Index v = 0; v < p.graph.size(); ++v) rows.push_back(p.graph.degree(v));
+    EXPECT_EQ(reuse_of(Kernel::spmv, p.graph, p.simplices).turns, unforeseen(rows));
+    const Offset corners = p.simplices.dimension + 1;
+    std::vector<Offset> searches;
+    for (Offset first = 0; first < std::ssize(p.simplices.vertices); first += corners) {
+      for (Offset pair = 0; pair < corners * corners; ++pair) {
+        const Index a = p.simplices.vertices[first + pair / corners];
+        Offset k = p.starts[a];
+        while (p.columns[k] != p.simplices.vertices[first + pair % corners]) ++k;
+        searches.push_back(k - p.starts[a]);
       }
     }
-    Offset repeats = 0;
-    for (std::size_t i = 1; i < added.size(); ++i) {
-      if (added[i] == added[i - 1] || (i > 1 && added[i] == added[i - 2])) ++repeats;
-    }
-    ASSERT_GT(repeats, 0);
-    EXPECT_EQ(reuse_of(Kernel::element, p.graph, p.simplices).repeats, repeats);
-    EXPECT_EQ(reuse_of(Kernel::element, p.graph, p.simplices, 3).repeats, repeats);
-    for (const Kernel other : {Kernel::spmv, Kernel::assembly, Kernel::springs}) {
-      EXPECT_EQ(reuse_of(other, p.graph, p.simplices).repeats, 0);
-    }
+    // different lengths before are rarely taken for the same ones
+    const Offset expected = unforeseen(searches);
+    const Offset found = reuse_of(Kernel::assembly, p.graph, p.simplices).turns;
+    EXPECT_NEAR(static_cast<double>(found), static_cast<double>(expected),
+                0.02 * static_cast<double>(searches.size()));
+    EXPECT_LT(found, std::ssize(searches) / 2);
+    EXPECT_EQ(reuse_of(Kernel::assembly, p.graph, p.simplices, 3).turns, found);
+    for (const Kernel other : {Kernel::element, Kernel::springs})
+      EXPECT_EQ(reuse_of(other, p.graph, p.simplices).turns, 0);
   }
 }
 
-TEST(ReuseOf, CountsSixteensOfGatheredAccessesOfWhichOneWasLeftForLong) {
-  // in any order, and small enough that only some of the groups have one that was left for so long
-  Mesh mesh = test::tetrahedral_bar(120);
-  apply_reordering(mesh, test::shuffled(mesh.vertex_count(), 3), test::shuffled_cells(mesh, 4));
-  const Prepared p(mesh);
-  const Recorder stream = recorded(Kernel::spmv, p);
-  std::map<Recorder::Line, int> read_before;
-  int read = 0;
-  std::vector<bool> left;  // of each gathered access
-  for (std::size_t i = 0; i < stream.lines.size(); ++i) {
-    if (stream.how[i] == Access::streamed) {
-      ++read;
-      continue;
-    }
-    const auto found = read_before.find(stream.lines[i]);
-    left.push_back(found == read_before.end() || read - found->second >= 512);
-    read_before[stream.lines[i]] = read;
-  }
-  Offset stalls = 0;
-  for (std::size_t first = 0; first + 16 <= left.size(); first += 16) {
-    stalls += std::any_of(left.begin() + first, left.begin() + first + 16, std::identity()) ? 1 : 0;
-  }
-  ASSERT_GT(stalls, std::ssize(left) / 16 / 5);
-  ASSERT_LT(stalls, std::ssize(left) / 16 * 4 / 5);
-  EXPECT_EQ(reuse_of(Kernel::spmv, p.graph, p.simplices).stalls, stalls);
-  EXPECT_EQ(reuse_of(Kernel::spmv, p.graph, p.simplices, 3).stalls, stalls);
-  for (const Kernel other : {Kernel::element, Kernel::assembly, Kernel::springs}) {
-    EXPECT_EQ(reuse_of(other, p.graph, p.simplices).stalls, 0);
-  }
+TEST(ReuseOf, EstimatesTheTurnsOfLargeMeshes) {
+  const Mesh mesh = make_grid({.size = 40});
+  const CsrGraph graph = vertex_graph(mesh);
+  const Simplices simplices = cut_into_simplices(mesh);
+  const auto exact = static_cast<double>(reuse_of(Kernel::assembly, graph, simplices, 3).turns);
+  const auto estimate = static_cast<double>(reuse_of(Kernel::assembly, graph, simplices, 4).turns);
+  EXPECT_NE(estimate, exact);
+  EXPECT_NEAR(estimate, exact, 0.3 * exact);
 }
 
 TEST(ReuseOf, IsTheSameWhereWhatIsNotSampledIsLeftOut) {
   const Prepared p(test::tetrahedral_bar(400));
   for (const Kernel kernel : kKernels) {
     const AccessStream stream(kernel, p.graph, p.simplices);
-    ReuseSample of_all(stream.line_count(), 3);
+    ReuseSample of_all(stream.line_count(), kernel == Kernel::spmv ? 1 : 3);
     stream.visit([&](Index line, Access how) { of_all.access(line, how); });
     const Reuse expected = std::move(of_all).repeated();
     const Reuse found = reuse_of(kernel, p.graph, p.simplices, 3);
     EXPECT_EQ(found, expected) << to_string(kernel);
     EXPECT_GT(found.all.accesses(), 0);
-  }
-}
-
-TEST(ReuseOf, CountsSixteensOfLargeMeshesInStretchesOfTheirRows) {
-  Mesh mesh = make_grid({.size = 40});
-  const Permutation as_is = Permutation::identity(mesh.cell_count());
-  for (const bool scrambled : {false, true}) {
-    if (scrambled) move_mesh(mesh, test::shuffled(mesh.vertex_count(), 1), as_is, Ids::keep);
-    const Simplices simplices = cut_into_simplices(mesh);
-    const CsrGraph graph = vertex_graph(mesh);
-    const Offset exact = reuse_of(Kernel::spmv, graph, simplices, 3).stalls;
-    const Offset estimate = reuse_of(Kernel::spmv, graph, simplices, 4).stalls;
-    EXPECT_NEAR(static_cast<double>(estimate), static_cast<double>(exact), 0.03 * static_cast<double>(exact));
-    EXPECT_NE(estimate, exact);
   }
 }
 

@@ -72,7 +72,7 @@ TEST(PublicAdvise, PredictsTheSameOnAnyNumberOfThreads) {
 
 TEST(PublicAdvise, MeasuresOnAllThreadsWithoutACalibrationButDoesNotPredict) {
   const Mesh mesh = make_grid({.size = 6});
-  PayoffOptions options{.machine = "zen5", .all_threads = true, .order = {.run = {.threads = 2}}};
+  PayoffOptions options{.machine = "zen3", .all_threads = true, .order = {.run = {.threads = 2}}};
   EXPECT_THROW((void)advise(view(mesh), options), InvalidArgument);
   options.predict = false;
   options.measure = true;

@@ -110,11 +110,11 @@ TEST_F(PlainKernels, MultiplyBlocksAsScalars) {
 }
 
 TEST_F(PlainKernels, AssembleTheLaplacian) {
-  assemble(mesh_.cells.vertices, positions_, matrix());
+  assemble<4>(mesh_.cells.vertices, positions_, matrix());
   // xᵀ A x is the integral of the squared gradient: of 2 x − 3 y + z it is 14 times the volume
   double volume = 0;
   for (std::size_t e = 0; e < mesh_.cells.vertices.size(); e += 4)
-    volume += std::abs(gradients(mesh_.cells.vertices.data() + e, positions_).volume) / 6;
+    volume += std::abs(gradients<4>(mesh_.cells.vertices.data() + e, positions_).volume);
   std::vector<double> linear(size());
   for (std::size_t v = 0; v < size(); ++v)
     linear[v] = 2 * positions_[3 * v] - 3 * positions_[3 * v + 1] + positions_[3 * v + 2];
@@ -139,18 +139,18 @@ TEST_F(PlainKernels, AssembleTheLaplacian) {
 
 TEST_F(PlainKernels, PressByTheGradientOfTheVolume) {
   std::vector<double> forces(3 * size());
-  press(mesh_.cells.vertices, positions_, forces);
-  const auto six_volumes = [&] {
+  press<4>(mesh_.cells.vertices, positions_, forces);
+  const auto volumes = [&] {
     double sum = 0;
     for (std::size_t e = 0; e < mesh_.cells.vertices.size(); e += 4)
-      sum += gradients(mesh_.cells.vertices.data() + e, positions_).volume;
+      sum += gradients<4>(mesh_.cells.vertices.data() + e, positions_).volume;
     return sum;
   };
   for (std::size_t k = 0; k < forces.size(); ++k) {
     const double before = std::exchange(positions_[k], positions_[k] + 1e-5);
-    const double above = six_volumes();
+    const double above = volumes();
     positions_[k] = before - 1e-5;
-    const double below = six_volumes();
+    const double below = volumes();
     positions_[k] = before;
     EXPECT_NEAR(forces[k], (above - below) / 2e-5, 1e-8);
   }

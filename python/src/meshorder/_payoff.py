@@ -95,8 +95,8 @@ class Advice:
             uncertainty of a measurement or prediction count as equal; ``factor`` is 1 then, and ``runs_to_pay`` 0.
         doubt: why the measured times are not to be trusted (the machine was busy or throttled); empty where they are,
             and where nothing was measured.
-        machine: the machine that the predicted times are for: "this machine, calibrated 2026-11-22", "zen5", or "this
-            machine's caches at the costs of zen5"; empty where nothing was predicted.
+        machine: the machine that the predicted times are for: "this machine, calibrated 2026-11-22", "zen3", or "this
+            machine's caches at the costs of zen3"; empty where nothing was predicted.
         threads: how many threads shared each run of a kernel.
     """
 
@@ -210,7 +210,7 @@ def calibrate(seconds: float = 16, *, keep: bool = True, **options: Any) -> Cali
     Takes about 1 GB of memory. Other work on the machine during the call spoils the measurements.
 
     Args:
-        seconds: > 0: no measurement begins that would end later, except that each is made once; 16 take 20 to 40 s.
+        seconds: > 0: no measurement begins that would end later, except that each is made once; 16 take 40 to 60 s.
         keep: True stores the measurements for this processor and this build of the library, in the user's cache folder
             ($MESHORDER_CACHE, else $XDG_CACHE_HOME/meshorder, else ~/.cache/meshorder).
         **options: see `Options`; only ``threads`` and ``progress`` have an effect.
@@ -232,6 +232,7 @@ def advise(
     mesh: Any,
     *,
     measure: bool = False,
+    kernels: str = "plain",
     budget: float = 10,
     machine: str = "",
     all_threads: bool = False,
@@ -242,12 +243,14 @@ def advise(
     Args:
         mesh: the path of a file, or a mesh that `reorder` takes, with lines, surfaces or volumes.
         measure: True runs the kernels on this machine; False predicts their times by reuse distances and a cost model.
+        kernels: "plain": as most programs have them, one loop without tricks; "tuned": as the simulators of
+            ``meshorder simulate`` have them, which prefetch, work on blocks, and run alike in all good orders. The latter
+            are measured only.
         budget: with ``measure``, seconds ≥ 0 from the start of the call: no round of measurements begins that would end
             later, but two are run.
         machine: what to predict for: "this" machine, as `calibrate` measured it, else its caches with the costs of
-            the one of the following whose processor is of its family, "zen5" where none is; or "zen5", "zen4", "zen3" or
-            "xeon", whose costs come with the library. Empty: the environment variable MESHORDER_MACHINE names it, else
-            "this".
+            "zen3", which come with the library; or "zen3". Empty: the environment variable MESHORDER_MACHINE names it,
+            else "this".
         all_threads: True judges the kernels as all threads (those of the option ``threads``) share each run, False as
             one thread runs them. To predict the former needs a calibration of this machine on as many threads.
         **options: see `Options`.
@@ -256,7 +259,8 @@ def advise(
         The verdict, the times as the mesh is and in other orders, and the best order for each kernel.
 
     Raises:
-        InvalidArgument: a mesh without lines, surfaces and volumes, an unknown machine, a negative budget; times on
+        InvalidArgument: a mesh without lines, surfaces and volumes, an unknown machine or set of kernels, tuned kernels
+            that are not measured, a negative budget; times on
             all threads of a machine that are not known.
         InputError: the file cannot be read.
         Stopped: ``progress`` returned False.
@@ -267,7 +271,7 @@ def advise(
             print(meshorder.advise("dragon.msh", measure=True))
     """
     with prepared(options) as given:
-        made = mesh_of(mesh)._handle.advise([], not measure, measure, budget, machine, all_threads, given)
+        made = mesh_of(mesh)._handle.advise([], not measure, measure, kernels, budget, machine, all_threads, given)
     verdict, as_is, candidates, kernels, doubt, predicted_for, threads = made
     return Advice(
         verdict,
@@ -285,6 +289,7 @@ def compare(
     methods: Any = None,
     *,
     measure: bool = False,
+    kernels: str = "plain",
     budget: float = 10,
     predict: bool = True,
     machine: str = "",
@@ -299,6 +304,7 @@ def compare(
             ``(vertex method, element method)``; None: what "auto" chooses for all kernels, and for springs where that
             differs.
         measure: True runs the kernels on this machine.
+        kernels: "plain" or "tuned", as for `advise`; nothing is predicted of the latter.
         budget: with ``measure``, seconds from the start of the call, as for `advise`.
         predict: True predicts the times by reuse distances and a cost model.
         machine: what to predict for, as for `advise`.
@@ -320,6 +326,6 @@ def compare(
     """
     with prepared(options) as given:
         made = mesh_of(mesh)._handle.compare(
-            _pairs(methods), predict, measure, budget, machine, all_threads, given
+            _pairs(methods), predict and kernels == "plain", measure, kernels, budget, machine, all_threads, given
         )
     return Comparison([Candidate._of(candidate) for candidate in made])

@@ -1,22 +1,15 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// measure predict MESH CACHES FOLDER VERTICES/ELEMENTS…: computes the orders of a mesh, keeps them in FOLDER
-// and prints what the reuse model says of every kernel in every order: mesh, vertices, simplices, dimension,
-// order, kernel, accesses, gathered ones, misses of three levels, jumps of three levels, repeats.
-// measure time MESH BUDGET FOLDER VERTICES/ELEMENTS…: times the kernels in the orders that FOLDER keeps, and
-// prints order, kernel, best and median milliseconds, samples. The first order is the one to compare with.
-//
-// measure judge MESH BUDGET THREADS MACHINES VERTICES/ELEMENTS…: times the kernels in these orders, and in
+// measure MESH BUDGET THREADS MACHINES VERTICES/ELEMENTS…: times the plain kernels in these orders, and in
 // those that `auto` takes for each kernel, in interleaved rounds, twice over, the second time on other pages
-// of memory, and predicts them for machines whose names are separated by commas ("zen5", "this"; "prior":
+// of memory, and predicts them for machines whose names are separated by commas ("zen3", "this"; "prior":
 // what stands in for this machine where it is not calibrated; with a slash: the file of a calibration, whose
-// costs of all threads are taken where THREADS are as many; with a colon behind it, those of one). Prints
+// costs of all threads are taken where THREADS are as many; with a colon after it, those of one). Prints
 // mesh, vertices, order, kernel, the best milliseconds of each half, then the milliseconds predicted for each
 // machine; and mesh, vertices, "auto", kernel, the order that `auto` takes.
 //
-// MESH is the name of a model, "grid-20", "dragon", or a file; with "-skin" behind it, the triangles on its
-// surface. benchmarks/fit_cost_model/collect.py calls this for all of them.
+// MESH is the name of a model, "grid-20", "dragon", or a file; with "-skin" after it, the triangles on its
+// surface. judge.py calls this.
 #include "io/format.hpp"
-#include "io/npy.hpp"
 #include "lab/models/catalogue.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
@@ -31,7 +24,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
@@ -92,66 +84,7 @@ mo::Mesh mesh_of(std::string name) {
   return skinned ? skin(mesh) : mesh;
 }
 
-std::string file_of(const std::string& folder, std::string order, const char* what) {
-  std::replace(order.begin(), order.end(), '/', '-');
-  return folder + "/" + order + "." + what + ".npy";
-}
-
-mo::Permutation kept(const std::string& file) {
-  std::vector<mo::Index> old_to_new;
-  for (const std::int64_t place : mo::read_npy(file)) old_to_new.push_back(static_cast<mo::Index>(place));
-  return mo::Permutation::from_old_to_new(std::move(old_to_new));
-}
-
-void predict(const std::string& name, const mo::Caches& caches, const std::string& folder,
-             const std::vector<std::string>& orders) {
-  const mo::Mesh mesh = mesh_of(name);
-  const mo::CsrGraph graph = mo::vertex_graph(mesh);
-  const mo::Simplices simplices = mo::cut_into_simplices(mesh);
-  for (const std::string& order : orders) {
-    const auto slash = order.find('/');
-    const mo::MeshOrder r =
-        mo::compute_reordering(mesh, graph, {.methods = {order.substr(0, slash), order.substr(slash + 1)}});
-    mo::write_npy(r.vertices.permutation.old_to_new(), file_of(folder, order, "vertices"));
-    mo::write_npy(r.cells.permutation.old_to_new(), file_of(folder, order, "cells"));
-    const mo::KernelReuse reuse =
-        mo::reuse_of_kernels(mesh, graph, r.vertices.permutation, r.cells.permutation,
-                             mo::halvings_for(mo::cut_into_simplices(mesh).size()));
-    for (std::size_t k = 0; k < mo::kKernels.size(); ++k) {
-      fmt::print("{},{},{},{},{},{},{},{},{},{},{}\n", name, mesh.vertex_count(), simplices.size(),
-                 simplices.dimension, order, mo::to_string(mo::kKernels[k]), reuse[k].all.accesses(),
-                 reuse[k].gathers, fmt::join(mo::misses(reuse[k].all, caches), ","),
-                 fmt::join(mo::misses(reuse[k].jumps, caches), ","), reuse[k].repeats);
-    }
-    std::fflush(stdout);
-  }
-}
-
-void time(const std::string& name, double budget, const std::string& folder,
-          const std::vector<std::string>& orders) {
-  const mo::Mesh mesh = mesh_of(name);
-  const mo::CsrGraph graph = mo::vertex_graph(mesh);
-  const auto prepare = [&](mo::Index i) {
-    const mo::Permutation vertices = kept(file_of(folder, orders[i], "vertices"));
-    mo::Mesh ordered = mesh;
-    mo::apply_reordering(ordered, vertices, kept(file_of(folder, orders[i], "cells")));
-    return mo::KernelBench(ordered, mo::renumbered(graph, vertices.old_to_new()));
-  };
-  const mo::Timings timings = mo::time_orders(
-      mo::index_size(orders), prepare, {.budget_seconds = budget, .min_rounds = 3, .sample_seconds = 0.01});
-  if (const std::string doubt = mo::reason_to_doubt(timings.steadiness); !doubt.empty()) {
-    fmt::print(stderr, "{}\n", doubt);
-  }
-  for (std::size_t i = 0; i < orders.size(); ++i) {
-    for (const mo::Kernel kernel : mo::kKernels) {
-      const mo::KernelTimes& t = timings.orders[i][kernel];
-      fmt::print("{},{},{:.6f},{:.6f},{}\n", orders[i], mo::to_string(kernel), t.best_ms, t.median_ms,
-                 t.samples);
-    }
-  }
-}
-
-/// What a name of `judge` stands for: a calibration's costs of one thread or of all.
+/// What the name of a machine stands for: a calibration's costs of one thread or of all.
 mo::CostModel machine_named(const std::string& name, int threads) {
   if (name.ends_with(':')) return machine_named(name.substr(0, name.size() - 1), 1);
   if (name.find('/') != std::string::npos) {
@@ -203,7 +136,10 @@ void judge(const std::string& name, double budget, int threads, const std::strin
   std::array<mo::Timings, 2> timings;
   for (mo::Timings& half : timings) {
     half = mo::time_orders(mo::index_size(meshes),
-                           [&](mo::Index i) { return mo::KernelBench(meshes[i], threads); },
+                           [&](mo::Index i) {
+                             return mo::prepare_kernels(mo::KernelSet::plain, meshes[i],
+                                                        mo::vertex_graph(meshes[i]), threads);
+                           },
                            {.budget_seconds = budget / 2,
                             .min_rounds = 3,
                             .max_rounds = 200,
@@ -228,19 +164,12 @@ void judge(const std::string& name, double budget, int threads, const std::strin
 
 int main(int argc, char** argv) try {
   const std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() >= 5 && words[0] == "predict") {
-    predict(words[1], mo::parse_caches(words[2]), words[3], {words.begin() + 4, words.end()});
-  } else if (words.size() >= 5 && words[0] == "time") {
-    time(words[1], std::atof(words[2].c_str()), words[3], {words.begin() + 4, words.end()});
-  } else if (words.size() >= 6 && words[0] == "judge") {
-    judge(words[1], std::atof(words[2].c_str()), std::atoi(words[3].c_str()), words[4],
-          {words.begin() + 5, words.end()});
-  } else {
-    fmt::print(stderr,
-               "measure predict MESH CACHES FOLDER ORDER…; measure time MESH BUDGET FOLDER ORDER…; "
-               "measure judge MESH BUDGET THREADS MACHINES ORDER…\n");
+  if (words.size() < 5) {
+    fmt::print(stderr, "measure MESH BUDGET THREADS MACHINES ORDER…\n");
     return 2;
   }
+  judge(words[0], std::atof(words[1].c_str()), std::atoi(words[2].c_str()), words[3],
+        {words.begin() + 4, words.end()});
   return 0;
 } catch (const std::exception& error) {
   fmt::print(stderr, "measure: {}\n", error.what());

@@ -1,0 +1,175 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "payoff/plain_bench.hpp"
+
+#include "base/parallel.hpp"
+#include "kernels/owned_batches.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// Calls `keep(first)` for each group of `size` vertices, beginning at `first`, that has one of the range.
+template <class Keep>
+void for_each_owned(std::span<const Index> vertices, std::size_t size, const plain::VertexRange& owned,
+                    Keep keep) {
+  for (std::size_t first = 0; first + size <= vertices.size(); first += size) {
+    const auto group = vertices.subspan(first, size);
+    if (std::any_of(group.begin(), group.end(), [&](Index v) { return owned.has(v); })) keep(first);
+  }
+}
+
+double distance(std::span<const double> positions, Index a, Index b) {
+  double square = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double difference = positions[3 * std::size_t(b) + c] - positions[3 * std::size_t(a) + c];
+    square += difference * difference;
+  }
+  return std::sqrt(square);
+}
+
+std::vector<double> coordinates(std::span<const Point> points) {
+  std::vector<double> result;
+  result.reserve(3 * points.size());
+  for (const Point& point : points) result.insert(result.end(), point.begin(), point.end());
+  return result;
+}
+
+}  // namespace
+
+PlainBench::PlainBench(const Mesh& mesh, const CsrGraph& graph) : positions_(coordinates(mesh.points)) {
+  Simplices simplices = cut_into_simplices(mesh);
+  corners_ = simplices.dimension + 1;
+  all_.owned = {0, graph.size()};
+  if (corners_ > 1) all_.simplices = std::move(simplices.vertices);
+  starts_.reserve(static_cast<std::size_t>(graph.size()) + 1);
+  columns_.reserve(graph.neighbours.size() + static_cast<std::size_t>(graph.size()));
+  all_.ends.reserve(graph.neighbours.size());
+  starts_.push_back(0);
+  for (Index v = 0; v < graph.size(); ++v) {
+    const std::span<const Index> row = graph[v];
+    const auto larger = std::upper_bound(row.begin(), row.end(), v);
+    columns_.insert(columns_.end(), row.begin(), larger);
+    columns_.push_back(v);
+    columns_.insert(columns_.end(), larger, row.end());
+    starts_.push_back(static_cast<Offset>(columns_.size()));
+    for (auto u = larger; u != row.end(); ++u) {
+      all_.ends.insert(all_.ends.end(), {v, *u});
+      all_.lengths.push_back(distance(positions_, v, *u));
+    }
+  }
+  values_.resize(columns_.size());
+  positions_ = coordinates(displaced(mesh.points));
+  forces_.resize(positions_.size());
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) x_.push_back(positions_[3 * v] - mesh.points[v][0]);
+  y_.resize(x_.size());
+  // the matrix that spmv multiplies by
+  run(Kernel::assembly);
+}
+
+void PlainBench::share(int threads) {
+  shares_.clear();
+  if (threads < 2) return;
+  const std::vector<Index> bounds = balanced_ranges(starts_, threads);
+  shares_.resize(static_cast<std::size_t>(threads));
+  for_each_chunk(threads, 1, [&](Index part, Index /*begin*/, Index /*end*/) {
+    Share& share = shares_[part];
+    share.owned = {bounds[part], bounds[part + 1]};
+    for_each_owned(all_.simplices, static_cast<std::size_t>(corners_), share.owned, [&](std::size_t first) {
+      const auto simplex = all_.simplices.begin() + static_cast<std::ptrdiff_t>(first);
+      share.simplices.insert(share.simplices.end(), simplex, simplex + corners_);
+    });
+    for_each_owned(all_.ends, 2, share.owned, [&](std::size_t first) {
+      share.ends.insert(share.ends.end(), {all_.ends[first], all_.ends[first + 1]});
+      share.lengths.push_back(all_.lengths[first / 2]);
+    });
+  });
+}
+
+template <class Owned>
+void PlainBench::run_part(Kernel kernel, const Owned& owned, const Share& share) {
+  const auto begin = static_cast<std::size_t>(share.owned.begin);
+  const auto count = static_cast<std::size_t>(share.owned.end) - begin;
+  const plain::Matrix<double, Index, Offset> matrix{starts_, columns_, values_};
+  const auto clear = [](std::vector<double>& values, Offset first, Offset last) {
+    std::fill(values.begin() + first, values.begin() + last, 0.0);
+  };
+  // calls it with the number of corners of a simplex as a constant
+  const auto by_corners = [&](auto call) {
+    if (corners_ == 4) call(std::integral_constant<int, 4>{});
+    if (corners_ == 3) call(std::integral_constant<int, 3>{});
+    if (corners_ == 2) call(std::integral_constant<int, 2>{});
+  };
+  switch (kernel) {
+    case Kernel::spmv:
+      plain::multiply(plain::Matrix<double, Index, Offset>{matrix.starts.subspan(begin), columns_, values_},
+                      std::span<const double>(x_), std::span(y_).subspan(begin, count));
+      return;
+    case Kernel::element:
+      clear(forces_, Offset{3} * share.owned.begin, Offset{3} * share.owned.end);
+      by_corners([&](auto corners) { plain::press<corners>(share.simplices, positions_, forces_, owned); });
+      return;
+    case Kernel::assembly:
+      clear(values_, starts_[begin], starts_[begin + count]);
+      by_corners([&](auto corners) { plain::assemble<corners>(share.simplices, positions_, matrix, owned); });
+      return;
+    case Kernel::springs:
+      clear(forces_, Offset{3} * share.owned.begin, Offset{3} * share.owned.end);
+      plain::springs(share.ends, std::span<const double>(share.lengths), std::span<const double>(positions_),
+                     std::span(forces_), owned);
+      return;
+  }
+}
+
+void PlainBench::run(Kernel kernel) {
+  if (shares_.empty()) return run_part(kernel, plain::AllVertices{}, all_);
+  for_each_part(index_size(shares_),
+                [&](Index part) { run_part(kernel, shares_[part].owned, shares_[part]); });
+}
+
+std::span<const double> PlainBench::result(Kernel kernel) const {
+  if (kernel == Kernel::spmv) return y_;
+  if (kernel == Kernel::assembly) return values_;
+  return forces_;
+}
+
+double PlainBench::redundancy() const {
+  if (shares_.empty() || all_.simplices.empty()) return 0.0;
+  std::size_t computed = 0;
+  for (const Share& share : shares_) computed += share.simplices.size();
+  return static_cast<double>(computed) / static_cast<double>(all_.simplices.size()) - 1;
+}
+
+double PlainBench::streamed_bytes(Kernel kernel) const {
+  // what is cleared and then added to is written, read and written again
+  const std::size_t vertices = bytes_of(positions_) + 3 * bytes_of(forces_);
+  std::size_t bytes = 0;
+  switch (kernel) {
+    case Kernel::spmv:
+      bytes = bytes_of(values_) + bytes_of(columns_) + bytes_of(starts_) + bytes_of(x_) + bytes_of(y_);
+      break;
+    case Kernel::element:
+      bytes = bytes_of(all_.simplices) + vertices;
+      break;
+    case Kernel::assembly:
+      bytes = bytes_of(all_.simplices) + bytes_of(positions_) + bytes_of(columns_) + bytes_of(starts_) +
+              3 * bytes_of(values_);
+      break;
+    case Kernel::springs:
+      bytes = bytes_of(all_.ends) + bytes_of(all_.lengths) + vertices;
+      break;
+  }
+  return static_cast<double>(bytes);
+}
+
+std::size_t PlainBench::bytes() const {
+  std::size_t of_shares = bytes_of(all_.simplices) + bytes_of(all_.ends) + bytes_of(all_.lengths);
+  for (const Share& share : shares_)
+    of_shares += bytes_of(share.simplices) + bytes_of(share.ends) + bytes_of(share.lengths);
+  return of_shares + bytes_of(starts_) + bytes_of(columns_) + bytes_of(values_) + bytes_of(positions_) +
+         bytes_of(forces_) + bytes_of(x_) + bytes_of(y_);
+}
+
+}  // namespace meshorder

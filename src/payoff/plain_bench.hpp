@@ -1,0 +1,51 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernels/plain.hpp"
+#include "mesh/simplices.hpp"
+#include "payoff/kernel_bench.hpp"
+
+#include <vector>
+
+namespace meshorder {
+
+/// The plain kernels: a matrix of one number for each edge and vertex, with 32-bit columns; elements and
+/// edges one after another, edges by their smaller end. Results have 1 double a vertex for spmv, 3 for
+/// forces, 1 an entry for assembly.
+class PlainBench final : public KernelBench {
+ public:
+  /// `graph` is the mesh's vertex graph.
+  PlainBench(const Mesh& mesh, const CsrGraph& graph);
+
+  void share(int threads) override;
+  void run(Kernel kernel) override;
+  [[nodiscard]] std::span<const double> result(Kernel kernel) const override;
+  [[nodiscard]] double streamed_bytes(Kernel kernel) const override;
+  [[nodiscard]] std::size_t bytes() const override;
+  [[nodiscard]] double redundancy() const override;
+
+ private:
+  /// What one thread computes, and adds to its vertices.
+  struct Share {
+    plain::VertexRange owned;
+    std::vector<Index> simplices;
+    std::vector<Index> ends;
+    std::vector<double> lengths;
+  };
+
+  template <class Owned>
+  void run_part(Kernel kernel, const Owned& owned, const Share& share);
+
+  int corners_;  ///< of each simplex; 1 if there are none
+  Share all_;    ///< what one thread computes alone
+  std::vector<Offset> starts_;
+  std::vector<Index> columns_;
+  std::vector<double> values_;
+  std::vector<double> positions_;
+  std::vector<double> forces_;
+  std::vector<double> x_;
+  std::vector<double> y_;
+  std::vector<Share> shares_;  ///< empty for one thread
+};
+
+}  // namespace meshorder
