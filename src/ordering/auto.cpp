@@ -9,29 +9,29 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 namespace meshorder {
 namespace {
 
-/// What a graph's coordinates say.
-enum class Coordinates : std::uint8_t { none, lattice, general };
+/// A lattice, cut into whatever cells; else a graph with or without coordinates.
+enum class Kind : std::uint8_t { lattice, placed, bare };
 
 /// When a method is taken: the first rule that fits decides.
 struct Rule {
-  std::vector<Workload> workloads = {};         ///< none: any
-  Index least_vertices = 0;                     ///< from so many on
-  std::optional<Coordinates> coordinates = {};  ///< none: any
+  std::vector<Workload> workloads = {};  ///< none: any
+  Index least_vertices = 0;              ///< from so many on
+  std::optional<Kind> kind = {};         ///< none: any
   std::string_view method;
   std::string_view reason;
 };
 
-// Evidence: plain kernels, as users write them, on one thread of a 2-core Zen 4 machine (32 KB L1, 1 MB L2,
-// 32 MB L3); the tables are in docs/auto.md.
+// Evidence: plain kernels, as users write them, on one thread of 2-core Zen 4 and Zen 3 machines; the tables
+// are in docs/auto.md.
 const std::array kVertexRules{
     Rule{.workloads = {Workload::bandwidth},
          .method = "rcm",
@@ -41,10 +41,10 @@ const std::array kVertexRules{
          .method = "metis-nd",
          .reason = "nested dissection is made to keep the factors of a direct solver sparse"},
 #endif
-    Rule{.coordinates = Coordinates::lattice,
+    Rule{.kind = Kind::lattice,
          .method = "bfs",
          .reason = "on lattices no order measured is faster, and it is cheap"},
-    Rule{.coordinates = Coordinates::general,
+    Rule{.kind = Kind::placed,
          .method = "hilbert-fronts",
          .reason =
              "within a few per cent of the best order measured, at the cost of a sort of the coordinates "
@@ -59,47 +59,48 @@ const std::array kVertexRules{
              "it is cheap"},
 };
 
-bool fits(const Rule& rule, Index vertices, Coordinates coordinates, Workload workload) {
+bool fits(const Rule& rule, Index vertices, Kind kind, Workload workload) {
   const auto& workloads = rule.workloads;
   return (workloads.empty() || std::ranges::find(workloads, workload) != workloads.end()) &&
-         vertices >= rule.least_vertices && (!rule.coordinates || *rule.coordinates == coordinates);
+         vertices >= rule.least_vertices && (!rule.kind || *rule.kind == kind);
 }
 
-/// Returns whether the points lie on a lattice along the axes, most places of which are taken. Looks at some
-/// 65,536 of them. O(log n) each.
-bool is_lattice(const PointsView& points, Index count) {
-  constexpr Index kLookedAt = 65'536;
-  constexpr double kPlacesForEach = 4;
-  std::array<std::set<double>, 3> values;
-  const Index step = std::max(1, count / kLookedAt);
-  for (Offset p = 0; p < count; p += step) {
-    const Point point = point_at(points, static_cast<Index>(p));
-    double places = 1;
-    for (std::size_t axis = 0; axis < values.size(); ++axis) {
-      values[axis].insert(point[axis]);
-      places *= static_cast<double>(values[axis].size());
-    }
-    if (places > kPlacesForEach * count) return false;
+/// Whether most vertices have one number of neighbours, as those within a lattice do: 14 where its cubes are
+/// cut into tetrahedra, 26 where they are cells. Of meshes by TetGen a sixth at most have, of good
+/// triangulations of surfaces a half. O(n).
+bool is_lattice(const GraphRef& graph) {
+  constexpr double kMost = 0.6;
+  std::unordered_map<Index, Index> with_degree;
+  Index most = 0;
+  Index used = 0;
+  for (Index v = 0; v < graph.size(); ++v) {
+    if (graph.degree(v) == 0) continue;
+    ++used;
+    most = std::max(most, ++with_degree[graph.degree(v)]);
   }
-  return true;
+  return used > 0 && most > kMost * used;
 }
 
-Coordinates coordinates_of(const VertexInput& input) {
-  const Index n = input.graph.size();
-  if (std::cmp_not_equal(input.points.size(), n) || n == 0) return Coordinates::none;
-  const Point first = point_at(input.points, 0);
-  Index v = 1;
-  while (v < n && point_at(input.points, v) == first) ++v;
-  if (v == n) return Coordinates::none;
-  return is_lattice(input.points, n) ? Coordinates::lattice : Coordinates::general;
+bool has_places(const PointsView& points, Index count) {
+  if (std::cmp_not_equal(points.size(), count) || count == 0) return false;
+  const Point first = point_at(points, 0);
+  for (Index v = 1; v < count; ++v) {
+    if (point_at(points, v) != first) return true;
+  }
+  return false;
 }
 
-/// Whether the points are on a lattice whose vertices are numbered about as well as by `order`: a sweep reads
+Kind kind_of(const VertexInput& input) {
+  if (is_lattice(input.graph)) return Kind::lattice;
+  return has_places(input.points, input.graph.size()) ? Kind::placed : Kind::bare;
+}
+
+/// Whether the graph is a lattice whose vertices are numbered about as well as by `order`: a sweep reads
 /// few lines out of order, and spans are at most half as long again.
 bool is_well_numbered_lattice(const VertexInput& input, const Permutation& order) {
   constexpr double kFew = 0.1;
   constexpr double kAlike = 1.5;
-  if (coordinates_of(input) != Coordinates::lattice) return false;
+  if (!is_lattice(input.graph)) return false;
   const Permutation as_is = Permutation::identity(input.graph.size());
   return static_cast<double>(span_size(input.graph, as_is).sum) <=
              kAlike * static_cast<double>(span_size(input.graph, order).sum) &&
@@ -109,10 +110,9 @@ bool is_well_numbered_lattice(const VertexInput& input, const Permutation& order
 }  // namespace
 
 MethodChoice choose_vertex_method(const VertexInput& input, Workload workload) {
-  const Coordinates coordinates = coordinates_of(input);
-  const auto rule = std::find_if(kVertexRules.begin(), kVertexRules.end(), [&](const Rule& r) {
-    return fits(r, input.graph.size(), coordinates, workload);
-  });
+  const Kind kind = kind_of(input);
+  const auto rule = std::find_if(kVertexRules.begin(), kVertexRules.end(),
+                                 [&](const Rule& r) { return fits(r, input.graph.size(), kind, workload); });
   return {std::string(rule->method), std::string(rule->reason)};
 }
 
@@ -124,10 +124,9 @@ MethodChoice choose_element_method(const ElementInput& /*input*/, Workload /*wor
 Order auto_vertices(const VertexInput& input, const OrderOptions& options) {
   MethodChoice choice = choose_vertex_method(input, options.workload);
   Order result = order_graph(choice.name, input, options);
-  std::string reason =
-      choice.name == "bfs" && is_well_numbered_lattice(input, result.permutation)
-          ? "bfs is no better: the points are on a lattice, whose lines a sweep already reads forward"
-          : reason_to_keep(input.graph, result.permutation, choice.name, options.workload);
+  std::string reason = choice.name == "bfs" && is_well_numbered_lattice(input, result.permutation)
+                           ? "bfs is no better: this is a lattice, whose lines a sweep already reads forward"
+                           : reason_to_keep(input.graph, result.permutation, choice.name, options.workload);
   if (!reason.empty()) {
     choice = {"original", std::move(reason)};
     result.permutation = Permutation::identity(input.graph.size());

@@ -17,7 +17,7 @@ def test_a_scrambled_grid_is_told_what_it_loses(command, scrambled):
     verdict = text.splitlines()[-1]
     assert verdict.startswith("Verdict: as it is, ") and "slower than it could" in verdict
     assert "`meshorder order` takes" in verdict and "pays for itself within" in verdict and "time step" in verdict
-    assert "A time step here: " in text and "hilbert-fronts/lexmax" in text
+    assert "A time step here: " in text and "bfs/lexmax" in text
 
 
 def test_the_order_that_was_advised_has_nothing_to_gain(command, scrambled):
