@@ -101,34 +101,34 @@ void springs(std::span<const Index> ends, std::span<const Number> lengths, std::
 /// The volume of a tetrahedron (negative if its corners turn the other way), area of a triangle or length of
 /// a line, and its derivative by the position of each corner: the volume times the gradient of that corner's
 /// barycentric coordinate.
-template <int kCorners>
+template <int Corners>
 struct Gradients {
-  std::array<std::array<double, 3>, kCorners> of_corner{};
+  std::array<std::array<double, 3>, Corners> of_corner{};
   double volume = 0;
 };
 
-template <int kCorners>
-Gradients<kCorners> gradients(const Index* simplex, std::span<const double> positions) {
+template <int Corners>
+Gradients<Corners> gradients(const Index* simplex, std::span<const double> positions) {
   using Vector = std::array<double, 3>;
   const auto cross = [](const Vector& a, const Vector& b) {
     return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   };
   const auto dot = [](const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
   const auto inverse = [](double x) { return x > 0 ? 1 / x : 0; };
-  std::array<Vector, kCorners - 1> edge{};  // from the first corner
-  for (int a = 1; a < kCorners; ++a) {
+  std::array<Vector, Corners - 1> edge{};  // from the first corner
+  for (int a = 1; a < Corners; ++a) {
     for (int c = 0; c < 3; ++c)
       edge[a - 1][c] =
           positions[3 * std::size_t(simplex[a]) + c] - positions[3 * std::size_t(simplex[0]) + c];
   }
-  Gradients<kCorners> g;
-  if constexpr (kCorners == 4) {
+  Gradients<Corners> g;
+  if constexpr (Corners == 4) {
     g.of_corner = {Vector{}, cross(edge[1], edge[2]), cross(edge[2], edge[0]), cross(edge[0], edge[1])};
     for (int a = 1; a < 4; ++a) {
       for (double& x : g.of_corner[a]) x /= 6;
     }
     g.volume = dot(edge[0], g.of_corner[1]);
-  } else if constexpr (kCorners == 3) {
+  } else if constexpr (Corners == 3) {
     const Vector normal = cross(edge[0], edge[1]);
     const double twice = std::sqrt(dot(normal, normal));
     g.of_corner = {Vector{}, cross(edge[1], normal), cross(normal, edge[0])};
@@ -140,20 +140,20 @@ Gradients<kCorners> gradients(const Index* simplex, std::span<const double> posi
     g.volume = std::sqrt(dot(edge[0], edge[0]));
     for (int c = 0; c < 3; ++c) g.of_corner[1][c] = edge[0][c] * inverse(g.volume);
   }
-  for (int a = 1; a < kCorners; ++a) {
+  for (int a = 1; a < Corners; ++a) {
     for (int c = 0; c < 3; ++c) g.of_corner[0][c] -= g.of_corner[a][c];
   }
   return g;
 }
 
 /// Forces of a pressure of 1 in tetrahedra, a tension of 1 in triangles or lines, which would rather be
-/// larger: element by element, each of kCorners vertices.
-template <int kCorners, class Owned = AllVertices>
+/// larger: element by element, each of Corners vertices.
+template <int Corners, class Owned = AllVertices>
 void press(std::span<const Index> simplices, std::span<const double> positions, std::span<double> forces,
            const Owned& owned = {}) {
-  for (std::size_t e = 0; e < simplices.size(); e += kCorners) {
-    const Gradients<kCorners> g = gradients<kCorners>(simplices.data() + e, positions);
-    for (int corner = 0; corner < kCorners; ++corner) {
+  for (std::size_t e = 0; e < simplices.size(); e += Corners) {
+    const Gradients<Corners> g = gradients<Corners>(simplices.data() + e, positions);
+    for (int corner = 0; corner < Corners; ++corner) {
       if (!owned.has(simplices[e + corner])) continue;
       for (int c = 0; c < 3; ++c)
         forces[3 * std::size_t(simplices[e + corner]) + c] += g.of_corner[corner][c];
@@ -162,16 +162,16 @@ void press(std::span<const Index> simplices, std::span<const double> positions, 
 }
 
 /// Linear elements for the Laplacian, entries found by a search along their row.
-template <int kCorners, class Column, class Start, class Owned = AllVertices>
+template <int Corners, class Column, class Start, class Owned = AllVertices>
 void assemble(std::span<const Index> simplices, std::span<const double> positions,
               const Matrix<double, Column, Start>& a, const Owned& owned = {}) {
-  for (std::size_t e = 0; e < simplices.size(); e += kCorners) {
-    const Gradients<kCorners> g = gradients<kCorners>(simplices.data() + e, positions);
+  for (std::size_t e = 0; e < simplices.size(); e += Corners) {
+    const Gradients<Corners> g = gradients<Corners>(simplices.data() + e, positions);
     const double scale = g.volume != 0 ? 1 / std::abs(g.volume) : 0;
-    for (int i = 0; i < kCorners; ++i) {
+    for (int i = 0; i < Corners; ++i) {
       if (!owned.has(simplices[e + i])) continue;
       const Start start = a.starts[simplices[e + i]];
-      for (int j = 0; j < kCorners; ++j) {
+      for (int j = 0; j < Corners; ++j) {
         Start k = start;
         while (a.columns[k] != Column(simplices[e + j])) ++k;
         double product = 0;

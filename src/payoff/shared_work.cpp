@@ -49,7 +49,7 @@ double times_computed(Kernel kernel, const CsrGraph& graph, SimplicesRef simplic
       }
     }
   } else {
-    const auto corners = static_cast<std::size_t>(simplices.dimension + 1);
+    const std::size_t corners = static_cast<std::size_t>(simplices.dimension) + 1;
     for (std::size_t first = 0; first + corners <= simplices.vertices.size(); first += corners)
       count.add(simplices.vertices.subspan(first, corners));
   }
