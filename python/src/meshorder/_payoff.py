@@ -272,12 +272,12 @@ def advise(
     """
     with prepared(options) as given:
         made = mesh_of(mesh)._handle.advise([], not measure, measure, kernels, budget, machine, all_threads, given)
-    verdict, as_is, candidates, kernels, doubt, predicted_for, threads = made
+    verdict, as_is, candidates, best_of, doubt, predicted_for, threads = made
     return Advice(
         verdict,
         Candidate._of(as_is),
         [Candidate._of(candidate) for candidate in candidates],
-        {kernel: KernelAdvice(*best) for kernel, best in kernels.items()},
+        {kernel: KernelAdvice(*best) for kernel, best in best_of.items()},
         doubt,
         predicted_for,
         threads,
