@@ -11,13 +11,6 @@
 #include <string>
 
 namespace meshorder {
-inline namespace v0_2 {
-
-std::string_view to_string(Kernel kernel) { return to_string<Kernel>(kernel); }
-std::string_view to_string(KernelSet kernels) { return to_string<KernelSet>(kernels); }
-KernelSet parse_kernels(std::string_view name) { return parse<KernelSet>(name); }
-
-}  // namespace v0_2
 
 std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mesh& mesh, const CsrGraph& graph,
                                              int threads) {
