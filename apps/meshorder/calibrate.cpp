@@ -88,7 +88,7 @@ void print_calibration(const Console& console, const Calibration& calibration) {
                 calibration.read_bandwidth_all, calibration.threads);
   console.print(
       "\nWhat a kernel pays, in ns: an access; a miss and, in addition, a jump of the first cache, the\n"
-      "second, half of the last and all of it; a loop that ends elsewhere than the time before (turn).\n"
+      "second, half of the last and all of it; a loop that ends where the processor did not foresee (turn).\n"
       "The second line of each kernel is of triangles");
   console.print("{:<14}{:>7}{:>32}{:>32}{:>7}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps", "turn",
                 "condition", "error", "floor");

@@ -11,7 +11,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -70,13 +69,15 @@ bool fits(const Rule& rule, Index vertices, Kind kind, Workload workload) {
 /// triangulations of surfaces a half. O(n).
 bool is_lattice(const GraphRef& graph) {
   constexpr double kMost = 0.6;
-  std::unordered_map<Index, Index> with_degree;
+  std::vector<Index> with_degree;
   Index most = 0;
   Index used = 0;
   for (Index v = 0; v < graph.size(); ++v) {
     if (graph.degree(v) == 0) continue;
     ++used;
-    most = std::max(most, ++with_degree[graph.degree(v)]);
+    const auto degree = static_cast<std::size_t>(graph.degree(v));
+    if (degree >= with_degree.size()) with_degree.resize(degree + 1);
+    most = std::max(most, ++with_degree[degree]);
   }
   return used > 0 && most > kMost * used;
 }

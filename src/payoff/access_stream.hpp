@@ -85,10 +85,7 @@ class AccessStream {
   /// Reads an array from front to back: each line is touched when its first byte is reached.
   class Reader {
    public:
-    /// From a byte on whose line has been touched, unless it is the first of one.
-    explicit Reader(const Array& array, Offset byte = 0)
-        : next_line_(array.first_line + (byte + kLineBytes - 1) / kLineBytes),
-          left_((kLineBytes - byte % kLineBytes) % kLineBytes) {}
+    explicit Reader(const Array& array) : next_line_(array.first_line) {}
 
     template <class Visitor>
     void read(Offset count, Visitor& visitor) {
@@ -102,7 +99,7 @@ class AccessStream {
 
    private:
     Offset next_line_;
-    Offset left_;  ///< bytes of the last touched line that are not read yet
+    Offset left_ = 0;  ///< bytes of the last touched line that are not read yet
   };
 
   /// Gathers vertices from an array, and leaves out those that lie in no line that counts.

@@ -14,7 +14,7 @@ enum class LatticeElements { lexmax, shuffled };
 
 /// How the vertices and elements of a lattice are ordered: along a Hilbert curve, then shuffled within ranges
 /// of `window` vertices (1: not at all), and the elements. With a window of 0 breadth first, in which a
-/// lattice is so regular that loops end where they did the time before.
+/// lattice is so regular that a processor foresees where most loops end.
 struct LatticeOrder {
   Index window = 1;
   LatticeElements elements = LatticeElements::lexmax;

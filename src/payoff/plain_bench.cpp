@@ -5,7 +5,9 @@
 #include "kernels/owned_batches.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 namespace meshorder {
@@ -47,6 +49,8 @@ PlainBench::PlainBench(const Mesh& mesh, const CsrGraph& graph) : positions_(coo
   starts_.reserve(static_cast<std::size_t>(graph.size()) + 1);
   columns_.reserve(graph.neighbours.size() + static_cast<std::size_t>(graph.size()));
   all_.ends.reserve(graph.neighbours.size());
+  all_.lengths.reserve(graph.neighbours.size() / 2);
+  x_.reserve(mesh.points.size());
   starts_.push_back(0);
   for (Index v = 0; v < graph.size(); ++v) {
     const std::span<const Index> row = graph[v];

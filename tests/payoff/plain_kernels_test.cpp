@@ -156,6 +156,39 @@ TEST_F(PlainKernels, PressByTheGradientOfTheVolume) {
   }
 }
 
+/// Compares the forces of `press` with differences of the total size.
+template <int Corners>
+void expect_gradients_of_size(const std::vector<Index>& simplices, std::vector<double> positions) {
+  const auto total = [&] {
+    double sum = 0;
+    for (std::size_t e = 0; e < simplices.size(); e += Corners)
+      sum += gradients<Corners>(simplices.data() + e, positions).volume;
+    return sum;
+  };
+  std::vector<double> forces(positions.size());
+  press<Corners>(simplices, positions, forces);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const double before = std::exchange(positions[k], positions[k] + 1e-5);
+    const double above = total();
+    positions[k] = before - 1e-5;
+    const double below = total();
+    positions[k] = before;
+    EXPECT_NEAR(forces[k], (above - below) / 2e-5, 1e-8);
+  }
+}
+
+TEST_F(PlainKernels, PressTrianglesAndLinesByTheGradientOfTheirSize) {
+  const std::vector<double> corners = random_vector(12);
+  expect_gradients_of_size<3>({0, 1, 2, 2, 3, 0}, corners);
+  expect_gradients_of_size<2>({0, 1, 1, 2, 3, 0}, corners);
+  // half of the product of two sides at a right angle; a line's own length
+  EXPECT_DOUBLE_EQ(
+      gradients<3>(std::vector<Index>{0, 1, 2}.data(), std::vector<double>{0, 0, 1, 3, 0, 1, 0, 4, 1}).volume,
+      6);
+  EXPECT_DOUBLE_EQ(
+      gradients<2>(std::vector<Index>{0, 1}.data(), std::vector<double>{0, 0, 1, 3, 4, 1}).volume, 5);
+}
+
 TEST_F(PlainKernels, PullByTheGradientOfTheSprings) {
   const std::vector<double> lengths(ends_.size() / 2, 0.3);
   std::vector<double> forces(3 * size());
