@@ -40,6 +40,12 @@ std::string wrapped(const std::string& text, std::size_t width) {
 
 class HelpFormat : public CLI::Formatter {
  public:
+  /// The program that `try` runs is none of its arguments.
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    std::string usage = CLI::Formatter::make_usage(app, name);
+    if (app->get_name() == "try") usage.insert(usage.find_last_not_of('\n') + 1, " -- PROGRAM ARGUMENTS...");
+    return usage;
+  }
   std::string make_option_desc(const CLI::Option* option) const override {
     return wrapped(CLI::Formatter::make_option_desc(option), width());
   }

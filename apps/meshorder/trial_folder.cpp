@@ -2,7 +2,6 @@
 #include "trial_folder.hpp"
 
 #include "base/input_file.hpp"
-#include "io/stream/output_place.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -40,13 +39,15 @@ void for_each_file(const fs::path& folder, const std::function<void(const fs::di
 
 }  // namespace
 
-TrialFolder::TrialFolder(const fs::path& mesh, const std::vector<std::string>& with)
-    : name_(mesh.filename().string()) {
+TrialFolder::TrialFolder(const fs::path& folder, std::string mesh, const std::vector<std::string>& with)
+    : name_(std::move(mesh)) {
   fs::create_directory(run());
-  find_companions(meshorder::folder_of(fs::absolute(mesh)), with);
+  find_companions(fs::absolute(folder), with);
   companions_.erase(name_);
   for (auto& [name, companion] : companions_) place(name, companion);
-  fs::copy_file(mesh, add_order(0) / name_);
+  add_order(0);
+  if (name_.empty()) return;
+  fs::copy_file(folder / name_, folder_of_order(0) / name_);
   complete_order(0);
 }
 
@@ -129,18 +130,56 @@ fs::path TrialFolder::add_order(std::size_t order) {
   return folder_of_order(order);
 }
 
+void TrialFolder::copy_files(std::size_t order) const {
+  for (const auto& [name, companion] : companions_) {
+    const fs::path here = folder_of_order(order) / name;
+    fs::create_directories(here.parent_path());
+    if (fs::is_directory(companion.source)) {
+      fs::create_directory_symlink(companion.source, here);
+    } else {
+      fs::copy_file(companion.source, here);
+    }
+  }
+  for (const auto& [name, file] : orders_[0]) {
+    fs::create_directories((folder_of_order(order) / name).parent_path());
+    fs::copy_file(folder_of_order(0) / name, folder_of_order(order) / name);
+  }
+}
+
+void TrialFolder::add_file(std::size_t order, const std::string& name) {
+  const fs::path path = folder_of_order(order) / name;
+  orders_[order][name] = {stamp_of(path, false), hash_of(path)};
+}
+
+/// Makes a file beside the mesh a part of all orders that lack it: it is another one in some order.
+void TrialFolder::move_into_orders(const std::string& name) {
+  for (std::size_t order = 0; order < orders_.size(); ++order) {
+    const fs::path path = folder_of_order(order) / name;
+    if (orders_[order].contains(name) || fs::exists(path)) continue;
+    fs::create_directories(path.parent_path());
+    fs::copy_file(companions_[name].source, path);
+    add_file(order, name);
+  }
+  fs::remove(run() / name);
+  companions_.erase(name);
+}
+
 void TrialFolder::complete_order(std::size_t order) {
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_of_order(order))) {
-    const std::string name = entry.path().filename().string();
-    orders_[order][name] = {stamp_of(entry.path(), false), hash_of(entry.path())};
-    // a file beside the mesh that belongs to it: a part of order 0
+  std::vector<std::string> written;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_of_order(order))) {
+    if (entry.is_symlink() || entry.is_regular_file())
+      written.push_back(entry.path().lexically_relative(folder_of_order(order)).string());
+  }
+  for (const std::string& name : written) {
+    const fs::path path = folder_of_order(order) / name;
     const auto companion = companions_.find(name);
-    if (companion == companions_.end()) continue;
-    const fs::path original = folder_of_order(0) / name;
-    fs::copy_file(companion->second.source, original);
-    fs::remove(run() / name);
-    orders_[0][name] = {stamp_of(original, false), hash_of(original)};
-    companions_.erase(companion);
+    if (companion != companions_.end() &&
+        (fs::is_symlink(path) || hash_of(path) == hash_of(companion->second.source))) {
+      fs::remove(path);
+      continue;
+    }
+    add_file(order, name);
+    if (companion != companions_.end()) move_into_orders(name);
   }
 }
 
@@ -158,7 +197,10 @@ bool TrialFolder::is_same(std::size_t a, std::size_t b) const {
 }
 
 void TrialFolder::begin_run(std::size_t order) {
-  for (const auto& [name, file] : orders_[order]) fs::rename(folder_of_order(order) / name, run() / name);
+  for (const auto& [name, file] : orders_[order]) {
+    fs::create_directories((run() / name).parent_path());
+    fs::rename(folder_of_order(order) / name, run() / name);
+  }
 }
 
 void TrialFolder::end_run(std::size_t order, const fs::path& kept) {

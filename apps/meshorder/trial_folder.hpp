@@ -22,10 +22,11 @@ namespace meshorder::command {
 /// the run, but not prevented.
 class TrialFolder {
  public:
-  /// @param mesh  the mesh as it is, order 0
-  /// @param with  names of files and folders beside the mesh to copy; empty: all
+  /// @param folder  in which the mesh is
+  /// @param mesh    name of its file, order 0; empty where the folder itself is what is ordered
+  /// @param with    names of files and folders in the folder to copy; empty: all
   /// Throws InvalidArgument for a name that is not there and for more than 10,000 files.
-  TrialFolder(const std::filesystem::path& mesh, const std::vector<std::string>& with);
+  TrialFolder(const std::filesystem::path& folder, std::string mesh, const std::vector<std::string>& with);
 
   /// Returns the program's current directory.
   [[nodiscard]] std::filesystem::path run() const { return private_.path() / "run"; }
@@ -36,7 +37,10 @@ class TrialFolder {
 
   /// Makes and returns the folder of an order, into which its files are written.
   std::filesystem::path add_order(std::size_t order);
-  /// Takes note of the files that were written for an order.
+  /// Copies all files beside the mesh into the folder of an order.
+  void copy_files(std::size_t order) const;
+  /// Takes note of the files that were written for an order: those that are as beside the mesh are none of
+  /// it.
   void complete_order(std::size_t order);
   /// Removes the files of the order that was added last.
   void drop_order(std::size_t order);
@@ -73,6 +77,8 @@ class TrialFolder {
   static Stamp stamp_of(const std::filesystem::path& path, bool follow);
   static std::size_t hash_of(const std::filesystem::path& path);
   [[nodiscard]] std::filesystem::path folder_of_order(std::size_t order) const;
+  void add_file(std::size_t order, const std::string& name);
+  void move_into_orders(const std::string& name);
   void find_companions(const std::filesystem::path& folder, const std::vector<std::string>& with);
   void place(const std::string& name, Companion& companion) const;
   void keep(const std::filesystem::path& kept) const;
@@ -80,7 +86,7 @@ class TrialFolder {
   void restore();
 
   PrivateFolder private_;
-  std::string name_;  ///< of the mesh
+  std::string name_;  ///< of the mesh; empty for a folder
   std::map<std::string, Companion> companions_;
   std::vector<std::map<std::string, MeshFile>> orders_;
 };

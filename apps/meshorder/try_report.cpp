@@ -21,17 +21,6 @@ bool is_in_seconds(const TrialReport& report) { return report.time == "cpu" || r
 
 bool is_faster(const TrialReport& report) { return report.trials.verdict() == TrialVerdict::faster; }
 
-/// Returns the command that makes an order.
-std::string command_for(const TrialReport& report, const TriedOrder& order) {
-  const std::string output = "ordered-" + fs::path(report.input).filename().string();
-  std::string command = fmt::format("meshorder order {} -o {}", in_shell(report.input), in_shell(output));
-  if (!order.by_auto) command += " --vertices " + order.methods.vertices;
-  if (!order.by_auto && order.methods.elements != "lexmax")
-    command += " --elements " + order.methods.elements;
-  if (report.ids != "renumber") command += " --ids " + report.ids;
-  return command;
-}
-
 /// Returns after how many runs the order has saved what it cost; nothing if it saves no seconds.
 std::optional<double> runs_to_pay(const TrialReport& report, std::size_t order) {
   if (!is_in_seconds(report) || !is_faster(report)) return std::nullopt;
@@ -118,19 +107,18 @@ std::string_view verdict_name(const TrialReport& report) {
 std::string trial_in_words(const TrialReport& report) {
   const std::string program = fs::path(report.command.front()).filename().string();
   const std::optional<std::size_t> best = report.trials.best();
-  if (!best) return fmt::format("{} has no other order to be tried in: all are the file's own", program);
+  if (!best) return fmt::format("{} has no other order to be tried in: all are its own", program);
   const std::string found = with_ratio(report, *best);
   switch (report.trials.verdict()) {
     case TrialVerdict::faster: {
       const TimeRatio speedup = report.trials.speedup(*best);
       const std::optional<double> runs = runs_to_pay(report, *best);
       return fmt::format("{} runs {}× faster ({}) in {}; `{}` makes it{}", program, number(speedup.ratio),
-                         interval(speedup), report.orders[*best].name,
-                         command_for(report, report.orders[*best]),
+                         interval(speedup), report.orders[*best].name, report.orders[*best].made_by,
                          runs ? fmt::format("; pays after {:.0f} run{}", *runs, *runs == 1 ? "" : "s") : "");
     }
     case TrialVerdict::slower:
-      return fmt::format("{} runs fastest in the file's own order; the best other one is {}", program, found);
+      return fmt::format("{} runs fastest in the mesh's own order; the best other one is {}", program, found);
     case TrialVerdict::tie:
       return fmt::format("no order tried makes {} faster by more than {} %; the best one is {}", program,
                          100 * kTie, found);
@@ -169,8 +157,7 @@ nlohmann::ordered_json to_json(const TrialReport& report) {
   auto orders = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < report.orders.size(); ++i) orders.push_back(order_json(report, i));
   const std::optional<std::size_t> best = report.trials.best();
-  nlohmann::ordered_json result{{"file", report.input},
-                                {"command", report.command},
+  nlohmann::ordered_json result{{"command", report.command},
                                 {"time", report.time},
                                 {"finding", trial_in_words(report)},
                                 {"verdict", verdict_name(report)},
@@ -183,7 +170,7 @@ nlohmann::ordered_json to_json(const TrialReport& report) {
                                 {"run_seconds", report.run_seconds}};
   if (!best) return result;
   result["best"] = report.orders[*best].name;
-  if (is_faster(report)) result["order_command"] = command_for(report, report.orders[*best]);
+  if (is_faster(report)) result["order_command"] = report.orders[*best].made_by;
   if (const std::optional<double> runs = runs_to_pay(report, *best)) result["runs_to_pay"] = *runs;
   return result;
 }

@@ -15,12 +15,13 @@
 
 namespace meshorder::command {
 
-/// An order in which a program was run. The first one is the file's own.
+/// An order in which a program was run. The first one is the mesh's own.
 struct TriedOrder {
   std::string name;             ///< "original", "rcm", "hilbert/hilbert"
   OrderNames methods;           ///< as `order` takes them
   bool by_auto = false;         ///< `auto` takes it
-  double order_seconds = 0;     ///< what `meshorder order` took
+  std::string made_by{};        ///< the command that makes it
+  double order_seconds = 0;     ///< what that took, without reading and writing
   std::vector<double> times{};  ///< of the runs that count
   double count = -1;            ///< that --count captured, negative: none
   std::int64_t peak_bytes = 0;
@@ -30,10 +31,8 @@ struct TriedOrder {
 
 /// What a trial found.
 struct TrialReport {
-  std::string input;
   std::vector<std::string> command;
   std::string time;  ///< "cpu", "wall" or a regular expression
-  std::string ids;
   std::vector<TriedOrder> orders;
   PairedTrials trials{0};
   std::vector<std::string> left_out;  ///< orders that there was no time for

@@ -46,4 +46,7 @@ void note_convergence(const std::vector<FiedlerComponent>& components, const std
 /// Returns a word that a shell reads as this text.
 std::string in_shell(const std::string& text);
 
+/// Returns `text` with `with` in place of each `what`.
+std::string replaced(std::string text, std::string_view what, const std::string& with);
+
 }  // namespace meshorder::command

@@ -1,0 +1,34 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "console.hpp"
+#include "progress.hpp"
+#include "trial_subject.hpp"
+#include "try_report.hpp"
+
+#include <string>
+#include <vector>
+
+namespace meshorder::command {
+
+/// What is run, and how it is judged; see docs/try.md.
+struct TrialOptions {
+  std::vector<std::string> command;
+  std::vector<std::string> methods;  ///< empty: those of the subject
+  std::vector<std::string> with;     ///< files beside the mesh; empty: all
+  std::string time = "cpu";
+  std::string count;
+  std::string same;
+  std::string same_file;
+  std::string keep;
+  double tolerance = 1e-6;
+  double budget_seconds = 120;
+  double timeout_seconds = 600;
+};
+
+/// Runs a program in several orders. Throws InvalidArgument for faults in the subject's own order, or in all
+/// others, and Interrupted.
+TrialReport run_trial(const TrialSubject& subject, const TrialOptions& options, Progress& progress,
+                      Notes& notes);
+
+}  // namespace meshorder::command
