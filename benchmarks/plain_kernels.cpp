@@ -1,11 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // plain_kernels MESH [METHOD,METHOD… [rounds]]: kernels as programs write them that do not prefetch
 // (src/kernels/plain.hpp), on a tetrahedral mesh in several orders. Elements and edges follow by their
-// largest vertex, and `springs*` has edges by their smaller end. A file that does not exist is made if it is
+// largest vertex, and `springs*` has edges by their smaller end. NAME=@FILE.npy takes the order of the
+// vertices from a file, which has the old place of each new one. A mesh that does not exist is made if it is
 // named grid-N: a lattice in random order.
 //
 // All orders share one memory, which each fills before its turn, so that none has luckier pages. Prints lower
 // quartiles of the thread's processor time, ms.
+#include "io/npy.hpp"
 #include "kernels/plain.hpp"
 #include "measuring.hpp"
 #include "mesh/graphs.hpp"
@@ -26,6 +28,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace mo = meshorder;
@@ -70,10 +73,22 @@ double seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-Ordered in_order_of(mo::Mesh mesh, const std::string& method) {
+/// Moves the vertices as the file says.
+void move_vertices(mo::Mesh& mesh, const std::string& file) {
+  std::vector<mo::Index> new_to_old;
+  for (const std::int64_t old : mo::read_npy(file)) new_to_old.push_back(static_cast<mo::Index>(old));
+  mo::apply_reordering(mesh, mo::Permutation::from_new_to_old(std::move(new_to_old)),
+                       mo::Permutation::identity(mesh.cell_count()));
+}
+
+Ordered in_order_of(mo::Mesh mesh, const std::string& order) {
   Ordered result;
-  result.name = method;
-  mo::reorder(mesh, {.methods = {method, method == "original" ? "original" : "lexmax"}});
+  const std::size_t mark = order.find("=@");
+  result.name = order.substr(0, mark);
+  const bool is_file = mark != std::string::npos;
+  if (is_file) move_vertices(mesh, order.substr(mark + 2));
+  const std::string method = is_file ? "original" : order;
+  mo::reorder(mesh, {.methods = {method, order == "original" ? "original" : "lexmax"}});
   const mo::CsrGraph graph = mo::vertex_graph(mesh);
   const mo::Permutation as_is = mo::Permutation::identity(graph.size());
   result.jumps = mo::jump_share(graph, as_is);

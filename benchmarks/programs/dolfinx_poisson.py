@@ -1,0 +1,30 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""−Δu + u = 1 by linear tetrahedra in DOLFINx: dolfinx_poisson.py MESH"""
+import sys
+import time
+
+import dolfinx
+import ufl
+from dolfinx.fem.petsc import assemble_matrix, assemble_vector
+from mpi4py import MPI
+from petsc4py import PETSc
+from solve import report
+
+with dolfinx.io.XDMFFile(MPI.COMM_WORLD, sys.argv[1], "r") as file:
+    mesh = file.read_mesh()
+space = dolfinx.fem.FunctionSpace(mesh, ("Lagrange", 1))
+u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
+form = dolfinx.fem.form((ufl.dot(ufl.grad(u), ufl.grad(v)) + u * v) * ufl.dx)
+load = dolfinx.fem.form(dolfinx.fem.Constant(mesh, PETSc.ScalarType(1)) * v * ufl.dx)
+begin = time.process_time()
+matrix = assemble_matrix(form)
+matrix.assemble()
+right = assemble_vector(load)
+solver = PETSc.KSP().create()
+solver.setOperators(matrix)
+solver.setType("cg")
+solver.getPC().setType("jacobi")
+solver.setTolerances(rtol=1e-8, max_it=10000)
+x = matrix.createVecRight()
+solver.solve(right, x)
+report(time.process_time() - begin, solver.getIterationNumber(), right.dot(x))

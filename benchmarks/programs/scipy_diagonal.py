@@ -1,0 +1,14 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Conjugate gradients with the diagonal in SciPy, which is products of a sparse matrix: scipy_diagonal.py MATRIX"""
+import sys
+import time
+
+import numpy
+import scipy.io
+from solve import conjugate_gradients, report
+
+matrix = scipy.io.mmread(sys.argv[1]).tocsr()
+right = numpy.ones(matrix.shape[0])
+begin = time.process_time()
+u, iterations = conjugate_gradients(matrix, right)
+report(time.process_time() - begin, iterations, right @ u)

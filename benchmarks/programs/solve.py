@@ -1,0 +1,24 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""What the programs in Python share."""
+from scipy.sparse import diags
+from scipy.sparse.linalg import cg
+
+
+def conjugate_gradients(matrix, right, preconditioner=None):
+    """Returns the solution and the iterations; without a preconditioner the diagonal is one."""
+    count = [0]
+
+    def step(_):
+        count[0] += 1
+    if preconditioner is None:
+        preconditioner = diags(1 / matrix.diagonal())
+    solution, failed = cg(matrix, right, M=preconditioner, callback=step, maxiter=10000)
+    assert not failed
+    return solution, count[0]
+
+
+def report(seconds, iterations, energy):
+    """What `meshorder try` reads."""
+    print(f"compute: {seconds:.6f} s")
+    print("iterations:", iterations)
+    print("energy:", energy)
