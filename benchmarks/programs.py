@@ -43,7 +43,9 @@ class Block:
         occ = gmsh.model.occ
         occ.cut([(3, occ.addBox(0, 0, 0, 2, 1, 1))], [(3, occ.addCylinder(1, 0.5, -1, 0, 0, 3, 0.25))])
         occ.synchronize()
-        gmsh.model.addPhysicalGroup(3, [tag for _, tag in gmsh.model.getEntities(3)], 1)
+        for dimension, name in ((2, "skin"), (3, "body")):
+            tags = [tag for _, tag in gmsh.model.getEntities(dimension)]
+            gmsh.model.addPhysicalGroup(dimension, tags, dimension, name)
         gmsh.model.mesh.generate(3)
         gmsh.write(str(folder / "block.msh"))
         gmsh.write(str(folder / "block.mesh"))
@@ -85,7 +87,8 @@ class Block:
         matrix = scipy.sparse.coo_matrix((values.ravel(), (rows, columns)), shape=(len(self.points),) * 2).tocsr()
         scipy.io.mmwrite(str(path), matrix, symmetry="symmetric")
 
-    def write_xdmf(self, path):
+    def write_body(self, path):
+        """The tetrahedra alone."""
         import meshio
         meshio.write(str(path), meshio.Mesh(self.points, [("tetra", self.tetrahedra)]))
 
@@ -111,13 +114,13 @@ PROGRAMS = {
     "icofoam-pcg": ico_foam("PCG"),
     "icofoam-gamg": ico_foam("GAMG"),
     "freefem": ("FreeFEM, assembly and CG", "block.mesh",
-                ["FreeFem++", "-nw", str(HERE / "freefem.edp"), "-mesh", "{}"], COMPUTE),
+                ["FreeFem++", "-nw", "-ne", str(HERE / "freefem.edp"), "{}"], COMPUTE),
     "scikit-fem": ("scikit-fem, assembly and SciPy's CG", "block.msh", python("scikit_fem.py"), COMPUTE + ITERATIONS),
-    "sfepy": ("SfePy, assembly and SciPy's CG", "block.mesh", python("sfepy_poisson.py"), COMPUTE + ITERATIONS),
-    "ngsolve": ("NGSolve, assembly and CG", "block.msh", python("ngsolve_poisson.py"), COMPUTE + ITERATIONS),
-    "dolfinx": ("DOLFINx, assembly and PETSc's CG", "block.xdmf", python("dolfinx_poisson.py"), COMPUTE + ITERATIONS),
+    "sfepy": ("SfePy, assembly and SciPy's CG", "body.mesh", python("sfepy_poisson.py"), COMPUTE + ITERATIONS),
+    "ngsolve": ("NGSolve, assembly and CG", "block.msh", python("ngsolve_poisson.py"), COMPUTE),
+    "dolfinx": ("DOLFINx, assembly and PETSc's CG", "body.xdmf", python("dolfinx_poisson.py"), COMPUTE + ITERATIONS),
     "scipy-products": ("SciPy, CG with the diagonal", "block.mtx", python("scipy_diagonal.py"), COMPUTE + ITERATIONS),
-    "scipy-ilu": ("SciPy, CG with ILU", "block.mtx", python("scipy_ilu.py"), COMPUTE + ITERATIONS),
+    "scipy-ilu": ("SciPy, ILU and BiCGSTAB", "block.mtx", python("scipy_ilu.py"), COMPUTE + ITERATIONS),
     "petsc": ("PETSc, CG with ICC(0)", "block.mtx", python("petsc.py"), COMPUTE + ITERATIONS),
     "mesh-graph-net": ("a MeshGraphNet in PyTorch", "block.msh", python("mesh_graph_net.py"), COMPUTE),
 }
@@ -141,8 +144,8 @@ def make(folder, file, arguments):
         block.write_deck(path, SOLVERS[stem])
     elif suffix == ".mtx":
         block.write_matrix(path)
-    elif suffix == ".xdmf":
-        block.write_xdmf(path)
+    elif stem == "body":
+        block.write_body(path)
     for other in (path.parent / "block.msh", path.parent / "block.mesh"):
         if other != path:
             other.unlink()
@@ -151,7 +154,8 @@ def make(folder, file, arguments):
 
 def attempt(path, program, judged, budget):
     """Returns what `try` finds."""
-    environment = {"WM_PROJECT_DIR": "/usr/share/openfoam", **os.environ, **ONE_THREAD, "PYTHONPATH": str(HERE)}
+    environment = {"WM_PROJECT_DIR": "/usr/share/openfoam", "FF_LOADPATH": "/usr/lib/freefem++",
+                   **os.environ, **ONE_THREAD, "PYTHONPATH": str(HERE)}
     done = subprocess.run([MESHORDER, "try", str(path), "--budget", str(budget), "--json", "--quiet", *judged,
                            "--", *program], capture_output=True, text=True, check=False, env=environment)
     if done.returncode != 0:

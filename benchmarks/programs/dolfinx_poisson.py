@@ -11,7 +11,7 @@ from petsc4py import PETSc
 from solve import report
 
 with dolfinx.io.XDMFFile(MPI.COMM_WORLD, sys.argv[1], "r") as file:
-    mesh = file.read_mesh()
+    mesh = file.read_mesh(name="Grid")
 space = dolfinx.fem.FunctionSpace(mesh, ("Lagrange", 1))
 u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
 form = dolfinx.fem.form((ufl.dot(ufl.grad(u), ufl.grad(v)) + u * v) * ufl.dx)
@@ -27,4 +27,4 @@ solver.getPC().setType("jacobi")
 solver.setTolerances(rtol=1e-8, max_it=10000)
 x = matrix.createVecRight()
 solver.solve(right, x)
-report(time.process_time() - begin, solver.getIterationNumber(), right.dot(x))
+report(time.process_time() - begin, right.dot(x), solver.getIterationNumber())

@@ -14,7 +14,7 @@ torch.set_num_threads(1)
 mesh = meshio.read(sys.argv[1])
 tetrahedra = numpy.concatenate([block.data for block in mesh.cells if block.type == "tetra"])
 ends = numpy.concatenate([tetrahedra[:, pair] for pair in ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))])
-ends = numpy.unique(numpy.sort(ends, axis=1), axis=0)
+ends = numpy.unique(numpy.sort(ends, axis=1), axis=0).astype(numpy.int64)
 points = torch.tensor(mesh.points, dtype=torch.float32)
 edges = torch.tensor(numpy.concatenate([ends, ends[:, ::-1]]).T.copy())
 edges = edges[:, torch.argsort(edges[1], stable=True)]

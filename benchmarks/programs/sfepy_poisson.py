@@ -3,6 +3,7 @@
 import sys
 import time
 
+import numpy
 from sfepy.base.base import output
 from sfepy.discrete import Equation, Equations, FieldVariable, Integral, Material, Problem
 from sfepy.discrete.fem import FEDomain, Field, Mesh
@@ -13,7 +14,7 @@ output.set_output(quiet=True)
 domain = FEDomain("domain", Mesh.from_file(sys.argv[1]))
 omega = domain.create_region("Omega", "all")
 begin = time.process_time()
-field = Field.from_args("u", "real", "scalar", omega, approx_order=1)
+field = Field.from_args("u", numpy.float64, "scalar", omega, approx_order=1)
 u = FieldVariable("u", "unknown", field)
 v = FieldVariable("v", "test", field, primary_var_name="u")
 integral = Integral("i", order=2)
@@ -30,4 +31,4 @@ vector = state() if callable(state) else state.get_state()
 matrix = evaluator.eval_tangent_matrix(vector, is_full=True)
 right = -evaluator.eval_residual(vector, is_full=True)
 x, iterations = conjugate_gradients(matrix.tocsr(), right)
-report(time.process_time() - begin, iterations, right @ x)
+report(time.process_time() - begin, right @ x, iterations)

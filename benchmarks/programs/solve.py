@@ -17,8 +17,9 @@ def conjugate_gradients(matrix, right, preconditioner=None):
     return solution, count[0]
 
 
-def report(seconds, iterations, energy):
+def report(seconds, energy, iterations=None):
     """What `meshorder try` reads."""
     print(f"compute: {seconds:.6f} s")
-    print("iterations:", iterations)
     print("energy:", energy)
+    if iterations is not None:
+        print("iterations:", iterations)
