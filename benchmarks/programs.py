@@ -209,7 +209,7 @@ def main():
             print(f"{name}: {fault}", file=sys.stderr)
             continue
         print(row(title, found), flush=True)
-        everything[name] = {"size": arguments.size, **found}
+        everything[name] = {"title": title, "size": arguments.size, **found}
         if arguments.json:
             arguments.json.write_text(json.dumps(everything, indent=1) + "\n")
 

@@ -1,9 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
 #include "console.hpp"
+#include "io/stream/output_file.hpp"
 #include "progress.hpp"
 #include "trial.hpp"
 #include "trial_subject.hpp"
+#include "try_page.hpp"
 #include "try_report.hpp"
 #include <meshorder/error.hpp>
 
@@ -14,7 +16,9 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace meshorder::command {
@@ -28,6 +32,7 @@ constexpr std::array kPassedOn{"--for", "--seed", "--limit-memory", "--allow-inc
 struct TryArguments : Common, TrialOptions {
   std::string input;
   std::string ids = "renumber";
+  std::string page;
   std::vector<std::string> to_order;  ///< options that are passed on to `order`
   OrderOptions ordering;
 };
@@ -55,12 +60,24 @@ void run(const TryArguments& arguments) {
       trial_subject(arguments.input, {arguments.threads, arguments.ids, arguments.to_order});
   check_command(arguments, *subject);
   for (const std::string& name : arguments.methods) subject->check_order(name);
+  std::optional<OutputFile> page;  // fails, before anything runs, if it cannot be written
+  if (!arguments.page.empty()) {
+    std::error_code ignored;
+    if (fs::equivalent(arguments.page, arguments.input, ignored))
+      throw InvalidArgument("--page " + arguments.page + ": that is the mesh; name another file");
+    page.emplace(arguments.page);
+  }
   Progress progress(!console.quiet());
   Notes notes;
   const TrialReport report = run_trial(*subject, arguments, progress, notes);
   progress.finish();
   console.warn_of(notes);
   print_trial(console, report);
+  if (page) {
+    page->write(trial_page(report, arguments.input));
+    page->commit();
+    console.print("\nwrote {}", arguments.page);
+  }
   if (!arguments.keep.empty()) console.print("\nkept {}", arguments.keep);
   nlohmann::ordered_json result{{"file", arguments.input}};
   result.update(to_json(report));
@@ -168,6 +185,8 @@ void add_try(CLI::App& subcommand) {
       .add_option("--keep", arguments->keep,
                   "New folder for the mesh and the outputs of the first run in each order")
       ->type_name("FOLDER");
+  subcommand.add_option("--page", arguments->page, "Also write the findings as a page for the browser")
+      ->type_name("FILE.html");
   add_ids_option(subcommand, arguments->ids);
   add_workload_option(subcommand, arguments->ordering);
   add_seed_option(subcommand, arguments->ordering.seed);

@@ -17,10 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_in_seconds(const TrialReport& report) { return report.time == "cpu" || report.time == "wall"; }
-
-bool is_faster(const TrialReport& report) { return report.trials.verdict() == TrialVerdict::faster; }
-
 /// Returns after how many runs the order has saved what it cost; nothing if it saves no seconds.
 std::optional<double> runs_to_pay(const TrialReport& report, std::size_t order) {
   if (!is_in_seconds(report) || !is_faster(report)) return std::nullopt;
@@ -103,6 +99,10 @@ std::string_view verdict_name(const TrialReport& report) {
 }
 
 }  // namespace
+
+bool is_in_seconds(const TrialReport& report) { return report.time == "cpu" || report.time == "wall"; }
+
+bool is_faster(const TrialReport& report) { return report.trials.verdict() == TrialVerdict::faster; }
 
 std::string trial_in_words(const TrialReport& report) {
   const std::string program = fs::path(report.command.front()).filename().string();

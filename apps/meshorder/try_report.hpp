@@ -39,6 +39,12 @@ struct TrialReport {
   double run_seconds = 0;             ///< of all runs, by the clock
 };
 
+/// Returns whether times are in seconds, not in a number that the program prints.
+bool is_in_seconds(const TrialReport& report);
+
+/// Returns whether the best order is faster than the mesh's own.
+bool is_faster(const TrialReport& report);
+
 /// Returns the sentence that says what the trial found.
 std::string trial_in_words(const TrialReport& report);
 

@@ -123,6 +123,21 @@ def test_text_begins_with_the_finding(folder):
     assert "\noriginal " in done.stdout and "\nrcm " in done.stdout and "█" in done.stdout
 
 
+def test_a_page_shows_the_findings(folder):
+    page = folder.path.parent / "page.html"
+    (folder.path / "a&b.mesh").write_bytes((folder.path / "mesh.mesh").read_bytes())
+    folder.before = folder.contents()
+    folder.json("a&b.mesh", "--page", str(page), "--methods", "rcm,hilbert", "--time", r"seconds: (\S+)", "--budget", "9",
+                "--json", *solver(20, 40))
+    text = page.read_text()
+    assert "<h1>python" in text and "runs 2.00× faster" in text and text.count("<b style=") >= 2
+    assert 'width:100.00%' in text and 'width:50.00%' in text
+    assert "a&amp;b.mesh" in text and "a&b" not in text
+    assert "<script" not in text and "http" not in text
+    assert "that is the mesh" in folder.fails("mesh.mesh", "--page", "mesh.mesh", *solver(20, 40))
+    assert "no-such" in folder.fails("mesh.mesh", "--page", "no-such/page.html", *solver(20, 40))
+
+
 def test_what_the_program_prints_can_be_its_time(folder):
     result = folder.json("mesh.mesh", "--time", r"seconds: (\S+)", "--budget", "9", "--json", *solver(20, 40))
     assert result["verdict"] == "faster" and result["runs_to_pay"] is None
