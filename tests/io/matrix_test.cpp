@@ -1,5 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
+#include "io/matrix/points.hpp"
+#include "io/npy_header.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
@@ -7,7 +10,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -234,6 +243,137 @@ TEST(MetisGraph, RefusesBrokenFiles) {
           {"word", with(file, "2 30", "x 30"), ":3: a neighbour is 'x'"},
           {"no edges", "2 0\n\n\n", "has no cells"},
       });
+}
+
+TEST(StoredMatrix, IsWhatTheReaderSays) {
+  const Mesh general = read_as("a.mtx", kReal);
+  ASSERT_NE(stored_matrix(general), nullptr);
+  EXPECT_FALSE(stored_matrix(general)->is_half);
+  EXPECT_FALSE(stored_matrix(general)->is_graph);
+  EXPECT_EQ(stored_matrix(general)->field, "real");
+  EXPECT_EQ(stored_matrix(general)->symmetry, "general");
+  for (const std::string_view symmetry : {"symmetric", "skew-symmetric", "hermitian"}) {
+    const Mesh half = read_as("a.mtx", symmetric(symmetry, "complex", "3 3 1\n2 1 5 0\n"));
+    ASSERT_NE(stored_matrix(half), nullptr);
+    EXPECT_TRUE(stored_matrix(half)->is_half) << symmetry;
+    EXPECT_EQ(stored_matrix(half)->symmetry, symmetry);
+    EXPECT_EQ(stored_matrix(half)->field, "complex");
+    EXPECT_EQ(entry_pattern(half).entries(), 2);
+  }
+  const Mesh graph = read_as("a.graph", kGraph);
+  ASSERT_NE(stored_matrix(graph), nullptr);
+  EXPECT_TRUE(stored_matrix(graph)->is_graph && stored_matrix(graph)->is_half);
+  EXPECT_NE(stored_matrix(turned(graph)), nullptr);
+  EXPECT_EQ(stored_matrix(test::tetrahedral_bar(1)), nullptr);
+  EXPECT_EQ(stored_matrix(read_as("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n")), nullptr);
+}
+
+TEST(StoredMatrix, IsWrittenWithoutAWordOfPointsThatWereGiven) {
+  Mesh mesh = read_as("a.mtx", kReal);
+  mesh.points[2] = {1, 2, 3};
+  for (const char* const name : {"b.mtx", "b.graph"}) {
+    Notes notes;
+    (void)text_of(mesh, name, &notes);
+    EXPECT_THAT(notes, testing::Each(testing::Not(HasSubstr("coordinates")))) << name;
+  }
+}
+
+const std::vector<Point> kThree{{0.5, 1, -2}, {3, 4e2, 5}, {6, 7, 8}};
+const std::vector<Point> kFlat{{0.5, 1, 0}, {3, 4e2, 0}, {6, 7, 0}};
+
+RowPoints points_in(std::string_view content, Index rows = 3) {
+  const TemporaryFolder folder;
+  return read_points(folder.file("points", content), rows);
+}
+
+/// A NumPy array of three rows.
+template <class Number>
+std::string numpy_points(const std::string& type, int columns, bool columns_first) {
+  std::string bytes = npy_header(type, std::array<std::int64_t, 2>{3, columns});
+  if (columns_first) bytes = with(bytes, "'fortran_order': False", "'fortran_order': True ");
+  const auto put = [&](double coordinate) {
+    const auto number = static_cast<Number>(coordinate);
+    std::array<char, sizeof(Number)> raw;
+    std::memcpy(raw.data(), &number, sizeof(Number));
+    if (type[0] == '>') std::reverse(raw.begin(), raw.end());
+    bytes.append(raw.data(), raw.size());
+  };
+  for (int a = 0; a < (columns_first ? columns : 3); ++a) {
+    for (int b = 0; b < (columns_first ? 3 : columns); ++b) put(columns_first ? kThree[b][a] : kThree[a][b]);
+  }
+  return bytes;
+}
+
+TEST(RowPoints, AreReadFromText) {
+  for (const std::string_view file :
+       {"0.5 1 -2\n3 4e2 5\n6 7 8\n", "# by hand\n\n  0.5,1,\t-2 % the first\r\n3 , 4e2,5\r\n6 7 8",
+        "% x y z\n0.5 1 -2\n3 400 5\n6 7 8\n\n# end\n"}) {
+    const RowPoints read = points_in(file);
+    EXPECT_EQ(read.points, kThree) << file;
+    EXPECT_EQ(read.dimension, 3);
+  }
+  EXPECT_EQ(points_in("0.5 1\n3,4e2\n6 7\n").points, kFlat);
+  EXPECT_EQ(points_in("0.5 1\n3,4e2\n6 7\n").dimension, 2);
+}
+
+TEST(RowPoints, AreReadFromNumPy) {
+  for (const bool columns_first : {false, true}) {
+    EXPECT_EQ(points_in(numpy_points<double>("<f8", 3, columns_first)).points, kThree);
+    EXPECT_EQ(points_in(numpy_points<double>(">f8", 3, columns_first)).points, kThree);
+    EXPECT_EQ(points_in(numpy_points<float>("<f4", 2, columns_first)).points, kFlat);
+    EXPECT_EQ(points_in(numpy_points<float>("<f4", 2, columns_first)).dimension, 2);
+  }
+}
+
+TEST(RowPoints, AreReadFromADenseArray) {
+  EXPECT_EQ(
+      points_in("%%MatrixMarket matrix array real general\n% by hand\n3 3\n0.5\n3\n6\n1\n400\n7\n-2\n5\n8\n")
+          .points,
+      kThree);
+  EXPECT_EQ(points_in("%%matrixmarket MATRIX array real general\n3 2\n0.5 3 6 1 400 7\n").points, kFlat);
+}
+
+TEST(RowPoints, RefuseBrokenFiles) {
+  const std::string numpy = numpy_points<double>("<f8", 3, false);
+  const std::string array = "%%MatrixMarket matrix array real general\n3 2\n1\n2\n3\n4\n5\n6\n";
+  const std::vector<std::pair<std::string, std::string>> broken{
+      {"1 2 3\n4 5 6\n", ":3: has 2 rows of coordinates, where 3 are needed; give a row"},
+      {"1 2 3\n4 5 6\n7 8 9\n1 2 3\n", ":4: has more rows of coordinates, where 3 are needed"},
+      {"1 2 3\n4 5\n7 8 9\n", ":2: the row has 2 numbers, those before it 3"},
+      {"1\n2\n3\n", ":1: the row has 1 numbers; give a row of 2 or 3"},
+      {"1 2 3 4\n", ":1: the row has 4 numbers"},
+      {"1 2 3\n4 nan 6\n7 8 9\n", ":2: a coordinate is nan; finite numbers"},
+      {"1 2 3\n4 inf 6\n7 8 9\n", ":2: a coordinate is inf; finite numbers"},
+      {"1 2 3\n4 1e999 6\n7 8 9\n", ":2: a coordinate is 1e999; that is too large"},
+      {"x y z\n1 2 3\n", ":1: a coordinate is 'x'; a number is needed"},
+      {"1,,3\n", ":1: a coordinate is ''"},
+      {"1,2,\n", ":1: a coordinate is ''"},
+      {"1 2\n1 2\n1 2\n", "all points are the same"},
+      {"# nothing\n", "has 0 rows of coordinates"},
+      {numpy.substr(0, numpy.size() - 1), "a coordinate"},
+      {numpy + "x", "goes on after the last number"},
+      {numpy_points<double>("<i8", 3, false), "holds '<i8'; 32- or 64-bit real numbers"},
+      {with(numpy, "(3, 3)", "(3, 4)"), "a row has 4 numbers"},
+      {with(numpy, "(3, 3)", "(9, 1)"), "a row has 1 numbers"},
+      {with(numpy, "(3, 3)", "(4, 3)"), "has 4 rows of coordinates, where 3"},
+      {with(numpy, "(3, 3)", "(9,)  "), "is an array of 1 dimensions"},
+      {with(array, "array real", "coordinate real"), ":1: the first line has 'coordinate' where 'array'"},
+      {with(array, "real", "complex"), ":1: the array is of the field 'complex'"},
+      {with(array, "general", "symmetric"), ":1: the array is 'symmetric'"},
+      {with(array, "3 2", "4 2"), ":2: has 4 rows of coordinates"},
+      {with(array, "3 2", "3 1"), ":2: a row has 1 numbers"},
+      {with(array, "5\n", ""), "a coordinate"},
+      {array + "7\n", "more numbers than the sizes say"},
+      {with(array, "4\n", "nan\n"), ":6: a coordinate is not finite"},
+  };
+  for (const auto& [content, expected] : broken) {
+    try {
+      (void)points_in(content);
+      ADD_FAILURE() << "is read: " << expected;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(expected));
+    }
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "base/memory.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "mesh/values.hpp"
 
 #include <fmt/format.h>
@@ -67,9 +68,8 @@ std::int64_t whole_value(const DataArray& array, Offset at) {
 
 void note_all_unsupported(const Mesh& mesh, std::string_view format,
                           std::span<const DataArray* const> written, Notes& notes) {
-  const bool placed = std::any_of(mesh.points.begin(), mesh.points.end(),
-                                  [&](const Point& point) { return point != mesh.points.front(); });
-  if (placed) {
+  // points of a matrix were given beside its file
+  if (stored_matrix(mesh) == nullptr && has_places(mesh)) {
     notes.push_back(
         fmt::format("the coordinates of vertices are not written: {} has no place for them", format));
   }

@@ -9,6 +9,7 @@
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/stored_matrix.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -54,15 +55,14 @@ constexpr std::string_view kName = "MatrixMarket";
 constexpr std::string_view kBanner = "%%MatrixMarket";
 
 /// Data of a file beyond the matrix.
-struct MatrixMetadata final : FormatMetadata {
-  Symmetry symmetry = Symmetry::general;
+struct MatrixMetadata final : StoredMatrix {
+  Symmetry stored_as = Symmetry::general;
   std::string comments;  ///< the lines after the first
 
   [[nodiscard]] std::vector<std::string> contents() const override {
     std::vector<std::string> result;
-    if (symmetry != Symmetry::general) {
-      result.push_back(
-          fmt::format("that the matrix is {}, of which the file has one half", to_string(symmetry)));
+    if (is_half) {
+      result.push_back(fmt::format("that the matrix is {}, of which the file has one half", symmetry));
     }
     if (!comments.empty()) result.emplace_back("the matrix's comments");
     return result;
@@ -91,7 +91,7 @@ class MatrixReader {
     read_entries();
     if (!in_.at_end()) in_.fail("more entries than the count says", "the count is wrong");
     note_missing_line_end(in_, '%', notes_);
-    if (metadata_->symmetry == Symmetry::general && !is_pattern_symmetric()) {
+    if (!metadata_->is_half && !is_pattern_symmetric()) {
       notes_.push_back("the pattern of the matrix A is not symmetric: that of A + A' is ordered");
     }
     if (field_ != Field::pattern) {
@@ -122,7 +122,10 @@ class MatrixReader {
                "only sparse matrices, stored as 'coordinate', can be ordered");
     }
     field_ = parse_word<Field>(in_, next_word(line));
-    metadata_->symmetry = parse_word<Symmetry>(in_, next_word(line));
+    metadata_->stored_as = parse_word<Symmetry>(in_, next_word(line));
+    metadata_->field = to_string(field_);
+    metadata_->symmetry = to_string(metadata_->stored_as);
+    metadata_->is_half = metadata_->stored_as != Symmetry::general;
     if (const std::string_view more = next_word(line); !more.empty()) {
       in_.fail(fmt::format("the first line goes on with '{}'", shown(more)), "it should end there");
     }
@@ -235,7 +238,7 @@ const DataArray* values_of(const Mesh& mesh) {
 
 /// Returns the symmetry of the file of a mesh with these values.
 Symmetry symmetry_of(const Mesh& mesh, const DataArray* values) {
-  if (const MatrixMetadata* const own = metadata_of(mesh)) return own->symmetry;
+  if (const MatrixMetadata* const own = metadata_of(mesh)) return own->stored_as;
   const bool may_be = values == nullptr || values->name == kWeight;
   return may_be && joins_once(mesh) ? Symmetry::symmetric : Symmetry::general;
 }

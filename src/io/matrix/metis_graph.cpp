@@ -10,6 +10,7 @@
 #include "io/stream/scanner.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/reorder.hpp"
+#include "mesh/stored_matrix.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -25,7 +26,7 @@ namespace matrix {
 namespace {
 
 /// Data of a file beyond the graph.
-struct GraphMetadata final : FormatMetadata {
+struct GraphMetadata final : StoredMatrix {
   std::string comments;
 
   [[nodiscard]] std::vector<std::string> contents() const override {
@@ -63,6 +64,7 @@ class GraphReader {
                        "each edge must be in the lists of both its vertices");
     }
     make_edges();
+    metadata_->is_graph = metadata_->is_half = true;
     mesh_.format_metadata = metadata_;
     return std::move(mesh_);
   }

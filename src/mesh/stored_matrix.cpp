@@ -1,0 +1,120 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "mesh/stored_matrix.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstdlib>
+#include <numeric>
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+/// Sorts every row, drops repeats and closes the gaps.
+void tidy_entries(EntryPattern& pattern) {
+  Offset kept = 0;
+  Offset begin = 0;
+  for (Index row = 0; row < pattern.rows(); ++row) {
+    const Offset end = pattern.starts[row + 1];
+    const auto first = pattern.columns.begin() + begin;
+    std::sort(first, pattern.columns.begin() + end);
+    const auto last = std::unique(first, pattern.columns.begin() + end);
+    kept = std::copy(first, last, pattern.columns.begin() + kept) - pattern.columns.begin();
+    pattern.starts[row + 1] = kept;
+    begin = end;
+  }
+  pattern.columns.resize(kept);
+}
+
+/// Whether each entry has one at the transposed place: as rows rise, those that name a column do so in the
+/// order in which its own row lists them.
+bool is_symmetric_pattern(const EntryPattern& pattern) {
+  std::vector<Offset> next(pattern.starts.begin(), pattern.starts.end() - 1);
+  for (Index row = 0; row < pattern.rows(); ++row) {
+    for (const Index column : pattern[row]) {
+      const Offset at = next[column]++;
+      if (at >= pattern.starts[column + 1] || pattern.columns[at] != row) return false;
+    }
+  }
+  return true;
+}
+
+/// Returns the share of the b × b blocks with an entry that are entries.
+double fill_of_blocks(const EntryPattern& pattern, Index b) {
+  std::vector<Index> seen_by(pattern.rows() / b, -1);  // of each block of columns, the last block of rows
+  Offset blocks = 0;
+  for (Index row = 0; row < pattern.rows(); ++row) {
+    for (const Index column : pattern[row]) {
+      Index& seen = seen_by[column / b];
+      blocks += seen != row / b ? 1 : 0;
+      seen = row / b;
+    }
+  }
+  return blocks == 0 ? 0 : static_cast<double>(pattern.entries()) / static_cast<double>(blocks * b * b);
+}
+
+}  // namespace
+
+const StoredMatrix* stored_matrix(const Mesh& mesh) {
+  return dynamic_cast<const StoredMatrix*>(mesh.format_metadata.get());
+}
+
+bool has_places(const Mesh& mesh) {
+  return std::any_of(mesh.points.begin(), mesh.points.end(),
+                     [&](const Point& point) { return point != mesh.points.front(); });
+}
+
+EntryPattern entry_pattern(const Mesh& mesh) {
+  const StoredMatrix* const stored = stored_matrix(mesh);
+  const bool is_half = stored != nullptr && stored->is_half;
+  const auto for_entries = [&](auto take) {
+    for (Index c = 0; c < mesh.cell_count(); ++c) {
+      const std::span<const Index> cell = mesh.cells[c];
+      take(cell.front(), cell.back());
+      if (is_half && cell.front() != cell.back()) take(cell.back(), cell.front());
+    }
+  };
+  EntryPattern pattern;
+  pattern.starts.assign(mesh.points.size() + 1, 0);
+  for_entries([&](Index row, Index /*column*/) { ++pattern.starts[row + 1]; });
+  std::partial_sum(pattern.starts.begin(), pattern.starts.end(), pattern.starts.begin());
+  pattern.columns.resize(pattern.starts.back());
+  std::vector<Offset> next(pattern.starts.begin(), pattern.starts.end() - 1);
+  for_entries([&](Index row, Index column) { pattern.columns[next[row]++] = column; });
+  tidy_entries(pattern);
+  return pattern;
+}
+
+EntryPattern moved(const Permutation& rows, const EntryPattern& pattern) {
+  // a row and its columns move as those of a graph do
+  CsrGraph graph = renumbered(GraphRef(pattern.starts, pattern.columns), rows.old_to_new());
+  return {std::move(graph.offsets), std::move(graph.neighbours)};
+}
+
+PatternFacts facts_of(const EntryPattern& pattern) {
+  constexpr Index kLargestBlock = 8;
+  PatternFacts facts;
+  for (Index row = 0; row < pattern.rows(); ++row) {
+    const std::span<const Index> columns = pattern[row];
+    facts.most_in_row = std::max(facts.most_in_row, index_size(columns));
+    facts.missing_diagonal += std::binary_search(columns.begin(), columns.end(), row) ? 0 : 1;
+    for (const Index column : columns) {
+      if (column == row) continue;
+      const auto bin = std::bit_width(static_cast<std::uint32_t>(std::abs(column - row))) - std::size_t{1};
+      if (bin >= facts.histogram_log2.size()) facts.histogram_log2.resize(bin + 1, 0);
+      ++facts.histogram_log2[bin];
+    }
+  }
+  facts.is_symmetric = is_symmetric_pattern(pattern);
+  for (Index b = kLargestBlock; b > 1 && facts.block == 1; --b) {
+    if (pattern.rows() % b != 0) continue;
+    const double fill = fill_of_blocks(pattern, b);
+    if (fill < kFullBlocks) continue;
+    facts.block = b;
+    facts.block_fill = fill;
+  }
+  return facts;
+}
+
+}  // namespace meshorder

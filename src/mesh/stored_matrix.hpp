@@ -1,0 +1,68 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "graph/csr_graph.hpp"
+#include <meshorder/mesh.hpp>
+#include <meshorder/permutation.hpp>
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace meshorder {
+
+/// What the readers of matrices and graphs say of a mesh: its vertices are the rows of a square matrix, its
+/// lines and vertex cells the stored entries, each from row to column.
+struct StoredMatrix : FormatMetadata {
+  bool is_graph = false;           ///< of vertices and edges; there are no entries on the diagonal
+  bool is_half = false;            ///< each line stands for two entries, (i, j) and (j, i)
+  std::string_view field = {};     ///< "real", as the file names it; empty for a graph
+  std::string_view symmetry = {};  ///< "general", likewise
+};
+
+/// Returns what the mesh's reader says of the matrix or graph; null for other meshes. Valid as long as
+/// `mesh.format_metadata`.
+const StoredMatrix* stored_matrix(const Mesh& mesh);
+
+/// Whether the points of a mesh differ: those of a matrix are all at the origin unless they were given apart.
+bool has_places(const Mesh& mesh);
+
+/// Where the entries of a matrix are, whichever half of them is stored: row i has entries in the columns
+/// `columns[starts[i]] … columns[starts[i + 1] − 1]`, rising, each once.
+struct EntryPattern {
+  std::vector<Offset> starts{0};  ///< rows + 1
+  std::vector<Index> columns;
+
+  [[nodiscard]] Index rows() const noexcept { return static_cast<Index>(starts.size() - 1); }
+  [[nodiscard]] Offset entries() const noexcept { return static_cast<Offset>(columns.size()); }
+  [[nodiscard]] std::span<const Index> operator[](Index row) const {
+    return {columns.data() + starts[row], columns.data() + starts[row + 1]};
+  }
+  bool operator==(const EntryPattern&) const = default;
+};
+
+/// Returns the pattern of the matrix that a mesh is; of other meshes each line is one entry. O(entries · log
+/// row length).
+EntryPattern entry_pattern(const Mesh& mesh);
+
+/// Returns the pattern of P A P′: row and column i become `rows.old_to_new()[i]`. O(entries · log row
+/// length).
+EntryPattern moved(const Permutation& rows, const EntryPattern& pattern);
+
+/// What the pattern of a matrix is like.
+struct PatternFacts {
+  Index most_in_row = 0;
+  bool is_symmetric = true;
+  Index missing_diagonal = 0;  ///< rows without an entry on the diagonal
+  /// The largest b of 2 … 8 such that the rows are whole blocks of b and the blocks of b × b that have an
+  /// entry are full by `kFullBlocks` at least; 1 if there is none.
+  int block = 1;
+  double block_fill = 0;                    ///< share of these blocks that are entries
+  std::vector<Offset> histogram_log2 = {};  ///< entry k: entries 2^k … 2^(k+1) − 1 places off the diagonal
+};
+inline constexpr double kFullBlocks = 0.8;
+
+/// O(entries).
+PatternFacts facts_of(const EntryPattern& pattern);
+
+}  // namespace meshorder
