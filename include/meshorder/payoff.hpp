@@ -100,6 +100,9 @@ struct Advice {
   std::array<double, kKernels.size()> floor = {};
   int threads = 1;                          ///< that shared each run
   KernelSet kernel_set = KernelSet::plain;  ///< whose times these are
+  /// Whether the mesh is a matrix or graph as its file has it: then spmv is the product with its own entries,
+  /// the times of the other kernels are 0, and one product counts in place of a time step.
+  bool is_matrix = false;
 };
 
 /// Returns the verdict in one English sentence: which kernel loses most as the mesh is, which order mends it

@@ -5,6 +5,7 @@
 #include "base/stopwatch.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "ordering/method.hpp"
 #include "ordering/moved.hpp"
 #include "ordering/order_cells.hpp"
@@ -126,8 +127,11 @@ MeshOrder compute_reordering(const Mesh& mesh, const CsrGraph& graph, const Reor
   result.vertices = order_vertices_by_options(options.methods.vertices, {graph, mesh.points}, ordering);
   result.vertices.seconds = vertices.seconds();
   const Stopwatch cells;
-  result.cells = order_cells(options.methods.elements, cell_arrays(mesh), result.vertices.permutation,
-                             mesh.points, ordering.cell_groups, ordering);
+  // products with a matrix go by its rows: where its file has an entry does not matter to them
+  const bool stay = options.methods.elements == "auto" && stored_matrix(mesh) != nullptr;
+  result.cells = order_cells(stay ? "original" : options.methods.elements, cell_arrays(mesh),
+                             result.vertices.permutation, mesh.points, ordering.cell_groups, ordering);
+  if (stay) result.cells.method.reason = "entries keep their places in the file";
   result.cells.seconds = cells.seconds();
   return result;
 }

@@ -37,6 +37,21 @@ AccessStream::AccessStream(Kernel kernel, const CsrGraph& graph, SimplicesRef si
     ends_ = place(2 * kColumnBytes * graph.edge_count());
     lengths_ = place(kEntryBytes * graph.edge_count());
   }
+  check_lines();
+}
+
+AccessStream::AccessStream(const EntryPattern& pattern)
+    : kernel_(Kernel::spmv), graph_(pattern.starts, pattern.columns), adds_diagonal_(false) {
+  const Offset n = pattern.rows();
+  starts_ = place(kStartBytes * (n + 1));
+  columns_ = place(kColumnBytes * pattern.entries());
+  values_ = place(kEntryBytes * pattern.entries());
+  x_ = place(kEntryBytes * n);
+  y_ = place(kEntryBytes * n);
+  check_lines();
+}
+
+void AccessStream::check_lines() const {
   if (lines_ > kMaxIndex) {
     throw InvalidArgument("access stream: " + std::to_string(lines_) +
                           " cache lines; at most 2,147,483,647 can be numbered");
@@ -78,13 +93,17 @@ class LoopLengths {
   Offset turns_ = 0;
 };
 
+/// See RunReuse::turns, of a product with rows of these lengths, or with as many more in each.
+Offset turns_of_product(GraphRef rows) {
+  LoopLengths lengths;
+  for (Index v = 0; v < rows.size(); ++v) lengths.add(rows.degree(v));
+  return lengths.turns();
+}
+
 /// See RunReuse::turns. Of large meshes every eighth stretch of elements is looked at.
 Offset turns_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings) {
+  if (kernel == Kernel::spmv) return turns_of_product(graph);
   LoopLengths lengths;
-  if (kernel == Kernel::spmv) {
-    for (Index v = 0; v < graph.size(); ++v) lengths.add(graph.degree(v));
-    return lengths.turns();
-  }
   if (kernel != Kernel::assembly || simplices.dimension == 0) return 0;
   constexpr int kSampledFrom = 4;
   constexpr Offset kStretch = 4096;
@@ -128,16 +147,29 @@ struct PolledSample {
 
 }  // namespace
 
-RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings) {
+namespace {
+
+Reuse followed(const AccessStream& stream, Kernel kernel, int halvings) {
   // a product gathers from few lines, and is soon followed
   constexpr int kOfProduct = 2;
-  const AccessStream stream(kernel, graph, simplices);
   ReuseSample reuse(stream.line_count(),
                     kernel == Kernel::spmv ? std::max(0, halvings - kOfProduct) : halvings);
   PolledSample visitor{reuse};
   stream.visit_some(visitor);
-  return {std::move(reuse).repeated(), kernel, simplices.dimension,
+  return std::move(reuse).repeated();
+}
+
+}  // namespace
+
+RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings) {
+  return {followed(AccessStream(kernel, graph, simplices), kernel, halvings), kernel, simplices.dimension,
           turns_of(kernel, graph, simplices, halvings)};
+}
+
+RunReuse reuse_of_product(const EntryPattern& pattern, int halvings) {
+  constexpr int kOfLines = 1;
+  return {followed(AccessStream(pattern), Kernel::spmv, halvings), Kernel::spmv, kOfLines,
+          turns_of_product({pattern.starts, pattern.columns})};
 }
 
 int halvings_for(Offset simplices) {
@@ -155,8 +187,15 @@ KernelReuse reuse_of_kernels(const CsrGraph& graph, SimplicesRef simplices, int 
   return result;
 }
 
+KernelReuse reuse_of_kernels(const EntryPattern& pattern, int halvings) {
+  KernelReuse result;
+  result[static_cast<std::size_t>(Kernel::spmv)] = reuse_of_product(pattern, halvings);
+  return result;
+}
+
 KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
                              const Permutation& cells, int halvings) {
+  if (stored_matrix(mesh) != nullptr) return reuse_of_kernels(moved(vertices, entry_pattern(mesh)), halvings);
   return reuse_of_kernels(renumbered(graph, vertices.old_to_new()),
                           CellSimplices(mesh).moved(vertices, cells), halvings);
 }

@@ -3,6 +3,7 @@
 
 #include "graph/row_access.hpp"
 #include "mesh/simplices.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "metrics/cache.hpp"
 #include "payoff/kernel_bench.hpp"
 #include <meshorder/mesh.hpp>
@@ -29,6 +30,8 @@ class AccessStream {
   /// order to be judged; both must outlive the stream. Throws InvalidArgument if the kernel needs 2^31 lines
   /// or more. O(1).
   AccessStream(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices);
+  /// Of the product with a matrix that has these entries and no others; likewise.
+  explicit AccessStream(const EntryPattern& pattern);
 
   [[nodiscard]] Index line_count() const noexcept { return static_cast<Index>(lines_); }
 
@@ -147,6 +150,7 @@ class AccessStream {
   static constexpr Offset kPointBytes = 3 * sizeof(double);
 
   Array place(Offset bytes);
+  void check_lines() const;
 
   /// The first entry of row a of the matrix, which has one for each neighbour and one for the diagonal.
   [[nodiscard]] Offset row_begin(Index a) const { return graph_.offsets[a] + a; }
@@ -169,9 +173,9 @@ class AccessStream {
     for (Index v = 0; v < graph_.size(); ++v) {
       starts.read(kStartBytes, visitor);
       const std::span<const Index> row = graph_[v];
-      const auto after_diagonal = std::lower_bound(row.begin(), row.end(), v);
+      const auto after_diagonal = adds_diagonal_ ? std::lower_bound(row.begin(), row.end(), v) : row.begin();
       std::for_each(row.begin(), after_diagonal, multiply);
-      multiply(v);
+      if (adds_diagonal_) multiply(v);
       std::for_each(after_diagonal, row.end(), multiply);
       y.read(kEntryBytes, visitor);
     }
@@ -260,7 +264,8 @@ class AccessStream {
   static constexpr Offset kAhead = 12;  ///< elements
 
   Kernel kernel_;
-  const CsrGraph& graph_;
+  GraphRef graph_;  ///< of a product with a matrix its rows, which need not be symmetric
+  bool adds_diagonal_ = true;
   SimplicesRef simplices_;
   Offset lines_ = 0;
   // the arrays of the kernel
@@ -286,6 +291,9 @@ struct RunReuse : Reuse {
 /// the turns of assembly are an estimate, too.
 RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
+/// The same of the product with a matrix that has these entries.
+RunReuse reuse_of_product(const EntryPattern& pattern, int halvings = 0);
+
 /// The places in kKernels, what takes longest to follow first: assembly adds to 16 entries an element.
 inline constexpr std::array<std::size_t, kKernels.size()> kLongestFirst{2, 0, 1, 3};
 
@@ -300,8 +308,11 @@ using KernelReuse = std::array<RunReuse, kKernels.size()>;
 /// Returns the reuse of all kernels, each computed on its own thread.
 KernelReuse reuse_of_kernels(const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
-/// Returns the reuse of all kernels on a mesh, whose vertex graph is `graph`, after move_mesh with these
-/// permutations.
+/// Returns the reuse of the product with a matrix; of the kernels that it has not, nothing.
+KernelReuse reuse_of_kernels(const EntryPattern& pattern, int halvings = 0);
+
+/// Returns the reuse of all kernels that a mesh has (see kernels_of), whose vertex graph is `graph`, after
+/// move_mesh with these permutations.
 KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
                              const Permutation& cells, int halvings = 0);
 

@@ -6,6 +6,7 @@
 #include "base/stopwatch.hpp"
 #include "mesh/reorder.hpp"
 #include "mesh/simplices.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "metrics/edge_span.hpp"
 #include "metrics/sparsity_pattern.hpp"
 #include "ordering/method.hpp"
@@ -30,6 +31,7 @@ struct Moved {
   Mesh mesh;  ///< points and cells, for kernels to be timed; none where times are only predicted
   CsrGraph graph;
   CellSimplices simplices;
+  EntryPattern pattern;  ///< of a matrix, where times are predicted
 };
 
 /// A mesh in one of the orders.
@@ -37,11 +39,18 @@ struct Ordered {
   const Mesh* mesh = nullptr;
   const CsrGraph* graph = nullptr;
   const CellSimplices* simplices = nullptr;
+  const EntryPattern* pattern = nullptr;    ///< null of a mesh that is no matrix
   std::unique_ptr<const Moved> moved = {};  ///< what they are of; none: the mesh as it is
 };
 
-Ordered ordered(std::unique_ptr<const Moved> moved) {
-  return {&moved->mesh, &moved->graph, &moved->simplices, std::move(moved)};
+Ordered ordered(std::unique_ptr<const Moved> moved, bool is_matrix) {
+  return {&moved->mesh, &moved->graph, &moved->simplices, is_matrix ? &moved->pattern : nullptr,
+          std::move(moved)};
+}
+
+RunReuse reuse_in(const Ordered& order, Kernel kernel, int halvings) {
+  return order.pattern != nullptr ? reuse_of_product(*order.pattern, halvings)
+                                  : reuse_of(kernel, *order.graph, *order.simplices, halvings);
 }
 
 /// The predictions for all orders, every kernel of every order on a thread of its own.
@@ -50,13 +59,13 @@ std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
   report("predict");
   const Caches& caches = options.caches.level_bytes.empty() ? options.machine.model.caches : options.caches;
   const int halvings = options.halvings.value_or(halvings_for(orders.front().simplices->size()));
+  const bool is_matrix = orders.front().pattern != nullptr;
   std::vector<KernelMilliseconds> result(orders.size());
-  take_turns(index_size(kKernels) * index_size(orders), [&](Index turn) {
+  take_turns((is_matrix ? 1 : index_size(kKernels)) * index_size(orders), [&](Index turn) {
     const Index i = turn % index_size(orders);
-    const std::size_t k = kLongestFirst[turn / index_size(orders)];
-    const RunReuse reuse = i == 0 && options.reuse_as_is
-                               ? (*options.reuse_as_is)[k]
-                               : reuse_of(kKernels[k], *orders[i].graph, *orders[i].simplices, halvings);
+    const std::size_t k = is_matrix ? 0 : kLongestFirst[turn / index_size(orders)];
+    const RunReuse reuse = i == 0 && options.reuse_as_is ? (*options.reuse_as_is)[k]
+                                                         : reuse_in(orders[i], kKernels[k], halvings);
     result[i][k] = predicted_ms(reuse, caches, options.machine.model) *
                    times_computed(kKernels[k], *orders[i].graph, *orders[i].simplices, options.threads);
   });
@@ -101,8 +110,8 @@ std::vector<ReorderOptions> asked_for(const Mesh& mesh, const CsrGraph& graph, c
   const auto method_for = [&](Workload workload) {
     return choose_vertex_method({graph, mesh.points}, workload).name;
   };
-  const bool springs_apart =
-      options.for_springs_too && method_for(Workload::springs) != method_for(Workload::all);
+  const bool springs_apart = options.for_springs_too && stored_matrix(mesh) == nullptr &&
+                             method_for(Workload::springs) != method_for(Workload::all);
   result.assign(springs_apart ? 2 : 1, {.order = options.ordering});
   result.front().order.workload = Workload::all;
   if (springs_apart) result.back().order.workload = Workload::springs;
@@ -119,7 +128,7 @@ bool are_one(const Candidate& a, const Candidate& b) {
 double cost_for(Workload workload, const Advice& advice, const OrderCosts& costs) {
   double sum = 0;
   int kernels = 0;
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+  for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
     if (workload != Workload::all && to_string(workload) != to_string(kKernels[k])) continue;
     // a mesh of points has no work to do
     const double as_is = advice.as_is.costs.best_known()[k];
@@ -175,7 +184,7 @@ std::optional<std::size_t> winner_for(Workload workload, const Advice& advice) {
   for (const Candidate& candidate : advice.candidates) {
     best = std::min(best, cost_for(workload, advice, candidate.costs));
   }
-  for (const Kernel kernel : kKernels) {
+  for (const Kernel kernel : kernels_of(advice)) {
     if (workload == Workload::all || to_string(workload) == to_string(kernel)) {
       same += std::log(same_time(advice, kernel));
       ++kernels;
@@ -205,10 +214,12 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   Advice advice;
   advice.threads = options.threads;
   advice.kernel_set = options.kernels;
+  advice.is_matrix = stored_matrix(mesh) != nullptr;
   advice.as_is.vertices.name = advice.as_is.elements.name = "original";
   const CellSimplices simplices(mesh);
   std::vector<Ordered> orders(1);
-  orders.front() = {&mesh, &graph, &simplices};
+  const EntryPattern pattern = advice.is_matrix && options.predict ? entry_pattern(mesh) : EntryPattern{};
+  orders.front() = {&mesh, &graph, &simplices, advice.is_matrix ? &pattern : nullptr};
   const bool in_race = options.race_of > 0 && options.race_timer;
   const bool measures = in_race || options.measure_within;
   // of each candidate, its place in `orders`: that of the mesh as it is where nothing moves
@@ -229,6 +240,7 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
       if (measures) {
         moved->mesh.points = mesh.points;
         moved->mesh.cells = mesh.cells;
+        moved->mesh.format_metadata = mesh.format_metadata;
         apply_reordering(moved->mesh, order);
         moved->simplices = CellSimplices(moved->mesh);
       } else {
@@ -236,7 +248,8 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
       }
       candidate.order_seconds = options.graph_seconds + stopwatch.seconds();
       moved->graph = renumbered(graph, order.vertices.permutation.old_to_new());
-      orders.push_back(ordered(std::move(moved)));
+      if (options.predict) moved->pattern = meshorder::moved(order.vertices.permutation, pattern);
+      orders.push_back(ordered(std::move(moved), advice.is_matrix));
     }
     advice.candidates.push_back(std::move(candidate));
   }
@@ -280,6 +293,15 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   return advice;
 }
 
+std::span<const Kernel> kernels_of(const Advice& advice) {
+  if (advice.is_matrix) return kProductsAlone;
+  return kKernels;
+}
+
+int runs_in_time_step(const Advice& advice, std::size_t kernel) {
+  return advice.is_matrix ? 1 : kRunsInTimeStep[kernel];
+}
+
 double same_time(const Advice& advice, Kernel kernel) {
   const double floor = advice.floor[static_cast<std::size_t>(kernel)];
   const bool of_this_machine = advice.as_is.costs.measured || floor > 0;
@@ -309,12 +331,12 @@ std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice) {
 
 double saved_in_time_step(const Advice& advice, std::size_t candidate) {
   double saved = 0;
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+  for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
     const double as_is = advice.as_is.costs.best_known()[k];
     const double ordered = advice.candidates[candidate].costs.best_known()[k];
     const double same = same_time(advice, kKernels[k]);
     if (std::max(as_is, ordered) < same * std::min(as_is, ordered)) continue;
-    saved += kRunsInTimeStep[k] * (as_is - ordered);
+    saved += runs_in_time_step(advice, k) * (as_is - ordered);
   }
   return saved;
 }

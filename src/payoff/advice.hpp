@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace meshorder {
@@ -19,6 +20,12 @@ namespace meshorder {
 /// Runs of each kernel in one time step of a linearised implicit solver, as kKernels lists them: it computes
 /// forces and assembles once, and takes 100 iterations of conjugate gradients.
 inline constexpr std::array<int, kKernels.size()> kRunsInTimeStep{100, 1, 1, 0};
+
+/// Returns how often a kernel runs in what counts as a time step: of a matrix that is one product.
+int runs_in_time_step(const Advice& advice, std::size_t kernel);
+
+/// Returns the kernels that the advice is on, the first ones of kKernels (see `kernels_of` a mesh).
+std::span<const Kernel> kernels_of(const Advice& advice);
 
 struct AdviceOptions {
   std::vector<MeshMethods> methods = {};  ///< as in `PayoffOptions`
@@ -70,14 +77,15 @@ double factor_for(Workload workload, const Advice& advice, std::size_t candidate
 /// for `bandwidth` and `fill`, which no kernel tells.
 std::optional<std::size_t> winner_for(Workload workload, const Advice& advice);
 
-/// Returns the milliseconds that a candidate saves in each time step (see kRunsInTimeStep), negative if it is
-/// slower. Differences within same_time do not count.
+/// Returns the milliseconds that a candidate saves in each time step (see runs_in_time_step), negative if it
+/// is slower. Differences within same_time do not count.
 double saved_in_time_step(const Advice& advice, std::size_t candidate);
 
 /// Returns the time steps after which a candidate has paid for itself, 0 if it never does.
 double steps_to_pay(const Advice& advice, std::size_t candidate);
 
-/// Returns the command that gives a mesh the order of a candidate: "meshorder order --for springs".
-std::string command_for(const Candidate& candidate);
+/// Returns the command that gives a mesh the order of a candidate: "meshorder order --for springs"; of a
+/// matrix it names the order of rows alone.
+std::string command_for(const Candidate& candidate, bool is_matrix = false);
 
 }  // namespace meshorder

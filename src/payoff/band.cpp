@@ -139,4 +139,18 @@ Band ideal_band(const Mesh& mesh, const CsrGraph& graph) {
   return band;
 }
 
+EntryPattern ideal_pattern(const EntryPattern& pattern) {
+  const Index n = pattern.rows();
+  EntryPattern band;
+  band.columns.reserve(pattern.columns.size());
+  for (Index row = 0; row < n; ++row) {
+    const Offset end = pattern.entries() * (row + 1) / n;
+    const auto length = static_cast<Index>(end - band.entries());
+    const Index first = std::clamp<Index>(row - length / 2, 0, n - length);
+    for (Index k = 0; k < length; ++k) band.columns.push_back(first + k);
+    band.starts.push_back(end);
+  }
+  return band;
+}
+
 }  // namespace meshorder

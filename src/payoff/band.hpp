@@ -2,6 +2,7 @@
 #pragma once
 
 #include "graph/csr_graph.hpp"
+#include "mesh/stored_matrix.hpp"
 #include <meshorder/mesh.hpp>
 
 namespace meshorder {
@@ -23,5 +24,9 @@ struct Band {
 /// on a helix, so that no simplex is flat. O(n + edges + cells). Throws InvalidArgument if the graph is of
 /// another mesh.
 Band ideal_band(const Mesh& mesh, const CsrGraph& graph);
+
+/// Returns a pattern of as many rows and entries as that of a matrix, spread evenly over the rows and side by
+/// side around the diagonal: a lower bound for products, likewise. O(entries).
+EntryPattern ideal_pattern(const EntryPattern& pattern);
 
 }  // namespace meshorder

@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/kernel_bench.hpp"
 
+#include "mesh/stored_matrix.hpp"
 #include "payoff/plain_bench.hpp"
+#include "payoff/product_bench.hpp"
 #include "payoff/tuned_bench.hpp"
 #include <meshorder/error.hpp>
 
@@ -12,6 +14,11 @@
 
 namespace meshorder {
 
+std::span<const Kernel> kernels_of(const Mesh& mesh) {
+  if (stored_matrix(mesh) != nullptr) return kProductsAlone;
+  return kKernels;
+}
+
 std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mesh& mesh, const CsrGraph& graph,
                                              int threads) {
   if (graph.size() != mesh.vertex_count()) {
@@ -19,7 +26,12 @@ std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mesh& mesh
                           std::to_string(mesh.vertex_count()));
   }
   std::unique_ptr<KernelBench> bench;
-  if (kernels == KernelSet::plain) {
+  if (stored_matrix(mesh) != nullptr) {
+    if (kernels == KernelSet::tuned) {
+      throw InvalidArgument("kernels: the tuned ones are of meshes; of a matrix there is the plain product");
+    }
+    bench = std::make_unique<ProductBench>(entry_pattern(mesh));
+  } else if (kernels == KernelSet::plain) {
     bench = std::make_unique<PlainBench>(mesh, graph);
   } else {
     bench = std::make_unique<TunedBench>(mesh, graph);

@@ -37,12 +37,22 @@ struct EnumNames<KernelSet> {
 inline constexpr std::array<std::string_view, kKernels.size()> kKernelTitles{"SpMV", "element force",
                                                                              "assembly", "springs"};
 
+/// The kernels of a matrix.
+inline constexpr std::array kProductsAlone{Kernel::spmv};
+
+/// Returns the kernels that a mesh has, the first ones of kKernels: all, but of a matrix or graph (see
+/// StoredMatrix) the product with it alone. Arrays by kernel have 0 for the others.
+std::span<const Kernel> kernels_of(const Mesh& mesh);
+
 /// A mesh in one order, prepared to run its kernels repeatedly: a matrix on the vertex graph, the elements
 /// cut into simplices, a spring on every edge, and vertices displaced by a smooth function of their rest
 /// position. All orders of a mesh therefore compute the same physics, and no force, strain or matrix entry
 /// is trivial.
 class KernelBench : public Polymorphic {
  public:
+  /// Returns those that it runs: the first ones of kKernels.
+  [[nodiscard]] virtual std::span<const Kernel> kernels() const { return kKernels; }
+
   /// Shares the work of all runs from now on among so many threads, ≥ 1, by ranges of vertices. Each thread
   /// computes the elements and springs that touch its range, and adds to no other: the results are the same,
   /// bit for bit.
@@ -67,8 +77,9 @@ class KernelBench : public Polymorphic {
   [[nodiscard]] virtual double redundancy() const = 0;
 };
 
-/// Prepares the kernels. `graph` is the mesh's vertex graph. O(size of the mesh · log degree). Throws
-/// InvalidArgument if the graph is of another mesh.
+/// Prepares the kernels of a mesh (see kernels_of): of a matrix the product with exactly its entries. `graph`
+/// is the mesh's vertex graph. O(size of the mesh · log degree). Throws InvalidArgument if the graph is of
+/// another mesh, and for tuned kernels of a matrix, which has no 3×3 blocks or elements that they work on.
 std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mesh& mesh, const CsrGraph& graph,
                                              int threads = 1);
 

@@ -63,11 +63,13 @@ Plan plan_samples(KernelBench& bench, Kernel kernel, double sample_seconds) {
 std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options,
                                         double budget_seconds, SteadinessWatch& watch) {
   const std::size_t orders = benches.size();
+  const std::span<const Kernel> kernels =
+      benches.empty() ? std::span<const Kernel>() : benches.front()->kernels();
   std::vector<std::array<Plan, kKernels.size()>> plans(orders);
   for (std::size_t i = 0; i < orders; ++i) {
-    for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    for (std::size_t k = 0; k < kernels.size(); ++k) {
       poll();
-      plans[i][k] = plan_samples(*benches[i], kKernels[k], options.sample_seconds);
+      plans[i][k] = plan_samples(*benches[i], kernels[k], options.sample_seconds);
     }
   }
   std::vector<Samples> samples(orders);
@@ -75,18 +77,19 @@ std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, c
   for (int round = 0; round < options.max_rounds; ++round) {
     const double seconds = stopwatch.seconds();
     if (round >= options.min_rounds && seconds + seconds / round > budget_seconds) break;
-    for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    for (std::size_t k = 0; k < kernels.size(); ++k) {
       watch.tick();
       for (std::size_t i = 0; i < orders; ++i) {
         const std::size_t order = (i + static_cast<std::size_t>(round)) % orders;
         poll();
         samples[order][k].push_back(
-            sample(*benches[order], kKernels[k], plans[order][k], options.processor_time, watch));
+            sample(*benches[order], kernels[k], plans[order][k], options.processor_time, watch));
       }
     }
   }
   for (const Samples& of_order : samples) {
-    for (const std::vector<double>& of_kernel : of_order) watch.add_repeat(repeat_difference(of_kernel));
+    for (const Kernel kernel : kernels)
+      watch.add_repeat(repeat_difference(of_order[static_cast<std::size_t>(kernel)]));
   }
   return samples;
 }

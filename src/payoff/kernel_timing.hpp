@@ -54,11 +54,11 @@ struct Timings {
 /// Returns the kernels of order i, prepared.
 using PrepareOrder = std::function<std::unique_ptr<KernelBench>(Index)>;
 
-/// Times every kernel of the prepared orders in interleaved rounds, so that changes of the machine's speed
-/// affect all orders alike: a round takes a sample of every kernel in every order, kernel by kernel, and the
-/// next round begins with the next order. The first runs of a sample find another order's data in the caches
-/// and do not count: as many as it takes to settle (`runs_to_settle`), none of a kernel that takes
-/// longer than five samples. The first bench is the reference of the speedups.
+/// Times every kernel that the prepared orders run, all of them the same, in interleaved rounds, so that
+/// changes of the machine's speed affect all orders alike: a round takes a sample of every kernel in every
+/// order, kernel by kernel, and the next round begins with the next order. The first runs of a sample find
+/// another order's data in the caches and do not count: as many as it takes to settle (`runs_to_settle`),
+/// none of a kernel that takes longer than five samples. The first bench is the reference of the speedups.
 Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options = {});
 
 /// The same for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0 is

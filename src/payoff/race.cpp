@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/race.hpp"
 
+#include "mesh/stored_matrix.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -13,14 +14,16 @@ namespace {
 /// Orders that are timed against the mesh's own.
 constexpr std::size_t kInRace = 3;
 
-/// Returns the methods that may beat what `auto` takes, `auto` first.
-std::vector<MeshMethods> contenders() {
-  return {{},
-          {"hilbert-fronts", "lexmax"},
-          {"spectral-fronts", "lexmax"},
-          {"rcm", "lexmax"},
-          {"bfs", "lexmax"},
-          {"fiedler", "lexmax"}};
+/// Returns the methods that may beat what `auto` takes, `auto` first. The entries of a matrix stay where they
+/// are in its file, and without coordinates no method by them takes part.
+std::vector<MeshMethods> contenders(const Mesh& mesh) {
+  const bool is_matrix = stored_matrix(mesh) != nullptr;
+  const std::string elements = is_matrix ? "original" : "lexmax";
+  std::vector<MeshMethods> result{{}};
+  if (!is_matrix || has_places(mesh)) result.push_back({"hilbert-fronts", elements});
+  for (const char* const method : {"spectral-fronts", "rcm", "bfs", "fiedler"})
+    result.push_back({method, elements});
+  return result;
 }
 
 bool is_predicted(const Race& race) { return !race.advice.as_is.costs.measured; }
@@ -61,7 +64,7 @@ Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options) {
   }
   Race result;
   result.advice = advise(mesh, graph,
-                         {.methods = contenders(),
+                         {.methods = contenders(mesh),
                           .machine = options.machine,
                           .threads = options.machine.model.threads,
                           .ordering = options.ordering,

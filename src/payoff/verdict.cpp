@@ -10,8 +10,10 @@
 
 namespace meshorder {
 
-std::string command_for(const Candidate& candidate) {
-  const bool by_auto = !candidate.vertices.reason.empty() && !candidate.elements.reason.empty();
+std::string command_for(const Candidate& candidate, bool is_matrix) {
+  const bool by_auto =
+      !candidate.vertices.reason.empty() && (is_matrix || !candidate.elements.reason.empty());
+  if (!by_auto && is_matrix) return fmt::format("meshorder order --vertices {}", candidate.vertices.name);
   if (!by_auto) {
     return fmt::format("meshorder order --vertices {} --elements {}", candidate.vertices.name,
                        candidate.elements.name);
@@ -46,11 +48,30 @@ std::string losses(const Advice& advice, std::size_t candidate) {
   return words;
 }
 
+/// The verdict on a matrix.
+std::string of_products(const Advice& advice) {
+  const bool measured = advice.as_is.costs.measured.has_value();
+  const std::string on = measured ? on_threads(advice.threads) : "";
+  const std::string of_machine = advice.machine.empty() ? "" : " for " + advice.machine;
+  const KernelAdvice& product = advice.kernels.front();
+  if (product.factor <= 1) {
+    return fmt::format(
+        "nothing to gain: products take no less time in another order, beyond the uncertainty of {}",
+        measured ? "the measurement" + on : "the prediction" + of_machine);
+  }
+  const Candidate& candidate = advice.candidates[product.candidate];
+  return fmt::format(
+      "as it is, products take {:.1f}× as long{} as they could{}; `{}` takes {} and pays after {}",
+      product.factor, on, measured ? "" : " (predicted" + of_machine + ")", command_for(candidate, true),
+      duration(candidate.order_seconds), times(product.runs_to_pay, "product"));
+}
+
 }  // namespace
 
 inline namespace v0_2 {
 
 std::string to_string(const Advice& advice) {
+  if (advice.is_matrix) return of_products(advice);
   const bool measured = advice.as_is.costs.measured.has_value();
   const std::string of_machine = advice.machine.empty() ? "" : " for " + advice.machine;
   const auto& kernels = advice.kernels;

@@ -1,0 +1,36 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "mesh/stored_matrix.hpp"
+#include "payoff/kernel_bench.hpp"
+
+#include <vector>
+
+namespace meshorder {
+
+/// The product with a matrix of a given pattern, a number for each entry, as `PlainBench` has it: no entry is
+/// added. All values are 1 and vector component i is i + 1, which no time depends on.
+class ProductBench final : public KernelBench {
+ public:
+  explicit ProductBench(EntryPattern pattern);
+
+  [[nodiscard]] std::span<const Kernel> kernels() const override;
+  void share(int threads) override;
+  /// Throws InvalidArgument for other kernels than spmv.
+  void run(Kernel kernel) override;
+  [[nodiscard]] std::span<const double> result(Kernel kernel) const override;
+  [[nodiscard]] double streamed_bytes(Kernel kernel) const override;
+  [[nodiscard]] std::size_t bytes() const override;
+  [[nodiscard]] double redundancy() const override { return 0; }
+
+ private:
+  void run_rows(Index begin, Index end);
+
+  EntryPattern pattern_;
+  std::vector<double> values_;
+  std::vector<double> x_;
+  std::vector<double> y_;
+  std::vector<Index> bounds_;  ///< of the threads' rows; empty for one thread
+};
+
+}  // namespace meshorder
