@@ -6,13 +6,17 @@
 #include "console.hpp"
 #include "io/format.hpp"
 #include "machines.hpp"
+#include "matrix_points.hpp"
+#include "matrix_report.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "mesh_files.hpp"
 #include "metrics/edge_span.hpp"
 #include "payoff/band.hpp"
 #include "payoff/kernel_timing.hpp"
 #include "payoff/machine.hpp"
+#include "payoff/product_bench.hpp"
 #include "progress.hpp"
 #include "reuse_report.hpp"
 #include "wording.hpp"
@@ -32,6 +36,7 @@ namespace {
 
 struct CompareArguments : Common {
   std::string input;
+  std::string points;
   std::vector<std::string> methods;  ///< empty: all
   OrderOptions ordering;
   double budget_seconds = TimingOptions{}.budget_seconds;
@@ -70,12 +75,41 @@ std::vector<ComparedOrder> orders_of(const std::vector<std::string>& names) {
   return orders;
 }
 
+/// Returns the orders of a matrix, whose entries keep their places: of its rows alone. By default only those
+/// that it has the coordinates for.
+std::vector<ComparedOrder> orders_of_matrix(const Mesh& mesh, const CompareArguments& arguments) {
+  std::vector<std::string> names = arguments.methods;
+  for (const std::string& name : names) {
+    if (name.find('/') != std::string::npos) {
+      throw CommandError(
+          fmt::format("{}: a matrix or graph has no elements to order; name an order of its rows alone",
+                      name),
+          2);
+    }
+    require_points(mesh, arguments.input, name, "original");
+  }
+  if (names.empty()) {
+    for (std::string& name : default_methods()) {
+      const bool of_rows = name.find('/') == std::string::npos;
+      if (of_rows && (has_places(mesh) || !needs_points(name))) names.push_back(std::move(name));
+    }
+  }
+  std::vector<ComparedOrder> orders = orders_of(names);
+  for (ComparedOrder& order : orders) order.elements = "original";
+  return orders;
+}
+
 /// Times the kernels in all orders and on the band, in interleaved rounds.
 KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<ComparedOrder>& orders,
                   const Band& band, KernelSet kernels, int threads, const TimingOptions& options) {
   KernelTable table;
   table.threads = threads;
-  const auto prepare = [&](Index i) {
+  const auto prepare = [&](Index i) -> std::unique_ptr<KernelBench> {
+    if (i == index_size(orders) && stored_matrix(mesh) != nullptr) {
+      auto bench = std::make_unique<ProductBench>(ideal_pattern(entry_pattern(mesh)));
+      bench->share(threads);
+      return bench;
+    }
     if (i == index_size(orders)) return prepare_kernels(kernels, band.mesh, band.graph, threads);
     Mesh ordered = mesh;
     apply_reordering(ordered, orders[i].order);
@@ -99,11 +133,15 @@ void run(const CompareArguments& arguments) {
                                                : parse_caches(arguments.caches);
   comparison.kernel_set = arguments.kernels;
   comparison.orders = orders_of(arguments.methods.empty() ? default_methods() : arguments.methods);
-  confine({.meshes = {arguments.input}});
+  confine({.meshes = {arguments.input}, .others = named_files(arguments.points)});
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.05);
   Notes notes;
   Mesh mesh = read_to_work_on(arguments.input, notes, kBytesToMeasure * (comparison.orders.size() + 2));
+  take_points(mesh, arguments.input, arguments.points);
+  const StoredMatrix* const stored = stored_matrix(mesh);
+  if (stored != nullptr) comparison.orders = orders_of_matrix(mesh, arguments);
+  comparison.kernels_run = kernels_of(mesh);
   mesh.cell_blocks.clear();  // orders are compared, not a file's layout
   const CsrGraph graph = vertex_graph(mesh);
 
@@ -112,7 +150,8 @@ void run(const CompareArguments& arguments) {
   for (std::size_t i = 0; i < comparison.orders.size(); ++i) {
     ComparedOrder& c = comparison.orders[i];
     const double from = 0.05 + share * static_cast<double>(i);
-    progress.stage("ordering by " + c.vertices + "/" + c.elements, from, from + share);
+    progress.stage("ordering by " + c.vertices + (stored != nullptr ? "" : "/" + c.elements), from,
+                   from + share);
     c.order =
         compute_reordering(mesh, graph, {.methods = {c.vertices, c.elements}, .order = arguments.ordering});
     c.span = edge_span(graph, c.order.vertices.permutation);
@@ -141,8 +180,10 @@ void run(const CompareArguments& arguments) {
     }
   }
   console.warn_of(notes);
-  console.print("{}: {} vertices, {}", arguments.input, with_commas(mesh.vertex_count()),
-                cells_in_words(mesh));
+  console.print("{}: {}", arguments.input,
+                stored != nullptr
+                    ? size_in_words(*stored, entry_pattern(mesh))
+                    : fmt::format("{} vertices, {}", with_commas(mesh.vertex_count()), cells_in_words(mesh)));
   print_comparison(console, comparison);
   nlohmann::ordered_json result{{"file", arguments.input},
                                 {"vertices", mesh.vertex_count()},
@@ -162,7 +203,8 @@ void add_compare(CLI::App& subcommand) {
       "Example:\n"
       "  meshorder compare dragon.veg --methods hilbert,fiedler,metis-nd");
   const auto arguments = std::make_shared<CompareArguments>();
-  subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
+  subcommand.add_option("MESH", arguments->input, "Mesh, matrix or graph file")->required();
+  add_points_option(subcommand, arguments->points);
   subcommand
       .add_option(
           "--methods", arguments->methods,

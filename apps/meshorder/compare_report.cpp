@@ -22,13 +22,24 @@ constexpr const char* kFloor = "band";
 /// fit into memory together are timed in groups, each with the reference.
 double of_floor(const KernelTimes& times, const KernelTimes& floor) { return floor.speedup / times.speedup; }
 
+/// Returns the beginning of a row; of a matrix, which has no elements, the order of its rows alone.
+std::string row_head(const Comparison& comparison, const std::string& vertices, const std::string& elements) {
+  return comparison.is_matrix() ? fmt::format("{:<15}", vertices)
+                                : fmt::format("{:<15} {:<12}", vertices, elements);
+}
+
+std::string title_row(const Comparison& comparison) {
+  return comparison.is_matrix() ? row_head(comparison, "order", "")
+                                : row_head(comparison, "vertices", "elements");
+}
+
 void print_quality(const Console& console, const Comparison& comparison) {
-  console.print("\n{:<15} {:<12} {:>8} {:>12} {:>10} {:>10}", "vertices", "elements", "cost", "span: mean",
-                "max", "mean log2");
+  console.print("\n{} {:>8} {:>12} {:>10} {:>10}", title_row(comparison), "cost",
+                comparison.is_matrix() ? "distance" : "span: mean", "max", "mean log2");
   const auto print_row = [&](const std::string& vertices, const std::string& elements,
                              const std::string& cost, const EdgeSpan& span) {
-    console.print("{:<15} {:<12} {:>8} {:>12.1f} {:>10} {:>10.2f}", vertices, elements, cost, span.mean,
-                  with_commas(span.max), span.mean_log2);
+    console.print("{} {:>8} {:>12.1f} {:>10} {:>10.2f}", row_head(comparison, vertices, elements), cost,
+                  span.mean, with_commas(span.max), span.mean_log2);
   };
   for (const ComparedOrder& c : comparison.orders) {
     print_row(c.vertices, c.elements, duration(c.order.vertices.seconds + c.order.cells.seconds), c.span);
@@ -40,10 +51,6 @@ void print_quality(const Console& console, const Comparison& comparison) {
   }
 }
 
-std::string row_head(const std::string& vertices, const std::string& elements) {
-  return fmt::format("{:<15} {:<12}", vertices, elements);
-}
-
 /// A table with a row for each order and columns for each kernel.
 struct KernelColumns {
   std::vector<std::string> rows;                                          ///< their heads
@@ -53,22 +60,24 @@ struct KernelColumns {
 };
 
 /// Prints the table, as many kernels side by side as fit 100 columns.
-void print_columns(const Console& console, const KernelColumns& table) {
+void print_columns(const Console& console, const Comparison& comparison, const KernelColumns& table) {
   constexpr std::size_t kColumns = 100;
-  const std::size_t left = row_head("", "").size();
+  const std::size_t kernels = comparison.kernels_run.size();
+  const std::size_t left = title_row(comparison).size();
   const std::size_t at_most = std::max<std::size_t>(1, (kColumns - left) / table.heads.size());
-  const std::size_t blocks = (kKernels.size() + at_most - 1) / at_most;
-  const std::size_t side_by_side = (kKernels.size() + blocks - 1) / blocks;
-  for (std::size_t first = 0; first < kKernels.size(); first += side_by_side) {
-    const std::size_t end = std::min(first + side_by_side, kKernels.size());
-    const bool is_last = end == kKernels.size() && !table.last.empty();
+  const std::size_t blocks = (kernels + at_most - 1) / at_most;
+  const std::size_t side_by_side = (kernels + blocks - 1) / blocks;
+  for (std::size_t first = 0; first < kernels; first += side_by_side) {
+    const std::size_t end = std::min(first + side_by_side, kernels);
+    const bool is_last = end == kernels && !table.last.empty();
     std::string titles(left, ' ');
-    std::string heads = row_head("vertices", "elements");
+    std::string heads = title_row(comparison);
     for (std::size_t k = first; k < end; ++k) {
       titles += fmt::format("{:>{}}", kKernelTitles[k], table.heads.size());
       heads += table.heads;
     }
-    console.print("{}\n{}{}", titles, heads, is_last ? table.last.front() : "");
+    if (!comparison.is_matrix()) console.print("{}", titles);
+    console.print("{}{}", heads, is_last ? table.last.front() : "");
     for (std::size_t i = 0; i < table.rows.size(); ++i) {
       std::string row = table.rows[i];
       for (std::size_t k = first; k < end; ++k) row += table.cells(i, k);
@@ -80,7 +89,8 @@ void print_columns(const Console& console, const KernelColumns& table) {
 std::vector<std::string> row_heads(const Comparison& comparison) {
   std::vector<std::string> rows;
   rows.reserve(comparison.orders.size() + 1);
-  for (const ComparedOrder& c : comparison.orders) rows.push_back(row_head(c.vertices, c.elements));
+  for (const ComparedOrder& c : comparison.orders)
+    rows.push_back(row_head(comparison, c.vertices, c.elements));
   return rows;
 }
 
@@ -89,36 +99,40 @@ void print_reuse(Console& console, const Comparison& comparison) {
     console.warn("not shown, to save time on a large mesh: cache misses; --cache this predicts them");
     return;
   }
-  console.print("\nPredicted for each run of a kernel\n{}", kReuseLegend);
+  console.print("\nPredicted for each {}\n{}", comparison.is_matrix() ? kProduct : "run of a kernel",
+                kReuseLegend);
   const auto cells = [&](std::size_t i, std::size_t k) {
     return reuse_cells((*comparison.orders[i].reuse)[k], comparison.caches);
   };
-  print_columns(console, {row_heads(comparison), reuse_header(comparison.caches), cells, {}});
+  print_columns(console, comparison, {row_heads(comparison), reuse_header(comparison.caches), cells, {}});
 }
 
 void print_kernels(const Console& console, const Comparison& comparison, const KernelTable& table) {
   console.print(
-      "\nKernels ({}) on {} thread{}: best milliseconds, speedup over scrambled, time divided by the band's",
-      to_string(comparison.kernel_set), table.threads, table.threads == 1 ? "" : "s");
+      "\n{} on {} thread{}: best milliseconds, speedup over scrambled, time divided by the band's",
+      comparison.is_matrix() ? "Products" : fmt::format("Kernels ({})", to_string(comparison.kernel_set)),
+      table.threads, table.threads == 1 ? "" : "s");
   std::vector<std::string> rows = row_heads(comparison);
-  rows.push_back(row_head(kFloor, kFloor));
+  rows.push_back(row_head(comparison, kFloor, kFloor));
   const auto cells = [&](std::size_t i, std::size_t k) {
     const KernelTimes& t = (i < table.orders.size() ? table.orders[i] : table.floor)[kKernels[k]];
     return fmt::format("{:>9.3g} {:>6.2f}x {:>7.2f}", t.best_ms, t.speedup,
                        of_floor(t, table.floor[kKernels[k]]));
   };
   std::vector<std::string> twice;
-  if (table.threads > 1) {
+  if (table.threads > 1 && !comparison.is_matrix()) {
     twice.push_back(fmt::format("{:>9}", "twice"));
     for (const double share : table.redundancy) twice.push_back(fmt::format(" {:>7.1f}%", 100 * share));
     twice.emplace_back();
   }
-  print_columns(console, {rows, fmt::format("{:>9} {:>7} {:>7}", "ms", "speedup", "/ band"), cells, twice});
+  print_columns(console, comparison,
+                {rows, fmt::format("{:>9} {:>7} {:>7}", "ms", "speedup", "/ band"), cells, twice});
 }
 
-nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& floor) {
+nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& floor,
+                                    std::span<const Kernel> run) {
   nlohmann::ordered_json kernels;
-  for (const Kernel kernel : kKernels) {
+  for (const Kernel kernel : run) {
     const KernelTimes& t = times[kernel];
     kernels[std::string(to_string(kernel))] = {{"milliseconds", t.median_ms},
                                                {"best_milliseconds", t.best_ms},
@@ -133,7 +147,8 @@ nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& f
 template <class TimesOf>
 void add_kernels(nlohmann::ordered_json& to, const Comparison& comparison, TimesOf times_of) {
   for (const KernelTable& table : comparison.kernels) {
-    to[table.threads == 1 ? "kernels" : "parallel_kernels"] = kernels_json(times_of(table), table.floor);
+    to[table.threads == 1 ? "kernels" : "parallel_kernels"] =
+        kernels_json(times_of(table), table.floor, comparison.kernels_run);
   }
 }
 
@@ -143,13 +158,13 @@ void print_comparison(Console& console, const Comparison& comparison) {
   print_quality(console, comparison);
   print_reuse(console, comparison);
   for (const KernelTable& table : comparison.kernels) print_kernels(console, comparison, table);
-  if (comparison.kernels.back().threads > 1) {
+  if (comparison.kernels.back().threads > 1 && !comparison.is_matrix()) {
     console.print(
         "\ntwice: share of elements that two threads compute, since each adds only to its own vertices.");
   }
   console.print(
-      "\n{} is not an order of your mesh; it is a lower bound: a synthetic mesh of its size that streams.",
-      kFloor);
+      "\n{} is not an order of your {}; it is a lower bound: a synthetic {} of its size that streams.",
+      kFloor, comparison.is_matrix() ? "matrix" : "mesh", comparison.is_matrix() ? "matrix" : "mesh");
 }
 
 nlohmann::ordered_json to_json(const Comparison& comparison) {
@@ -163,7 +178,7 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
         {"seconds", c.order.vertices.seconds + c.order.cells.seconds},
         {"edge_span", to_json(c.span)},
         {"fiedler", to_json(c.order.vertices.fiedler)}};
-    if (c.reuse) method["reuse"] = to_json(*c.reuse, comparison.caches);
+    if (c.reuse) method["reuse"] = to_json(*c.reuse, comparison.caches, comparison.kernels_run);
     add_kernels(method, comparison,
                 [&](const KernelTable& table) -> const OrderTimes& { return table.orders[i]; });
     for (const KernelTable& table : comparison.kernels) {

@@ -11,6 +11,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ struct Comparison {
   std::vector<ComparedOrder> orders;
   EdgeSpan floor_span;
   std::vector<KernelTable> kernels;
+  std::span<const Kernel> kernels_run = kKernels;  ///< see kernels_of; products alone of a matrix
+
+  [[nodiscard]] bool is_matrix() const noexcept { return kernels_run.size() < kKernels.size(); }
 };
 
 /// Prints costs and spans, predicted misses, and a table of kernels for each number of threads.

@@ -8,8 +8,11 @@
 #include "graph/traversal.hpp"
 #include "io/format.hpp"
 #include "machines.hpp"
+#include "matrix_points.hpp"
+#include "matrix_report.hpp"
 #include "mesh/degenerate.hpp"
 #include "mesh/graphs.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "mesh_files.hpp"
 #include "metrics/edge_span.hpp"
 #include "payoff/advice.hpp"
@@ -30,7 +33,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -39,6 +44,7 @@ namespace {
 
 struct InfoArguments : Common {
   std::string input;
+  std::string points;
   std::string caches;  ///< empty: the machine's, unless that takes long
   std::string machine;
   bool all_threads = false;
@@ -94,24 +100,23 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
 
 /// Returns the reuse of the mesh in its order; nothing for a large mesh unless --cache is given, nor when
 /// measuring leaves no time for it.
+///
+/// @param pattern  of a matrix; null for other meshes
 std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const CsrGraph& graph,
-                                    SimplicesRef simplices) {
+                                    SimplicesRef simplices, const EntryPattern* pattern) {
   const Offset most = arguments.measure ? kMaxOfTwoOrders : kMaxPredicted;
   if (arguments.caches.empty() && simplices.size() > most) return std::nullopt;
-  return reuse_of_kernels(graph, simplices, halvings_of(arguments, simplices));
+  const int halvings = halvings_of(arguments, simplices);
+  return pattern != nullptr ? reuse_of_kernels(*pattern, halvings)
+                            : reuse_of_kernels(graph, simplices, halvings);
 }
 
-/// Whether the points of a mesh differ: those of a matrix or a graph are all at the origin.
-bool has_places(const Mesh& mesh) {
-  return std::any_of(mesh.points.begin(), mesh.points.end(),
-                     [&](const Point& point) { return point != mesh.points.front(); });
-}
-
-/// Prints a bar for each power of two, in proportion to its number of edges.
-void print_histogram(const Console& console, const std::vector<Offset>& bins) {
+/// Prints a bar for each power of two, in proportion to its number of edges or entries.
+void print_histogram(const Console& console, std::string_view title, const std::vector<Offset>& bins) {
+  if (bins.empty()) return;
   constexpr double kWidth = 50;
   const Offset largest = *std::max_element(bins.begin(), bins.end());
-  console.print("\nEdges by span");
+  console.print("\n{}", title);
   for (std::size_t k = 0; k < bins.size(); ++k) {
     const long length = std::lround(kWidth * static_cast<double>(bins[k]) / static_cast<double>(largest));
     std::string bar;
@@ -154,6 +159,36 @@ void print_attachments(const Console& console, const Mesh& mesh) {
   }
 }
 
+/// What is counted on the vertex graph of a mesh.
+struct GraphFacts {
+  ComponentCounts components;
+  EdgeSpan span;
+  Offset profile = 0;
+  std::vector<Offset> histogram;
+};
+
+/// Prints what a mesh holds and how near its vertices are.
+void print_mesh_facts(const Console& console, const Mesh& mesh, Offset edges, const GraphFacts& facts,
+                      Offset degenerate) {
+  const Index isolated = facts.components.isolated;
+  const Index connected = facts.components.components - isolated;
+  console.print("{:<12} {} {}", "vertices", with_commas(mesh.vertex_count()),
+                has_places(mesh) ? fmt::format("in {} dimensions", mesh.dimension) : "without coordinates");
+  console.print("{:<12} {}", "cells", cells_in_words(mesh));
+  print_attachments(console, mesh);
+  console.print("{:<12} {} edges, {} {}{}", "graph", with_commas(edges), with_commas(connected),
+                connected == 1 ? "component" : "components",
+                isolated > 0 ? fmt::format(", {} unused vertices", with_commas(isolated)) : "");
+  if (degenerate > 0)
+    console.print("{:<12} {} cells use a vertex twice", "degenerate", with_commas(degenerate));
+  console.print("{:<12} mean {:.1f}, largest {}, mean log2 {:.2f} (a random order: mean {:.0f})", "edge span",
+                facts.span.mean, with_commas(facts.span.max), facts.span.mean_log2,
+                (mesh.vertex_count() + 1) / 3.0);
+  console.print("{:<12} {}", "bandwidth", with_commas(facts.span.max));
+  console.print("{:<12} {}", "profile", with_commas(facts.profile));
+  print_histogram(console, "Edges by span", facts.histogram);
+}
+
 void run(const InfoArguments& arguments) {
   Console console(arguments);
   Notes notes;
@@ -164,11 +199,12 @@ void run(const InfoArguments& arguments) {
     throw CommandError("--kernels tuned: these are not predicted; give --measure, too", 2);
   }
   MachineChoice machine = choose_machine(arguments.machine, arguments.all_threads && !arguments.measure);
-  confine({.meshes = {arguments.input}});
+  confine({.meshes = {arguments.input}, .others = named_files(arguments.points)});
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.3);
-  const Mesh mesh =
+  Mesh mesh =
       read_to_work_on(arguments.input, notes, arguments.measure ? 3 * kBytesToMeasure : kBytesToPredict);
+  take_points(mesh, arguments.input, arguments.points);
 
   const CellSimplices simplices(mesh);
   // who asks for measured times does not wait for what they would be predicted by
@@ -181,28 +217,27 @@ void run(const InfoArguments& arguments) {
   const CsrGraph graph = vertex_graph(mesh);
   const double graph_seconds = building_graph.seconds();
   const Permutation order = Permutation::identity(mesh.vertex_count());
-  EdgeSpan span;
-  Offset envelope = 0;
-  std::vector<Offset> histogram;
+  const StoredMatrix* const stored = stored_matrix(mesh);
+  const std::span<const Kernel> kernels = kernels_of(mesh);
+  MatrixReport matrix;
+  if (stored != nullptr) matrix.pattern = entry_pattern(mesh);
+  GraphFacts facts;
   std::optional<KernelReuse> reuse;
-  Offset components = 0;
-  Offset isolated = 0;
   Offset degenerate = 0;
-  const std::array<std::function<void()>, 4> looks{
-      [&] { reuse = reuse_of(arguments, graph, simplices); },
+  const std::array<std::function<void()>, 5> looks{
+      [&] { reuse = reuse_of(arguments, graph, simplices, stored != nullptr ? &matrix.pattern : nullptr); },
+      [&] { facts.components = component_counts(graph); },
       [&] {
-        const ComponentCounts counts = component_counts(graph);
-        components = counts.components;
-        isolated = counts.isolated;
+        facts.span = edge_span(graph, order);
+        facts.profile = profile(graph, order);
+        facts.histogram = span_histogram_log2(graph, order);
       },
-      [&] {
-        span = edge_span(graph, order);
-        envelope = profile(graph, order);
-        histogram = span_histogram_log2(graph, order);
-      },
-      [&] { degenerate = std::ssize(degenerate_cells(mesh.cells)); }};
+      [&] { degenerate = std::ssize(degenerate_cells(mesh.cells)); },
+      [&] { matrix.facts = facts_of(matrix.pattern); }};
   take_turns(index_size(looks), [&](Index turn) { looks[turn](); });
-  const Offset connected = components - isolated;
+  matrix.components = facts.components;
+  matrix.span = facts.span;
+  matrix.profile = facts.profile;
   progress.stage(arguments.measure ? "running kernels" : "predicting", 0.6, 1);
   const std::optional<Advice> advice =
       advice_on(arguments, mesh, graph, graph_seconds, simplices, reuse, machine, since_start);
@@ -212,31 +247,28 @@ void run(const InfoArguments& arguments) {
   console.warn_of(notes);
   const std::string_view format = format_named(mesh.format).name;
   console.print("{}, {}", arguments.input, format);
-  console.print("{:<12} {} {}", "vertices", with_commas(mesh.vertex_count()),
-                has_places(mesh) ? fmt::format("in {} dimensions", mesh.dimension) : "without coordinates");
-  console.print("{:<12} {}", "cells", cells_in_words(mesh));
-  print_attachments(console, mesh);
-  console.print("{:<12} {} edges, {} {}{}", "graph", with_commas(graph.edge_count()), with_commas(connected),
-                connected == 1 ? "component" : "components",
-                isolated > 0 ? fmt::format(", {} unused vertices", with_commas(isolated)) : "");
-  if (degenerate > 0)
-    console.print("{:<12} {} cells use a vertex twice", "degenerate", with_commas(degenerate));
-  console.print("{:<12} mean {:.1f}, largest {}, mean log2 {:.2f} (a random order: mean {:.0f})", "edge span",
-                span.mean, with_commas(span.max), span.mean_log2, (mesh.vertex_count() + 1) / 3.0);
-  console.print("{:<12} {}", "bandwidth", with_commas(span.max));
-  console.print("{:<12} {}", "profile", with_commas(envelope));
-  if (!histogram.empty()) print_histogram(console, histogram);
+  if (stored != nullptr) {
+    print_matrix(console, mesh, matrix);
+    if (stored->is_graph)
+      print_histogram(console, "Edges by the distance of their ends", facts.histogram);
+    else
+      print_histogram(console, "Entries by their distance from the diagonal", matrix.facts.histogram_log2);
+  } else {
+    print_mesh_facts(console, mesh, graph.edge_count(), facts, degenerate);
+  }
   if (reuse) {
     const int halvings = halvings_of(arguments, simplices);
-    console.print("\nPredicted for each run of a kernel{}\n{}",
+    console.print("\nPredicted for each {}{}\n{}", stored != nullptr ? "product" : "run of a kernel",
                   halvings > 0 ? fmt::format(", estimated from 1/{} of the lines", 1 << halvings) : "",
                   kReuseLegend);
     console.print("{:<14}{}", "", reuse_header(caches));
-    for (std::size_t k = 0; k < kKernels.size(); ++k)
-      console.print("{:<14}{}", kKernelTitles[k], reuse_cells((*reuse)[k], caches));
+    for (std::size_t k = 0; k < kernels.size(); ++k) {
+      console.print("{:<14}{}", stored != nullptr ? kProduct : kKernelTitles[k],
+                    reuse_cells((*reuse)[k], caches));
+    }
   } else if (arguments.measure) {
-    console.warn(
-        "not shown, to save time: cache misses and an order for springs only; see meshorder compare");
+    console.warn(fmt::format("not shown, to save time: cache misses{}; see meshorder compare",
+                             stored != nullptr ? "" : " and an order for springs only"));
   } else {
     console.warn(
         "not shown, to save time on a large mesh: cache misses and the verdict; --cache this predicts them, "
@@ -244,19 +276,22 @@ void run(const InfoArguments& arguments) {
   }
   if (advice) print_verdict(console, *advice);
 
-  nlohmann::ordered_json result{
-      {"file", arguments.input},
-      {"format", format},
-      {"vertices", mesh.vertex_count()},
-      {"dimension", mesh.dimension},
-      {"cells", cells_by_type(mesh)},
-      {"degenerate_cells", degenerate},
-      {"graph", {{"edges", graph.edge_count()}, {"components", connected}, {"isolated_vertices", isolated}}},
-      {"edge_span", to_json(span)},
-      {"bandwidth", span.max},
-      {"profile", envelope},
-      {"span_histogram_log2", histogram}};
-  if (reuse) result.update({{"caches", caches.level_bytes}, {"reuse", to_json(*reuse, caches)}});
+  nlohmann::ordered_json result{{"file", arguments.input},
+                                {"format", format},
+                                {"vertices", mesh.vertex_count()},
+                                {"dimension", mesh.dimension},
+                                {"cells", cells_by_type(mesh)},
+                                {"degenerate_cells", degenerate},
+                                {"graph",
+                                 {{"edges", graph.edge_count()},
+                                  {"components", facts.components.components - facts.components.isolated},
+                                  {"isolated_vertices", facts.components.isolated}}},
+                                {"edge_span", to_json(facts.span)},
+                                {"bandwidth", facts.span.max},
+                                {"profile", facts.profile},
+                                {"span_histogram_log2", facts.histogram}};
+  if (stored != nullptr) result["matrix"] = to_json(mesh, matrix);
+  if (reuse) result.update({{"caches", caches.level_bytes}, {"reuse", to_json(*reuse, caches, kernels)}});
   result["verdict"] = advice ? to_json(*advice) : nullptr;
   result.update(attachments(mesh));
   console.print_json(result);
@@ -271,7 +306,8 @@ void add_info(CLI::App& subcommand) {
       "  meshorder info dragon.veg\n"
       "  meshorder info dragon.veg --measure");
   const auto arguments = std::make_shared<InfoArguments>();
-  subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
+  subcommand.add_option("MESH", arguments->input, "Mesh, matrix or graph file")->required();
+  add_points_option(subcommand, arguments->points);
   add_cache_option(subcommand, arguments->caches);
   add_machine_option(subcommand, arguments->machine);
   add_all_threads_option(subcommand, arguments->all_threads);

@@ -8,6 +8,7 @@
 #include "io/stream/output_file.hpp"
 #include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
+#include "matrix_points.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -52,6 +53,7 @@ MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t by
   result.maps.vertex_ids = mesh.vertex_ids;
   result.maps.cell_ids = mesh.cell_ids;
   if (!files.maps.empty()) result.before = checksums_of(mesh);
+  take_points(mesh, files.input, files.points);
   return result;
 }
 
@@ -68,7 +70,13 @@ std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFil
   if (!files.output.empty())
     write_mesh_to(ordered.mesh, {files.output, outputs}, {.strict = files.keeping.strict, .notes = &notes});
   if (files.maps.empty()) return {};
-  return write_maps(ordered.maps, ordered.before, checksums_of(ordered.mesh), files.maps, outputs);
+  MeshChecksums after = checksums_of(ordered.mesh);
+  // a matrix or graph is written as it was read, without the points that were given for its rows
+  if (!files.points.empty()) {
+    const std::string format = output_format_of(files.output, ordered.mesh.format).key();
+    if (format == "matrixmarket" || format == "metis") after.points = ordered.before.points;
+  }
+  return write_maps(ordered.maps, ordered.before, after, files.maps, outputs);
 }
 
 }  // namespace meshorder::command

@@ -20,6 +20,7 @@ struct MeshFiles {
   std::string output;
   std::string maps;  ///< prefix of the maps' names; empty: none are written
   Keeping keeping;
+  std::string points;  ///< coordinates of a matrix's rows; empty: none are given
 };
 
 /// A mesh as it was read, to be ordered and written.

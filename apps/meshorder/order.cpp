@@ -6,9 +6,11 @@
 #include "io/format.hpp"
 #include "io/format_choice.hpp"
 #include "machines.hpp"
+#include "matrix_points.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
 #include "mesh/reorder.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "mesh_files.hpp"
 #include "metrics/edge_span.hpp"
 #include "ordering/judgement.hpp"
@@ -69,18 +71,25 @@ std::string in_words(const Race& race) {
   return join(words) + " times as fast as the file's order";
 }
 
+/// @param stored  null for a mesh that is no matrix
 void print_result(const Console& console, const MeshOrder& order, const std::optional<Grouping>& groups,
-                  const EdgeSpan& before, const EdgeSpan& after) {
+                  const EdgeSpan& before, const EdgeSpan& after, const StoredMatrix* stored) {
+  const bool is_matrix = stored != nullptr && !stored->is_graph;
   const auto print_method = [&](const char* of, const MethodChoice& method, double seconds) {
     console.print("{:<10} {:<14} {}", of, method_in_words(method), duration(seconds));
     if (!method.reason.empty()) console.print("{:<10} {}", "", method.reason);
   };
-  print_method("vertices", order.vertices.method, order.vertices.seconds);
-  print_method("elements", order.cells.method, order.cells.seconds);
+  print_method(is_matrix ? "rows" : "vertices", order.vertices.method, order.vertices.seconds);
+  // entries stay unless they are told to move; a graph's file has its edges in the order of its vertices
+  const bool entries_stay = stored != nullptr && !order.cells.method.reason.empty();
+  if (!entries_stay)
+    print_method(stored != nullptr ? "entries" : "elements", order.cells.method, order.cells.seconds);
+  else if (is_matrix)
+    console.print("{:<10} keep their places in the file", "entries");
   if (groups) console.print("{:<10} {}", "groups", groups_in_words(*groups));
-  console.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}", "edge span",
-                before.mean, after.mean, with_commas(before.max), with_commas(after.max), before.mean_log2,
-                after.mean_log2);
+  console.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}",
+                stored != nullptr ? "distance" : "edge span", before.mean, after.mean,
+                with_commas(before.max), with_commas(after.max), before.mean_log2, after.mean_log2);
 }
 
 /// Notes a method that was asked for by name and makes the order of the vertices no better.
@@ -139,7 +148,10 @@ void run(const OrderArguments& arguments) {
   std::optional<MachineChoice> machine;
   if (in_race) machine = choose_machine(arguments.machine, arguments.all_threads);
   check_can_write(arguments);  // fail before the work
-  confine({.meshes = {arguments.input}, .outputs = {arguments.output}, .maps_written = arguments.maps});
+  confine({.meshes = {arguments.input},
+           .others = named_files(arguments.points),
+           .outputs = {arguments.output},
+           .maps_written = arguments.maps});
 
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.4);
@@ -149,6 +161,7 @@ void run(const OrderArguments& arguments) {
   MeshToOrder job = read_to_order(arguments, notes, in_race ? bytes_of_race : kBytesToOrder);
   Mesh& mesh = job.mesh;
   options.format = output_format_of(arguments.output, mesh.format).key();
+  require_points(mesh, arguments.input, options.methods.vertices, options.methods.elements);
   const double read_seconds = reading.seconds();
 
   // a race on all threads has no other costs to choose by
@@ -194,7 +207,7 @@ void run(const OrderArguments& arguments) {
   progress.finish();
   console.warn_of(notes);
   if (raced) console.print("{:<10} {}", "race", in_words(*raced));
-  print_result(console, order, groups, before, after);
+  print_result(console, order, groups, before, after, stored_matrix(mesh));
   if (has_new_numbers(mesh, order, options)) {
     console.print("{:<10} {}", "numbers", "of vertices and cells are new; --ids keep keeps the old ones");
   }
@@ -228,16 +241,19 @@ void add_order(CLI::App& subcommand) {
       "  meshorder order dragon.veg -o ordered.veg --measure\n"
       "Parts and pieces for programs of many ranks: see meshorder-mpi order --help");
   const auto arguments = std::make_shared<OrderArguments>();
-  subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
+  subcommand.add_option("MESH", arguments->input, "Mesh, matrix or graph file")->required();
   subcommand.add_option("-o,--output", arguments->output, "File to write; may be the input")->required();
   subcommand
       .add_option("--vertices", arguments->reordering.methods.vertices,
                   "Method for vertices, see `meshorder methods`")
       ->capture_default_str();
   subcommand
-      .add_option("--elements", arguments->reordering.methods.elements,
-                  "Method for elements, see `meshorder methods`")
+      .add_option(
+          "--elements", arguments->reordering.methods.elements,
+          "Method for elements, see `meshorder methods`. Entries of a matrix keep their places in the\n"
+          "file unless a method is named")
       ->capture_default_str();
+  add_points_option(subcommand, arguments->points);
   subcommand
       .add_option(
           "--group-by", arguments->reordering.group_by,

@@ -30,9 +30,10 @@ bool is_quick_to_predict(const Mesh& mesh) {
   return cut_into_simplices(mesh).size() <= kMost;
 }
 
-nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches) {
+nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches,
+                               std::span<const Kernel> kernels) {
   nlohmann::ordered_json result;
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+  for (std::size_t k = 0; k < kernels.size(); ++k) {
     result[std::string(to_string(kKernels[k]))] = {{"accesses", reuse[k].all.accesses()},
                                                    {"misses", misses(reuse[k].all, caches)},
                                                    {"jumps", misses(reuse[k].jumps, caches)},

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,13 +17,18 @@ namespace meshorder::command {
 /// touches.
 bool is_quick_to_predict(const Mesh& mesh);
 
-/// Returns {"spmv": {"accesses", "misses": […], "jumps": […], "mean_log2"}, …}, misses and jumps by level.
-nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches);
+/// Returns {"spmv": {"accesses", "misses": […], "jumps": […], "mean_log2"}, …} of these kernels, the first
+/// ones of kKernels, misses and jumps by level.
+nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches,
+                               std::span<const Kernel> kernels = kKernels);
 
 /// Explains the columns of reuse_header.
 inline constexpr std::string_view kReuseLegend =
     "log2: mean log2 of the reuse distances; a cache's size: its misses; jumps: misses of the last\n"
     "level that no hardware prefetcher foresees";
+
+/// What rows of tables call the product with a matrix, the only kernel that it has.
+inline constexpr std::string_view kProduct = "product";
 
 /// Returns the heads of the columns of reuse_cells: "log2", the caches, "jumps".
 std::string reuse_header(const Caches& caches);

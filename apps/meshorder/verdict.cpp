@@ -4,6 +4,7 @@
 #include "payoff/advice.hpp"
 #include "payoff/kernel_bench.hpp"
 #include "payoff/machine_choice.hpp"
+#include "reuse_report.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -14,8 +15,8 @@
 namespace meshorder::command {
 namespace {
 
-std::string methods_of(const Candidate& candidate) {
-  return candidate.vertices.name + "/" + candidate.elements.name;
+std::string methods_of(const Candidate& candidate, bool is_matrix) {
+  return is_matrix ? candidate.vertices.name : candidate.vertices.name + "/" + candidate.elements.name;
 }
 
 /// Returns "4.1×", or "–" if a time is unknown.
@@ -25,17 +26,26 @@ std::string factor_cell(const std::optional<KernelMilliseconds>& as_is,
   return fmt::format("{:.2f}×", (*as_is)[kernel] / (*ordered)[kernel]);
 }
 
-nlohmann::ordered_json milliseconds_json(const std::optional<KernelMilliseconds>& milliseconds) {
+nlohmann::ordered_json milliseconds_json(const std::optional<KernelMilliseconds>& milliseconds,
+                                         std::size_t kernels) {
   if (!milliseconds) return nullptr;
   nlohmann::ordered_json result;
-  for (std::size_t k = 0; k < kKernels.size(); ++k)
-    result[std::string(to_string(kKernels[k]))] = (*milliseconds)[k];
+  for (std::size_t k = 0; k < kernels; ++k) result[std::string(to_string(kKernels[k]))] = (*milliseconds)[k];
   return result;
 }
 
-nlohmann::ordered_json costs_json(const OrderCosts& costs) {
-  return {{"predicted_milliseconds", milliseconds_json(costs.predicted)},
-          {"measured_milliseconds", milliseconds_json(costs.measured)}};
+nlohmann::ordered_json costs_json(const OrderCosts& costs, std::size_t kernels) {
+  return {{"predicted_milliseconds", milliseconds_json(costs.predicted, kernels)},
+          {"measured_milliseconds", milliseconds_json(costs.measured, kernels)}};
+}
+
+/// "pays off after 18 time steps"; of a matrix, after as many products.
+std::string pays_in_words(const Advice& advice, std::size_t candidate) {
+  const double steps = steps_to_pay(advice, candidate);
+  const char* const what = advice.is_matrix ? "product" : "time step";
+  return steps > 0 ? fmt::format("pays off after {} {}{}", with_commas(std::lround(steps)), what,
+                                 steps == 1 ? "" : "s")
+                   : fmt::format("saves nothing in a {}", what);
 }
 
 }  // namespace
@@ -43,17 +53,20 @@ nlohmann::ordered_json costs_json(const OrderCosts& costs) {
 void print_verdict(const Console& console, const Advice& advice) {
   const bool predicted = advice.as_is.costs.predicted.has_value();
   const bool measured = advice.as_is.costs.measured.has_value();
-  console.print(
-      "\nKernels ({}): time in the mesh's order, and how many times faster they run in another,\n{}",
-      to_string(advice.kernel_set),
-      measured ? "measured here" + on_threads(advice.threads) + (predicted ? " (predicted)" : "")
-               : "predicted for " + advice.machine);
+  console.print("\n{}, and how many times faster {} in another,\n{}",
+                advice.is_matrix
+                    ? "Products: time in the file's order"
+                    : fmt::format("Kernels ({}): time in the mesh's order", to_string(advice.kernel_set)),
+                advice.is_matrix ? "they are" : "they run",
+                measured ? "measured here" + on_threads(advice.threads) + (predicted ? " (predicted)" : "")
+                         : "predicted for " + advice.machine);
   std::string header = fmt::format("{:<14}{:>10}", "", "as it is");
-  for (const Candidate& candidate : advice.candidates) header += fmt::format("{:>24}", methods_of(candidate));
+  for (const Candidate& candidate : advice.candidates)
+    header += fmt::format("{:>24}", methods_of(candidate, advice.is_matrix));
   console.print("{}", header);
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    std::string row =
-        fmt::format("{:<14}{:>10}", kKernelTitles[k], duration(1e-3 * advice.as_is.costs.best_known()[k]));
+  for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
+    std::string row = fmt::format("{:<14}{:>10}", advice.is_matrix ? kProduct : kKernelTitles[k],
+                                  duration(1e-3 * advice.as_is.costs.best_known()[k]));
     for (const Candidate& candidate : advice.candidates) {
       const std::string of_model = factor_cell(advice.as_is.costs.predicted, candidate.costs.predicted, k);
       const std::string of_clock = factor_cell(advice.as_is.costs.measured, candidate.costs.measured, k);
@@ -65,40 +78,40 @@ void print_verdict(const Console& console, const Advice& advice) {
   }
   for (std::size_t i = 0; i < advice.candidates.size(); ++i) {
     const Candidate& candidate = advice.candidates[i];
-    const double steps = steps_to_pay(advice, i);
-    console.print("{}: `{}`, {}, {}", methods_of(candidate), command_for(candidate),
-                  duration(candidate.order_seconds),
-                  steps > 0 ? fmt::format("pays off after {} time step{}", with_commas(std::lround(steps)),
-                                          steps == 1 ? "" : "s")
-                            : "saves nothing in a time step");
+    console.print("{}: `{}`, {}, {}", methods_of(candidate, advice.is_matrix),
+                  command_for(candidate, advice.is_matrix), duration(candidate.order_seconds),
+                  pays_in_words(advice, i));
   }
-  console.print("A time step here: one run of element force and of assembly, {} runs of SpMV",
-                kRunsInTimeStep[0]);
+  if (!advice.is_matrix) {
+    console.print("A time step here: one run of element force and of assembly, {} runs of SpMV",
+                  kRunsInTimeStep[0]);
+  }
   console.print("\nVerdict: {}", to_string(advice));
 }
 
 nlohmann::ordered_json to_json(const Advice& advice) {
   nlohmann::ordered_json kernels;
   nlohmann::ordered_json time_step;
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+  const std::size_t count = kernels_of(advice).size();
+  for (std::size_t k = 0; k < count; ++k) {
     const KernelAdvice& of_kernel = advice.kernels[k];
     const bool gains = of_kernel.factor > 1;
     kernels[std::string(to_string(kKernels[k]))] = {
         {"factor", of_kernel.factor},
         {"order", gains ? nlohmann::ordered_json(of_kernel.candidate) : nullptr},
         {"runs_to_pay", gains ? nlohmann::ordered_json(of_kernel.runs_to_pay) : nullptr}};
-    time_step[std::string(to_string(kKernels[k]))] = kRunsInTimeStep[k];
+    time_step[std::string(to_string(kKernels[k]))] = runs_in_time_step(advice, k);
   }
   auto orders = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < advice.candidates.size(); ++i) {
     const Candidate& candidate = advice.candidates[i];
     const double steps = steps_to_pay(advice, i);
-    nlohmann::ordered_json order{{"command", command_for(candidate)},
+    nlohmann::ordered_json order{{"command", command_for(candidate, advice.is_matrix)},
                                  {"vertices", candidate.vertices.name},
                                  {"elements", candidate.elements.name},
                                  {"seconds", candidate.order_seconds},
                                  {"time_steps_to_pay", steps > 0 ? nlohmann::ordered_json(steps) : nullptr}};
-    order.update(costs_json(candidate.costs));
+    order.update(costs_json(candidate.costs, count));
     orders.push_back(order);
   }
   return {{"sentence", to_string(advice)},
@@ -108,7 +121,7 @@ nlohmann::ordered_json to_json(const Advice& advice) {
           {"kernel_set", to_string(advice.kernel_set)},
           {"threads", advice.threads},
           {"kernels", kernels},
-          {"as_it_is", costs_json(advice.as_is.costs)},
+          {"as_it_is", costs_json(advice.as_is.costs, count)},
           {"orders", orders},
           {"time_step", time_step}};
 }

@@ -1,0 +1,66 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "matrix_points.hpp"
+
+#include "base/text.hpp"
+#include "io/matrix/points.hpp"
+#include "mesh/stored_matrix.hpp"
+#include "ordering/method.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace meshorder::command {
+namespace {
+
+bool is_by_points(const std::vector<MethodInfo>& methods, const std::string& name) {
+  return std::any_of(methods.begin(), methods.end(),
+                     [&](const MethodInfo& method) { return method.needs_points && method.name == name; });
+}
+
+}  // namespace
+
+void add_points_option(CLI::App& subcommand, std::string& points) {
+  subcommand
+      .add_option("--points", points,
+                  "Coordinates of the rows of a matrix, or of the vertices of a graph, which orders such as\n"
+                  "hilbert go by: a row of 2 or 3 numbers for each, as text, .npy or Matrix Market's array")
+      ->type_name("FILE");
+}
+
+std::vector<std::string> named_files(const std::string& name) {
+  return name.empty() ? std::vector<std::string>() : std::vector<std::string>{name};
+}
+
+void take_points(Mesh& mesh, const std::string& input, const std::string& points) {
+  if (points.empty()) return;
+  if (stored_matrix(mesh) == nullptr) {
+    throw CommandError(
+        fmt::format("--points is for matrices and graphs: {} is a mesh, which has its own", input), 2);
+  }
+  RowPoints given = read_points(points, mesh.vertex_count());
+  mesh.points = std::move(given.points);
+  mesh.dimension = given.dimension;
+}
+
+void require_points(const Mesh& mesh, const std::string& input, const std::string& vertices,
+                    const std::string& elements) {
+  const bool by_vertices = needs_points(vertices);
+  if (!by_vertices && !is_by_points(element_methods(), elements)) return;
+  if (stored_matrix(mesh) == nullptr || has_places(mesh)) return;
+  std::vector<std::string> others;
+  for (const MethodInfo& method : vertex_methods()) {
+    if (!method.needs_points) others.push_back(method.name);
+  }
+  throw CommandError(fmt::format("{} has no coordinates, which the order '{}' goes by; give them by --points "
+                                 "FILE, or take one that needs none: {}",
+                                 input, by_vertices ? vertices : elements, join(others)),
+                     2);
+}
+
+bool needs_points(const std::string& method) { return is_by_points(vertex_methods(), method); }
+
+}  // namespace meshorder::command

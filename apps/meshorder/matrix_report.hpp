@@ -1,0 +1,31 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "console.hpp"
+#include "graph/traversal.hpp"
+#include "mesh/stored_matrix.hpp"
+#include "metrics/edge_span.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace meshorder::command {
+
+/// What `info` says of a matrix or graph.
+struct MatrixReport {
+  EntryPattern pattern;
+  PatternFacts facts;
+  ComponentCounts components;
+  EdgeSpan span;       ///< of A + A′
+  Offset profile = 0;  ///< likewise
+};
+
+/// Prints it in the words of matrices, or of graphs. `mesh` is the one that was read.
+void print_matrix(const Console& console, const Mesh& mesh, const MatrixReport& report);
+
+/// Returns the object `matrix` of docs/json.md.
+nlohmann::ordered_json to_json(const Mesh& mesh, const MatrixReport& report);
+
+/// Returns "8,000 rows, 53,600 entries", or "8,000 vertices, 22,800 edges".
+std::string size_in_words(const StoredMatrix& stored, const EntryPattern& pattern);
+
+}  // namespace meshorder::command
