@@ -13,15 +13,17 @@ function showView(name, makeView) {
 function startViews() {
   const results = embeddedJson("results");
   const manifest = embeddedJson("manifest") || {};
+  // a matrix has a pattern and no surface
+  const inSpace = { ...manifest, meshes: (manifest.meshes || []).filter(({ triangles }) => triangles) };
   if (results) document.getElementById("byline").textContent = bylineWords(results);
   startSaving();
   const at = (id) => document.getElementById(id);
   const parts = [
-    ["findings", "hero", () => new Hero(at("hero"), manifest, results)],
-    ["meshes", "mesh-view", () => new MeshView(at("mesh-view"), manifest, results)],
-    ["spans", "pattern-view", () => new PatternView(at("pattern-view"), manifest, results)],
-    ["motion", "motion-view", () => new Player(at("motion-view"), manifest)],
-  ].filter(([id, root]) => (manifest[id === "motion" ? "motions" : "meshes"] || []).length && at(root));
+    ["findings", "hero", () => new Hero(at("hero"), inSpace, results), inSpace.meshes],
+    ["meshes", "mesh-view", () => new MeshView(at("mesh-view"), inSpace, results), inSpace.meshes],
+    ["spans", "pattern-view", () => new PatternView(at("pattern-view"), manifest, results), manifest.meshes],
+    ["motion", "motion-view", () => new Player(at("motion-view"), manifest), manifest.motions],
+  ].filter(([, root, , shown]) => (shown || []).length && at(root));
   for (const [id, , makeView] of parts) whenShown(id, () => showView(id, makeView));
 
   // makes the views that were never shown, too, so that they can be printed

@@ -10,6 +10,8 @@
 #include "lab/study/mesh_study.hpp"
 #include "lab/study/results_json.hpp"
 #include "lab/support/machine.hpp"
+#include "matrix_report.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "mesh_files.hpp"
 #include "payoff/advice.hpp"
 #include "progress.hpp"
@@ -49,23 +51,26 @@ std::vector<OrderingSpec> orderings_of_report() {
           {std::string(kOrdered), "meshorder order", "auto", "auto"}};
 }
 
+/// Whether an order differs from another one by its elements alone, which a matrix has not.
+bool orders_elements(const OrderingSpec& ordering) { return ordering.name == "vf-fiedler"; }
+
 /// Returns the predicted and measured times of an order, as `info` takes them.
-OrderCosts costs_of(const MeshOrderRecord& order) {
+OrderCosts costs_of(const MeshOrderRecord& order, std::size_t kernels) {
   OrderCosts costs;
   costs.predicted.emplace();
   bool measured = true;
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+  for (std::size_t k = 0; k < kernels; ++k) {
     (*costs.predicted)[k] = order.kernels[k].predicted_ms;
     measured = measured && order.kernels[k].measured_ms > 0;
   }
   if (!measured) return costs;
   costs.measured.emplace();
-  for (std::size_t k = 0; k < kKernels.size(); ++k) (*costs.measured)[k] = order.kernels[k].measured_ms;
+  for (std::size_t k = 0; k < kernels; ++k) (*costs.measured)[k] = order.kernels[k].measured_ms;
   return costs;
 }
 
 /// Returns the verdict of `info`, from the times of this record; "" without the orders that it compares.
-std::string verdict_on(const MeshRecord& record) {
+std::string verdict_on(const MeshRecord& record, bool is_matrix) {
   const auto order = [&](std::string_view name) {
     return std::find_if(record.orders.begin(), record.orders.end(),
                         [&](const MeshOrderRecord& one) { return one.ordering == name; });
@@ -74,10 +79,12 @@ std::string verdict_on(const MeshRecord& record) {
   const auto ordered = order(kOrdered);
   if (as_it_is == record.orders.end() || ordered == record.orders.end()) return "";
   Advice advice;
-  advice.as_is.costs = costs_of(*as_it_is);
+  advice.is_matrix = is_matrix;
+  const std::size_t kernels = kernels_of(advice).size();
+  advice.as_is.costs = costs_of(*as_it_is, kernels);
   advice.candidates.push_back({.vertices = {ordered->vertex_method, "chosen by auto"},
                                .elements = {ordered->element_method, "chosen by auto"},
-                               .costs = costs_of(*ordered),
+                               .costs = costs_of(*ordered, kernels),
                                .order_seconds = ordered->seconds});
   advice.kernels = kernel_advice(advice);
   return to_string(advice);
@@ -95,15 +102,17 @@ std::string unique_name(const std::string& file, const std::vector<MeshRecord>& 
   return name;
 }
 
-/// Reads a mesh, measures it in the report's orders and adds it to the page. `from` … `to` is its share of
-/// the progress.
-void add_mesh(Page& page, const std::string& file, const ReportArguments& arguments, Progress& progress,
-              double from, double to, Notes& notes) {
+/// Reads a mesh, measures it in the report's orders and adds it to the page; returns its size in words.
+/// `from` … `to` is its share of the progress.
+std::string add_mesh(Page& page, const std::string& file, const ReportArguments& arguments,
+                     Progress& progress, double from, double to, Notes& notes) {
   progress.stage("reading " + file, from, from + 0.1 * (to - from));
   const Mesh mesh = read_to_work_on(file, notes);
-  if (mesh.cells.highest_dimension() < 2)
-    throw InputError(file, "has neither volume cells nor a surface to show",
-                     "give a mesh with cells of two or three dimensions");
+  const bool is_matrix = stored_matrix(mesh) != nullptr;
+  if (mesh.cells.highest_dimension() < (is_matrix ? 1 : 2))
+    throw InputError(
+        file, is_matrix ? "has no entry off the diagonal" : "has neither volume cells nor a surface to show",
+        "give a mesh with cells of two or three dimensions, or a matrix or graph");
   const std::string name = unique_name(file, page.results.meshes);
   MeshStudyOptions options;
   options.ordering = arguments.ordering;
@@ -111,10 +120,12 @@ void add_mesh(Page& page, const std::string& file, const ReportArguments& argume
   options.progress = [&](std::string_view what, double fraction) {
     progress.stage(fmt::format("{}: {}", name, what), from + (0.1 + 0.8 * fraction) * (to - from), to);
   };
-  meshorder::OrderedMesh studied = study_mesh(mesh, page.results.orderings, options);
+  std::vector<OrderingSpec> orderings = page.results.orderings;
+  if (is_matrix) std::erase_if(orderings, orders_elements);
+  meshorder::OrderedMesh studied = study_mesh(mesh, orderings, options);
   studied.record.name = name;
   studied.record.file = file;
-  studied.record.verdict = verdict_on(studied.record);
+  studied.record.verdict = verdict_on(studied.record, is_matrix);
   if (!studied.doubt.empty()) {
     notes.push_back(name + ": " + studied.doubt);
     if (!studied.record.verdict.empty()) studied.record.verdict += ". But " + studied.doubt;
@@ -127,7 +138,10 @@ void add_mesh(Page& page, const std::string& file, const ReportArguments& argume
     note_convergence(studied.orders[i].vertices.fiedler, "the vertices of " + name, notes);
   }
   page.meshes.push_back(page_mesh(name, mesh, orders));
-  page.results.meshes.push_back(std::move(studied.record));
+  const MeshRecord& record = page.results.meshes.emplace_back(std::move(studied.record));
+  return is_matrix ? size_in_words(*stored_matrix(mesh), entry_pattern(mesh))
+                   : fmt::format("{} vertices, {} simplices", with_commas(record.vertices),
+                                 with_commas(record.tetrahedra));
 }
 
 std::string title_of(const Page& page) {
@@ -163,11 +177,18 @@ void report_on_meshes(Console& console, const ReportArguments& arguments) {
   progress.stage("measuring the memory", 0, 0.02);
   page.results.machine = describe_machine();
   Notes notes;
+  std::vector<std::string> sizes;
   const double share = 0.96 / static_cast<double>(arguments.inputs.size());
   for (std::size_t i = 0; i < arguments.inputs.size(); ++i) {
     const double from = 0.02 + share * static_cast<double>(i);
-    add_mesh(page, arguments.inputs[i], arguments, progress, from, from + share, notes);
+    sizes.push_back(add_mesh(page, arguments.inputs[i], arguments, progress, from, from + share, notes));
   }
+  std::erase_if(page.results.orderings, [&](const OrderingSpec& ordering) {
+    return std::ranges::none_of(page.results.meshes, [&](const MeshRecord& mesh) {
+      return std::ranges::any_of(
+          mesh.orders, [&](const MeshOrderRecord& order) { return order.ordering == ordering.name; });
+    });
+  });
   progress.stage("writing " + output, 0.98, 1);
   page.title = title_of(page);
   fill_from_results(page, notes);
@@ -175,9 +196,10 @@ void report_on_meshes(Console& console, const ReportArguments& arguments) {
 
   progress.finish();
   console.warn_of(notes);
-  for (const MeshRecord& mesh : page.results.meshes)
-    console.print("{}: {} vertices, {} simplices\nVerdict: {}", mesh.file, with_commas(mesh.vertices),
-                  with_commas(mesh.tetrahedra), mesh.verdict.empty() ? "none" : mesh.verdict);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const MeshRecord& mesh = page.results.meshes[i];
+    console.print("{}: {}\nVerdict: {}", mesh.file, sizes[i], mesh.verdict.empty() ? "none" : mesh.verdict);
+  }
   console.print("wrote {}", output);
   console.print_json({{"page", output}, {"results", to_json(page.results)}});
 }
@@ -299,8 +321,9 @@ void add_report(CLI::App& subcommand) {
       "  meshorder report mine/ theirs/results.json   two studies: what orders save on both machines");
   const auto arguments = std::make_shared<ReportArguments>();
   subcommand
-      .add_option("INPUT", arguments->inputs,
-                  "Mesh files; or the folder or results.json of one study, or of two to compare")
+      .add_option(
+          "INPUT", arguments->inputs,
+          "Mesh, matrix or graph files; or the folder or results.json of one study, or of two to compare")
       ->required()
       ->type_name("MESH… | STUDY [STUDY]");
   subcommand.add_option(

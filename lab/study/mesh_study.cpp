@@ -5,6 +5,7 @@
 #include "base/stopwatch.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/cost_model.hpp"
 #include "payoff/machine.hpp"
@@ -52,6 +53,7 @@ Mesh points_and_cells(const Mesh& mesh) {
   Mesh result;
   result.points = mesh.points;
   result.cells = mesh.cells;
+  if (stored_matrix(mesh) != nullptr) result.format_metadata = mesh.format_metadata;
   return result;
 }
 
@@ -119,7 +121,7 @@ class MeshStudy {
     const KernelReuse reuse =
         reuse_of_kernels(mesh_, graph_, order.vertices.permutation, order.cells.permutation, halvings);
     const KernelMilliseconds predicted = predicted_ms(reuse, hierarchies.front().caches);
-    for (std::size_t k = 0; k < kKernels.size(); ++k) {
+    for (std::size_t k = 0; k < kernels_of(mesh_).size(); ++k) {
       KernelRecord& kernel = record.kernels[k];
       kernel.predicted_ms = predicted[k];
       kernel.accesses = reuse[k].all.accesses();

@@ -1,11 +1,14 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What `info`, `compare` and `order` say of matrices and graphs, and coordinates that are given beside them."""
+"""What `info`, `compare`, `order` and `report` say of matrices and graphs, and coordinates that are given beside them."""
+import json
 import random
 import struct
 
 import pytest
 
 from meshes import write_tetgen
+
+OTHER_KERNELS = ("element", "assembly", "springs")
 
 
 def lattice(n, seed=1):
@@ -293,3 +296,24 @@ def test_a_mesh_has_its_own_coordinates(command, tmp_path, arguments):
     line = command.fails(*arguments[:1], "mesh.node", *arguments[1:], "--points", "p.txt")
     assert "--points is for matrices and graphs: mesh.node is a mesh" in line
     assert not list(tmp_path.glob("out*"))
+
+
+def test_a_report_shows_patterns_and_no_surface(command, cube, tmp_path):
+    done = command.ok("report", "a.mtx", "-o", "r.html", "--budget", "0.1")
+    assert done.stdout.startswith(f"a.mtx: 2,744 rows, {len(full(cube[0])):,} entries\nVerdict: ")
+    page = (tmp_path / "r.html").read_text()
+    assert 'data-has="meshes no-surfaces"' in page
+    manifest = json.loads(page.split('id="manifest">')[1].split("</script>")[0])
+    assert {"original", "meshorder"} <= set(manifest["meshes"][0]["sparsity"])
+    assert manifest["meshes"][0]["triangles"] is None
+    assert "products take" in page or "nothing to gain" in page
+    for word in ("assembly", "element force", "VF Fiedler"):
+        assert word not in page.split("<section")[1] + page.split('id="spans"')[1].split("<script")[0], word
+    results = command.json("report", "a.mtx", "-o", "r.html", "--budget", "0.1")["results"]
+    kernels = results["meshes"][0]["orders"][0]["kernels"]
+    assert kernels["spmv"]["measured_ms"] > 0
+    assert all(kernels[kernel]["accesses"] == 0 for kernel in OTHER_KERNELS)
+
+
+def test_a_matrix_is_no_scenario(command, cube):
+    assert "is no scenario but a file of MatrixMarket" in command.fails("simulate", "a.mtx")

@@ -138,10 +138,14 @@ Figure cache_figure(const StudyResults& results, const MeshRecord& mesh) {
   constexpr int kLeft = 54;
   constexpr int kTop = 80;
   constexpr int kRow = 140;
-  const int height = kTop + kRow * static_cast<int>(kKernels.size());
+  // the first ones; a matrix has products alone
+  const auto is_run = [&](const KernelRecord& kernel) { return kernel.accesses > 0; };
+  const std::array<KernelRecord, kKernels.size()>& records = mesh.orders.front().kernels;
+  const auto kernels = static_cast<std::size_t>(std::count_if(records.begin(), records.end(), is_run));
+  const int height = kTop + kRow * static_cast<int>(kernels);
   const int column = (kWidth - kLeft) / static_cast<int>(mesh.hierarchies.size());
   std::string script = plain_axes() + "set multiplot\nset grid noxtics\nunset key\n";
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
+  for (std::size_t k = 0; k < kernels; ++k) {
     for (std::size_t h = 0; h < mesh.hierarchies.size(); ++h) {
       const int left = kLeft + column * static_cast<int>(h);
       const int top = kTop + kRow * static_cast<int>(k);

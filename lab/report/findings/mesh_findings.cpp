@@ -43,6 +43,7 @@ std::optional<double> last_level_misses(const StudyResults& results, const std::
     const MeshOrderRecord* const order = find_order(mesh, ordering);
     if (order == nullptr) return std::nullopt;
     for (const KernelRecord& kernel : order->kernels) {
+      if (kernel.accesses == 0 && kernel.misses.empty() && &kernel != &order->kernels.front()) continue;
       if (hierarchy >= kernel.misses.size() || kernel.misses[hierarchy].empty()) return std::nullopt;
       sum += static_cast<double>(kernel.misses[hierarchy].back());
     }

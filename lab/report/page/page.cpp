@@ -33,12 +33,13 @@ Json describe(const PageMesh& mesh, const StudyResults& results, PackedArrays& a
                                    [&](const MeshRecord& one) { return one.name == mesh.name; });
   Json json{{"name", mesh.name}};
   if (record != results.meshes.end()) json["vertices"] = record->vertices;
-  json["positions"] = arrays.add_places(mesh.points);
-  json["triangles"] = arrays.add(mesh.surface.triangles);
+  const bool has_surface = !mesh.surface.triangles.empty();  // a matrix has none
+  json["positions"] = has_surface ? arrays.add_places(mesh.points) : Json();
+  json["triangles"] = has_surface ? arrays.add(mesh.surface.triangles) : Json();
   json["ranks"] = json["sparsity"] = Json::object();
   for (const PageMesh::Order& order : mesh.orders) {
     const auto side = static_cast<std::size_t>(order.sparsity.side);
-    json["ranks"][order.ordering] = arrays.add(order.ranks);
+    if (has_surface) json["ranks"][order.ordering] = arrays.add(order.ranks);
     json["sparsity"][order.ordering] = arrays.add(order.sparsity.counts, {side, side});
   }
   return json;
@@ -79,6 +80,9 @@ std::string data_of(const Page& page) {
 std::string words_of(const Page& page) {
   std::vector<std::string_view> words;
   if (!page.results.meshes.empty()) words.emplace_back("meshes");
+  const auto is_flat = [](const PageMesh& mesh) { return mesh.surface.triangles.empty(); };
+  if (!page.meshes.empty() && std::all_of(page.meshes.begin(), page.meshes.end(), is_flat))
+    words.emplace_back("no-surfaces");
   if (!page.results.scenarios.empty()) words.emplace_back("scenarios");
   if (!page.motions.empty()) words.emplace_back("motions");
   return join(words, std::string_view(" "));

@@ -15,8 +15,8 @@ namespace meshorder {
 
 /// A mesh as the page shows it in 3-D.
 struct PageMesh {
-  std::string name;  ///< MeshRecord::name
-  SurfaceView surface;
+  std::string name;           ///< MeshRecord::name
+  SurfaceView surface;        ///< without triangles for a matrix, which has no picture in 3-D
   std::vector<Point> points;  ///< of the surface's vertices
   struct Order {
     std::string ordering;

@@ -2,6 +2,7 @@
 #include "lab/report/page/page_parts.hpp"
 
 #include "mesh/graphs.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "metrics/sparsity_pattern.hpp"
 #include <meshorder/error.hpp>
 
@@ -31,7 +32,8 @@ PageMesh page_mesh(const std::string& name, const Mesh& mesh,
                    const std::vector<std::pair<std::string, Permutation>>& orders, const PageDetail& detail) {
   PageMesh result;
   result.name = name;
-  result.surface = surface_view(mesh, detail.mesh_triangles);
+  // of a matrix the page shows patterns alone
+  if (stored_matrix(mesh) == nullptr) result.surface = surface_view(mesh, detail.mesh_triangles);
   result.points = points_of(result.surface, mesh);
   const CsrGraph graph = vertex_graph(mesh);
   for (const auto& [ordering, order] : orders) {
