@@ -2,6 +2,7 @@
 #include "base/buckets.hpp"
 #include "base/parallel.hpp"
 #include "ordering/all_methods.hpp"
+#include "ordering/sorted.hpp"
 
 #include <algorithm>
 #include <array>
@@ -22,7 +23,7 @@ constexpr Index kPart = 65536;  // elements that a thread takes together
 /// need, side by side in memory.
 struct Entry {
   std::array<Index, kInEntry> ranks;
-  Index element;
+  Index item;  ///< the element
 };
 
 Entry entry_of(Index element, std::span<const Index> vertices, std::span<const Index> rank_of) {
@@ -76,29 +77,15 @@ Order lexmax_elements(const ElementInput& input, const OrderOptions&) {
     }
     const auto rest = [&](const Entry& entry) -> std::span<const Index> {
       if (all_ranks.empty()) return {};
-      const Offset end = elements.offsets[entry.element + 1];
-      return {all_ranks.data() + std::min(elements.offsets[entry.element] + kInEntry, end),
+      const Offset end = elements.offsets[entry.item + 1];
+      return {all_ranks.data() + std::min(elements.offsets[entry.item] + kInEntry, end),
               all_ranks.data() + end};
     };
     const auto order = std::lexicographical_compare_three_way(rest(a).begin(), rest(a).end(), rest(b).begin(),
                                                               rest(b).end());
-    return order < 0 || (order == 0 && a.element < b.element);
+    return order < 0 || (order == 0 && a.item < b.item);
   };
-  std::vector<Index> new_to_old(elements.size());
-  parallel_loop(buckets.size(), [&](Index bucket) {
-    const std::vector<Offset> starts = buckets.key_starts(bucket, largest_rank);
-    std::vector<Offset> next = starts;
-    std::vector<Entry> entries(std::size_t(starts.back() - starts.front()));
-    buckets.for_each(bucket, [&](const Entry& entry) {
-      entries[next[largest_rank(entry) - buckets.first_key(bucket)]++ - starts.front()] = entry;
-    });
-    for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
-      std::sort(entries.begin() + (starts[k] - starts.front()),
-                entries.begin() + (starts[k + 1] - starts.front()), before);
-    }
-    std::ranges::transform(entries, new_to_old.begin() + starts.front(), &Entry::element);
-  });
-  return {Permutation::from_new_to_old(std::move(new_to_old)), {}};
+  return {Permutation::from_new_to_old(sorted_items(buckets, largest_rank, before)), {}};
 }
 
 }  // namespace meshorder

@@ -1,11 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/buckets.hpp"
 #include "base/parallel.hpp"
 #include <meshorder/permutation.hpp>
 
 #include <algorithm>
-#include <span>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -31,22 +32,53 @@ void sort_distinct(std::vector<T>& values) {
   }
 }
 
-/// The numbers 0 … n−1 by rising key, ties by number. O(n log n).
-template <class Key>
-Permutation sorted_by(std::span<const Key> keys) {
-  // sorting the pairs keeps each comparison within two neighbouring memory places
-  std::vector<std::pair<Key, Index>> pairs(keys.size());
-  for (Index i = 0; i < index_size(keys); ++i) pairs[i] = {keys[i], i};
-  sort_distinct(pairs);
-  std::vector<Index> new_to_old(keys.size());
-  std::transform(pairs.begin(), pairs.end(), new_to_old.begin(),
-                 [](const auto& pair) { return pair.second; });
-  return Permutation::from_new_to_old(std::move(new_to_old));
+/// Returns the items of all entries, bucket after bucket: those of a key one after another, sorted by
+/// `before`, by which no two are equal. On all threads. O(entries · log entries of a key).
+///
+/// @param key  as the buckets were made by
+template <class Entry, class Key, class Before>
+std::vector<Index> sorted_items(const Buckets<Entry>& buckets, const Key& key, const Before& before) {
+  std::vector<Index> items(std::size_t(buckets.start(buckets.size())));
+  parallel_loop(buckets.size(), [&](Index bucket) {
+    const std::vector<Offset> starts = buckets.key_starts(bucket, key);
+    std::vector<Offset> next = starts;
+    std::vector<Entry> entries(std::size_t(starts.back() - starts.front()));
+    buckets.for_each(bucket, [&](const Entry& entry) {
+      entries[next[key(entry) - buckets.first_key(bucket)]++ - starts.front()] = entry;
+    });
+    for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
+      if (starts[k + 1] - starts[k] < 2) continue;
+      std::sort(entries.begin() + (starts[k] - starts.front()),
+                entries.begin() + (starts[k + 1] - starts.front()), before);
+    }
+    std::ranges::transform(entries, items.begin() + starts.front(), &Entry::item);
+  });
+  return items;
 }
 
-template <class Key>
-Permutation sorted_by(const std::vector<Key>& keys) {
-  return sorted_by(std::span<const Key>(keys));
+/// The numbers 0 … n−1 by rising `value_of(i)`, ties by number. On all threads, each value is computed once.
+/// O(n log n) at worst, O(n) where values are spread over the places.
+///
+/// @param places    how many there are for values
+/// @param place_of  `place_of(value)` returns the place of a value, 0 … places − 1, and never falls
+template <class ValueOf, class PlaceOf>
+Permutation sorted_by(Index n, const ValueOf& value_of, Index places, const PlaceOf& place_of) {
+  constexpr Index kPart = 65536;  // numbers that a thread takes together
+  struct Entry {
+    decltype(value_of(n)) value;
+    Index item;
+  };
+  const auto place = [&](const Entry& entry) { return place_of(entry.value); };
+  const auto entries_of = [&](Index /*part*/, Index begin, Index end) {
+    std::vector<Entry> entries(std::size_t(end - begin));
+    for (Index i = begin; i < end; ++i) entries[i - begin] = {value_of(i), i};
+    return [entries = std::move(entries)](const auto& call) { std::ranges::for_each(entries, call); };
+  };
+  const auto before = [](const Entry& a, const Entry& b) {
+    return a.value < b.value || (a.value == b.value && a.item < b.item);
+  };
+  return Permutation::from_new_to_old(
+      sorted_items(Buckets<Entry>(n, kPart, places, entries_of, place), place, before));
 }
 
 }  // namespace meshorder

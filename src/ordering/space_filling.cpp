@@ -5,12 +5,12 @@
 
 #include "base/parallel.hpp"
 #include "base/point.hpp"
-#include "base/run_scope.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/sorted.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -31,6 +31,7 @@ Lattice::Lattice(const Point& low, const Point& high) : low_(low) {
     extent_ = std::max(extent_, high[a] - low[a]);
   }
   bits_ = axes_ == 3 ? 21 : 31;
+  last_ = std::ldexp(1.0, bits_) - 1;
   if (std::isfinite(extent_)) return;
   shrink_ = 0.5;
   extent_ = 0;
@@ -38,12 +39,13 @@ Lattice::Lattice(const Point& low, const Point& high) : low_(low) {
 }
 
 std::array<std::uint32_t, 3> Lattice::cell_of(const Point& point) const {
-  const double cells = std::ldexp(1.0, bits_) - 1;
+  const auto along = [&](int a) {
+    const double share = (shrink_ * point[a] - shrink_ * low_[a]) / extent_;
+    return static_cast<std::uint32_t>(share > 0 ? std::min(share, 1.0) * last_ : 0);
+  };
+  if (axes_ == 3) return {along(0), along(1), along(2)};  // without loads of `used_`
   std::array<std::uint32_t, 3> cell{0, 0, 0};
-  for (int k = 0; k < axes_; ++k) {
-    const double share = (shrink_ * point[used_[k]] - shrink_ * low_[used_[k]]) / extent_;
-    cell[k] = static_cast<std::uint32_t>(share > 0 ? std::min(share, 1.0) * cells : 0);
-  }
+  for (int k = 0; k < axes_; ++k) cell[k] = along(used_[k]);
   return cell;
 }
 
@@ -62,12 +64,51 @@ Lattice lattice_of(const PointsView& points) {
   return {box.low, box.high};
 }
 
-std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int axes, int bits) {
-  std::uint64_t key = 0;
-  for (int bit = bits - 1; bit >= 0; --bit) {
-    for (int a = 0; a < axes; ++a) key = key << 1U | (coordinates[a] >> static_cast<unsigned>(bit) & 1U);
+namespace {
+
+/// The bits that stand in groups of `size`, each followed by Axes − 1 groups of zeros.
+template <int Axes>
+constexpr std::uint64_t spread_mask(unsigned size) {
+  std::uint64_t mask = 0;
+  for (unsigned bit = 0; bit < 64; ++bit) {
+    if (bit / size % Axes == 0) mask |= std::uint64_t{1} << bit;
   }
+  return mask;
+}
+
+/// Moves bit i to place Axes · i: halves groups of bits, and moves the upper halves up.
+template <int Axes>
+constexpr std::uint64_t spread(std::uint64_t bits) {
+  constexpr std::array kMasks{spread_mask<Axes>(16), spread_mask<Axes>(8), spread_mask<Axes>(4),
+                              spread_mask<Axes>(2), spread_mask<Axes>(1)};
+  unsigned shift = 16 * (Axes - 1);
+  for (const std::uint64_t mask : kMasks) {
+    bits = (bits | bits << shift) & mask;
+    shift /= 2;
+  }
+  return bits;
+}
+
+template <int Axes>
+std::uint64_t interleaved_axes(const std::array<std::uint32_t, 3>& x) {
+  std::uint64_t key = 0;
+  for (int a = 0; a < Axes; ++a) key = key << 1U | spread<Axes>(x[a]);
   return key;
+}
+
+}  // namespace
+
+std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int axes) {
+  switch (axes) {
+    case 1:
+      return coordinates[0];
+    case 2:
+      return interleaved_axes<2>(coordinates);
+    case 3:
+      return interleaved_axes<3>(coordinates);
+    default:
+      return 0;
+  }
 }
 
 namespace {
@@ -81,11 +122,19 @@ struct CurveState {
   constexpr bool operator==(const CurveState&) const = default;
 };
 
-/// One of the halves, quarters or eighths of a cube: its number along the curve in the cube, and the number
-/// of its state.
-struct CurveStep {
-  std::uint8_t number = 0;
-  std::uint8_t state = 0;
+/// One of the halves, quarters or eighths of a cube, or a part of such parts: its number along the curve in
+/// the cube, and the number of its state.
+class CurveStep {
+ public:
+  static constexpr unsigned kNumberBits = 9;
+  constexpr CurveStep() = default;
+  constexpr CurveStep(std::size_t number, std::size_t state)
+      : packed_(static_cast<std::uint16_t>(state << kNumberBits | number)) {}
+  [[nodiscard]] constexpr std::size_t number() const { return packed_ & ((1U << kNumberBits) - 1); }
+  [[nodiscard]] constexpr std::size_t state() const { return packed_ >> kNumberBits; }
+
+ private:
+  std::uint16_t packed_ = 0;  // half of the memory, for tables to stay in the caches
 };
 
 /// Enters the part of a cube that `halves` names by a bit for each axis of the lattice, the first the
@@ -113,12 +162,14 @@ constexpr std::pair<unsigned, CurveState> enter(CurveState state, unsigned halve
   return {number, state};
 }
 
+constexpr std::size_t kCurveStates = 48;  // 6 rotations, 4 reflections, 2 directions
+
 /// Returns the steps from each state into each part; states are numbered as they are found from the first.
 template <int Axes>
 constexpr auto curve_steps() {
   constexpr unsigned kCubes = 1U << static_cast<unsigned>(Axes);
-  std::array<CurveState, 96> states{};  // 6 rotations, 8 reflections, 2 directions
-  std::array<std::array<CurveStep, kCubes>, 96> steps{};
+  std::array<CurveState, kCurveStates> states{};
+  std::array<std::array<CurveStep, kCubes>, kCurveStates> steps{};
   std::size_t found = 1;
   for (std::size_t s = 0; s < found; ++s) {
     for (unsigned halves = 0; halves < kCubes; ++halves) {
@@ -126,23 +177,54 @@ constexpr auto curve_steps() {
       std::size_t place = 0;
       while (place < found && !(states[place] == state)) ++place;
       if (place == found) states[found++] = state;
-      steps[s][halves] = {static_cast<std::uint8_t>(number), static_cast<std::uint8_t>(place)};
+      steps[s][halves] = {number, place};
     }
   }
   return steps;
 }
 
-template <int Axes>
+constexpr unsigned kScalesAtOnce = 3;
+
+/// Returns the same for `kScalesAtOnce` steps one after the other.
+template <unsigned Axes>
+constexpr auto curve_strides() {
+  constexpr auto kSteps = curve_steps<Axes>();
+  constexpr unsigned kParts = 1U << (kScalesAtOnce * Axes);
+  std::array<std::array<CurveStep, kParts>, kCurveStates> strides{};
+  for (std::size_t s = 0; s < kCurveStates; ++s) {
+    for (unsigned halves = 0; halves < kParts; ++halves) {
+      CurveStep stride(0, s);
+      for (unsigned left = kScalesAtOnce * Axes; left > 0;) {
+        left -= Axes;
+        const CurveStep step = kSteps[stride.state()][halves >> left & ((1U << Axes) - 1)];
+        stride = {stride.number() << Axes | step.number(), step.state()};
+      }
+      strides[s][halves] = stride;
+    }
+  }
+  return strides;
+}
+
+template <unsigned Axes>
 std::uint64_t along_curve(const std::array<std::uint32_t, 3>& x, int bits) {
   static constexpr auto kSteps = curve_steps<Axes>();
+  static constexpr auto kStrides = curve_strides<Axes>();
+  constexpr unsigned kStride = kScalesAtOnce * Axes;
+  const std::uint64_t halves = interleaved_axes<Axes>(x);
   std::uint64_t key = 0;
   std::size_t state = 0;
-  for (auto bit = static_cast<unsigned>(bits); bit-- > 0;) {
-    unsigned halves = 0;
-    for (int a = 0; a < Axes; ++a) halves = halves << 1U | (x[a] >> bit & 1U);
-    const CurveStep step = kSteps[state][halves];
-    key = key << static_cast<unsigned>(Axes) | step.number;
-    state = step.state;
+  unsigned left = Axes * static_cast<unsigned>(bits);
+  while (left % kStride != 0) {
+    left -= Axes;
+    const CurveStep step = kSteps[state][halves >> left & ((1U << Axes) - 1)];
+    key = key << Axes | step.number();
+    state = step.state();
+  }
+  while (left > 0) {
+    left -= kStride;
+    const CurveStep step = kStrides[state][halves >> left & ((1U << kStride) - 1)];
+    key = key << kStride | step.number();
+    state = step.state();
   }
   return key;
 }
@@ -152,7 +234,7 @@ std::uint64_t along_curve(const std::array<std::uint32_t, 3>& x, int bits) {
 std::uint64_t hilbert_key(const std::array<std::uint32_t, 3>& x, int axes, int bits) {
   switch (axes) {
     case 1:
-      return along_curve<1>(x, bits);
+      return x[0];
     case 2:
       return along_curve<2>(x, bits);
     case 3:
@@ -164,25 +246,33 @@ std::uint64_t hilbert_key(const std::array<std::uint32_t, 3>& x, int axes, int b
 
 namespace {
 
-/// The number of each point along the curve that `key(coordinates, axes, bits)` gives.
+/// Sorts points by their numbers along the curve that `key(cell, lattice)` gives.
 template <class Key>
-std::vector<std::uint64_t> keys_of(const PointsView& points, Key key) {
+Permutation sorted_along(const PointsView& points, const Key& key) {
   const Lattice lattice = lattice_of(points);
-  std::vector<std::uint64_t> keys(points.size());
-  for_each_chunk(index_size(keys), kPointsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
-    for (Index i = begin; i < end; ++i)
-      keys[i] = key(lattice.cell_of(point_at(points, i)), lattice.axes(), lattice.bits());
-  });
-  return keys;
+  const Index n = index_size(points);
+  // the first bits of the key, enough to tell most points apart
+  const int bits = std::min<int>(std::bit_width(static_cast<unsigned>(n)) + 1, 30);
+  const int shift = std::max(lattice.axes() * lattice.bits() - bits, 0);
+  return sorted_by(
+      n, [&](Index i) { return key(lattice.cell_of(point_at(points, i)), lattice); }, Index{1} << bits,
+      [shift](std::uint64_t number) { return static_cast<Index>(number >> static_cast<unsigned>(shift)); });
 }
 
-Permutation along_hilbert_curve(const PointsView& points) { return sorted_by(keys_of(points, hilbert_key)); }
+Permutation along_hilbert_curve(const PointsView& points) {
+  return sorted_along(points, [](const auto& cell, const Lattice& lattice) {
+    return hilbert_key(cell, lattice.axes(), lattice.bits());
+  });
+}
 
 }  // namespace
 
 Order morton_vertices(const VertexInput& input, const OrderOptions&) {
   check_points(input.points, static_cast<std::size_t>(input.graph.size()), "morton");
-  return {sorted_by(keys_of(input.points, interleaved)), {}};
+  return {
+      sorted_along(input.points, [](const auto& cell,
+                                    const Lattice& lattice) { return interleaved(cell, lattice.axes()); }),
+      {}};
 }
 
 Order hilbert_vertices(const VertexInput& input, const OrderOptions&) {
@@ -194,13 +284,13 @@ Order hilbert_elements(const ElementInput& input, const OrderOptions&) {
   const IncidenceRef elements = input.elements;
   check_points(input.points, static_cast<std::size_t>(elements.vertex_count), "hilbert");
   std::vector<Point> centroids(elements.size(), Point{});
-  for (Index e = 0; e < elements.size(); ++e) {
-    poll_in_loop(e);
-    const double share = 1.0 / static_cast<double>(elements[e].size());
-    for (const Index v : elements[e]) {
-      for (int a = 0; a < 3; ++a) centroids[e][a] += share * input.points(static_cast<std::size_t>(v), a);
+  for_each_chunk(elements.size(), kPointsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
+    for (Index e = begin; e < end; ++e) {
+      const double share = 1.0 / static_cast<double>(elements[e].size());
+      for (const Index v : elements[e])
+        centroids[e] = plus_scaled(centroids[e], share, point_at(input.points, v));
     }
-  }
+  });
   return {along_hilbert_curve(PointsView(centroids)), {}};
 }
 

@@ -49,6 +49,7 @@ class Lattice {
   std::array<int, 3> used_{};  ///< the axes along which the box extends
   Point low_;
   double shrink_ = 1;  ///< a box whose extent no double holds is halved
+  double last_ = 0;    ///< cell along an axis
   double extent_ = 0;  ///< of the longest axis: one scale for all, so that cells are cubes
 };
 
@@ -59,7 +60,7 @@ void check_points(const PointsView& points, std::size_t count, std::string_view 
 Lattice lattice_of(const PointsView& points);
 
 /// One bit of each axis in turn, highest first: the number of a cell along Morton's curve.
-std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int axes, int bits);
+std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int axes);
 
 /// The number of the lattice cell x along Hilbert's curve, below 2^63. O(bits).
 std::uint64_t hilbert_key(const std::array<std::uint32_t, 3>& x, int axes, int bits);

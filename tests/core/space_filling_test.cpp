@@ -98,7 +98,7 @@ std::uint64_t skillings_number(std::array<std::uint32_t, 3> x, int axes, int bit
     if ((x[axes - 1] & q) != 0) flips ^= q - 1;
   }
   for (int a = 0; a < axes; ++a) x[a] ^= flips;
-  return interleaved(x, axes, bits);
+  return interleaved(x, axes);
 }
 
 TEST(Hilbert, NumbersCellsAsSkillingsTransformationDoes) {
@@ -126,8 +126,8 @@ std::uint64_t spelt(const std::array<std::uint32_t, 3>& coordinates, int axes, i
 }
 
 TEST(Morton, InterleavesBits) {
-  EXPECT_EQ(interleaved({1, 0, 0}, 3, 1), 4U);
-  EXPECT_EQ(interleaved({0, 3, 0}, 2, 2), 5U);
+  EXPECT_EQ(interleaved({1, 0, 0}, 3), 4U);
+  EXPECT_EQ(interleaved({0, 3, 0}, 2), 5U);
   std::mt19937 random(1);
   for (const auto& [axes, bits] : {std::pair(1, 31), std::pair(2, 31), std::pair(3, 21)}) {
     for (int trial = 0; trial < 200; ++trial) {
@@ -135,7 +135,7 @@ TEST(Morton, InterleavesBits) {
       for (int a = 0; a < axes; ++a) {
         coordinates[a] = static_cast<std::uint32_t>(random()) % (1U << static_cast<unsigned>(bits));
       }
-      ASSERT_EQ(interleaved(coordinates, axes, bits), spelt(coordinates, axes, bits));
+      ASSERT_EQ(interleaved(coordinates, axes), spelt(coordinates, axes, bits));
     }
   }
 }
