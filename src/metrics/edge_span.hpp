@@ -5,6 +5,7 @@
 #include <meshorder/permutation.hpp>
 #include <meshorder/quality.hpp>
 
+#include <span>
 #include <vector>
 
 namespace meshorder {
@@ -21,6 +22,14 @@ struct EdgeSpan {
 
 /// Spans of the graph's vertices in the given order. O(n + edges).
 EdgeSpan edge_span(GraphRef graph, const Permutation& order);
+
+/// As `edge_span`, of the edges at a `VertexSample`, on all threads. On tetrahedral meshes means are within 5
+/// % of the exact ones, mean_log2 within 0.05, and `max` is at most the exact one; of fewer than 262,144
+/// vertices all are exact but for rounding. Does not depend on the number of threads. O(vertices and edges of
+/// the sample).
+///
+/// @param place_of  the new number of each vertex; none: as they are
+EdgeSpan sampled_edge_span(GraphRef graph, std::span<const Index> place_of);
 
 /// The part of an EdgeSpan that takes no logarithms.
 struct SpanSize {

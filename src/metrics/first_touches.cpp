@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "metrics/first_touches.hpp"
 
+#include "base/parallel.hpp"
 #include "base/run_scope.hpp"
 #include "graph/row_access.hpp"
 
@@ -12,9 +13,10 @@ namespace {
 
 constexpr Index kEntriesInLine = 8;  // doubles
 constexpr Index kLinesBefore = 3;
-constexpr Index kRecent = 32;    // first touches
-constexpr Index kWindow = 8192;  // rows
-constexpr Index kWindowsForOne = 8;
+constexpr Index kRecent = 32;        // first touches
+constexpr Index kWindow = 8192;      // rows
+constexpr Index kWindowsForOne = 8;  // at least
+constexpr Index kWindows = 8;        // at least, of large graphs
 
 /// Counts first touches and those that are jumps, window by window.
 class FirstTouches {
@@ -88,8 +90,9 @@ double jump_share(GraphRef graph, const Permutation& order) {
 
 double sampled_jump_share(GraphRef graph, const Permutation& order) {
   FirstTouches touches(graph, order);
-  constexpr Index kApart = kWindow * kWindowsForOne;
-  for (Offset begin = 0; begin < graph.size(); begin += kApart) {
+  const Offset apart =
+      Offset{kWindow} * std::max(kWindowsForOne, chunk_count(graph.size(), kWindow) / kWindows);
+  for (Offset begin = 0; begin < graph.size(); begin += apart) {
     const auto first = static_cast<Index>(begin);
     touches.sweep(first, first + std::min(kWindow, graph.size() - first));
   }

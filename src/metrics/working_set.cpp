@@ -11,7 +11,7 @@ std::array<double, kElementsAtOnce.size()> working_sets(IncidenceRef elements,
                                                         std::span<const Index> new_to_old) {
   constexpr Index kPlaces = 8;
   constexpr Index kLargest = kElementsAtOnce.back();
-  const Index count = index_size(new_to_old);
+  const Index count = elements.size();
   const Index windows = count / kLargest + (count % kLargest > 0 ? 1 : 0);
   const Index stride = std::max<Index>(1, windows / kPlaces);
   std::array<Offset, kElementsAtOnce.size()> distinct{};
@@ -25,7 +25,7 @@ std::array<double, kElementsAtOnce.size()> working_sets(IncidenceRef elements,
     }
     for (Index place = begin; place < end; ++place) {
       const auto now = static_cast<std::uint32_t>(place);
-      for (const Index v : elements[new_to_old[place]]) {
+      for (const Index v : elements[new_to_old.empty() ? place : new_to_old[place]]) {
         const std::uint32_t differing_bits = last_use[v] ^ now;
         last_use[v] = now;
         for (std::size_t k = 0; k < kElementsAtOnce.size(); ++k) {

@@ -17,7 +17,7 @@ inline constexpr std::array<Index, 3> kElementsAtOnce{64, 512, 4096};
 ///
 /// Counted at up to 8 places, evenly spread. O(vertices + 32,768 elements).
 ///
-/// @param new_to_old  the order of the elements; each exists
+/// @param new_to_old  the order of all elements; none: as they are numbered
 std::array<double, kElementsAtOnce.size()> working_sets(IncidenceRef elements,
                                                         std::span<const Index> new_to_old);
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,21 +23,27 @@ enum class Kind : std::uint8_t { lattice, placed, bare };
 
 /// When a method is taken: the first rule that fits decides.
 struct Rule {
-  std::vector<Workload> workloads = {};  ///< none: any
-  Index least_vertices = 0;              ///< from so many on
-  std::optional<Kind> kind = {};         ///< none: any
+  std::span<const Workload> workloads = {};  ///< none: any
+  Index least_vertices = 0;                  ///< from so many on
+  std::optional<Kind> kind = {};             ///< none: any
   std::string_view method;
   std::string_view reason;
 };
 
+constexpr std::array kForBandwidth{Workload::bandwidth};
+#ifdef MESHORDER_HAS_METIS
+constexpr std::array kForFill{Workload::fill};
+#endif
+constexpr std::array kForElements{Workload::element, Workload::assembly};
+
 // Evidence: plain kernels, as users write them, on one thread of 2-core Zen 4 and Zen 3 machines; the tables
 // are in docs/auto.md.
-const std::array kVertexRules{
-    Rule{.workloads = {Workload::bandwidth},
+constexpr std::array kVertexRules{
+    Rule{.workloads = kForBandwidth,
          .method = "rcm",
          .reason = "reverse Cuthill-McKee is made to keep the bandwidth small"},
 #ifdef MESHORDER_HAS_METIS
-    Rule{.workloads = {Workload::fill},
+    Rule{.workloads = kForFill,
          .method = "metis-nd",
          .reason = "nested dissection is made to keep the factors of a direct solver sparse"},
 #endif
@@ -48,7 +55,7 @@ const std::array kVertexRules{
          .reason =
              "within a few per cent of the best order measured, at the cost of a sort of the coordinates "
              "and a pass over the edges"},
-    Rule{.workloads = {Workload::element, Workload::assembly},
+    Rule{.workloads = kForElements,
          .least_vertices = 100'000,
          .method = "spectral-fronts",
          .reason = "the best order measured for elements that needs no coordinates, of which there are none"},
@@ -59,7 +66,7 @@ const std::array kVertexRules{
 };
 
 bool fits(const Rule& rule, Index vertices, Kind kind, Workload workload) {
-  const auto& workloads = rule.workloads;
+  const std::span<const Workload> workloads = rule.workloads;
   return (workloads.empty() || std::ranges::find(workloads, workload) != workloads.end()) &&
          vertices >= rule.least_vertices && (!rule.kind || *rule.kind == kind);
 }
@@ -102,10 +109,9 @@ bool is_well_numbered_lattice(const VertexInput& input, const Permutation& order
   constexpr double kFew = 0.1;
   constexpr double kAlike = 1.5;
   if (!is_lattice(input.graph)) return false;
-  const Permutation as_is = Permutation::identity(input.graph.size());
-  return static_cast<double>(span_size(input.graph, as_is).sum) <=
-             kAlike * static_cast<double>(span_size(input.graph, order).sum) &&
-         sampled_jump_share(input.graph, as_is) < kFew;
+  return sampled_edge_span(input.graph, {}).mean <=
+             kAlike * sampled_edge_span(input.graph, order.old_to_new()).mean &&
+         sampled_jump_share(input.graph, Permutation::identity(input.graph.size())) < kFew;
 }
 
 }  // namespace
@@ -139,12 +145,11 @@ Order auto_vertices(const VertexInput& input, const OrderOptions& options) {
 Order auto_elements(const ElementInput& input, const OrderOptions& options) {
   MethodChoice choice = choose_element_method(input, options.workload);
   Order result = order_incidence(choice.name, input, options);
-  const Permutation as_is = Permutation::identity(input.elements.size());
-  if (std::string reason = reason_to_keep_elements(input.elements, as_is.new_to_old(),
-                                                   result.permutation.new_to_old(), choice.name);
+  if (std::string reason =
+          reason_to_keep_elements(input.elements, {}, result.permutation.new_to_old(), choice.name);
       !reason.empty()) {
     choice = {"original", std::move(reason)};
-    result.permutation = as_is;
+    result.permutation = Permutation::identity(input.elements.size());
   }
   result.method = std::move(choice);
   return result;

@@ -39,10 +39,6 @@ bool sweeps_over_rows(Workload workload) {
   return workload == Workload::all || workload == Workload::spmv || workload == Workload::springs;
 }
 
-bool geometric_mean_gains(GraphRef graph, const Permutation& as_is, const Permutation& order) {
-  return edge_span(graph, order).mean_log2 <= edge_span(graph, as_is).mean_log2 + std::log2(kGain);
-}
-
 }  // namespace
 
 Workload made_for(std::string_view method) {
@@ -60,11 +56,11 @@ std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string
     return sentence("the number of entries in the factor", std::to_string(before), method,
                     std::to_string(after));
   }
-  const SpanSize before = span_size(graph, as_is);
-  const SpanSize after = span_size(graph, order);
   if (workload == Workload::bandwidth) {
-    if (after.max < before.max) return {};
-    return sentence("the bandwidth", std::to_string(before.max), method, std::to_string(after.max));
+    const Index before = span_size(graph, as_is).max;
+    const Index after = span_size(graph, order).max;
+    if (after < before) return {};
+    return sentence("the bandwidth", std::to_string(before), method, std::to_string(after));
   }
   const bool is_large = graph.size() >= kBeyondCaches;
   const double old_jumps = is_large ? sampled_jump_share(graph, as_is) : 0;
@@ -74,12 +70,12 @@ std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string
                     method, with_digits(new_jumps, 2));
   }
   if (new_jumps < old_jumps - kNotable && sweeps_over_rows(workload)) return {};
-  const auto edges = static_cast<double>(std::max<Offset>(1, graph.edge_count()));
-  const double old_mean = static_cast<double>(before.sum) / edges;
-  const double new_mean = static_cast<double>(after.sum) / edges;
-  if (new_mean <= kGain * old_mean) return {};
-  if (new_mean <= kTolerated * old_mean && geometric_mean_gains(graph, as_is, order)) return {};
-  return sentence("the mean edge span", with_one_digit(old_mean), method, with_one_digit(new_mean));
+  const EdgeSpan before = sampled_edge_span(graph, {});
+  const EdgeSpan after = sampled_edge_span(graph, order.old_to_new());
+  if (after.mean <= kGain * before.mean) return {};
+  const bool gains_in_logs = after.mean_log2 <= before.mean_log2 + std::log2(kGain);
+  if (after.mean <= kTolerated * before.mean && gains_in_logs) return {};
+  return sentence("the mean edge span", with_one_digit(before.mean), method, with_one_digit(after.mean));
 }
 
 std::string reason_to_keep_elements(IncidenceRef elements, std::span<const Index> as_is,

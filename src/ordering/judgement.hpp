@@ -17,7 +17,7 @@ Workload made_for(std::string_view method);
 
 /// Judges an order by what the workload asks for: the bandwidth, the entries of the Cholesky factor, and else
 /// the edge spans. These must fall, in the mean or in the geometric mean, by 2 % at least, and the mean must
-/// not grow by more than 5 %.
+/// not grow by more than 5 %. Spans of large graphs are sampled (`sampled_edge_span`).
 ///
 /// Returns why the vertices are better left where they are, a sentence with the method's name and both
 /// figures; empty if the order is better. O(n + entries).
@@ -28,7 +28,7 @@ std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string
 /// 2 % at least, and none may grow by more than 5 %. Returns why the elements are better left where they are,
 /// as above. O(vertices + elements).
 ///
-/// @param as_is  the elements in their old order
+/// @param as_is  the elements in their old order; none: as they are numbered
 /// @param order  the elements in the order to be judged
 std::string reason_to_keep_elements(IncidenceRef elements, std::span<const Index> as_is,
                                     std::span<const Index> order, std::string_view method);

@@ -1,6 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "metrics/edge_span.hpp"
 
+#include "base/arena.hpp"
+#include "graph/vertex_sample.hpp"
+#include "ordering/method.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
@@ -8,9 +11,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <numeric>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -43,6 +49,63 @@ TEST(EdgeSpan, IsThatOfAllPairs) {
     const SpanSize size = span_size(graph, order);
     EXPECT_EQ(size.sum, std::accumulate(spans.begin(), spans.end(), Offset{0}));
     EXPECT_EQ(size.max, found.max);
+  }
+}
+
+/// Coordinates of the test grid's vertices, which `test::grid` numbers along x first.
+std::vector<Point> points_of_grid(Index side) {
+  std::vector<Point> points;
+  for (Index v = 0; v < side * side * side; ++v)
+    points.push_back({1.0 * (v % side), 1.0 * (v / side % side), 1.0 * (v / side / side)});
+  return points;
+}
+
+TEST(SampledEdgeSpan, OfAFewVerticesIsExact) {
+  const CsrGraph graph = test::grid(40, 30, 20);
+  const Permutation order = test::shuffled(graph.size(), 1);
+  const EdgeSpan exact = edge_span(graph, order);
+  const EdgeSpan found = sampled_edge_span(graph, order.old_to_new());
+  EXPECT_EQ(found.mean, exact.mean);
+  EXPECT_EQ(found.max, exact.max);
+  EXPECT_NEAR(found.mean_log2, exact.mean_log2, 1e-12);
+  const EdgeSpan as_it_is = sampled_edge_span(graph, {});
+  EXPECT_EQ(as_it_is.mean, edge_span(graph, Permutation::identity(graph.size())).mean);
+  EXPECT_EQ(sampled_edge_span(graph_from_edges(5, {}), {}), EdgeSpan{});
+  EXPECT_EQ(sampled_edge_span(CsrGraph{}, {}), EdgeSpan{});
+}
+
+TEST(SampledEdgeSpan, OfManyVerticesIsNearAndTheSameOnAnyNumberOfThreads) {
+  // 64 divides the steps of the sample, 81 does not
+  for (const Index side : {64, 81}) {
+    const CsrGraph graph = test::grid(side, side, side);
+    const Permutation rows = Permutation::identity(graph.size());
+    const Permutation hilbert = order_graph("hilbert", {graph, points_of_grid(side)}).permutation;
+    const Permutation scattered = test::shuffled(graph.size(), 2);
+    for (const Permutation* const order : {&rows, &hilbert, &scattered}) {
+      const EdgeSpan exact = edge_span(graph, *order);
+      const auto on_threads = [&](int threads) {
+        return in_arena({.threads = threads}, [&] { return sampled_edge_span(graph, order->old_to_new()); });
+      };
+      const EdgeSpan found = on_threads(1);
+      EXPECT_NEAR(found.mean, exact.mean, 0.05 * exact.mean);
+      EXPECT_NEAR(found.mean_log2, exact.mean_log2, 0.05);
+      EXPECT_LE(found.max, exact.max);
+      EXPECT_NE(found.mean, exact.mean) << "is a sample";
+      EXPECT_EQ(on_threads(8), found);
+      EXPECT_EQ(sampled_edge_span(graph, {}) == found, order == &rows);
+    }
+  }
+}
+
+TEST(VertexSample, TakesOneVertexOfEachBlock) {
+  for (const Index n : {0, 1, 262143, 262144, 300001, kMaxIndex}) {
+    const VertexSample sample(n);
+    EXPECT_EQ(sample.is_all(), n < 262144);
+    EXPECT_LE(sample.size(), 262144);
+    EXPECT_GE(sample.size(), std::min(n, 131072));
+    const Index block = sample.is_all() ? 1 : std::bit_floor(static_cast<std::uint32_t>(n)) >> 17U;
+    for (Index k = 0; k < sample.size(); ++k) ASSERT_EQ(sample[k] / block, k) << n;
+    EXPECT_TRUE(n == 0 || sample[sample.size() - 1] < n);
   }
 }
 

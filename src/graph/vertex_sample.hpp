@@ -1,0 +1,36 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/parallel.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+namespace meshorder {
+
+/// All of fewer than 262,144 vertices; of more one of each 2, 4, 8 … that follow each other, 131,072 to
+/// 262,144 in all. Which one is decided by a hash, so that no lattice keeps step with the sample. The same on
+/// every run.
+class VertexSample {
+ public:
+  explicit VertexSample(Index vertices)
+      : vertices_(vertices),
+        bits_(std::max<int>(0, std::bit_width(static_cast<std::uint32_t>(vertices)) - 18)) {}
+
+  [[nodiscard]] bool is_all() const { return bits_ == 0; }
+  /// Returns how many vertices are in the sample.
+  [[nodiscard]] Index size() const { return chunk_count(vertices_, Index{1} << bits_); }
+  /// Returns vertex k of the sample, 0 … size() − 1; they rise.
+  [[nodiscard]] Index operator[](Index k) const {
+    const std::uint64_t hash = static_cast<std::uint64_t>(k) * 0x9e3779b97f4a7c15U >> 32U;
+    const auto place = static_cast<Index>(hash & ((std::uint64_t{1} << bits_) - 1));
+    return std::min((k << bits_) + place, vertices_ - 1);
+  }
+
+ private:
+  Index vertices_;
+  int bits_;
+};
+
+}  // namespace meshorder
