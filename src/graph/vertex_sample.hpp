@@ -16,7 +16,7 @@ class VertexSample {
  public:
   explicit VertexSample(Index vertices)
       : vertices_(vertices),
-        bits_(std::max<int>(0, std::bit_width(static_cast<std::uint32_t>(vertices)) - 18)) {}
+        bits_(std::max(0, static_cast<int>(std::bit_width(static_cast<std::uint32_t>(vertices))) - 18)) {}
 
   [[nodiscard]] bool is_all() const { return bits_ == 0; }
   /// Returns how many vertices are in the sample.

@@ -187,7 +187,7 @@ constexpr unsigned kScalesAtOnce = 3;
 
 /// Returns the same for `kScalesAtOnce` steps one after the other.
 template <unsigned Axes>
-constexpr auto curve_strides() {
+auto curve_strides() {
   constexpr auto kSteps = curve_steps<Axes>();
   constexpr unsigned kParts = 1U << (kScalesAtOnce * Axes);
   std::array<std::array<CurveStep, kParts>, kCurveStates> strides{};
@@ -208,7 +208,7 @@ constexpr auto curve_strides() {
 template <unsigned Axes>
 std::uint64_t along_curve(const std::array<std::uint32_t, 3>& x, int bits) {
   static constexpr auto kSteps = curve_steps<Axes>();
-  static constexpr auto kStrides = curve_strides<Axes>();
+  static const auto strides = curve_strides<Axes>();  // more steps than compilers take for a constant
   constexpr unsigned kStride = kScalesAtOnce * Axes;
   const std::uint64_t halves = interleaved_axes<Axes>(x);
   std::uint64_t key = 0;
@@ -222,7 +222,7 @@ std::uint64_t along_curve(const std::array<std::uint32_t, 3>& x, int bits) {
   }
   while (left > 0) {
     left -= kStride;
-    const CurveStep step = kStrides[state][halves >> left & ((1U << kStride) - 1)];
+    const CurveStep step = strides[state][halves >> left & ((1U << kStride) - 1)];
     key = key << kStride | step.number();
     state = step.state();
   }
@@ -252,7 +252,7 @@ Permutation sorted_along(const PointsView& points, const Key& key) {
   const Lattice lattice = lattice_of(points);
   const Index n = index_size(points);
   // the first bits of the key, enough to tell most points apart
-  const int bits = std::min<int>(std::bit_width(static_cast<unsigned>(n)) + 1, 30);
+  const int bits = std::min(static_cast<int>(std::bit_width(static_cast<unsigned>(n))) + 1, 30);
   const int shift = std::max(lattice.axes() * lattice.bits() - bits, 0);
   return sorted_by(
       n, [&](Index i) { return key(lattice.cell_of(point_at(points, i)), lattice); }, Index{1} << bits,
