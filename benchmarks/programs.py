@@ -1,14 +1,15 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """What orders are worth in programs that others wrote, as `meshorder try` finds.
 
 Usage: programs.py FOLDER [PROGRAM…] [--size SIZE] [--budget SECONDS] [--json FILE]
+       programs.py --from FILE
 
 All programs, or those named, compute on a block with a hole, which Gmsh fills with tetrahedra of that SIZE (its Python
 package is needed), or on the matrix of −Δu + u on it by linear elements; icoFoam on a box whose lid moves. The meshes are
 in the order in which Gmsh leaves them. Programs that are not installed are skipped. On one thread, by processor time.
-MESHORDER names the command, else build/bin/meshorder is taken. Prints a table in Markdown; --json adds all that
-`try --json` says to the file.
+MESHORDER names the command, else build/bin/meshorder is taken. Prints a table in Markdown; --json adds what `try --json`
+says to the file, from which --from prints the table again.
 """
 import argparse
 import json
@@ -100,19 +101,20 @@ def python(script):
 
 
 def ccx(title, stem):
-    return title, f"{stem}.inp", ["ccx", "{stem}"], ("--same-file", f"{stem}.dat", "--tolerance", "1e-3")
+    return title, f"{stem}.inp", ["ccx", "{stem}"], ("--same-file", f"{stem}.dat", "--tolerance", "1e-2")
 
 
-def ico_foam(pressure):
-    return f"icoFoam, {pressure}", pressure.lower(), ["icoFoam"], ("--count", r"Solving for p,.*No Iterations (\d+)")
+def ico_foam(case):
+    *shape, pressure = case.split("-")
+    title = f"icoFoam, {pressure.upper()}, " + ("cubes by blockMesh" if shape else "tetrahedra")
+    return title, case, ["icoFoam"], ("--count", r"Solving for p,.*No Iterations (\d+)")
 
 
 PROGRAMS = {
     "ccx-spooles": ccx("CalculiX, SPOOLES", "spooles"),
     "ccx-scaling": ccx("CalculiX, iterative scaling", "scaling"),
     "ccx-cholesky": ccx("CalculiX, iterative Cholesky", "cholesky"),
-    "icofoam-pcg": ico_foam("PCG"),
-    "icofoam-gamg": ico_foam("GAMG"),
+    **{f"icofoam-{case}": ico_foam(case) for case in ("pcg", "gamg", "cubes-pcg", "cubes-gamg")},
     "freefem": ("FreeFEM, assembly and CG", "block.mesh",
                 ["FreeFem++", "-nw", "-ne", str(HERE / "freefem.edp"), "{}"], COMPUTE),
     "scikit-fem": ("scikit-fem, assembly and SciPy's CG", "block.msh", python("scikit_fem.py"), COMPUTE + ITERATIONS),
@@ -137,7 +139,8 @@ def make(folder, file, arguments):
     if not suffix:
         sys.path.insert(0, str(HERE))
         import openfoam_case
-        openfoam_case.write(path, arguments.size, stem.upper())
+        *shape, pressure = stem.split("-")
+        openfoam_case.write(path, arguments.size, pressure.upper(), bool(shape))
         return path
     block = Block(path.parent, arguments.size * (2 if stem in ("spooles", "cholesky") else 1))
     if suffix == ".inp":
@@ -174,31 +177,41 @@ def gain(order):
     return f"{order['ratio']:.2f}" + (f" ({interval[0]:.2f}–{interval[1]:.2f})" if interval else "")
 
 
-def row(title, found):
+HEAD = ("| program | as it is | best order | times as fast | `auto` | iterations |\n"
+        "| --- | ---: | --- | ---: | ---: | ---: |")
+
+
+def row(found):
     orders = found["orders"]
     own = orders[0]
     auto = next((order for order in orders if order["by_auto"]), None)
-    best = next((order for order in orders if order["name"] == found["best"]), None)
-    iterations = "" if own["count"] is None or best is None else f"{own['count']:.0f} → {best['count']:.0f}"
-    return (f"| {title} | {number(own['time'])} s | {found['best'] or ''} | {gain(best)} | {found['verdict']} | "
+    best = next(order for order in orders if order["name"] == found["best"])
+    iterations = "" if own["count"] is None else f"{own['count']:.0f} → {best['count']:.0f}"
+    gain_of_best = gain(best) if found["verdict"] != "undecided" else f"none found, {gain(best)}"
+    return (f"| {found['title']} | {number(own['time'])} s | {found['best']} | {gain_of_best} | "
             f"{gain(auto) if auto else 'stays'} | {iterations} |")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path, nargs="?")
     parser.add_argument("programs", nargs="*", metavar="PROGRAM", default=list(PROGRAMS))
     parser.add_argument("--size", type=float, default=0.028)
     parser.add_argument("--budget", type=float, default=120)
     parser.add_argument("--json", type=pathlib.Path)
+    parser.add_argument("--from", type=pathlib.Path, dest="kept")
     arguments = parser.parse_args()
+    if arguments.kept:
+        print(HEAD, *map(row, json.loads(arguments.kept.read_text()).values()), sep="\n")
+        return
+    if not arguments.folder:
+        parser.error("give a folder for the meshes")
     for name in arguments.programs:
         if name not in PROGRAMS:
             parser.error(f"{name}: unknown; known are {' '.join(PROGRAMS)}")
     arguments.folder.mkdir(parents=True, exist_ok=True)
     everything = json.loads(arguments.json.read_text()) if arguments.json and arguments.json.exists() else {}
-    print("| program | as it is | best order | gain | verdict | `auto` | iterations |\n"
-          "| --- | ---: | --- | ---: | --- | ---: | ---: |")
+    print(HEAD, flush=True)
     for name in arguments.programs:
         title, file, program, judged = PROGRAMS[name]
         if not shutil.which(program[0]):
@@ -208,8 +221,8 @@ def main():
         if found is None:
             print(f"{name}: {fault}", file=sys.stderr)
             continue
-        print(row(title, found), flush=True)
         everything[name] = {"title": title, "size": arguments.size, **found}
+        print(row(everything[name]), flush=True)
         if arguments.json:
             arguments.json.write_text(json.dumps(everything, indent=1) + "\n")
 

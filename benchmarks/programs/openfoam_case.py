@@ -38,11 +38,15 @@ def write_tetrahedra(path, size):
     gmsh.finalize()
 
 
-def write(case, size, pressure):
-    """Tetrahedra of that size as Gmsh leaves them; the pressure by PCG or GAMG."""
-    foam_cases.write_settings(case, fvSolution=SOLUTION.format(pressure=PRESSURE[pressure], corrections=1),
-                              controlDict=CONTROL.format(end=STEPS * 0.004, step=0.004), fvSchemes=SCHEMES_OF_TETRAHEDRA)
-    write_tetrahedra(case / "box.msh", size)
-    foam_cases.openfoam("gmshToFoam", case, str(case / "box.msh"))
-    (case / "box.msh").unlink()
+def write(case, size, pressure, cubes):
+    """Tetrahedra of that size as Gmsh leaves them, or cubes as blockMesh does; the pressure by PCG or GAMG."""
+    solution = SOLUTION.format(pressure=PRESSURE[pressure], corrections=0 if cubes else 1)
+    schemes = {} if cubes else {"fvSchemes": SCHEMES_OF_TETRAHEDRA}
+    foam_cases.write_settings(case, fvSolution=solution, controlDict=CONTROL.format(end=STEPS * 0.004, step=0.004), **schemes)
+    if cubes:
+        foam_cases.block_mesh(case, " ".join([str(round(0.5 / size) * 3)] * 3))
+    else:
+        write_tetrahedra(case / "box.msh", size)
+        foam_cases.openfoam("gmshToFoam", case, str(case / "box.msh"))
+        (case / "box.msh").unlink()
     foam_cases.write_fields(case)

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Draws what orders are worth in programs, from what `benchmarks/programs.py --json` kept.
 
@@ -20,6 +20,7 @@ def bars(number, title, found):
     y = TOP + ROW * number
     share = 1 / best["ratio"]
     low, high = (1 / x for x in reversed(best["interval"])) if best["interval"] else (share, share)
+    high = min(high, 1.2)
     faster = found["verdict"] == "faster"
     text = f"{best['ratio']:.2f}× in {best['name']}" if faster else "no gain found"
     seconds = found["orders"][0]["time"]

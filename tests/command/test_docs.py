@@ -3,6 +3,8 @@
 import json
 import re
 import shlex
+import subprocess
+import sys
 import textwrap
 
 import numpy
@@ -51,6 +53,16 @@ def test_dofs_in_cpp_are_those_that_are_compiled():
     test = (conftest.ROOT / "tests" / "io" / "dofs_test.cpp").read_text()
     compiled = re.search(r"// \[docs/dofs.md\n(.*?)^ *// docs/dofs.md\]", test, flags=re.MULTILINE | re.DOTALL).group(1)
     assert textwrap.dedent(compiled) == shown
+
+
+def test_what_orders_bring_in_programs_is_what_was_kept():
+    kept = conftest.ROOT / "docs" / "pictures" / "programs.json"
+    printed = subprocess.run([sys.executable, conftest.ROOT / "benchmarks" / "programs.py", "--from", kept], check=True,
+                             capture_output=True, text=True).stdout
+    assert printed in (conftest.ROOT / "docs" / "hosts.md").read_text()
+    drawn = subprocess.run([sys.executable, conftest.ROOT / "docs" / "pictures" / "draw_programs.py", kept, "/dev/stdout"],
+                           check=True, capture_output=True, text=True).stdout
+    assert drawn == (conftest.ROOT / "docs" / "pictures" / "programs.svg").read_text()
 
 
 def test_simulations(command, tmp_path):
