@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr int kFaultyInput = 2;
 constexpr std::array kOrdersOfMesh{"auto", "hilbert", "rcm", "spectral-fronts", "hilbert-fronts"};
+constexpr std::array kOrdersOfMatrix{"auto", "rcm", "spectral-fronts"};
 constexpr const char* kRenumberMesh = "renumberMesh";
 constexpr std::array kOrdersOfCase{"auto", kRenumberMesh, "bfs", "fiedler", "hilbert"};
 
@@ -74,6 +75,8 @@ class TriedMesh final : public TrialSubject {
   }
 
   [[nodiscard]] std::vector<std::string> orders() const override {
+    const fs::path extension = fs::path(path_).extension();
+    if (extension == ".mtx" || extension == ".graph") return {kOrdersOfMatrix.begin(), kOrdersOfMatrix.end()};
     return {kOrdersOfMesh.begin(), kOrdersOfMesh.end()};
   }
 

@@ -297,8 +297,10 @@ def test_orders_that_move_nothing_are_left_out(folder):
     assert set(by_name(result)) == {"original", "scrambled"}
     result = folder.json(*command)
     assert set(by_name(result)) <= {"original", "rcm", "spectral-fronts"}
+    assert not any("coordinates" in note for note in result["notes"])
     assert any(note.startswith("no other order") and "auto" in note for note in result["notes"])
-    result = folder.json("--methods", "hilbert", *command)
+    assert "has no coordinates, which the order 'hilbert' goes by" in folder.fails("--methods", "hilbert", *command)
+    result = folder.json("--methods", "original", *command)
     assert result["best"] is None and result["verdict"] == "undecided"
     assert "no other order" in result["finding"]
 
