@@ -30,6 +30,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -49,11 +50,16 @@ struct InfoArguments : Common {
   std::string machine;
   bool all_threads = false;
   bool measure = false;
+  bool predict = false;
+  bool details = false;
   KernelSet kernels = KernelSet::plain;
 };
 
 /// Seconds from the command's start until --measure is done, for meshes of up to about 300 thousand vertices.
 constexpr double kMeasureWithin = 3.8;
+/// The same where nobody asked for --measure, and the simplices up to which kernels run so soon.
+constexpr double kMeasureQuicklyWithin = 1.2;
+constexpr Offset kMaxQuick = 250'000;
 /// Simplices up to which times are predicted without being asked, in a few seconds a million vertices.
 constexpr Offset kMaxPredicted = 100'000'000;
 /// Simplices above which there is no time to measure a second order.
@@ -67,6 +73,17 @@ bool is_predicted(const InfoArguments& arguments, SimplicesRef simplices) {
   return has_elements(simplices) && (simplices.size() <= kMaxPredicted || !arguments.caches.empty());
 }
 
+/// How the gain is found.
+enum class By : std::uint8_t { prediction, quick_measurement, measurement };
+
+/// Kernels run where this takes no longer than two seconds, unless times of some machine are asked for.
+By judged_by(const InfoArguments& arguments, SimplicesRef simplices, const MachineChoice& machine) {
+  if (arguments.measure) return By::measurement;
+  const bool asks_for_times = arguments.predict || !arguments.machine.empty() || !arguments.caches.empty() ||
+                              (machine.name != "this" && !machine.stands_in);
+  return asks_for_times || simplices.size() > kMaxQuick ? By::prediction : By::quick_measurement;
+}
+
 /// As of `reuse_of`: all lines are followed for the caches that are asked for.
 int halvings_of(const InfoArguments& arguments, SimplicesRef simplices) {
   return arguments.caches.empty() ? halvings_for(simplices.size()) : 0;
@@ -76,7 +93,7 @@ int halvings_of(const InfoArguments& arguments, SimplicesRef simplices) {
 /// or --measure is given.
 std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph,
                                 double graph_seconds, SimplicesRef simplices,
-                                const std::optional<KernelReuse>& reuse, const MachineChoice& machine,
+                                const std::optional<KernelReuse>& reuse, const MachineChoice& machine, By by,
                                 const Stopwatch& since_start) {
   AdviceOptions options;
   options.machine = machine;
@@ -86,12 +103,13 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
   options.graph_seconds = graph_seconds;
   if (arguments.caches.empty()) options.reuse_as_is = reuse;
   options.kernels = arguments.kernels;
-  options.predict = arguments.kernels == KernelSet::plain && is_predicted(arguments, simplices) &&
-                    machine.model.threads == options.threads;
-  const bool is_measured = arguments.measure && has_elements(simplices);
+  options.predict = by != By::quick_measurement && arguments.kernels == KernelSet::plain &&
+                    is_predicted(arguments, simplices) && machine.model.threads == options.threads;
+  const bool is_measured = by != By::prediction && has_elements(simplices);
   if (!options.predict && !is_measured) return std::nullopt;
   if (is_measured) {
-    options.measure_within = kMeasureWithin - since_start.seconds();
+    options.measure_within =
+        (by == By::measurement ? kMeasureWithin : kMeasureQuicklyWithin) - since_start.seconds();
     options.for_springs_too = simplices.size() <= kMaxOfTwoOrders;
     if (simplices.size() > kMaxOfTwoOrders) options.halvings = 5;
   }
@@ -186,7 +204,6 @@ void print_mesh_facts(const Console& console, const Mesh& mesh, Offset edges, co
                 (mesh.vertex_count() + 1) / 3.0);
   console.print("{:<12} {}", "bandwidth", with_commas(facts.span.max));
   console.print("{:<12} {}", "profile", with_commas(facts.profile));
-  print_histogram(console, "Edges by span", facts.histogram);
 }
 
 void run(const InfoArguments& arguments) {
@@ -207,8 +224,10 @@ void run(const InfoArguments& arguments) {
   take_points(mesh, arguments.input, arguments.points);
 
   const CellSimplices simplices(mesh);
-  // who asks for measured times does not wait for what they would be predicted by
-  if (!arguments.measure && is_predicted(arguments, simplices)) {
+  const By by = judged_by(arguments, simplices, machine);
+  // nobody waits for a calibration who did not ask for this machine's times
+  const bool calibrates = arguments.predict || arguments.machine == "this" || arguments.all_threads;
+  if (by == By::prediction && calibrates && is_predicted(arguments, simplices)) {
     machine = calibrated(std::move(machine), arguments.all_threads, progress, console.quiet(), notes);
   }
   const Caches caches = arguments.caches.empty() ? machine.model.caches : parse_caches(arguments.caches);
@@ -225,7 +244,10 @@ void run(const InfoArguments& arguments) {
   std::optional<KernelReuse> reuse;
   Offset degenerate = 0;
   const std::array<std::function<void()>, 5> looks{
-      [&] { reuse = reuse_of(arguments, graph, simplices, stored != nullptr ? &matrix.pattern : nullptr); },
+      [&] {
+        if (by == By::quick_measurement && !arguments.details && !arguments.json) return;
+        reuse = reuse_of(arguments, graph, simplices, stored != nullptr ? &matrix.pattern : nullptr);
+      },
       [&] { facts.components = component_counts(graph); },
       [&] {
         facts.span = edge_span(graph, order);
@@ -238,25 +260,35 @@ void run(const InfoArguments& arguments) {
   matrix.components = facts.components;
   matrix.span = facts.span;
   matrix.profile = facts.profile;
-  progress.stage(arguments.measure ? "running kernels" : "predicting", 0.6, 1);
+  progress.stage(by == By::prediction ? "predicting" : "running kernels", 0.6, 1);
   const std::optional<Advice> advice =
-      advice_on(arguments, mesh, graph, graph_seconds, simplices, reuse, machine, since_start);
+      advice_on(arguments, mesh, graph, graph_seconds, simplices, reuse, machine, by, since_start);
 
   progress.finish();
   if (advice && !advice->doubt.empty()) notes.push_back(advice->doubt);
   console.warn_of(notes);
   const std::string_view format = format_named(mesh.format).name;
-  console.print("{}, {}", arguments.input, format);
+  console.print("{}: {}", arguments.input,
+                advice                    ? to_string(*advice)
+                : has_elements(simplices) ? "too large to be judged unasked; --measure runs the kernels, and "
+                                            "--cache this predicts cache misses and times"
+                                          : "nothing to compute on: it has no elements");
+  if (advice) print_next(console, *advice, arguments.input);
+  console.print("\n{:<12} {}", "format", format);
   if (stored != nullptr) {
     print_matrix(console, mesh, matrix);
+  } else {
+    print_mesh_facts(console, mesh, graph.edge_count(), facts, degenerate);
+  }
+  if (advice) print_times(console, *advice);
+  if (arguments.details && stored == nullptr) print_histogram(console, "Edges by span", facts.histogram);
+  if (arguments.details && stored != nullptr) {
     if (stored->is_graph)
       print_histogram(console, "Edges by the distance of their ends", facts.histogram);
     else
       print_histogram(console, "Entries by their distance from the diagonal", matrix.facts.histogram_log2);
-  } else {
-    print_mesh_facts(console, mesh, graph.edge_count(), facts, degenerate);
   }
-  if (reuse) {
+  if (arguments.details && reuse) {
     const int halvings = halvings_of(arguments, simplices);
     console.print("\nPredicted for each {}{}\n{}", stored != nullptr ? "product" : "run of a kernel",
                   halvings > 0 ? fmt::format(", estimated from 1/{} of the lines", 1 << halvings) : "",
@@ -266,15 +298,7 @@ void run(const InfoArguments& arguments) {
       console.print("{:<14}{}", stored != nullptr ? kProduct : kKernelTitles[k],
                     reuse_cells((*reuse)[k], caches));
     }
-  } else if (arguments.measure) {
-    console.warn(fmt::format("not shown, to save time: cache misses{}; see meshorder compare",
-                             stored != nullptr ? "" : " and an order for springs only"));
-  } else {
-    console.warn(
-        "not shown, to save time on a large mesh: cache misses and the verdict; --cache this predicts them, "
-        "--measure runs the kernels");
   }
-  if (advice) print_verdict(console, *advice);
 
   nlohmann::ordered_json result{{"file", arguments.input},
                                 {"format", format},
@@ -302,19 +326,26 @@ void run(const InfoArguments& arguments) {
 void add_info(CLI::App& subcommand) {
   subcommand.description("Show what a mesh file holds and whether its order is good.");
   subcommand.footer(
+      "Kernels run on meshes where this takes no longer than two seconds; the gain on larger ones is\n"
+      "predicted.\n\n"
       "Examples:\n"
       "  meshorder info dragon.veg\n"
-      "  meshorder info dragon.veg --measure");
+      "  meshorder info dragon.veg --details");
   const auto arguments = std::make_shared<InfoArguments>();
   subcommand.add_option("MESH", arguments->input, "Mesh, matrix or graph file")->required();
   add_points_option(subcommand, arguments->points);
   add_cache_option(subcommand, arguments->caches);
   add_machine_option(subcommand, arguments->machine);
   add_all_threads_option(subcommand, arguments->all_threads);
-  subcommand.add_flag(
+  subcommand.add_flag("--details", arguments->details,
+                      "Also show a histogram of the spans, and cache misses");
+  CLI::Option* const measure = subcommand.add_flag(
       "--measure", arguments->measure,
-      "Run the kernels for a few seconds, in the mesh's order and in a better one, instead of\n"
-      "predicting the gain");
+      "Run the kernels for a few seconds, however large the mesh is, and predict them as well");
+  subcommand
+      .add_flag("--predict", arguments->predict,
+                "Predict the gain, however small the mesh is; calibrates this machine the first time")
+      ->excludes(measure);
   add_kernels_option(subcommand, arguments->kernels);
   add_reading_options(subcommand);
   add_common(subcommand, *arguments, std::string(kQuiet) + ": status 0 says that the file can be read");

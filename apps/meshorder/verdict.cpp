@@ -5,12 +5,16 @@
 #include "payoff/kernel_bench.hpp"
 #include "payoff/machine_choice.hpp"
 #include "reuse_report.hpp"
+#include "wording.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
 
 namespace meshorder::command {
 namespace {
@@ -50,7 +54,21 @@ std::string pays_in_words(const Advice& advice, std::size_t candidate) {
 
 }  // namespace
 
-void print_verdict(const Console& console, const Advice& advice) {
+void print_next(const Console& console, const Advice& advice, const std::string& mesh) {
+  constexpr std::string_view kCommand = "meshorder order";
+  if (const std::optional<std::size_t> candidate = advised(advice)) {
+    const std::string output = "ordered-" + std::filesystem::path(mesh).filename().string();
+    console.print("to order it: {} {} -o {}{}", kCommand, in_shell(mesh), in_shell(output),
+                  command_for(advice.candidates[*candidate], advice.is_matrix).substr(kCommand.size()));
+    return;
+  }
+  const Candidate& first = advice.candidates.front();
+  if (first.vertices.name == "original" && first.elements.name == "original") return;
+  console.print("`{}` moves it all the same: neighbours come nearer, which these kernels do not feel",
+                kCommand);
+}
+
+void print_times(const Console& console, const Advice& advice) {
   const bool predicted = advice.as_is.costs.predicted.has_value();
   const bool measured = advice.as_is.costs.measured.has_value();
   console.print("\n{}, and how many times faster {} in another,\n{}",
@@ -86,7 +104,6 @@ void print_verdict(const Console& console, const Advice& advice) {
     console.print("A time step here: one run of element force and of assembly, {} runs of SpMV",
                   kRunsInTimeStep[0]);
   }
-  console.print("\nVerdict: {}", to_string(advice));
 }
 
 nlohmann::ordered_json to_json(const Advice& advice) {

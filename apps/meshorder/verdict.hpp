@@ -6,10 +6,16 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <string>
+
 namespace meshorder::command {
 
-/// Prints what the mesh's order costs, kernel by kernel, and what another is worth: the end of `info`.
-void print_verdict(const Console& console, const Advice& advice);
+/// Prints the line that makes the order which the sentence on a mesh names; where nothing is gained, whether
+/// `order` moves the mesh all the same.
+void print_next(const Console& console, const Advice& advice, const std::string& mesh);
+
+/// Prints what the mesh's order costs, kernel by kernel, and what others are worth.
+void print_times(const Console& console, const Advice& advice);
 
 /// Returns the keys that docs/json.md lists.
 nlohmann::ordered_json to_json(const Advice& advice);

@@ -88,4 +88,8 @@ double steps_to_pay(const Advice& advice, std::size_t candidate);
 /// matrix it names the order of rows alone.
 std::string command_for(const Candidate& candidate, bool is_matrix = false);
 
+/// Returns the place in `candidates` of the order that the sentence on an advice names; nothing where nothing
+/// is to be gained.
+std::optional<std::size_t> advised(const Advice& advice);
+
 }  // namespace meshorder

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace meshorder {
 
@@ -48,6 +49,15 @@ std::string losses(const Advice& advice, std::size_t candidate) {
   return words;
 }
 
+/// The verdict where times are not to be trusted: the direction alone.
+std::string in_doubt(const std::string& runs, const char* how, const std::string& on,
+                     const std::string& command) {
+  return fmt::format(
+      "as it is, {} {}{} than it could (measured here while the machine was busy: by how much is in doubt); "
+      "`{}` mends it",
+      runs, how, on, command);
+}
+
 /// The verdict on a matrix.
 std::string of_products(const Advice& advice) {
   const bool measured = advice.as_is.costs.measured.has_value();
@@ -60,33 +70,45 @@ std::string of_products(const Advice& advice) {
         measured ? "the measurement" + on : "the prediction" + of_machine);
   }
   const Candidate& candidate = advice.candidates[product.candidate];
+  if (!advice.doubt.empty()) return in_doubt("products take", "longer", on, command_for(candidate, true));
   return fmt::format(
       "as it is, products take {:.1f}× as long{} as they could{}; `{}` takes {} and pays after {}",
-      product.factor, on, measured ? "" : " (predicted" + of_machine + ")", command_for(candidate, true),
-      duration(candidate.order_seconds), times(product.runs_to_pay, "product"));
+      product.factor, on, measured ? " (measured here)" : " (predicted" + of_machine + ")",
+      command_for(candidate, true), duration(candidate.order_seconds), times(product.runs_to_pay, "product"));
 }
 
 }  // namespace
+
+std::optional<std::size_t> advised(const Advice& advice) {
+  const std::size_t k = worst(advice.kernels);
+  if (advice.kernels[k].factor <= 1) return std::nullopt;
+  if (advice.is_matrix) return advice.kernels[k].candidate;
+  // the order for all kernels, unless only another one makes this kernel faster
+  const double with_first =
+      advice.as_is.costs.best_known()[k] / advice.candidates.front().costs.best_known()[k];
+  return with_first >= same_time(advice, kKernels[k]) ? 0 : advice.kernels[k].candidate;
+}
 
 inline namespace v0_2 {
 
 std::string to_string(const Advice& advice) {
   if (advice.is_matrix) return of_products(advice);
+  const std::optional<std::size_t> taken = advised(advice);
   const bool measured = advice.as_is.costs.measured.has_value();
   const std::string of_machine = advice.machine.empty() ? "" : " for " + advice.machine;
   const auto& kernels = advice.kernels;
   const std::size_t k = worst(kernels);
-  if (kernels[k].factor <= 1) {
+  if (!taken) {
     return fmt::format(
         "nothing to gain: no kernel runs faster in another order, beyond the uncertainty of {}",
         measured ? "the measurement" + on_threads(advice.threads) : "the prediction" + of_machine);
   }
-  // the order for all kernels, unless only another one makes this kernel faster
-  const double with_first =
-      advice.as_is.costs.best_known()[k] / advice.candidates.front().costs.best_known()[k];
-  const std::size_t taken = with_first >= same_time(advice, kKernels[k]) ? 0 : kernels[k].candidate;
-  const Candidate& candidate = advice.candidates[taken];
-  const double steps = steps_to_pay(advice, taken);
+  const Candidate& candidate = advice.candidates[*taken];
+  if (!advice.doubt.empty()) {
+    return in_doubt(fmt::format("the {} kernel runs", kKernelTitles[k]), "slower", on_threads(advice.threads),
+                    command_for(candidate));
+  }
+  const double steps = steps_to_pay(advice, *taken);
   const double factor = advice.as_is.costs.best_known()[k] / candidate.costs.best_known()[k];
   const std::string pays =
       steps > 0 ? "within " + times(steps, "time step")
@@ -99,8 +121,8 @@ std::string to_string(const Advice& advice) {
   return fmt::format(
       "as it is, the {} kernel runs {:.1f}× slower{} than it could{}; `{}` takes {} and pays for itself {}{}",
       kKernelTitles[k], factor, measured ? on_threads(advice.threads) : "",
-      measured ? "" : " (predicted" + of_machine + ")", command_for(candidate),
-      duration(candidate.order_seconds), pays, losses(advice, taken));
+      measured ? " (measured here)" : " (predicted" + of_machine + ")", command_for(candidate),
+      duration(candidate.order_seconds), pays, losses(advice, *taken));
 }
 
 }  // namespace v0_2

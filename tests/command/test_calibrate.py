@@ -66,10 +66,10 @@ def test_a_calibration_says_what_it_measured(measured):
 
 
 def test_predictions_are_of_the_machine_that_was_calibrated(here, stored, measured):
-    result = here.json("info", "mesh.node")
+    result = here.json("info", "mesh.node", "--predict")
     assert result["verdict"]["machine"] == "this machine, calibrated 2026-01-02"
     assert result["caches"] == measured["caches"]["used"]
-    assert "predicted for this machine, calibrated 2026-01-02" in here.ok("info", "mesh.node").stdout
+    assert "predicted for this machine, calibrated 2026-01-02" in here.ok("info", "mesh.node", "--predict").stdout
     text = here.ok("calibrate", "--list").stdout
     assert text.splitlines()[0].split() == ["this", "this", "machine,", "calibrated", "2026-01-02"]
     listed = here.json("calibrate", "--list")["machines"]
@@ -96,10 +96,10 @@ def test_an_unknown_machine_gets_the_nearest_name(here, monkeypatch):
 
 
 def test_the_first_prediction_calibrates_and_the_next_one_does_not(here):
-    first = here.run("info", "mesh.node")
+    first = here.run("info", "mesh.node", "--predict")
     assert first.returncode == 0 and "measuring this machine once" in first.stderr
     assert "predicted for this machine, calibrated 20" in first.stdout
-    second = here.run("info", "mesh.node")
+    second = here.run("info", "mesh.node", "--predict")
     assert second.returncode == 0 and second.stderr == ""
     assert "predicted for this machine, calibrated 20" in second.stdout
 
@@ -108,7 +108,7 @@ def test_kernels_are_judged_as_all_threads_share_them(here, measured):
     threads = ["--threads", str(measured["threads"])]
     on = "" if measured["threads"] == 1 else f" on {measured['threads']} threads"
     assert here.json("info", "mesh.node", *threads)["verdict"]["threads"] == 1
-    for words in ["info", "mesh.node"], ["info", "mesh.node", "--measure"], ["order", "mesh.node", "-o", "out.node", "--predict"]:
+    for words in ["info", "mesh.node", "--predict"], ["info", "mesh.node", "--measure"], ["order", "mesh.node", "-o", "out.node", "--predict"]:
         result = here.json(*words, "--all-threads", *threads)
         verdict = result["verdict"] if words[0] == "info" else result["race"]
         assert verdict["threads"] == measured["threads"]
@@ -142,19 +142,19 @@ def test_measuring_does_not_wait_for_a_calibration(here):
 @pytest.mark.parametrize("content", ["", "{", "[]", '{"schema": "another"}', '{"schema": 3}', '{"schema": null}'])
 def test_a_damaged_calibration_is_measured_anew_with_one_warning(here, stored, content):
     stored.write_text(content)
-    done = here.run("info", "mesh.node", "--json")
+    done = here.run("info", "mesh.node", "--json", "--predict")
     assert done.returncode == 0
     notes = [note for note in json.loads(done.stdout)["notes"] if "is not used" in note]
     assert len(notes) == 1 and str(stored) in notes[0] and "measured anew" in notes[0]
     assert json.loads(stored.read_text())["date"] != "2026-01-02"
-    assert "is not used" not in here.ok("info", "mesh.node").stderr
+    assert "is not used" not in here.ok("info", "mesh.node", "--predict").stderr
 
 
 def test_a_folder_that_cannot_be_written_is_one_warning(here, monkeypatch):
     blocked = here.folder / "file"
     blocked.write_text("")
     monkeypatch.setenv("MESHORDER_CACHE", str(blocked / "cache"))
-    done = here.run("info", "mesh.node", "--json")
+    done = here.run("info", "mesh.node", "--json", "--predict")
     assert done.returncode == 0
     result = json.loads(done.stdout)
     assert len([note for note in result["notes"] if "cannot be written" in note]) == 1

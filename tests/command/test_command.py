@@ -53,7 +53,7 @@ def test_info_keys(command, tmp_path):
 
 def test_info_for_people_shows_spans(command, tmp_path):
     meshes.write_tetgen(tmp_path)
-    text = command.ok("info", "mesh.node").stdout
+    text = command.ok("info", "mesh.node", "--details").stdout
     assert "2 tetrahedra" in text and "█" in text
 
 

@@ -14,10 +14,13 @@ def scrambled(command, model):
 
 def test_a_scrambled_grid_is_told_what_it_loses(command, scrambled):
     text = command.ok("info", scrambled).stdout
-    verdict = text.splitlines()[-1]
-    assert verdict.startswith("Verdict: as it is, ") and "slower than it could" in verdict
+    verdict, line = text.splitlines()[:2]
+    assert verdict.startswith("scrambled.node: as it is, ") and "slower than it could" in verdict
     assert "`meshorder order` takes" in verdict and "pays for itself within" in verdict and "time step" in verdict
     assert "A time step here: " in text and "bfs/lexmax" in text
+    assert line == "to order it: meshorder order scrambled.node -o ordered-scrambled.node"
+    command.ok(*line.split()[4:])
+    assert "nothing to gain" in command.ok("info", "ordered-scrambled.node").stdout.splitlines()[0]
 
 
 def test_the_order_that_was_advised_has_nothing_to_gain(command, scrambled):
@@ -26,7 +29,7 @@ def test_the_order_that_was_advised_has_nothing_to_gain(command, scrambled):
     assert "nothing to gain" in result["sentence"]
     for kernel in KERNELS:
         assert result["kernels"][kernel] == {"factor": 1, "order": None, "runs_to_pay": None}
-    assert "nothing to gain" in command.ok("info", "ordered.node").stdout.splitlines()[-1]
+    assert "nothing to gain" in command.ok("info", "ordered.node").stdout.splitlines()[0]
 
 
 def test_verdict_keys(command, scrambled):
@@ -56,7 +59,26 @@ def test_measuring_replaces_what_is_predicted(command, scrambled):
         assert set(costs["measured_milliseconds"]) == set(costs["predicted_milliseconds"]) == KERNELS
         assert all(ms > 0 for ms in costs["measured_milliseconds"].values())
     text = command.ok("info", scrambled, "--measure").stdout
-    assert "measured here (predicted)" in text and "Verdict: " in text.splitlines()[-1]
+    assert "measured here (predicted)" in text and "slower than it could (measured here" in text.splitlines()[0]
+
+
+def test_small_meshes_are_measured_unasked(command, scrambled, monkeypatch):
+    monkeypatch.delenv("MESHORDER_MACHINE", raising=False)
+    monkeypatch.setenv("MESHORDER_CACHE", str(command.folder / "cache"))  # nothing is calibrated
+    assert command.json("info", scrambled)["verdict"]["by"] == "measurement"
+    done = command.ok("info", scrambled)
+    assert "(measured here" in done.stdout.splitlines()[0] and "predicted" not in done.stdout
+    assert "measuring this machine" not in done.stderr and not (command.folder / "cache").exists()
+    for options in (("--machine", "zen3"), ("--cache", "32K,1M")):
+        assert command.json("info", scrambled, *options)["verdict"]["by"] == "prediction"
+    assert "--measure excludes --predict" in command.fails("info", scrambled, "--predict", "--measure")
+
+
+def test_details_are_shown_when_asked_for(command, scrambled):
+    short, long = (command.ok("info", scrambled, *options).stdout for options in ((), ("--details",)))
+    for words in ("Edges by span", "Predicted for each run of a kernel", "█"):
+        assert words not in short and words in long
+    assert len(short.splitlines()) < 22 and short.splitlines()[1:8] == long.splitlines()[1:8]
 
 
 def test_tuned_kernels_are_measured_only(command, scrambled):
