@@ -100,7 +100,7 @@ def test_caches_are_the_papers_or_this_machines(command, tmp_path):
     assert command.json("info", "mesh.node", "--cache", "paper")["caches"] == [2**15, 2**18, 10 * 2**20]
     here = command.json("info", "mesh.node")["caches"]
     assert here and here == sorted(here) == command.json("compare", "mesh.node", "--budget", "0.01", "--methods", "rcm")["caches"]
-    assert "48K" in command.ok("info", "mesh.node", "--cache", "48K").stdout
+    assert "48K" in command.ok("info", "mesh.node", "--details", "--cache", "48K").stdout
 
 
 def test_senseless_caches_are_refused(command, tmp_path):

@@ -72,7 +72,7 @@ def test_its_cells_are_those_of_vtk(command, tmp_path):
 
 def test_info_names_the_format_of_the_file(command, tmp_path):
     cubes(2).write(tmp_path / "a.inp", file_format="avsucd")
-    assert "a.inp, UCD" in command.ok("info", "a.inp").stdout
+    assert "\nformat       UCD\n" in command.ok("info", "a.inp").stdout
 
 
 def test_binary_files_are_named(command, tmp_path):
