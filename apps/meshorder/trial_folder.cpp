@@ -23,11 +23,14 @@ constexpr std::size_t kMostFiles = 10'000;
 
 bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
 
-/// Calls `take` with the files below a folder, and the links to folders, by their paths in it.
-void for_each_file(const fs::path& folder, const std::function<void(const fs::directory_entry&)>& take) {
+/// Calls `take` with the files below a folder, and the links to folders, by their paths in it. With `enters`
+/// also with the files in the folders that links lead to.
+void for_each_file(const fs::path& folder, bool enters,
+                   const std::function<void(const fs::directory_entry&)>& take) {
   std::error_code code;
-  constexpr auto kOptions = fs::directory_options::skip_permission_denied;
-  for (fs::recursive_directory_iterator entry(folder, kOptions, code), end; !code && entry != end;
+  auto options = fs::directory_options::skip_permission_denied;
+  if (enters) options |= fs::directory_options::follow_directory_symlink;
+  for (fs::recursive_directory_iterator entry(folder, options, code), end; !code && entry != end;
        entry.increment(code)) {
     if (is_hidden(entry->path())) {
       entry.disable_recursion_pending();
@@ -79,12 +82,14 @@ std::size_t TrialFolder::hash_of(const fs::path& path) {
 }
 
 void TrialFolder::find_companions(const fs::path& folder, const std::vector<std::string>& with) {
+  // what an order is made in is written to, so that no link may lead out of it
+  const bool enters = name_.empty();
   std::vector<std::pair<std::uintmax_t, std::string>> sizes;
   const auto add = [&](const fs::directory_entry& entry) {
     std::error_code ignored;
     const std::string name = entry.path().lexically_relative(folder).string();
     const bool is_file = entry.is_regular_file(ignored);
-    if (!is_file && !entry.is_directory(ignored)) return;  // a link that leads nowhere, a device
+    if (!is_file && (enters || !entry.is_directory(ignored))) return;  // leads nowhere, a device
     sizes.emplace_back(is_file ? entry.file_size(ignored) : kMostCopied, name);
     companions_[name].source = entry.path();
     if (companions_.size() <= kMostFiles) return;
@@ -93,13 +98,13 @@ void TrialFolder::find_companions(const fs::path& folder, const std::vector<std:
         "put the mesh and them into a folder of their own",
         folder.string(), kMostFiles));
   };
-  if (with.empty()) for_each_file(folder, add);
+  if (with.empty()) for_each_file(folder, enters, add);
   for (const std::string& name : with) {
     const fs::directory_entry entry(folder / name);
     if (name.find('/') != std::string::npos || name == ".." || !entry.exists())
       throw InvalidArgument(fmt::format("--with {}: there is no such file or folder beside the mesh", name));
     if (entry.is_regular_file() || entry.is_symlink()) add(entry);
-    if (entry.is_directory() && !entry.is_symlink()) for_each_file(entry.path(), add);
+    if (entry.is_directory() && (enters || !entry.is_symlink())) for_each_file(entry.path(), enters, add);
   }
   std::sort(sizes.begin(), sizes.end());
   std::uintmax_t copied = 0;
@@ -134,11 +139,7 @@ void TrialFolder::copy_files(std::size_t order) const {
   for (const auto& [name, companion] : companions_) {
     const fs::path here = folder_of_order(order) / name;
     fs::create_directories(here.parent_path());
-    if (fs::is_directory(companion.source)) {
-      fs::create_directory_symlink(companion.source, here);
-    } else {
-      fs::copy_file(companion.source, here);
-    }
+    fs::copy_file(companion.source, here);
   }
   for (const auto& [name, file] : orders_[0]) {
     fs::create_directories((folder_of_order(order) / name).parent_path());
@@ -167,14 +168,13 @@ void TrialFolder::move_into_orders(const std::string& name) {
 void TrialFolder::complete_order(std::size_t order) {
   std::vector<std::string> written;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_of_order(order))) {
-    if (entry.is_symlink() || entry.is_regular_file())
+    if (entry.is_regular_file() && !entry.is_symlink())
       written.push_back(entry.path().lexically_relative(folder_of_order(order)).string());
   }
   for (const std::string& name : written) {
     const fs::path path = folder_of_order(order) / name;
     const auto companion = companions_.find(name);
-    if (companion != companions_.end() &&
-        (fs::is_symlink(path) || hash_of(path) == hash_of(companion->second.source))) {
+    if (companion != companions_.end() && hash_of(path) == hash_of(companion->second.source)) {
       fs::remove(path);
       continue;
     }

@@ -19,7 +19,8 @@ namespace meshorder::command {
 ///
 /// Files beside the mesh are copied, the smallest first, up to 64 MiB; the larger ones are links, and so are
 /// links to folders. Hidden ones are left out. A program can write into what is linked: this is noticed after
-/// the run, but not prevented.
+/// the run, but not prevented. Where a folder is what is ordered, it is copied whole for each order, with the
+/// folders that links lead to, since orders are made in these copies.
 class TrialFolder {
  public:
   /// @param folder  in which the mesh is

@@ -430,6 +430,18 @@ def test_a_case_is_named_by_its_foam_file(folder, case):
     assert sorted(moved) == [float(cell) for cell in range(8 * 7 * 6)] and moved != sorted(moved)
 
 
+@pytest.mark.parametrize("linked", ["0", "constant/polyMesh", "system"])
+@pytest.mark.parametrize("method", ["rcm", "renumberMesh"])
+def test_what_links_of_a_case_lead_to_stays(folder, case, linked, method):
+    (folder.path / "elsewhere").mkdir()
+    target = (case / linked).rename(folder.path / "elsewhere" / "folder")
+    (case / linked).symlink_to(target)
+    folder.before = folder.contents()
+    assert any("elsewhere" in path.parts for path in folder.before)
+    result = folder.json("cavity", "--methods", method, "--budget", "6", "--json", "--", "flow")
+    assert by_name(result)[method]["fault"] is None
+
+
 def test_faults_of_cases(folder, case):
     assert "there is no mesh of OpenFOAM" in folder.fails(".", "--", "flow")
     assert "cells have no such order" in folder.fails("cavity", "--methods", "lexmax", "--", "flow")
