@@ -13,6 +13,7 @@
 #include "mesh/stored_matrix.hpp"
 #include "mesh_files.hpp"
 #include "metrics/edge_span.hpp"
+#include "ordering/method_named.hpp"
 #include "payoff/band.hpp"
 #include "payoff/kernel_timing.hpp"
 #include "payoff/machine.hpp"
@@ -91,7 +92,8 @@ std::vector<ComparedOrder> orders_of_matrix(const Mesh& mesh, const CompareArgum
   if (names.empty()) {
     for (std::string& name : default_methods()) {
       const bool of_rows = name.find('/') == std::string::npos;
-      if (of_rows && (has_places(mesh) || !needs_points(name))) names.push_back(std::move(name));
+      if (of_rows && (has_places(mesh) || !needs_points(vertex_methods(), name)))
+        names.push_back(std::move(name));
     }
   }
   std::vector<ComparedOrder> orders = orders_of(names);
@@ -100,13 +102,16 @@ std::vector<ComparedOrder> orders_of_matrix(const Mesh& mesh, const CompareArgum
 }
 
 /// Times the kernels in all orders and on the band, in interleaved rounds.
-KernelTable timed(const Mesh& mesh, const CsrGraph& graph, const std::vector<ComparedOrder>& orders,
-                  const Band& band, KernelSet kernels, int threads, const TimingOptions& options) {
+///
+/// @param entries  of a matrix
+KernelTable timed(const Mesh& mesh, const EntryPattern& entries, const CsrGraph& graph,
+                  const std::vector<ComparedOrder>& orders, const Band& band, KernelSet kernels, int threads,
+                  const TimingOptions& options) {
   KernelTable table;
   table.threads = threads;
   const auto prepare = [&](Index i) -> std::unique_ptr<KernelBench> {
     if (i == index_size(orders) && stored_matrix(mesh) != nullptr) {
-      auto bench = std::make_unique<ProductBench>(ideal_pattern(entry_pattern(mesh)));
+      auto bench = std::make_unique<ProductBench>(ideal_pattern(entries));
       bench->share(threads);
       return bench;
     }
@@ -141,6 +146,7 @@ void run(const CompareArguments& arguments) {
   take_points(mesh, arguments.input, arguments.points);
   const StoredMatrix* const stored = stored_matrix(mesh);
   if (stored != nullptr) comparison.orders = orders_of_matrix(mesh, arguments);
+  const EntryPattern entries = stored != nullptr ? entry_pattern(mesh) : EntryPattern{};
   comparison.kernels_run = kernels_of(mesh);
   mesh.cell_blocks.clear();  // orders are compared, not a file's layout
   const CsrGraph graph = vertex_graph(mesh);
@@ -170,7 +176,7 @@ void run(const CompareArguments& arguments) {
   timing.budget_seconds /= static_cast<double>(thread_counts.size());
   for (const int threads : thread_counts) {
     comparison.kernels.push_back(
-        timed(mesh, graph, comparison.orders, band, arguments.kernels, threads, timing));
+        timed(mesh, entries, graph, comparison.orders, band, arguments.kernels, threads, timing));
   }
 
   progress.finish();
@@ -182,7 +188,7 @@ void run(const CompareArguments& arguments) {
   console.warn_of(notes);
   console.print("{}: {}", arguments.input,
                 stored != nullptr
-                    ? size_in_words(*stored, entry_pattern(mesh))
+                    ? size_in_words(*stored, entries)
                     : fmt::format("{} vertices, {}", with_commas(mesh.vertex_count()), cells_in_words(mesh)));
   print_comparison(console, comparison);
   nlohmann::ordered_json result{{"file", arguments.input},

@@ -4,24 +4,15 @@
 #include "base/text.hpp"
 #include "io/matrix/points.hpp"
 #include "mesh/stored_matrix.hpp"
-#include "ordering/method.hpp"
+#include "ordering/method_named.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 #include <vector>
 
 namespace meshorder::command {
-namespace {
-
-bool is_by_points(const std::vector<MethodInfo>& methods, const std::string& name) {
-  return std::any_of(methods.begin(), methods.end(),
-                     [&](const MethodInfo& method) { return method.needs_points && method.name == name; });
-}
-
-}  // namespace
 
 void add_points_option(CLI::App& subcommand, std::string& points) {
   subcommand
@@ -48,8 +39,8 @@ void take_points(Mesh& mesh, const std::string& input, const std::string& points
 
 void require_points(const Mesh& mesh, const std::string& input, const std::string& vertices,
                     const std::string& elements) {
-  const bool by_vertices = needs_points(vertices);
-  if (!by_vertices && !is_by_points(element_methods(), elements)) return;
+  const bool by_vertices = needs_points(vertex_methods(), vertices);
+  if (!by_vertices && !needs_points(element_methods(), elements)) return;
   if (stored_matrix(mesh) == nullptr || has_places(mesh)) return;
   std::vector<std::string> others;
   for (const MethodInfo& method : vertex_methods()) {
@@ -60,7 +51,5 @@ void require_points(const Mesh& mesh, const std::string& input, const std::strin
                                  input, by_vertices ? vertices : elements, join(others)),
                      2);
 }
-
-bool needs_points(const std::string& method) { return is_by_points(vertex_methods(), method); }
 
 }  // namespace meshorder::command

@@ -24,7 +24,4 @@ void take_points(Mesh& mesh, const std::string& input, const std::string& points
 void require_points(const Mesh& mesh, const std::string& input, const std::string& vertices,
                     const std::string& elements);
 
-/// Whether that method for vertices needs coordinates.
-bool needs_points(const std::string& method);
-
 }  // namespace meshorder::command

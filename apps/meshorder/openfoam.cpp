@@ -9,6 +9,7 @@
 #include "io/stream/scratch.hpp"
 #include "metrics/edge_span.hpp"
 #include "ordering/judgement.hpp"
+#include "ordering/method_named.hpp"
 #include "progress.hpp"
 #include "wording.hpp"
 #include <meshorder/error.hpp>
@@ -207,10 +208,7 @@ struct OrderedMesh {
 /// Returns whether a method looks at the centres of cells.
 bool needs_centres(const std::string& method, Workload workload) {
   if (method == "auto") return workload != Workload::bandwidth && workload != Workload::fill;
-  const std::vector<MethodInfo> methods = vertex_methods();
-  const auto found = std::find_if(methods.begin(), methods.end(),
-                                  [&](const MethodInfo& known) { return known.name == method; });
-  return found != methods.end() && found->needs_points;
+  return needs_points(vertex_methods(), method);
 }
 
 /// Returns a sentence if a method that was asked for by name makes the order no better.

@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "io/format.hpp"
 #include "io/stream/file_path.hpp"
+#include "ordering/method_named.hpp"
 #include "trial_program.hpp"
 #include "wording.hpp"
 #include <meshorder/error.hpp>
@@ -11,7 +12,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <array>
 #include <system_error>
 #include <utility>
@@ -50,11 +50,6 @@ nlohmann::json printed(const TrialFolder& folder) {
   return nlohmann::json::parse(FilePath(folder.log().string() + ".out").read());
 }
 
-bool is_known(const std::vector<MethodInfo>& methods, const std::string& name) {
-  return std::any_of(methods.begin(), methods.end(),
-                     [&](const MethodInfo& method) { return method.name == name; });
-}
-
 class TriedMesh final : public TrialSubject {
  public:
   TriedMesh(std::string path, OrderingOptions options)
@@ -82,8 +77,8 @@ class TriedMesh final : public TrialSubject {
 
   void check_order(const std::string& name) const override {
     const OrderNames methods = order_named(name);
-    if (name == "auto" ||
-        (is_known(vertex_methods(), methods.vertices) && is_known(element_methods(), methods.elements))) {
+    if (name == "auto" || (method_named(vertex_methods(), methods.vertices) &&
+                           method_named(element_methods(), methods.elements))) {
       return;
     }
     throw InvalidArgument(
@@ -163,7 +158,7 @@ class TriedCase final : public TrialSubject {
   }
 
   void check_order(const std::string& name) const override {
-    if (name == "auto" || name == kRenumberMesh || is_known(vertex_methods(), name)) return;
+    if (name == "auto" || name == kRenumberMesh || method_named(vertex_methods(), name)) return;
     throw InvalidArgument(
         fmt::format("--methods {}: cells have no such order; meshorder methods lists those for vertices, and "
                     "{} is the one that it takes by itself",

@@ -8,7 +8,7 @@ import ufl
 from dolfinx.fem.petsc import assemble_matrix, assemble_vector
 from mpi4py import MPI
 from petsc4py import PETSc
-from solve import report
+from solve import gradients_of_petsc, report
 
 with dolfinx.io.XDMFFile(MPI.COMM_WORLD, sys.argv[1], "r") as file:
     mesh = file.read_mesh(name="Grid")
@@ -20,11 +20,5 @@ begin = time.process_time()
 matrix = assemble_matrix(form)
 matrix.assemble()
 right = assemble_vector(load)
-solver = PETSc.KSP().create()
-solver.setOperators(matrix)
-solver.setType("cg")
-solver.getPC().setType("jacobi")
-solver.setTolerances(rtol=1e-8, max_it=10000)
-x = matrix.createVecRight()
-solver.solve(right, x)
-report(time.process_time() - begin, right.dot(x), solver.getIterationNumber())
+x, iterations = gradients_of_petsc(matrix, right, "jacobi")
+report(time.process_time() - begin, right.dot(x), iterations)

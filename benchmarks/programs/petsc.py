@@ -3,21 +3,14 @@
 import sys
 import time
 
-import numpy
 import scipy.io
 from petsc4py import PETSc
-from solve import report
+from solve import gradients_of_petsc, report
 
 matrix = scipy.io.mmread(sys.argv[1]).tocsr()
 a = PETSc.Mat().createAIJ(matrix.shape, csr=(matrix.indptr, matrix.indices, matrix.data))
-right, u = a.createVecRight(), a.createVecLeft()
+right = a.createVecRight()
 right.set(1)
-solver = PETSc.KSP().create()
-solver.setOperators(a)
-solver.setType("cg")
-solver.getPC().setType("icc")
-solver.setTolerances(rtol=1e-8, max_it=10000)
 begin = time.process_time()
-solver.setUp()
-solver.solve(right, u)
-report(time.process_time() - begin, right.dot(u), solver.getIterationNumber())
+u, iterations = gradients_of_petsc(a, right, "icc")
+report(time.process_time() - begin, right.dot(u), iterations)

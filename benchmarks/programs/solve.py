@@ -17,6 +17,19 @@ def conjugate_gradients(matrix, right, preconditioner=None):
     return solution, count[0]
 
 
+def gradients_of_petsc(matrix, right, preconditioner):
+    """The same by PETSc, for its own matrix and vector."""
+    from petsc4py import PETSc
+    solver = PETSc.KSP().create()
+    solver.setOperators(matrix)
+    solver.setType("cg")
+    solver.getPC().setType(preconditioner)
+    solver.setTolerances(rtol=1e-8, max_it=10000)
+    solution = matrix.createVecRight()
+    solver.solve(right, solution)
+    return solution, solver.getIterationNumber()
+
+
 def report(seconds, energy, iterations=None):
     """What `meshorder try` reads."""
     print(f"compute: {seconds:.6f} s")

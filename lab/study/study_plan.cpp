@@ -2,9 +2,8 @@
 #include "lab/study/study_plan.hpp"
 
 #include "base/text.hpp"
+#include "ordering/method_named.hpp"
 #include <meshorder/error.hpp>
-
-#include <algorithm>
 
 namespace meshorder {
 
@@ -23,10 +22,7 @@ OrderingSpec study_ordering(std::string_view name) {
   const auto slash = name.find('/');
   const std::string vertices(name.substr(0, slash));
   const std::string elements(slash == std::string_view::npos ? "" : name.substr(slash + 1));
-  const auto known = [](const auto& methods, const std::string& method) {
-    return std::any_of(methods.begin(), methods.end(), [&](const auto& m) { return m.name == method; });
-  };
-  if (!known(vertex_methods(), vertices) || !known(element_methods(), elements)) {
+  if (!method_named(vertex_methods(), vertices) || !method_named(element_methods(), elements)) {
     throw InvalidArgument("unknown ordering '" + std::string(name) + "'; known are " +
                           join(paper_orderings(), [](const auto& ordering) { return ordering.name; }) +
                           ", and VERTICES/ELEMENTS, see meshorder methods");

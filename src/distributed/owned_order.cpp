@@ -6,8 +6,8 @@
 #include "distributed/global_graph.hpp"
 #include "distributed/halo.hpp"
 #include "distributed/local_orders.hpp"
+#include "ordering/method_named.hpp"
 #include <meshorder/error.hpp>
-#include <meshorder/registry.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -15,12 +15,6 @@
 
 namespace meshorder::distributed {
 namespace {
-
-bool needs_points(const std::string& method) {
-  const std::vector<MethodInfo> methods = vertex_methods();
-  return std::any_of(methods.begin(), methods.end(),
-                     [&](const MethodInfo& info) { return info.name == method && info.needs_points; });
-}
 
 /// The numbers of the vertices of cells after `new_numbers`, which every rank has for its own.
 Rows renumbered(const Communicator& communicator, const Layout& vertices, const Rows& cells,
@@ -53,7 +47,7 @@ OwnedOrder order_owned(const Communicator& communicator, const OwnedMesh& mesh,
   communicator.together([&] { check_options(options); });
   const bool is_placed = has_points(communicator, mesh);
   communicator.together([&] {
-    if (!is_placed && needs_points(options.vertices))
+    if (!is_placed && needs_points(vertex_methods(), options.vertices))
       throw InvalidArgument("the order '" + options.vertices + "' needs coordinates, and there are none");
   });
   const int rank = communicator.rank();

@@ -3,6 +3,7 @@
 
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
+#include "graph/tidy_rows.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
@@ -13,25 +14,27 @@
 #include <string>
 
 namespace meshorder {
-namespace {
 
-/// Sorts every row, drops loops and repeats, and closes the gaps.
-void tidy_rows(CsrGraph& graph) {
+void tidy_rows(std::vector<Offset>& starts, std::vector<Index>& columns, bool keeps_loops) {
   Offset kept = 0;
   Offset begin = 0;
-  for (Index v = 0; v < graph.size(); ++v) {
-    const Offset end = graph.offsets[v + 1];
-    std::sort(graph.neighbours.begin() + begin, graph.neighbours.begin() + end);
-    const Offset row = kept;
+  for (std::size_t row = 0; row + 1 < starts.size(); ++row) {
+    const Offset end = starts[row + 1];
+    std::sort(columns.begin() + begin, columns.begin() + end);
+    const Offset first = kept;
     for (Offset k = begin; k < end; ++k) {
-      const Index u = graph.neighbours[k];
-      if (u != v && (kept == row || graph.neighbours[kept - 1] != u)) graph.neighbours[kept++] = u;
+      const Index column = columns[k];
+      const bool is_dropped = (!keeps_loops && column == static_cast<Index>(row)) ||
+                              (kept > first && columns[kept - 1] == column);
+      if (!is_dropped) columns[kept++] = column;
     }
-    graph.offsets[v + 1] = kept;
+    starts[row + 1] = kept;
     begin = end;
   }
-  graph.neighbours.resize(kept);
+  columns.resize(kept);
 }
+
+namespace {
 
 /// Writes the new numbers of a row's vertices, sorted. Few ones by counting for each how many are smaller,
 /// without the branches that a processor cannot predict: two to three times faster than std::sort.
@@ -72,7 +75,7 @@ CsrGraph graph_from_edges(Index n, std::span<const Edge> edges) {
     graph.neighbours[next[edge.a]++] = edge.b;
     graph.neighbours[next[edge.b]++] = edge.a;
   }
-  tidy_rows(graph);
+  tidy_rows(graph.offsets, graph.neighbours, false);
   return graph;
 }
 

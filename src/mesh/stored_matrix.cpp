@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/stored_matrix.hpp"
 
+#include "graph/tidy_rows.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -10,22 +12,6 @@
 
 namespace meshorder {
 namespace {
-
-/// Sorts every row, drops repeats and closes the gaps.
-void tidy_entries(EntryPattern& pattern) {
-  Offset kept = 0;
-  Offset begin = 0;
-  for (Index row = 0; row < pattern.rows(); ++row) {
-    const Offset end = pattern.starts[row + 1];
-    const auto first = pattern.columns.begin() + begin;
-    std::sort(first, pattern.columns.begin() + end);
-    const auto last = std::unique(first, pattern.columns.begin() + end);
-    kept = std::copy(first, last, pattern.columns.begin() + kept) - pattern.columns.begin();
-    pattern.starts[row + 1] = kept;
-    begin = end;
-  }
-  pattern.columns.resize(kept);
-}
 
 /// Whether each entry has one at the transposed place: as rows rise, those that name a column do so in the
 /// order in which its own row lists them.
@@ -82,7 +68,7 @@ EntryPattern entry_pattern(const Mesh& mesh) {
   pattern.columns.resize(pattern.starts.back());
   std::vector<Offset> next(pattern.starts.begin(), pattern.starts.end() - 1);
   for_entries([&](Index row, Index column) { pattern.columns[next[row]++] = column; });
-  tidy_entries(pattern);
+  tidy_rows(pattern.starts, pattern.columns, true);
   return pattern;
 }
 

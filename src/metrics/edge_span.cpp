@@ -67,22 +67,6 @@ EdgeSpan edge_span(GraphRef graph, const Permutation& order) {
 
 namespace {
 
-/// Adds up spans and their logarithms.
-struct SpanSums {
-  double sum = 0;
-  double logs = 0;
-  Offset entries = 0;
-  Index max = 0;
-
-  SpanSums& operator+=(const SpanSums& other) {
-    sum += other.sum;
-    logs += other.logs;
-    entries += other.entries;
-    max = std::max(max, other.max);
-    return *this;
-  }
-};
-
 /// @param place_of  `place_of(v)` returns the new number of a vertex
 template <class PlaceOf>
 EdgeSpan span_of_sample(GraphRef graph, PlaceOf place_of) {
@@ -90,8 +74,8 @@ EdgeSpan span_of_sample(GraphRef graph, PlaceOf place_of) {
   constexpr Index kAhead = 8;
   constexpr double kLargeProduct = 0x1p+960;  // which another span leaves below the largest double
   const VertexSample sample(graph.size());
-  const auto sums = sum_over_chunks<SpanSums>(sample.size(), kAtOnce, [&](Index begin, Index end) {
-    SpanSums part;
+  const auto sums = sum_over_chunks<SpanSums<Offset>>(sample.size(), kAtOnce, [&](Index begin, Index end) {
+    SpanSums<Offset> part;
     double product = 1;  // one logarithm for many spans
     for (Index k = begin; k < end; ++k) {
       __builtin_prefetch(graph.neighbours.data() + graph.offsets[sample[std::min(k + kAhead, end - 1)]]);
@@ -100,20 +84,22 @@ EdgeSpan span_of_sample(GraphRef graph, PlaceOf place_of) {
       for (const Index u : graph[v]) {
         const Index span = std::abs(place_of(u) - place);
         part.sum += span;
-        part.max = std::max(part.max, span);
+        part.max = std::max<Offset>(part.max, span);
         product *= span;
         if (product < kLargeProduct) continue;
-        part.logs += std::log2(product);
+        part.log2_sum += std::log2(product);
         product = 1;
       }
       part.entries += graph.degree(v);
     }
-    part.logs += std::log2(product);
+    part.log2_sum += std::log2(product);
     return part;
   });
   if (sums.entries == 0) return {};
   const auto entries = static_cast<double>(sums.entries);
-  return {.mean = sums.sum / entries, .max = sums.max, .mean_log2 = sums.logs / entries};
+  return {.mean = static_cast<double>(sums.sum) / entries,
+          .max = static_cast<Index>(sums.max),
+          .mean_log2 = sums.log2_sum / entries};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <meshorder/permutation.hpp>
 #include <meshorder/quality.hpp>
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,23 @@ EdgeSpan edge_span(GraphRef graph, const Permutation& order);
 ///
 /// @param place_of  the new number of each vertex; none: as they are
 EdgeSpan sampled_edge_span(GraphRef graph, std::span<const Index> place_of);
+
+/// Sums over the entries of a graph, of which each edge has two.
+template <class Number>
+struct SpanSums {
+  Number entries = 0;
+  Number sum = 0;
+  Number max = 0;
+  double log2_sum = 0;
+
+  SpanSums& operator+=(const SpanSums& other) {
+    entries += other.entries;
+    sum += other.sum;
+    max = std::max(max, other.max);
+    log2_sum += other.log2_sum;
+    return *this;
+  }
+};
 
 /// The part of an EdgeSpan that takes no logarithms.
 struct SpanSize {

@@ -248,7 +248,8 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
       }
       candidate.order_seconds = options.graph_seconds + stopwatch.seconds();
       moved->graph = renumbered(graph, order.vertices.permutation.old_to_new());
-      if (options.predict) moved->pattern = meshorder::moved(order.vertices.permutation, pattern);
+      if (advice.is_matrix && options.predict)
+        moved->pattern = meshorder::moved(order.vertices.permutation, pattern);
       orders.push_back(ordered(std::move(moved), advice.is_matrix));
     }
     advice.candidates.push_back(std::move(candidate));
