@@ -230,6 +230,8 @@ void run(const InfoArguments& arguments) {
   if (by == By::prediction && calibrates && is_predicted(arguments, simplices)) {
     machine = calibrated(std::move(machine), arguments.all_threads, progress, console.quiet(), notes);
   }
+  if (by == By::prediction && !machine.fault.empty())
+    notes.push_back(machine.fault + "; `meshorder calibrate` measures it anew");
   const Caches caches = arguments.caches.empty() ? machine.model.caches : parse_caches(arguments.caches);
   progress.stage("measuring", 0.3, 0.6);
   const Stopwatch building_graph;
