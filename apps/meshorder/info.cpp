@@ -206,6 +206,124 @@ void print_mesh_facts(const Console& console, const Mesh& mesh, Offset edges, co
   console.print("{:<12} {}", "profile", with_commas(facts.profile));
 }
 
+/// What `info` says of a mesh.
+struct Findings {
+  std::string_view format;
+  const StoredMatrix* stored = nullptr;  ///< of a matrix or graph
+  MatrixReport matrix;                   ///< likewise
+  CsrGraph graph;
+  double graph_seconds = 0;
+  GraphFacts facts;
+  Offset degenerate = 0;
+  bool has_elements = true;
+  std::optional<KernelReuse> reuse;
+  int halvings = 0;  ///< of the lines that `reuse` is estimated from
+  Caches caches;
+  std::optional<Advice> advice;
+};
+
+/// Counts what a mesh holds, its cache misses as well where they are shown or predicted by.
+Findings counted(const InfoArguments& arguments, const Mesh& mesh, SimplicesRef simplices, By by) {
+  Findings found;
+  found.format = format_named(mesh.format).name;
+  found.has_elements = has_elements(simplices);
+  found.halvings = halvings_of(arguments, simplices);
+  found.stored = stored_matrix(mesh);
+  const Stopwatch building_graph;
+  found.graph = vertex_graph(mesh);
+  found.graph_seconds = building_graph.seconds();
+  if (found.stored != nullptr) found.matrix.pattern = entry_pattern(mesh);
+  const Permutation order = Permutation::identity(mesh.vertex_count());
+  const std::array<std::function<void()>, 5> looks{
+      [&] {
+        if (by == By::quick_measurement && !arguments.details && !arguments.json) return;
+        found.reuse = reuse_of(arguments, found.graph, simplices,
+                               found.stored != nullptr ? &found.matrix.pattern : nullptr);
+      },
+      [&] { found.facts.components = component_counts(found.graph); },
+      [&] {
+        found.facts.span = edge_span(found.graph, order);
+        found.facts.profile = profile(found.graph, order);
+        found.facts.histogram = span_histogram_log2(found.graph, order);
+      },
+      [&] { found.degenerate = std::ssize(degenerate_cells(mesh.cells)); },
+      [&] { found.matrix.facts = facts_of(found.matrix.pattern); }};
+  take_turns(index_size(looks), [&](Index turn) { looks[turn](); });
+  found.matrix.components = found.facts.components;
+  found.matrix.span = found.facts.span;
+  found.matrix.profile = found.facts.profile;
+  return found;
+}
+
+/// Prints the histogram and the cache misses.
+void print_details(const Console& console, const Mesh& mesh, const Findings& found) {
+  const bool is_matrix = found.stored != nullptr;
+  if (!is_matrix) {
+    print_histogram(console, "Edges by span", found.facts.histogram);
+  } else if (found.stored->is_graph) {
+    print_histogram(console, "Edges by the distance of their ends", found.facts.histogram);
+  } else {
+    print_histogram(console, "Entries by their distance from the diagonal",
+                    found.matrix.facts.histogram_log2);
+  }
+  if (!found.reuse) return;
+  console.print(
+      "\nPredicted for each {}{}\n{}", is_matrix ? "product" : "run of a kernel",
+      found.halvings > 0 ? fmt::format(", estimated from 1/{} of the lines", 1 << found.halvings) : "",
+      kReuseLegend);
+  console.print("{:<14}{}", "", reuse_header(found.caches));
+  for (std::size_t k = 0; k < kernels_of(mesh).size(); ++k) {
+    console.print("{:<14}{}", is_matrix ? kProduct : kKernelTitles[k],
+                  reuse_cells((*found.reuse)[k], found.caches));
+  }
+}
+
+/// Prints the answer, and then what it is about.
+void print_findings(const Console& console, const InfoArguments& arguments, const Mesh& mesh,
+                    const Findings& found) {
+  const std::optional<Advice>& advice = found.advice;
+  console.print("{}: {}", arguments.input,
+                advice               ? to_string(*advice)
+                : found.has_elements ? "too large to be judged unasked; --measure runs the kernels, and "
+                                       "--cache this predicts cache misses and times"
+                                     : "nothing to compute on: it has no elements");
+  if (advice) print_next(console, *advice, arguments.input);
+  console.print("\n{:<12} {}", "format", found.format);
+  if (found.stored != nullptr) {
+    print_matrix(console, mesh, found.matrix);
+  } else {
+    print_mesh_facts(console, mesh, found.graph.edge_count(), found.facts, found.degenerate);
+  }
+  if (advice) print_times(console, *advice);
+  if (arguments.details) print_details(console, mesh, found);
+}
+
+nlohmann::ordered_json info_json(const InfoArguments& arguments, const Mesh& mesh, const Findings& found) {
+  const GraphFacts& facts = found.facts;
+  nlohmann::ordered_json result{{"file", arguments.input},
+                                {"format", found.format},
+                                {"vertices", mesh.vertex_count()},
+                                {"dimension", mesh.dimension},
+                                {"cells", cells_by_type(mesh)},
+                                {"degenerate_cells", found.degenerate},
+                                {"graph",
+                                 {{"edges", found.graph.edge_count()},
+                                  {"components", facts.components.components - facts.components.isolated},
+                                  {"isolated_vertices", facts.components.isolated}}},
+                                {"edge_span", to_json(facts.span)},
+                                {"bandwidth", facts.span.max},
+                                {"profile", facts.profile},
+                                {"span_histogram_log2", facts.histogram}};
+  if (found.stored != nullptr) result["matrix"] = to_json(mesh, found.matrix);
+  if (found.reuse) {
+    result["caches"] = found.caches.level_bytes;
+    result["reuse"] = to_json(*found.reuse, found.caches, kernels_of(mesh));
+  }
+  result["verdict"] = found.advice ? to_json(*found.advice) : nullptr;
+  result.update(attachments(mesh));
+  return result;
+}
+
 void run(const InfoArguments& arguments) {
   Console console(arguments);
   Notes notes;
@@ -232,95 +350,17 @@ void run(const InfoArguments& arguments) {
   }
   if (by == By::prediction && !machine.fault.empty())
     notes.push_back(machine.fault + "; `meshorder calibrate` measures it anew");
-  const Caches caches = arguments.caches.empty() ? machine.model.caches : parse_caches(arguments.caches);
   progress.stage("measuring", 0.3, 0.6);
-  const Stopwatch building_graph;
-  const CsrGraph graph = vertex_graph(mesh);
-  const double graph_seconds = building_graph.seconds();
-  const Permutation order = Permutation::identity(mesh.vertex_count());
-  const StoredMatrix* const stored = stored_matrix(mesh);
-  const std::span<const Kernel> kernels = kernels_of(mesh);
-  MatrixReport matrix;
-  if (stored != nullptr) matrix.pattern = entry_pattern(mesh);
-  GraphFacts facts;
-  std::optional<KernelReuse> reuse;
-  Offset degenerate = 0;
-  const std::array<std::function<void()>, 5> looks{
-      [&] {
-        if (by == By::quick_measurement && !arguments.details && !arguments.json) return;
-        reuse = reuse_of(arguments, graph, simplices, stored != nullptr ? &matrix.pattern : nullptr);
-      },
-      [&] { facts.components = component_counts(graph); },
-      [&] {
-        facts.span = edge_span(graph, order);
-        facts.profile = profile(graph, order);
-        facts.histogram = span_histogram_log2(graph, order);
-      },
-      [&] { degenerate = std::ssize(degenerate_cells(mesh.cells)); },
-      [&] { matrix.facts = facts_of(matrix.pattern); }};
-  take_turns(index_size(looks), [&](Index turn) { looks[turn](); });
-  matrix.components = facts.components;
-  matrix.span = facts.span;
-  matrix.profile = facts.profile;
+  Findings found = counted(arguments, mesh, simplices, by);
+  found.caches = arguments.caches.empty() ? machine.model.caches : parse_caches(arguments.caches);
   progress.stage(by == By::prediction ? "predicting" : "running kernels", 0.6, 1);
-  const std::optional<Advice> advice =
-      advice_on(arguments, mesh, graph, graph_seconds, simplices, reuse, machine, by, since_start);
-
+  found.advice = advice_on(arguments, mesh, found.graph, found.graph_seconds, simplices, found.reuse, machine,
+                           by, since_start);
   progress.finish();
-  if (advice && !advice->doubt.empty()) notes.push_back(advice->doubt);
+  if (found.advice && !found.advice->doubt.empty()) notes.push_back(found.advice->doubt);
   console.warn_of(notes);
-  const std::string_view format = format_named(mesh.format).name;
-  console.print("{}: {}", arguments.input,
-                advice                    ? to_string(*advice)
-                : has_elements(simplices) ? "too large to be judged unasked; --measure runs the kernels, and "
-                                            "--cache this predicts cache misses and times"
-                                          : "nothing to compute on: it has no elements");
-  if (advice) print_next(console, *advice, arguments.input);
-  console.print("\n{:<12} {}", "format", format);
-  if (stored != nullptr) {
-    print_matrix(console, mesh, matrix);
-  } else {
-    print_mesh_facts(console, mesh, graph.edge_count(), facts, degenerate);
-  }
-  if (advice) print_times(console, *advice);
-  if (arguments.details && stored == nullptr) print_histogram(console, "Edges by span", facts.histogram);
-  if (arguments.details && stored != nullptr) {
-    if (stored->is_graph)
-      print_histogram(console, "Edges by the distance of their ends", facts.histogram);
-    else
-      print_histogram(console, "Entries by their distance from the diagonal", matrix.facts.histogram_log2);
-  }
-  if (arguments.details && reuse) {
-    const int halvings = halvings_of(arguments, simplices);
-    console.print("\nPredicted for each {}{}\n{}", stored != nullptr ? "product" : "run of a kernel",
-                  halvings > 0 ? fmt::format(", estimated from 1/{} of the lines", 1 << halvings) : "",
-                  kReuseLegend);
-    console.print("{:<14}{}", "", reuse_header(caches));
-    for (std::size_t k = 0; k < kernels.size(); ++k) {
-      console.print("{:<14}{}", stored != nullptr ? kProduct : kKernelTitles[k],
-                    reuse_cells((*reuse)[k], caches));
-    }
-  }
-
-  nlohmann::ordered_json result{{"file", arguments.input},
-                                {"format", format},
-                                {"vertices", mesh.vertex_count()},
-                                {"dimension", mesh.dimension},
-                                {"cells", cells_by_type(mesh)},
-                                {"degenerate_cells", degenerate},
-                                {"graph",
-                                 {{"edges", graph.edge_count()},
-                                  {"components", facts.components.components - facts.components.isolated},
-                                  {"isolated_vertices", facts.components.isolated}}},
-                                {"edge_span", to_json(facts.span)},
-                                {"bandwidth", facts.span.max},
-                                {"profile", facts.profile},
-                                {"span_histogram_log2", facts.histogram}};
-  if (stored != nullptr) result["matrix"] = to_json(mesh, matrix);
-  if (reuse) result.update({{"caches", caches.level_bytes}, {"reuse", to_json(*reuse, caches, kernels)}});
-  result["verdict"] = advice ? to_json(*advice) : nullptr;
-  result.update(attachments(mesh));
-  console.print_json(result);
+  print_findings(console, arguments, mesh, found);
+  console.print_json(info_json(arguments, mesh, found));
 }
 
 }  // namespace
