@@ -208,6 +208,26 @@ TEST(KernelAdvice, TrustsMeasurementsMoreThanPredictions) {
   EXPECT_DOUBLE_EQ(kernel_advice(advice)[kElement].factor, 1);
 }
 
+TEST(Verdict, SaysTheDirectionAloneWhereTimesAreInDoubt) {
+  Advice advice = made_up({2, 2, 2, 2}, {1, 1, 1, 1}, {1, 1, 1, 1});
+  advice.as_is.costs.measured = {2, 2, 6, 2};
+  for (Candidate& candidate : advice.candidates) candidate.costs.measured = {2, 2, 2, 2};
+  advice.kernels = kernel_advice(advice);
+  EXPECT_EQ(advised(advice), 0U);
+  EXPECT_NE(to_string(advice).find("assembly kernel runs 3.0× slower than it could (measured here)"),
+            std::string::npos)
+      << to_string(advice);
+  advice.doubt = "the machine was busy";
+  EXPECT_EQ(to_string(advice).find("3.0"), std::string::npos) << to_string(advice);
+  EXPECT_NE(to_string(advice).find("assembly kernel runs slower than it could (measured here while the"),
+            std::string::npos)
+      << to_string(advice);
+  advice.as_is.costs.measured = {2, 2, 2, 2};
+  advice.kernels = kernel_advice(advice);
+  EXPECT_EQ(advised(advice), std::nullopt);
+  EXPECT_NE(to_string(advice).find("nothing to gain"), std::string::npos);
+}
+
 TEST(SavedInTimeStep, CountsRunsLossesAndNoNoise) {
   const Advice advice = made_up({2, 4, 30, 1}, {2.1, 2, 10, 2}, {3, 4, 30, 1});
   EXPECT_DOUBLE_EQ(saved_in_time_step(advice, 0), 2 + 20);
