@@ -58,7 +58,7 @@ struct InfoArguments : Common {
 /// Seconds from the command's start until --measure is done, for meshes of up to about 300 thousand vertices.
 constexpr double kMeasureWithin = 3.8;
 /// The same where nobody asked for --measure, and the simplices up to which kernels run so soon.
-constexpr double kMeasureQuicklyWithin = 1.2;
+constexpr double kMeasureQuicklyWithin = 0.7;
 constexpr Offset kMaxQuick = 250'000;
 /// Simplices up to which times are predicted without being asked, in a few seconds a million vertices.
 constexpr Offset kMaxPredicted = 100'000'000;

@@ -278,10 +278,14 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
         [&](Candidate& candidate, std::size_t order) { candidate.costs.predicted = predicted[order]; });
   }
   if (options.race_of > 0) keep_best(advice, orders, order_of, options.ordering.workload, options.race_of);
+  advice.floor = options.machine.floor;
   if (measures) {
     report("measure");
     const Timings timings = in_race ? raced(orders, options) : measured(orders, options, since_call);
     advice.doubt = reason_to_doubt(timings.steadiness);
+    if (!in_race) {
+      for (double& share : advice.floor) share = std::max(share, timings.steadiness.repeat);
+    }
     for_candidates([&](Candidate& candidate, std::size_t order) {
       KernelMilliseconds& milliseconds = candidate.costs.measured.emplace();
       for (std::size_t k = 0; k < kKernels.size(); ++k) {
@@ -289,7 +293,6 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
       }
     });
   }
-  advice.floor = options.machine.floor;
   advice.kernels = kernel_advice(advice);
   return advice;
 }

@@ -49,7 +49,15 @@ std::string losses(const Advice& advice, std::size_t candidate) {
   return words;
 }
 
-/// The verdict where times are not to be trusted: the direction alone.
+/// Whether by how much a kernel gains is in doubt: the times are not to be trusted, and the gain is less than
+/// four times what two timings of the same differ by.
+bool is_vague(const Advice& advice, std::size_t kernel, double factor) {
+  constexpr double kBeyondNoise = 4;
+  constexpr double kLeastNoise = 0.05;
+  return !advice.doubt.empty() && factor - 1 < kBeyondNoise * std::max(kLeastNoise, advice.floor[kernel]);
+}
+
+/// The verdict where it is: the direction alone.
 std::string in_doubt(const std::string& runs, const char* how, const std::string& on,
                      const std::string& command) {
   return fmt::format(
@@ -70,7 +78,8 @@ std::string of_products(const Advice& advice) {
         measured ? "the measurement" + on : "the prediction" + of_machine);
   }
   const Candidate& candidate = advice.candidates[product.candidate];
-  if (!advice.doubt.empty()) return in_doubt("products take", "longer", on, command_for(candidate, true));
+  if (is_vague(advice, 0, product.factor))
+    return in_doubt("products take", "longer", on, command_for(candidate, true));
   return fmt::format(
       "as it is, products take {:.1f}× as long{} as they could{}; `{}` takes {} and pays after {}",
       product.factor, on, measured ? " (measured here)" : " (predicted" + of_machine + ")",
@@ -104,12 +113,12 @@ std::string to_string(const Advice& advice) {
         measured ? "the measurement" + on_threads(advice.threads) : "the prediction" + of_machine);
   }
   const Candidate& candidate = advice.candidates[*taken];
-  if (!advice.doubt.empty()) {
+  const double steps = steps_to_pay(advice, *taken);
+  const double factor = advice.as_is.costs.best_known()[k] / candidate.costs.best_known()[k];
+  if (is_vague(advice, k, factor)) {
     return in_doubt(fmt::format("the {} kernel runs", kKernelTitles[k]), "slower", on_threads(advice.threads),
                     command_for(candidate));
   }
-  const double steps = steps_to_pay(advice, *taken);
-  const double factor = advice.as_is.costs.best_known()[k] / candidate.costs.best_known()[k];
   const std::string pays =
       steps > 0 ? "within " + times(steps, "time step")
                 : fmt::format(
