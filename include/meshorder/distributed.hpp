@@ -13,7 +13,7 @@
 #include <vector>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// What a rank has of a mesh that many ranks share. Vertices are numbered across the ranks from 0 on: those
 /// that rank 0 owns, those of rank 1, and so on.
@@ -137,5 +137,5 @@ inline PartOrder order_parts(MPI_Comm communicator, const RankMesh& mesh, const 
   return order;
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -9,7 +9,7 @@
 #include <string>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// Kind of a failure. The numbers are those of `mo_status` in meshorder.h and do not change.
 enum class Code : int {
@@ -98,5 +98,5 @@ struct MESHORDER_API InternalError : Error {
   explicit InternalError(const std::string& message) : Error(Code::internal, message) {}
 };
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

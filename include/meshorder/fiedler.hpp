@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// The eigensolver's report on one connected component.
 struct FiedlerComponent {
@@ -54,5 +54,5 @@ struct Fiedler {
 ///       result does not depend on the number of threads, in any bit. Reentrant.
 MESHORDER_API Fiedler fiedler_vector(const GraphView& graph, const OrderOptions& options = {});
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -18,7 +18,7 @@
 #include <vector>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// Warnings of a reader or writer: what was dropped, repaired or looks wrong. The library never prints.
 using Notes = std::vector<std::string>;
@@ -160,5 +160,5 @@ struct MemoryFiles {
 [[nodiscard]] MESHORDER_API MemoryFiles write_mesh_to_memory(const Mesh& mesh, std::string_view format,
                                                              std::string_view name, Notes* notes = nullptr);
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

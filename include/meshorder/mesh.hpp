@@ -20,7 +20,7 @@
 #include <vector>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// Cells of any types, mixed, in file order: cell c has shape `shapes[c]` and the vertices
 /// `vertices[offsets[c]] … vertices[offsets[c + 1] − 1]`.
@@ -234,5 +234,5 @@ MESHORDER_API MeshOrder reorder(Mesh& mesh, const ReorderOptions& options = {});
 MESHORDER_API void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells,
                                     Ids ids = Ids::renumber);
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

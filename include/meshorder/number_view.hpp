@@ -10,7 +10,7 @@
 #include <type_traits>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// Number of a vertex, a cell, or a row of a matrix inside meshorder: at most 2,147,483,647 of them.
 using Index = std::int32_t;
@@ -170,5 +170,5 @@ class RealView {
   int bytes_ = sizeof(double);
 };
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

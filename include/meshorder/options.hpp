@@ -11,7 +11,7 @@
 #include <string_view>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// What to order for. `auto` chooses its method by this; methods asked for by name ignore it.
 enum class Workload : std::uint8_t {
@@ -98,5 +98,5 @@ struct OrderOptions {
   Run run = {};
 };
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// The method that made an order.
 struct MethodChoice {
@@ -220,5 +220,5 @@ class MESHORDER_API Graph {
 ///       for int64 offsets and int32 neighbours, else as `order_vertices`.
 MESHORDER_API void check(const GraphView& graph, Check level = Check::full);
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -19,7 +19,7 @@
 #include <vector>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// The hot loops of simulators that are predicted and measured.
 enum class Kernel : std::uint8_t {
@@ -179,5 +179,5 @@ struct CalibrationReport {
 ///       work on the machine spoils it. Stages of progress: "caches", "bandwidths", "lattices".
 MESHORDER_API CalibrationReport calibrate(const CalibrationOptions& options = {});
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

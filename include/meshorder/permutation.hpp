@@ -19,7 +19,7 @@
 #include <vector>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// A bijection of 0 … n−1, stored in both directions, and the moves of arrays that it stands for.
 ///
@@ -223,5 +223,5 @@ void Permutation::move_in_place(R&& values, std::size_t width) const {
   }
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// Numbers that describe how near the ends of edges stand in an order. The span of edge ij is |rank i − rank
 /// j|. All 0 without edges.
@@ -79,5 +79,5 @@ MESHORDER_API std::vector<Offset> span_histogram(const GraphView& graph, const P
 MESHORDER_API SparsityPattern sparsity_pattern(const GraphView& graph, const Permutation& order, int side,
                                                const Run& run = {});
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -16,7 +16,7 @@
 #include <vector>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// Description of a method, as lists of methods show it.
 struct MethodInfo {
@@ -100,5 +100,5 @@ MESHORDER_API Registration register_element_method(MethodInfo info, ElementMetho
 /// @warning Runs code of that library.
 MESHORDER_API void load_methods(const std::filesystem::path& shared_library);
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

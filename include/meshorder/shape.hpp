@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// The geometric shape of a cell. Shape and number of vertices together are the type of a cell: a tetrahedron
 /// of 4 vertices is linear, one of 10 is quadratic. The last five shapes have any number of vertices.
@@ -60,5 +60,5 @@ MESHORDER_API std::string type_name(Shape shape, int vertices);
 ///         of a polyhedron are not known.
 MESHORDER_API std::vector<std::vector<int>> facets(Shape shape, int vertices);
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -16,7 +16,7 @@
 #include <vector>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// A view of an undirected graph, or of the pattern of a square matrix, in compressed sparse rows.
 ///
@@ -254,5 +254,5 @@ struct MeshView {
   std::size_t vertex_count = 0;  ///< 0: as many as there are points
 };
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -9,7 +9,7 @@ class Meshorder(CMakePackage):
     license("MIT")
 
     # where the sources are is to be added: git = "…", or `spack develop --path …`
-    version("0.2.0", tag="v0.2.0")
+    version("0.3.0", tag="v0.3.0")
 
     variant("shared", default=True, description="One shared C++ library instead of an archive for each component")
     variant("metis", default=True, description="The orders metis-nd and metis-rb")

@@ -7,7 +7,7 @@
 #endif
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 namespace {
 
 std::string number(int major, int minor) { return std::to_string(major) + "." + std::to_string(minor); }
@@ -49,5 +49,5 @@ std::string build_info() {
   return info;
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 namespace {
 
 struct ShapeFacts {
@@ -85,5 +85,5 @@ std::vector<std::vector<int>> facets(Shape shape, int vertices) {
   return {};
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -8,7 +8,7 @@
 #include <utility>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 namespace {
 
 /// Throws unless a graph whose entries are in range is symmetric, repeats and loops aside. The hash of a
@@ -49,5 +49,5 @@ Graph cleaned(const GraphView& graph, Symmetry symmetry, const Run& run) {
   });
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -295,7 +295,7 @@ const Format* format_of_bytes(std::string_view bytes) {
   return name.empty() ? nullptr : &format_named(name);
 }
 
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 std::vector<FormatInfo> formats() {
   std::vector<FormatInfo> result;
@@ -309,5 +309,5 @@ std::vector<FormatInfo> formats() {
   return result;
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -193,7 +193,7 @@ Mesh read_mesh_from(const FilePath& path, const ReadOptions& options) {
                       options);
 }
 
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 Mesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
   return read_mesh_from(path, options);
@@ -240,5 +240,5 @@ MemoryFiles write_mesh_to_memory(const Mesh& mesh, std::string_view format, std:
   return {std::move(store).files(), std::move(cells)};
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

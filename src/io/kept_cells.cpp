@@ -220,7 +220,7 @@ void require_held_cells(const Mesh& mesh, const std::vector<Index>& kept, const 
   if (!fault.empty()) throw InputError(path.string(), fault, advice_on_formats(mesh));
 }
 
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 std::vector<Index> keep_cells(Mesh& mesh, const KeepOptions& options) {
   constexpr std::array<std::string_view, 4> kNames{"points", "curves", "surfaces", "volumes"};
@@ -252,5 +252,5 @@ std::vector<Index> keep_cells(Mesh& mesh, const KeepOptions& options) {
   return kept;
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

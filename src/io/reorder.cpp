@@ -141,7 +141,7 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGr
   });
 }
 
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options) {
   std::optional<CsrGraph> graph;
@@ -153,5 +153,5 @@ void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation
   move_with_ids(mesh, vertices, cells, ids);
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

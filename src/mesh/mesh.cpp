@@ -13,7 +13,7 @@
 #include <cmath>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 namespace {
 
 [[noreturn]] void fail(const std::string& what) { throw InvalidArgument("mesh: " + what); }
@@ -158,5 +158,5 @@ Mesh make_mesh(const MeshView& view) {
   return mesh;
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -22,7 +22,7 @@ Quality quality_of(GraphRef graph, const Permutation& order) {
           .jump_share = graph.edge_count() > 0 ? jump_share(graph, order) : 0};
 }
 
-inline namespace v0_2 {
+inline namespace v0_3 {
 namespace {
 
 /// Calls `measure(graph, order)` with a clean graph and a permutation that fits it.
@@ -62,5 +62,5 @@ SparsityPattern sparsity_pattern(const GraphView& graph, const Permutation& orde
   });
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -18,7 +18,7 @@
 #include <utility>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 namespace {
 
 /// Throws unless there are `count` finite points or none.
@@ -151,5 +151,5 @@ Fiedler fiedler_vector(const GraphView& graph, const OrderOptions& options) {
   });
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -35,7 +35,7 @@ mo_status register_method(const char* name, const char* description, int32_t nee
 }  // namespace
 #endif
 
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 void load_methods(const std::filesystem::path& shared_library) {
 #if defined(__unix__) || defined(__APPLE__)
@@ -66,5 +66,5 @@ void load_methods(const std::filesystem::path& shared_library) {
 #endif
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -143,7 +143,7 @@ ElementMethod registered_element_method(std::string_view name) {
   return method_of_name(name, &Registry::element_methods);
 }
 
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 std::string_view to_string(Workload workload) { return to_string<Workload>(workload); }
 Workload parse_workload(std::string_view name) { return parse<Workload>(name); }
@@ -180,5 +180,5 @@ std::vector<MethodInfo> element_methods() {
   return all_infos(built_in_element_methods(), &Registry::element_methods);
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -15,7 +15,7 @@
 #include <utility>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 namespace {
 
 /// Throws InvalidArgument unless the mesh has cells that the kernels take.
@@ -84,5 +84,5 @@ CalibrationReport calibrate(const CalibrationOptions& options) {
   });
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -98,7 +98,7 @@ std::optional<std::size_t> advised(const Advice& advice) {
   return with_first >= same_time(advice, kKernels[k]) ? 0 : advice.kernels[k].candidate;
 }
 
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 std::string to_string(const Advice& advice) {
   if (advice.is_matrix) return of_products(advice);
@@ -134,5 +134,5 @@ std::string to_string(const Advice& advice) {
       duration(candidate.order_seconds), pays, losses(advice, *taken));
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

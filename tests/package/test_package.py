@@ -182,11 +182,11 @@ def test_find_package(prefix, tmp_path, environment):
 
 
 @pytest.mark.parametrize("request_, reason", [
-    ("0.2 COMPONENTS c", None),
-    ("0.1", "0.2.0"),
-    ("0.3", "0.2.0"),
-    ("0.2 COMPONENTS c gpu", "the component 'gpu' is not installed"),
-    ("0.2 COMPONENTS c OPTIONAL_COMPONENTS gpu", None),
+    ("0.3 COMPONENTS c", None),
+    ("0.2", "0.3.0"),
+    ("0.4", "0.3.0"),
+    ("0.3 COMPONENTS c gpu", "the component 'gpu' is not installed"),
+    ("0.3 COMPONENTS c OPTIONAL_COMPONENTS gpu", None),
 ])
 def test_find_package_says_what_is_missing(prefix, tmp_path, request_, reason):
     (tmp_path / "CMakeLists.txt").write_text(
@@ -239,7 +239,7 @@ def test_the_library_for_many_ranks(prefix, tmp_path, environment, by):
     if by == "find_package":
         (tmp_path / "CMakeLists.txt").write_text(
             "cmake_minimum_required(VERSION 3.25)\nproject(solver LANGUAGES C CXX)\n"
-            "find_package(meshorder 0.2 REQUIRED COMPONENTS mpi)\n"
+            "find_package(meshorder 0.3 REQUIRED COMPONENTS mpi)\n"
             f"add_executable(solver {source})\ntarget_link_libraries(solver PRIVATE meshorder::mpi)\n")
         configure(tmp_path, tmp_path, f"-DCMAKE_PREFIX_PATH={prefix}")
         run("cmake", "--build", tmp_path)

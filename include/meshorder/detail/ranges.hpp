@@ -10,7 +10,7 @@
 #include <type_traits>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// An integer type that views and spans accept: 32 or 64 bits, signed or not. Neither bool nor a character
 /// type.
@@ -26,12 +26,12 @@ concept RealType = std::same_as<T, float> || std::same_as<T, double>;
 template <class N>
 concept CountType = std::integral<N> && !std::same_as<N, bool>;
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder
 
 /// Parts of the public headers that may change at any time.
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 namespace detail {
 
 /// The number type of a range's values: T of T and of std::array<T, width>.
@@ -112,5 +112,5 @@ constexpr std::size_t checked_count(N count) noexcept {
 }
 
 }  // namespace detail
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -21,7 +21,7 @@
 /// Orders for deal.II: degrees of freedom, and the vertices and cells that a triangulation is made of.
 /// Checked with deal.II 9.4.
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// Orders the degrees of freedom by the graph of those that share a cell.
 ///
@@ -119,5 +119,5 @@ MeshOrder reorder(std::vector<dealii::Point<spacedim>>& vertices, std::vector<de
   return order;
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder

@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace meshorder {
-inline namespace v0_2 {
+inline namespace v0_3 {
 
 /// Returns a function that orders graphs for DOLFINx, in place of its `reorder_gps` or `reorder_rcm`: it
 /// takes an `AdjacencyList<std::int32_t>` and returns, for each node, its new index.
@@ -29,5 +29,5 @@ inline auto dolfinx_reorder(std::string method = "auto", OrderOptions options = 
   };
 }
 
-}  // namespace v0_2
+}  // namespace v0_3
 }  // namespace meshorder
