@@ -29,6 +29,10 @@ foreach(component IN LISTS components)
   install(EXPORT ${export} NAMESPACE meshorder:: DESTINATION ${cmake_folder} COMPONENT development)
 endforeach()
 
+# not in the set of headers that are checked alone: whoever includes it brings Eigen
+install(FILES ${PROJECT_SOURCE_DIR}/include/meshorder/eigen.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshorder
+        COMPONENT development)
+
 if(TARGET meshorder_mpi)
   install(
     TARGETS meshorder_mpi

@@ -6,13 +6,14 @@
 #include "cells/facets.hpp"
 #include "cells/vertex_joins.hpp"
 #include "graph/clean_graph.hpp"
+#include "ordering/input_checks.hpp"
 #include "ordering/method.hpp"
 #include "ordering/order_cells.hpp"
+#include "ordering/points_fit.hpp"
 #include "spectral/fiedler.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/order.hpp>
 
-#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
@@ -21,25 +22,17 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace {
 
-/// Throws unless there are `count` finite points or none.
-void check_points(const PointsView& points, std::size_t count, Check check) {
-  if (points.size() == 0 || check == Check::none) return;
-  if (points.size() != count) {
-    throw InvalidArgument("points: " + std::to_string(points.size()) + " points for " +
-                          std::to_string(count) + " vertices");
-  }
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    poll_in_loop(p);
-    for (int axis = 0; axis < points.dimension(); ++axis) {
-      if (std::isfinite(points(p, axis))) continue;
-      throw InvalidArgument("points: coordinate " + std::to_string(axis) + " of point " + std::to_string(p) +
-                            " is not finite");
-    }
-  }
-}
-
 void append(std::vector<std::string>& notes, const std::vector<std::string>& more) {
   notes.insert(notes.end(), more.begin(), more.end());
+}
+
+/// Returns the points; notes where they do not fit, and then keeps them from `auto`, which would go by them.
+PointsView points_to_go_by(const PointsView& points, GraphRef graph, std::string_view method,
+                           std::vector<std::string>& notes) {
+  if (points_fit(graph, points)) return points;
+  notes.emplace_back(
+      "neighbours are as far apart as any two points: is an array transposed, or of another mesh?");
+  return method == "auto" ? PointsView() : points;
 }
 
 Graph adopted(CsrGraph&& graph) {
@@ -54,10 +47,12 @@ Order order_vertices(const GraphView& graph, std::string_view method, const Orde
     const Stopwatch stopwatch;
     report("check");
     const GraphArrays clean = clean_graph(graph, options.check, options.symmetry);
-    check_points(points, static_cast<std::size_t>(clean.size()), options.check);
-    Order result = order_vertices_by_options(
-        method, {{clean.offsets, clean.neighbours}, points, clean.weights}, options);
-    append(result.notes, clean.notes);
+    check_finite(points, static_cast<std::size_t>(clean.size()), options.check);
+    const GraphRef clean_rows(clean.offsets, clean.neighbours);
+    std::vector<std::string> notes = clean.notes;
+    const PointsView told = points_to_go_by(points, clean_rows, method, notes);
+    Order result = order_vertices_by_options(method, {clean_rows, told, clean.weights}, options);
+    append(result.notes, notes);
     result.seconds = stopwatch.seconds();
     return result;
   });
@@ -69,7 +64,7 @@ Order order_elements(const CellsView& cells, const Permutation& vertices, std::s
     const Stopwatch stopwatch;
     report("check");
     const CellArrays arrays = cell_arrays(cells, static_cast<std::size_t>(vertices.size()), options.check);
-    check_points(points, static_cast<std::size_t>(vertices.size()), options.check);
+    check_finite(points, static_cast<std::size_t>(vertices.size()), options.check);
     Order result = order_cells(method, arrays, vertices, points, options.cell_groups, options);
     append(result.notes, arrays.notes);
     result.seconds = stopwatch.seconds();
@@ -96,12 +91,15 @@ MeshOrder order_mesh(const MeshView& mesh, const MeshMethods& methods, const Ord
     report("check");
     const std::size_t n = mesh.vertex_count > 0 ? mesh.vertex_count : mesh.points.size();
     const CellArrays arrays = cell_arrays(mesh.cells, n, options.check);
-    check_points(mesh.points, n, options.check);
+    check_finite(mesh.points, n, options.check);
     MeshOrder result;
     {
       report("graph");
       const CsrGraph graph = vertex_graph(arrays);
-      result.vertices = order_vertices_by_options(methods.vertices, {graph, mesh.points}, options);
+      std::vector<std::string> notes;
+      const PointsView told = points_to_go_by(mesh.points, graph, methods.vertices, notes);
+      result.vertices = order_vertices_by_options(methods.vertices, {graph, told}, options);
+      append(result.vertices.notes, notes);
       result.vertices.seconds = vertex_time.seconds();
     }
     const Stopwatch cell_time;

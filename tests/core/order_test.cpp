@@ -657,5 +657,71 @@ TEST(FiedlerVector, HasNumbersEvenWhereTheWeightsOverflow) {
   }
 }
 
+/// A grid of triangles whose vertices are numbered at random, and its points.
+struct Sheet {
+  static constexpr Index kSide = 30;
+  std::vector<Point> points{static_cast<std::size_t>(kSide * kSide)};
+  std::vector<std::array<Index, 3>> triangles;
+
+  Sheet() {
+    const Permutation numbers = test::shuffled(kSide * kSide, 3);
+    const auto at = [&](Index x, Index y) { return numbers.old_to_new()[x + kSide * y]; };
+    for (Index y = 0; y < kSide; ++y) {
+      for (Index x = 0; x < kSide; ++x) {
+        points[at(x, y)] = {static_cast<double>(x), static_cast<double>(y), 0.1 * x};
+        if (x + 1 == kSide || y + 1 == kSide) continue;
+        triangles.push_back({at(x, y), at(x + 1, y), at(x, y + 1)});
+        triangles.push_back({at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)});
+      }
+    }
+  }
+};
+
+TEST(OrderMesh, NoticesTransposedPoints) {
+  const Sheet sheet;
+  const CellsView cells = CellsView::uniform(Shape::triangle, 3, sheet.triangles);
+  const Order right = order_mesh({sheet.points, cells}).vertices;
+  EXPECT_THAT(right.notes, testing::IsEmpty());
+  std::vector<double> by_axes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const Point& point : sheet.points) by_axes.push_back(point[axis]);
+  }
+  const PointsView misread(by_axes, 3);
+  const Order by_auto = order_mesh({misread, cells}).vertices;
+  EXPECT_THAT(by_auto.notes, ElementsAre(HasSubstr("is an array transposed")));
+  EXPECT_EQ(by_auto.permutation, order_mesh({{}, cells, sheet.points.size()}).vertices.permutation)
+      << "does not go by the coordinates";
+  const Order named = order_mesh({misread, cells}, {.vertices = "hilbert"}).vertices;
+  EXPECT_EQ(named.method.name, "hilbert") << "but where it is asked to";
+  EXPECT_THAT(named.notes, ElementsAre(HasSubstr("is an array transposed")));
+  const auto points = static_cast<Offset>(sheet.points.size()) * Offset{sizeof(double)};
+  const PointsView well_read(by_axes.data(), sheet.points.size(), 3, Offset{sizeof(double)}, points);
+  EXPECT_EQ(order_mesh({well_read, cells}).vertices.permutation, right.permutation);
+}
+
+TEST(OrderMesh, NoticesTransposedCells) {
+  Sheet sheet;
+  test::shuffled(static_cast<Index>(sheet.triangles.size()), 5).move_in_place(std::span(sheet.triangles));
+  std::vector<Index> by_corners;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    for (const auto& triangle : sheet.triangles) by_corners.push_back(triangle[corner]);
+  }
+  const CellsView cells = CellsView::uniform(Shape::triangle, 3, by_corners);
+  EXPECT_THAT(order_mesh({sheet.points, cells}).vertices.notes,
+              ElementsAre(HasSubstr("neighbours are as far apart as any two points")));
+}
+
+TEST(OrderVertices, NoticesPointsOfAnotherGraph) {
+  const Sheet sheet;
+  const Graph graph =
+      vertex_graph(CellsView::uniform(Shape::triangle, 3, sheet.triangles), sheet.points.size());
+  EXPECT_THAT(order_vertices(graph, "hilbert", {}, sheet.points).notes, testing::IsEmpty());
+  std::vector<Point> others = sheet.points;
+  test::shuffled(Sheet::kSide * Sheet::kSide, 8).move_in_place(std::span(others));
+  EXPECT_THAT(order_vertices(graph, "hilbert", {}, others).notes, ElementsAre(HasSubstr("of another mesh")));
+  const std::vector<Point> all_in_one(sheet.points.size());
+  EXPECT_THAT(order_vertices(graph, "hilbert", {}, all_in_one).notes, testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace meshorder

@@ -194,6 +194,8 @@ def test_cpp_compiles(page, tmp_path, generated_headers):
         compiler = ["c++", "-std=c++20"] if snippet.language == "cpp" else ["cc", "-std=c99"]
         if "distributed.hpp" in snippet.code:  # MPI's own C++ interface is not used, nor free of warnings
             compiler = ["mpicxx", "-std=c++20", "-DOMPI_SKIP_MPICXX"]
+        if "eigen.hpp" in snippet.code:
+            compiler += ["-isystem", "/usr/include/eigen3"]
         done = subprocess.run(
             [
                 *compiler,

@@ -1,0 +1,148 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file
+/// Meshes and matrices of Eigen, as libigl has them: V with a row for each vertex, F with a row for each
+/// cell, in either storage order. Header only; the program that includes it brings Eigen 3.4.
+
+#include <meshorder/error.hpp>
+#include <meshorder/order.hpp>
+#include <meshorder/permutation.hpp>
+#include <meshorder/view.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+#include <cstddef>
+#include <string>
+
+namespace meshorder {
+inline namespace v0_3 {
+
+/// Returns a view of the rows of a matrix as points.
+///
+/// @param points  n × 1, 2 or 3 of float or double: a matrix, map or block, not an expression to be computed.
+/// It must live
+///                as long as the view is used
+/// @throws InvalidArgument for more columns: a matrix with a column for each point has to be transposed
+template <class Derived>
+[[nodiscard]] PointsView points_view(const Eigen::DenseBase<Derived>& points MESHORDER_LIFETIMEBOUND) {
+  static_assert((Derived::Flags & Eigen::DirectAccessBit) != 0, "evaluate the expression first: .eval()");
+  if (points.cols() < 1 || points.cols() > 3) {
+    throw InvalidArgument("points: " + std::to_string(points.rows()) + " × " + std::to_string(points.cols()) +
+                          " numbers; a row for each point and 1 to 3 columns are wanted");
+  }
+  constexpr auto bytes = static_cast<Offset>(sizeof(typename Derived::Scalar));
+  const Derived& matrix = points.derived();
+  return {matrix.data(), matrix.rows(), static_cast<int>(matrix.cols()), matrix.rowStride() * bytes,
+          matrix.colStride() * bytes};
+}
+
+/// Returns a view of the pattern of a matrix.
+///
+/// @param matrix  n × n, compressed, of either storage order. It must live as long as the view is used
+/// @throws InvalidArgument for a matrix that is not square, or not compressed: call its makeCompressed()
+template <class Scalar, int Options, class StorageIndex>
+[[nodiscard]] GraphView graph_view(
+    const Eigen::SparseMatrix<Scalar, Options, StorageIndex>& matrix MESHORDER_LIFETIMEBOUND) {
+  if (matrix.rows() != matrix.cols()) {
+    throw InvalidArgument("matrix: " + std::to_string(matrix.rows()) + " × " + std::to_string(matrix.cols()) +
+                          ", must be square");
+  }
+  if (!matrix.isCompressed()) throw InvalidArgument("matrix: not compressed; call makeCompressed()");
+  return {.offsets = {matrix.outerIndexPtr(), matrix.outerSize() + 1},
+          .neighbours = {matrix.innerIndexPtr(), matrix.nonZeros()}};
+}
+
+/// Returns the permutation as Eigen has it: P * x moves the rows of x, A.twistedBy(P) rows and columns of a
+/// matrix. O(n).
+[[nodiscard]] inline Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index> permutation_matrix(
+    const Permutation& permutation) {
+  const auto map = permutation.old_to_new();
+  return Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index>(
+      Eigen::Map<const Eigen::Matrix<Index, Eigen::Dynamic, 1>>(map.data(), permutation.size()));
+}
+
+/// Orders the vertices and cells of a mesh. Nothing is changed.
+///
+/// @param points   V: n × 1, 2 or 3, a row for each vertex
+/// @param cells    F: m × k integers from 0, a row for each cell
+/// @param shape    of every cell
+/// @param methods  names of the two methods
+/// @param options  as of `order_mesh`
+/// @throws as `order_mesh` and `points_view`
+/// @note As of `order_mesh`, and a copy of the cells.
+template <class V, class F>
+[[nodiscard]] MeshOrder order_mesh(const Eigen::DenseBase<V>& points, const Eigen::DenseBase<F>& cells,
+                                   Shape shape, const MeshMethods& methods = {},
+                                   const OrderOptions& options = {}) {
+  const Eigen::Matrix<typename F::Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = cells;
+  return order_mesh({points_view(points),
+                     CellsView::uniform(shape, static_cast<int>(rows.cols()), {rows.data(), rows.size()}),
+                     static_cast<std::size_t>(points.rows())},
+                    methods, options);
+}
+
+/// The same for segments, triangles or tetrahedra, which F has 2, 3 or 4 columns of.
+///
+/// @throws InvalidArgument for other numbers of columns, besides: name the shape, or transpose F if it has a
+/// column for each
+///         cell
+template <class V, class F>
+[[nodiscard]] MeshOrder order_mesh(const Eigen::DenseBase<V>& points, const Eigen::DenseBase<F>& cells,
+                                   const MeshMethods& methods = {}, const OrderOptions& options = {}) {
+  if (cells.cols() < 2 || cells.cols() > 4) {
+    throw InvalidArgument(
+        "cells: " + std::to_string(cells.rows()) + " × " + std::to_string(cells.cols()) +
+        " numbers; a row for each cell is wanted, and a shape where it has not 2 to 4 columns");
+  }
+  const Shape shape = cells.cols() == 2   ? Shape::line
+                      : cells.cols() == 3 ? Shape::triangle
+                                          : Shape::tetrahedron;
+  return order_mesh(points, cells, shape, methods, options);
+}
+
+/// Moves the rows of a matrix or vector to their new places: all that belongs to vertices, or to cells.
+///
+/// @param values  n × k, in either storage order; of a trivially copyable type
+/// @throws InvalidArgument if it has not n rows; nothing is changed then
+/// @note O(n · k), with a copy of the matrix.
+template <class Derived>
+void move_rows(const Permutation& permutation, Eigen::PlainObjectBase<Derived>& values) {
+  if (values.rows() != permutation.size()) {
+    throw InvalidArgument("move_rows: " + std::to_string(values.rows()) + " rows, must be " +
+                          std::to_string(permutation.size()));
+  }
+  constexpr auto bytes = static_cast<Offset>(sizeof(typename Derived::Scalar));
+  const typename Derived::PlainObject old = values;
+  const bool by_rows = values.colStride() == 1;
+  const Eigen::Index strips = by_rows ? 1 : values.cols();
+  for (Eigen::Index c = 0; c < strips; ++c) {
+    permutation.move_rows(
+        old.data() + c * old.colStride(), old.rowStride() * bytes, values.data() + c * values.colStride(),
+        values.rowStride() * bytes,
+        sizeof(typename Derived::Scalar) * (by_rows ? static_cast<std::size_t>(values.cols()) : 1));
+  }
+}
+
+/// Replaces the vertex numbers in cells by the new ones: F after its vertices moved. Throws as
+/// `Permutation::renumber`. O(m · k).
+template <class Derived>
+void renumber(const Permutation& vertices, Eigen::PlainObjectBase<Derived>& cells) {
+  vertices.renumber({cells.data(), cells.size()});
+}
+
+/// Orders a mesh and moves V and F. Returns the order, for all else that belongs to vertices and cells
+/// (`move_rows`). Parameters, exceptions and cost as of `order_mesh`.
+template <class V, class F>
+MeshOrder reorder(Eigen::PlainObjectBase<V>& points, Eigen::PlainObjectBase<F>& cells,
+                  const MeshMethods& methods = {}, const OrderOptions& options = {}) {
+  MeshOrder order = order_mesh(points, cells, methods, options);
+  move_rows(order.vertices.permutation, points);
+  renumber(order.vertices.permutation, cells);
+  move_rows(order.cells.permutation, cells);
+  return order;
+}
+
+}  // namespace v0_3
+}  // namespace meshorder
