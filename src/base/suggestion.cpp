@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/suggestion.hpp"
 
+#include "base/text.hpp"
+
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
@@ -17,21 +19,21 @@ std::string bare(const std::string& word) {
   return letters;
 }
 
-/// Returns the number of letters to insert, delete or replace that turn one word into the other
-/// (Levenshtein).
+/// Returns the number of letters to insert, delete, replace or exchange with the next one that turn one word
+/// into the other (Damerau and Levenshtein; no letter is changed twice).
 std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
+  std::vector<std::vector<std::size_t>> rows(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) rows[i][0] = i;
+  std::iota(rows[0].begin(), rows[0].end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+      const std::size_t replaced = rows[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      rows[i][j] = std::min({replaced, rows[i][j - 1] + 1, rows[i - 1][j] + 1});
+      const bool exchanged = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (exchanged) rows[i][j] = std::min(rows[i][j], rows[i - 2][j - 2] + 1);
     }
   }
-  return row.back();
+  return rows[a.size()][b.size()];
 }
 
 /// Returns whether the words are the same at their beginning, but for at most two letters of `word`.
@@ -58,6 +60,13 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
     }
   }
   return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
+}
+
+std::string unknown_in_words(std::string_view kind, const std::string& word,
+                             const std::vector<std::string>& names) {
+  const std::string nearest = suggestion(word, names);
+  return "unknown " + std::string(kind) + " '" + word + "'" +
+         (nearest.empty() ? "; known are " + join(names) : nearest);
 }
 
 }  // namespace meshorder

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/suggestion.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace meshorder {
 
@@ -109,14 +111,16 @@ std::string names_of() {
   return join(EnumNames<Enum>::names, [](const auto& entry) { return std::string_view(entry.second); });
 }
 
-/// Returns the value of that name. Throws InvalidArgument, which lists the known names, if there is none.
+/// Returns the value of that name. Throws InvalidArgument, which offers the nearest name or lists all, if
+/// there is none.
 template <NamedEnum Enum>
 Enum parse(std::string_view text) {
   for (const auto& [value, name] : EnumNames<Enum>::names) {
     if (text == name) return value;
   }
-  throw InvalidArgument("unknown " + std::string(EnumNames<Enum>::kind) + " '" + std::string(text) +
-                        "'; known are " + names_of<Enum>());
+  std::vector<std::string> names;
+  for (const auto& [value, name] : EnumNames<Enum>::names) names.emplace_back(name);
+  throw InvalidArgument(unknown_in_words(EnumNames<Enum>::kind, std::string(text), names));
 }
 
 }  // namespace meshorder

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
 
+#include "base/suggestion.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/format_choice.hpp"
@@ -16,7 +17,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <string>
 #include <system_error>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -229,11 +232,11 @@ const Format& format_of(const std::filesystem::path& path) {
   if (std::error_code code; extension.empty() && std::filesystem::is_directory(path, code)) {
     throw InputError(path.string(), "is a folder", "give a mesh file");
   }
-  std::string known;
+  std::vector<std::string> known;
   for (const Format& format : kFormats) {
     for (const std::string_view candidate : format.extensions) {
       if (candidate == extension) return format;
-      known += (known.empty() ? "" : " ") + std::string(candidate);
+      known.emplace_back(candidate);
     }
   }
   for (const LackingFormat& format : kLackingFormats) {
@@ -245,9 +248,12 @@ const Format& format_of(const std::filesystem::path& path) {
   if (const OtherFormat* const other = other_format(extension)) {
     throw InputError(path.string(), std::string(other->what), std::string(other->advice));
   }
-  throw InputError(path.string(),
-                   extension.empty() ? "has no extension" : "unknown extension '" + extension + "'",
-                   "known are " + known + "; the Python package and its command also take meshio's formats");
+  const std::string fault = extension.empty() ? "has no extension" : "unknown extension '" + extension + "'";
+  if (const std::string nearest = suggestion(extension, known); !nearest.empty())
+    throw InputError(path.string(), fault, nearest.substr(2));
+  throw InputError(path.string(), fault,
+                   "known are " + join(known, std::string_view(" ")) +
+                       "; the Python package and its command also take meshio's formats");
 }
 
 const Format& format_of_file(const FilePath& path) {

@@ -2,7 +2,7 @@
 #include "ordering/method.hpp"
 
 #include "base/run_scope.hpp"
-#include "base/text.hpp"
+#include "base/suggestion.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/fronts.hpp"
 #include <meshorder/error.hpp>
@@ -105,9 +105,9 @@ const auto* find_method(const Methods& methods, std::string_view name) {
     throw Unavailable("the order '" + std::string(name) + "' needs a build with METIS (MESHORDER_METIS=ON)");
   }
 #endif
-  throw InvalidArgument("unknown " + std::string(kind) + " order '" + std::string(name) + "'; known are " +
-                        join(
-                            known, [](const MethodInfo& method) -> const auto& { return method.name; }));
+  std::vector<std::string> names;
+  for (const MethodInfo& method : known) names.push_back(method.name);
+  throw InvalidArgument(unknown_in_words(std::string(kind) + " order", std::string(name), names));
 }
 
 template <class Method>

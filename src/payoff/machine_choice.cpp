@@ -68,9 +68,7 @@ MachineChoice choose_machine(std::string_view name, bool all_threads) {
   }
   std::vector<std::string> names{std::string(kThis)};
   for (const ShippedMachine& machine : kShipped) names.emplace_back(machine.name);
-  const std::string nearest = suggestion(asked, names);
-  throw InvalidArgument("unknown machine '" + asked + "'" +
-                        (nearest.empty() ? "; known are " + join(names) : nearest));
+  throw InvalidArgument(unknown_in_words("machine", asked, names));
 }
 
 MachineChoice chosen(const Calibration& calibration, bool all_threads) {

@@ -110,10 +110,14 @@ TEST(VertexMethods, OfGeometryNeedCoordinatesAndOthersDoNot) {
   }
 }
 
-TEST(Methods, OfUnknownNamesAreRefusedWithTheKnownOnes) {
+TEST(Methods, OfUnknownNamesAreRefusedWithTheNearestOrAllKnownOnes) {
   const CsrGraph graph = test::path(3);
-  const std::string of_vertices = refusal([&] { order_graph("fielder", {graph, {}}); });
-  EXPECT_NE(of_vertices.find("'fielder'"), std::string::npos) << of_vertices;
+  EXPECT_EQ(refusal([&] {
+              order_graph("fielder", {graph, {}});
+            }),
+            "unknown vertex order 'fielder'; did you mean 'fiedler'?");
+  const std::string of_vertices = refusal([&] { order_graph("best", {graph, {}}); });
+  EXPECT_NE(of_vertices.find("'best'"), std::string::npos) << of_vertices;
   for (const MethodInfo& method : vertex_methods()) {
     EXPECT_NE(of_vertices.find(method.name), std::string::npos) << of_vertices;
   }
