@@ -1,26 +1,136 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "compare_report.hpp"
 
+#include "payoff/advice.hpp"
+#include "payoff/kernel_bench.hpp"
+#include "payoff/machine_choice.hpp"
 #include "reuse_report.hpp"
+#include "verdict.hpp"
 #include "wording.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace meshorder::command {
 namespace {
 
-constexpr const char* kFloor = "band";
+constexpr const char* kBand = "band";
 
-/// Returns the time divided by the band's. Both are taken relative to the reference, since orders that do not
-/// fit into memory together are timed in groups, each with the reference.
-double of_floor(const KernelTimes& times, const KernelTimes& floor) { return floor.speedup / times.speedup; }
+/// Returns the time divided by the band's. Both are taken relative to the file's own order, since orders that
+/// do not fit into memory together are timed in groups, each with that order.
+double of_band(const KernelTimes& times, const KernelTimes& band) { return band.speedup / times.speedup; }
+
+/// Returns what the largest number of threads took as advice on the mesh: the other orders are candidates.
+Advice advice_of(const Comparison& comparison) {
+  const KernelTable& table = comparison.kernels.back();
+  Advice advice;
+  advice.threads = table.threads;
+  advice.kernel_set = comparison.kernel_set;
+  advice.is_matrix = comparison.is_matrix();
+  advice.doubt = reason_to_doubt(table.steadiness);
+  advice.floor.fill(table.steadiness.repeat);
+  const auto candidate_of = [&](std::size_t i) {
+    const ComparedOrder& c = comparison.orders[i];
+    Candidate candidate{.vertices = c.order.vertices.method,
+                        .elements = c.order.cells.method,
+                        .workload = comparison.workload,
+                        .order_seconds = c.seconds};
+    KernelMilliseconds& milliseconds = candidate.costs.measured.emplace();
+    for (const Kernel kernel : comparison.kernels_run) {
+      milliseconds[static_cast<std::size_t>(kernel)] =
+          table.orders.front()[kernel].best_ms / table.orders[i][kernel].speedup;
+    }
+    return candidate;
+  };
+  advice.as_is = candidate_of(0);
+  for (std::size_t i = 1; i < comparison.orders.size(); ++i) advice.candidates.push_back(candidate_of(i));
+  advice.kernels = kernel_advice(advice);
+  return advice;
+}
+
+/// Returns "hilbert", or "rcm (auto)".
+std::string label(const ComparedOrder& order, bool is_matrix) {
+  const Candidate methods{.vertices = order.order.vertices.method, .elements = order.order.cells.method};
+  return order_in_words(methods, is_matrix) + (order.vertices == "auto" ? " (auto)" : "");
+}
+
+std::string bar(double share) {
+  constexpr double kWidth = 12;
+  std::string result;
+  const long length = std::lround(kWidth * std::clamp(share, 0.0, 1.0));
+  for (long i = 0; i < length; ++i) result += "█";
+  return result.empty() ? "▏" : result;
+}
+
+/// A column of the table: how many times faster each order is than the file's own, and last the band.
+struct Column {
+  std::string title;
+  std::vector<double> factors;
+  double best = 0;  ///< of the orders
+};
+
+Column column(std::string title, const KernelTable& table,
+              const std::function<double(const OrderTimes&)>& factor_of) {
+  Column result{std::move(title), {}};
+  for (const OrderTimes& times : table.orders) result.factors.push_back(factor_of(times));
+  result.best = *std::ranges::max_element(result.factors);
+  result.factors.push_back(factor_of(table.band));
+  return result;
+}
+
+/// Returns a column for each kernel, and before them, where there are several, one for their geometric mean.
+std::vector<Column> columns_of(const Comparison& comparison, const KernelTable& table) {
+  std::vector<Column> columns;
+  if (!comparison.is_matrix()) {
+    columns.push_back(column("all", table, [&](const OrderTimes& times) {
+      double sum = 0;
+      for (const Kernel kernel : comparison.kernels_run) sum += std::log(times[kernel].speedup);
+      return std::exp(sum / static_cast<double>(comparison.kernels_run.size()));
+    }));
+  }
+  for (const Kernel kernel : comparison.kernels_run) {
+    columns.push_back(column(
+        std::string(comparison.is_matrix() ? kProduct : kKernelTitles[static_cast<std::size_t>(kernel)]),
+        table, [&](const OrderTimes& times) { return times[kernel].speedup; }));
+  }
+  return columns;
+}
+
+/// Prints how many times faster the kernels run in each order than in the file's own, with bars for `told`.
+void print_speedups(const Console& console, const Comparison& comparison, const KernelTable& table,
+                    Workload told) {
+  const std::vector<Column> columns = columns_of(comparison, table);
+  std::size_t judged = 0;
+  for (std::size_t k = 0; told != Workload::all && k < kKernels.size(); ++k) {
+    if (to_string(kKernels[k]) == to_string(told)) judged = k + 1;
+  }
+  const auto width = [](const Column& c) { return std::max<std::size_t>(7, c.title.size() + 1); };
+  std::string heads = fmt::format("{:<26} {:>8}", "order", "cost");
+  for (const Column& c : columns) heads += fmt::format("{:>{}} ", c.title, width(c));
+  console.print("\nHow many times faster than in the file's own order{}, the best marked by *\n{}",
+                on_threads(table.threads), heads);
+  const double longest = std::ranges::max(columns[judged].factors);
+  for (std::size_t i = 0; i <= comparison.orders.size(); ++i) {
+    const bool is_band = i == comparison.orders.size();
+    std::string row =
+        fmt::format("{:<26} {:>8}", is_band ? kBand : label(comparison.orders[i], comparison.is_matrix()),
+                    is_band || i == 0 ? "-" : duration(comparison.orders[i].seconds));
+    for (const Column& c : columns)
+      row +=
+          fmt::format("{:>{}.2f}{}", c.factors[i], width(c), !is_band && c.factors[i] == c.best ? '*' : ' ');
+    console.print("{} {}", row, bar(columns[judged].factors[i] / longest));
+  }
+}
 
 /// Returns the beginning of a row; of a matrix, which has no elements, the order of its rows alone.
 std::string row_head(const Comparison& comparison, const std::string& vertices, const std::string& elements) {
@@ -34,20 +144,28 @@ std::string title_row(const Comparison& comparison) {
 }
 
 void print_quality(const Console& console, const Comparison& comparison) {
-  console.print("\n{} {:>8} {:>12} {:>10} {:>10}", title_row(comparison), "cost",
-                comparison.is_matrix() ? "distance" : "span: mean", "max", "mean log2");
-  const auto print_row = [&](const std::string& vertices, const std::string& elements,
-                             const std::string& cost, const EdgeSpan& span) {
-    console.print("{} {:>8} {:>12.1f} {:>10} {:>10.2f}", row_head(comparison, vertices, elements), cost,
-                  span.mean, with_commas(span.max), span.mean_log2);
+  const bool has_iterations = comparison.orders.front().iterations.has_value();
+  console.print("{} {:>8} {:>12} {:>10} {:>10}{}", title_row(comparison), "cost",
+                comparison.is_matrix() ? "distance" : "span: mean", "max", "mean log2",
+                has_iterations ? fmt::format("{:>7} {:>7}", "IC", "SGS") : "");
+  const auto print_row = [&](const std::string& head, const std::string& cost, const EdgeSpan& span,
+                             const std::string& iterations) {
+    console.print("{} {:>8} {:>12.1f} {:>10} {:>10.2f}{}", head, cost, span.mean, with_commas(span.max),
+                  span.mean_log2, iterations);
   };
   for (const ComparedOrder& c : comparison.orders) {
-    print_row(c.vertices, c.elements, duration(c.order.vertices.seconds + c.order.cells.seconds), c.span);
+    const std::string iterations =
+        c.iterations
+            ? fmt::format("{:>7} {:>7}", c.iterations->incomplete_cholesky, c.iterations->gauss_seidel)
+            : "";
+    print_row(row_head(comparison, c.vertices, c.elements), duration(c.seconds), c.span, iterations);
   }
-  print_row(kFloor, kFloor, "-", comparison.floor_span);
-  for (const ComparedOrder& c : comparison.orders) {
-    const MethodChoice& taken = c.order.vertices.method;
-    if (!taken.reason.empty()) console.print("auto takes {}: {}", taken.name, taken.reason);
+  print_row(row_head(comparison, kBand, kBand), "-", comparison.band_span, "");
+  if (has_iterations) {
+    console.print(
+        "IC, SGS: iterations of conjugate gradients on a Laplacian of the {}, preconditioned by an\n"
+        "incomplete Cholesky factor and by symmetric Gauss–Seidel sweeps, which depend on the order",
+        comparison.is_matrix() ? "graph" : "mesh");
   }
 }
 
@@ -109,15 +227,15 @@ void print_reuse(Console& console, const Comparison& comparison) {
 
 void print_kernels(const Console& console, const Comparison& comparison, const KernelTable& table) {
   console.print(
-      "\n{} on {} thread{}: best milliseconds, speedup over scrambled, time divided by the band's",
+      "\n{} on {} thread{}: best milliseconds, speedup, time divided by the band's",
       comparison.is_matrix() ? "Products" : fmt::format("Kernels ({})", to_string(comparison.kernel_set)),
       table.threads, table.threads == 1 ? "" : "s");
   std::vector<std::string> rows = row_heads(comparison);
-  rows.push_back(row_head(comparison, kFloor, kFloor));
+  rows.push_back(row_head(comparison, kBand, kBand));
   const auto cells = [&](std::size_t i, std::size_t k) {
-    const KernelTimes& t = (i < table.orders.size() ? table.orders[i] : table.floor)[kKernels[k]];
+    const KernelTimes& t = (i < table.orders.size() ? table.orders[i] : table.band)[kKernels[k]];
     return fmt::format("{:>9.3g} {:>6.2f}x {:>7.2f}", t.best_ms, t.speedup,
-                       of_floor(t, table.floor[kKernels[k]]));
+                       of_band(t, table.band[kKernels[k]]));
   };
   std::vector<std::string> twice;
   if (table.threads > 1 && !comparison.is_matrix()) {
@@ -129,7 +247,7 @@ void print_kernels(const Console& console, const Comparison& comparison, const K
                 {rows, fmt::format("{:>9} {:>7} {:>7}", "ms", "speedup", "/ band"), cells, twice});
 }
 
-nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& floor,
+nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& band,
                                     std::span<const Kernel> run) {
   nlohmann::ordered_json kernels;
   for (const Kernel kernel : run) {
@@ -138,7 +256,7 @@ nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& f
                                                {"best_milliseconds", t.best_ms},
                                                {"samples", t.samples},
                                                {"speedup", t.speedup},
-                                               {"of_floor", of_floor(t, floor[kernel])}};
+                                               {"of_band", of_band(t, band[kernel])}};
   }
   return kernels;
 }
@@ -148,13 +266,31 @@ template <class TimesOf>
 void add_kernels(nlohmann::ordered_json& to, const Comparison& comparison, TimesOf times_of) {
   for (const KernelTable& table : comparison.kernels) {
     to[table.threads == 1 ? "kernels" : "parallel_kernels"] =
-        kernels_json(times_of(table), table.floor, comparison.kernels_run);
+        kernels_json(times_of(table), table.band, comparison.kernels_run);
   }
 }
 
 }  // namespace
 
-void print_comparison(Console& console, const Comparison& comparison) {
+void print_comparison(const Console& console, const Comparison& comparison) {
+  const Advice advice = advice_of(comparison);
+  const Workload told = told_by_kernels(advice, comparison.workload);
+  console.print("{}: {}", comparison.file,
+                advice.candidates.empty() ? "--methods names no order but the file's own"
+                                          : comparison_in_words(advice, told));
+  if (const std::optional<std::size_t> best = winner_for(told, advice))
+    print_line_for(console, advice.candidates[*best], advice.is_matrix, comparison.file);
+  for (const ComparedOrder& c : comparison.orders) {
+    const MethodChoice& taken = c.order.vertices.method;
+    if (!taken.reason.empty()) console.print("auto takes {}: {}", taken.name, taken.reason);
+  }
+  for (const KernelTable& table : comparison.kernels) print_speedups(console, comparison, table, told);
+  console.print("{} is no order of your {}: it is a synthetic one of its size that streams, for reference.",
+                kBand, comparison.is_matrix() ? "matrix" : "mesh");
+}
+
+void print_comparison_details(Console& console, const Comparison& comparison) {
+  console.print("\n{}", comparison.size);
   print_quality(console, comparison);
   print_reuse(console, comparison);
   for (const KernelTable& table : comparison.kernels) print_kernels(console, comparison, table);
@@ -162,9 +298,6 @@ void print_comparison(Console& console, const Comparison& comparison) {
     console.print(
         "\ntwice: share of elements that two threads compute, since each adds only to its own vertices.");
   }
-  console.print(
-      "\n{} is not an order of your {}; it is a lower bound: a synthetic {} of its size that streams.",
-      kFloor, comparison.is_matrix() ? "matrix" : "mesh", comparison.is_matrix() ? "matrix" : "mesh");
 }
 
 nlohmann::ordered_json to_json(const Comparison& comparison) {
@@ -175,9 +308,13 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
         {"vertices", c.vertices},
         {"elements", c.elements},
         {"taken", {{"vertices", c.order.vertices.method.name}, {"elements", c.order.cells.method.name}}},
-        {"seconds", c.order.vertices.seconds + c.order.cells.seconds},
+        {"seconds", c.seconds},
         {"edge_span", to_json(c.span)},
         {"fiedler", to_json(c.order.vertices.fiedler)}};
+    if (c.iterations) {
+      method["iterations"] = {{"incomplete_cholesky", c.iterations->incomplete_cholesky},
+                              {"gauss_seidel", c.iterations->gauss_seidel}};
+    }
     if (c.reuse) method["reuse"] = to_json(*c.reuse, comparison.caches, comparison.kernels_run);
     add_kernels(method, comparison,
                 [&](const KernelTable& table) -> const OrderTimes& { return table.orders[i]; });
@@ -186,8 +323,16 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
     }
     methods.push_back(method);
   }
-  nlohmann::ordered_json floor{{"vertices", kFloor}, {"edge_span", to_json(comparison.floor_span)}};
-  add_kernels(floor, comparison, [&](const KernelTable& table) -> const OrderTimes& { return table.floor; });
+  nlohmann::ordered_json band{{"vertices", kBand}, {"edge_span", to_json(comparison.band_span)}};
+  add_kernels(band, comparison, [&](const KernelTable& table) -> const OrderTimes& { return table.band; });
+  const Advice advice = advice_of(comparison);
+  const Workload told = told_by_kernels(advice, comparison.workload);
+  nlohmann::ordered_json verdict{{"sentence", nullptr}, {"best", nullptr}, {"factor", 1}};
+  if (!advice.candidates.empty()) verdict["sentence"] = comparison_in_words(advice, told);
+  if (const std::optional<std::size_t> best = winner_for(told, advice)) {
+    verdict["best"] = *best + 1;
+    verdict["factor"] = factor_for(told, advice, *best);
+  }
   auto steadiness = nlohmann::ordered_json::array();
   for (const KernelTable& table : comparison.kernels) {
     steadiness.push_back({{"threads", table.threads},
@@ -195,11 +340,12 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
                           {"pace", table.steadiness.pace},
                           {"repeat", table.steadiness.repeat}});
   }
-  return {{"kernel_set", to_string(comparison.kernel_set)},
+  return {{"verdict", verdict},
+          {"kernel_set", to_string(comparison.kernel_set)},
           {"threads", comparison.kernels.back().threads},
           {"caches", comparison.caches.level_bytes},
           {"methods", methods},
-          {"floor", floor},
+          {"band", band},
           {"steadiness", steadiness}};
 }
 

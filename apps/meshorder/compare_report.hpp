@@ -4,9 +4,11 @@
 #include "console.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/cache.hpp"
+#include "metrics/convergence.hpp"
 #include "metrics/edge_span.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/kernel_timing.hpp"
+#include <meshorder/payoff.hpp>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -22,33 +24,43 @@ struct ComparedOrder {
   std::string vertices;
   std::string elements;
   MeshOrder order;
+  double seconds = 0;  ///< cost of the order: graph and both methods; 0 for the file's own
   EdgeSpan span;
-  std::optional<KernelReuse> reuse;  ///< of a repeated run; none for a large mesh
+  std::optional<KernelReuse> reuse;      ///< of a repeated run; none for a large mesh, nor where nobody asks
+  std::optional<Iterations> iterations;  ///< likewise
 };
 
 /// Kernels measured with a number of threads.
 struct KernelTable {
   int threads = 1;
-  std::vector<OrderTimes> orders;  ///< the reference first
-  OrderTimes floor;                ///< on the ideal band
+  std::vector<OrderTimes> orders;  ///< the file's own first
+  OrderTimes band;
   Steadiness steadiness;
   std::vector<double> redundancy;  ///< in each order, see KernelBench::redundancy
 };
 
-/// The orders, the first of which is the reference, and the band of the mesh's size, a lower bound.
+/// The orders, the first of which is the file's own, and for reference the band of the mesh's size (see
+/// `ideal_band`).
 struct Comparison {
-  Caches caches;  ///< for which misses are predicted
+  std::string file;
+  std::string size;  ///< in words
+  Caches caches;     ///< for which misses are predicted
   KernelSet kernel_set = KernelSet::plain;
+  Workload workload = Workload::all;  ///< what is to be fast
   std::vector<ComparedOrder> orders;
-  EdgeSpan floor_span;
+  EdgeSpan band_span;
   std::vector<KernelTable> kernels;
   std::span<const Kernel> kernels_run = kKernels;  ///< see kernels_of; products alone of a matrix
 
   [[nodiscard]] bool is_matrix() const noexcept { return kernels_run.size() < kKernels.size(); }
 };
 
-/// Prints costs and spans, predicted misses, and a table of kernels for each number of threads.
-void print_comparison(Console& console, const Comparison& comparison);
+/// Prints which order is best and the line that makes it, and how much faster each one is than the file's
+/// own.
+void print_comparison(const Console& console, const Comparison& comparison);
+
+/// Prints costs and spans, predicted misses, and the times of kernels for each number of threads.
+void print_comparison_details(Console& console, const Comparison& comparison);
 
 /// Returns the keys that docs/json.md lists, but for those of the file.
 nlohmann::ordered_json to_json(const Comparison& comparison);

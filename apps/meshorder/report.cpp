@@ -45,10 +45,10 @@ constexpr std::string_view kOrdered = "meshorder";
 
 std::vector<OrderingSpec> orderings_of_report() {
   return {{std::string(kAsItIs), "As it is", "original", "original"},
-          {"scrambled", "Scrambled", "scrambled", "scrambled"},
+          {std::string(kOrdered), "meshorder order", "auto", "auto"},
           {"fiedler", "Fiedler", "fiedler", "original"},
           {"vf-fiedler", "VF Fiedler", "fiedler", "fiedler"},
-          {std::string(kOrdered), "meshorder order", "auto", "auto"}};
+          {"scrambled", "Scrambled", "scrambled", "scrambled"}};
 }
 
 /// Whether an order differs from another one by its elements alone, which a matrix has not.
@@ -69,17 +69,19 @@ OrderCosts costs_of(const MeshOrderRecord& order, std::size_t kernels) {
   return costs;
 }
 
-/// Returns the verdict of `info`, from the times of this record; "" without the orders that it compares.
-std::string verdict_on(const MeshRecord& record, bool is_matrix) {
+/// Adds the verdict of `info`, from the times of this record; none without the orders that it compares.
+void add_verdict(MeshRecord& record, const Steadiness& steadiness, bool is_matrix) {
   const auto order = [&](std::string_view name) {
     return std::find_if(record.orders.begin(), record.orders.end(),
                         [&](const MeshOrderRecord& one) { return one.ordering == name; });
   };
   const auto as_it_is = order(kAsItIs);
   const auto ordered = order(kOrdered);
-  if (as_it_is == record.orders.end() || ordered == record.orders.end()) return "";
+  if (as_it_is == record.orders.end() || ordered == record.orders.end()) return;
   Advice advice;
   advice.is_matrix = is_matrix;
+  advice.doubt = reason_to_doubt(steadiness);
+  advice.floor.fill(steadiness.repeat);
   const std::size_t kernels = kernels_of(advice).size();
   advice.as_is.costs = costs_of(*as_it_is, kernels);
   advice.candidates.push_back({.vertices = {ordered->vertex_method, "chosen by auto"},
@@ -87,7 +89,8 @@ std::string verdict_on(const MeshRecord& record, bool is_matrix) {
                                .costs = costs_of(*ordered, kernels),
                                .order_seconds = ordered->seconds});
   advice.kernels = kernel_advice(advice);
-  return to_string(advice);
+  record.verdict = to_string(advice);
+  record.gain = certain_gain(advice).value_or(0);
 }
 
 /// Returns the file's name without its extension, with a number if another mesh has that name.
@@ -117,6 +120,7 @@ std::string add_mesh(Page& page, const std::string& file, const ReportArguments&
   MeshStudyOptions options;
   options.ordering = arguments.ordering;
   options.timing.budget_seconds = arguments.budget_seconds;
+  options.hierarchies = {hierarchies_of_studies().front()};  // the paper's machine is not the user's
   options.progress = [&](std::string_view what, double fraction) {
     progress.stage(fmt::format("{}: {}", name, what), from + (0.1 + 0.8 * fraction) * (to - from), to);
   };
@@ -125,10 +129,10 @@ std::string add_mesh(Page& page, const std::string& file, const ReportArguments&
   meshorder::OrderedMesh studied = study_mesh(mesh, orderings, options);
   studied.record.name = name;
   studied.record.file = file;
-  studied.record.verdict = verdict_on(studied.record, is_matrix);
-  if (!studied.doubt.empty()) {
-    notes.push_back(name + ": " + studied.doubt);
-    if (!studied.record.verdict.empty()) studied.record.verdict += ". But " + studied.doubt;
+  add_verdict(studied.record, studied.steadiness, is_matrix);
+  if (const std::string doubt = reason_to_doubt(studied.steadiness); !doubt.empty()) {
+    notes.push_back(name + ": " + doubt);
+    if (!studied.record.verdict.empty()) studied.record.verdict += ". But " + doubt;
   }
 
   progress.stage("the surface of " + name, from + 0.9 * (to - from), to);

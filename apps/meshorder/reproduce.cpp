@@ -99,7 +99,8 @@ void run(const ReproduceArguments& arguments) {
 
 void add_reproduce(CLI::App& subcommand) {
   subcommand.description(
-      "Repeat the paper's study on this machine: six scenarios, five orders, tables and a page.");
+      "Repeat the paper's study on this machine: six scenarios, in the paper's five orders and in that of\n"
+      "`meshorder order`; tables and a page.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder reproduce --quick -o results   a few steps of each scenario: some minutes\n"
@@ -123,7 +124,7 @@ void add_reproduce(CLI::App& subcommand) {
       ->capture_default_str();
   subcommand
       .add_option("--orders", arguments->orders,
-                  "Orders besides the paper's five: VERTICES/ELEMENTS, separated by commas")
+                  "Orders besides these six: VERTICES/ELEMENTS, separated by commas")
       ->delimiter(',');
   subcommand.add_option("--runs", plan.runs, "Runs of each scenario in each order")
       ->check(in_range(1, 1000))

@@ -2,6 +2,7 @@
 #include "usage.hpp"
 
 #include "base/suggestion.hpp"
+#include "wording.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -53,6 +54,16 @@ std::string unknown_option(const std::vector<std::string>& words) {
     if (word.size() > 1 && word.starts_with('-')) return word.substr(0, word.find('='));
   }
   return "";
+}
+
+/// Returns what to write after `order` where a mesh is named and no output: "part.msh -o ordered-part.msh".
+std::optional<std::string> line_with_output(const CLI::App& command) {
+  const CLI::Option* const mesh = command.get_option_no_throw("MESH");
+  const CLI::Option* const output = command.get_option_no_throw("--output");
+  if (command.get_name() != "order" || mesh == nullptr || output == nullptr) return std::nullopt;
+  if (mesh->results().size() != 1 || mesh->results().front().empty() || !output->empty()) return std::nullopt;
+  const std::string& name = mesh->results().front();
+  return in_shell(name) + " -o " + in_shell(ordered_name(name));
 }
 
 }  // namespace
@@ -111,6 +122,9 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error) {
     const std::string nearest = suggestion(option, known);
     return "unknown option '" + option + "'" + (nearest.empty() ? "; " : nearest + " ") + help;
   }
+  const bool lacks_something = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  if (const auto line = line_with_output(*place.command); lacks_something && line)
+    return "there is no output; write " + place.words + " " + *line;
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !words.empty())
     return "unexpected argument '" + words.front() + "'; " + help;
   return std::string(error.what()) + "; " + help;

@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,14 +51,19 @@ std::string pays_in_words(const Advice& advice, std::size_t candidate) {
                    : fmt::format("saves nothing in a {}", what);
 }
 
+constexpr std::string_view kCommand = "meshorder order";
+
 }  // namespace
 
+void print_line_for(const Console& console, const Candidate& candidate, bool is_matrix,
+                    const std::string& mesh) {
+  console.print("to order it: {} {} -o {}{}", kCommand, in_shell(mesh), in_shell(ordered_name(mesh)),
+                command_for(candidate, is_matrix).substr(kCommand.size()));
+}
+
 void print_next(const Console& console, const Advice& advice, const std::string& mesh) {
-  constexpr std::string_view kCommand = "meshorder order";
   if (const std::optional<std::size_t> candidate = advised(advice)) {
-    const std::string output = "ordered-" + std::filesystem::path(mesh).filename().string();
-    console.print("to order it: {} {} -o {}{}", kCommand, in_shell(mesh), in_shell(output),
-                  command_for(advice.candidates[*candidate], advice.is_matrix).substr(kCommand.size()));
+    print_line_for(console, advice.candidates[*candidate], advice.is_matrix, mesh);
     return;
   }
   const Candidate& first = advice.candidates.front();

@@ -10,6 +10,10 @@
 
 namespace meshorder::command {
 
+/// Prints the line that gives the mesh the order of a candidate.
+void print_line_for(const Console& console, const Candidate& candidate, bool is_matrix,
+                    const std::string& mesh);
+
 /// Prints the line that makes the order which the sentence on a mesh names; where nothing is gained, whether
 /// `order` moves the mesh all the same.
 void print_next(const Console& console, const Advice& advice, const std::string& mesh);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -131,6 +132,12 @@ std::string replaced(std::string text, std::string_view what, const std::string&
   for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
     text.replace(at, what.size(), with);
   return text;
+}
+
+std::string ordered_name(const std::string& mesh) {
+  const std::filesystem::path file = std::filesystem::path(mesh).filename();
+  // outputs are not compressed
+  return "ordered-" + (file.extension() == ".gz" ? file.stem() : file).string();
 }
 
 std::string in_shell(const std::string& text) {

@@ -43,6 +43,9 @@ std::string groups_in_words(const Grouping& grouping);
 /// Adds a note for each component whose eigensolver did not converge.
 void note_convergence(const std::vector<FiedlerComponent>& components, const std::string& of, Notes& notes);
 
+/// Returns the name that proposals give to the mesh in a new order: "ordered-dragon.veg".
+std::string ordered_name(const std::string& mesh);
+
 /// Returns a word that a shell reads as this text.
 std::string in_shell(const std::string& text);
 

@@ -90,7 +90,7 @@ class MeshStudy {
     const Timings timings = time_orders(
         index_size(result_.orders), [&](Index i) { return bench_of(mesh_, graph_, result_.orders[i]); },
         options_.timing);
-    result_.doubt = reason_to_doubt(timings.steadiness);
+    result_.steadiness = timings.steadiness;
     for (std::size_t i = 0; i < timings.orders.size(); ++i) {
       for (std::size_t k = 0; k < kKernels.size(); ++k)
         result_.record.orders[i].kernels[k].measured_ms = timings.orders[i][kKernels[k]].best_ms;

@@ -15,7 +15,7 @@ namespace meshorder {
 struct OrderedMesh {
   MeshRecord record;
   std::vector<MeshOrder> orders;  ///< in the sequence of record.orders
-  std::string doubt;              ///< why the measured times are not to be trusted; empty if they are
+  Steadiness steadiness;          ///< of the machine while kernels were timed
 };
 
 struct MeshStudyOptions {

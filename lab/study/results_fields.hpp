@@ -82,7 +82,8 @@ inline constexpr auto kFields<MeshRecord> = std::tuple{Field{"name", &MeshRecord
                                                        Field{"span_bin", &MeshRecord::span_bin},
                                                        Field{"hierarchies", &MeshRecord::hierarchies},
                                                        Field{"orders", &MeshRecord::orders},
-                                                       Field{"verdict", &MeshRecord::verdict, true}};
+                                                       Field{"verdict", &MeshRecord::verdict, true},
+                                                       Field{"gain", &MeshRecord::gain, false, true}};
 
 template <>
 inline constexpr auto kFields<StepReport::Seconds> = std::tuple{

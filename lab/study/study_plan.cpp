@@ -15,8 +15,14 @@ std::vector<OrderingSpec> paper_orderings() {
           {"vf-scrambled", "VF scrambled", "scrambled", "scrambled"}};
 }
 
+std::vector<OrderingSpec> study_orderings() {
+  std::vector<OrderingSpec> orderings = paper_orderings();
+  orderings.push_back({"meshorder", "meshorder order", "auto", "auto"});
+  return orderings;
+}
+
 OrderingSpec study_ordering(std::string_view name) {
-  for (const OrderingSpec& ordering : paper_orderings()) {
+  for (const OrderingSpec& ordering : study_orderings()) {
     if (ordering.name == name) return ordering;
   }
   const auto slash = name.find('/');
@@ -24,7 +30,7 @@ OrderingSpec study_ordering(std::string_view name) {
   const std::string elements(slash == std::string_view::npos ? "" : name.substr(slash + 1));
   if (!method_named(vertex_methods(), vertices) || !method_named(element_methods(), elements)) {
     throw InvalidArgument("unknown ordering '" + std::string(name) + "'; known are " +
-                          join(paper_orderings(), [](const auto& ordering) { return ordering.name; }) +
+                          join(study_orderings(), [](const auto& ordering) { return ordering.name; }) +
                           ", and VERTICES/ELEMENTS, see meshorder methods");
   }
   return {vertices + "-" + elements, vertices + "/" + elements, vertices, elements};

@@ -16,7 +16,10 @@ namespace meshorder {
 /// Returns the paper's five orderings (section 5): original, Fiedler, VF Fiedler, scrambled, VF scrambled.
 std::vector<OrderingSpec> paper_orderings();
 
-/// Returns the paper's ordering of that name, or the one of methods given as VERTICES/ELEMENTS. Throws
+/// Returns these, and the order that `meshorder order` makes.
+std::vector<OrderingSpec> study_orderings();
+
+/// Returns the study's ordering of that name, or the one of methods given as VERTICES/ELEMENTS. Throws
 /// InvalidArgument for any other name.
 OrderingSpec study_ordering(std::string_view name);
 
@@ -25,7 +28,7 @@ struct StudyPlan {
   std::vector<std::string> scenarios;  ///< names or files
   std::string mesh;                    ///< instead of the scenarios' own: a model's name or a file; or empty
   std::string size = "paper";          ///< see mesh_of_size
-  std::vector<OrderingSpec> orderings = paper_orderings();
+  std::vector<OrderingSpec> orderings = study_orderings();
   std::string reference = "scrambled";  ///< one of them
   int runs = 3;
   int threads = 1;

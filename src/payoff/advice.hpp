@@ -92,4 +92,19 @@ std::string command_for(const Candidate& candidate, bool is_matrix = false);
 /// is to be gained.
 std::optional<std::size_t> advised(const Advice& advice);
 
+/// Returns how many times faster the kernel that loses most runs in that order; nothing where nothing is to
+/// be gained, and where by how much is in doubt.
+std::optional<double> certain_gain(const Advice& advice);
+
+/// Returns the workload, or `all` for one that no kernel of the advice tells.
+Workload told_by_kernels(const Advice& advice, Workload workload);
+
+/// Returns "hilbert", or "hilbert/original" where elements do not follow their vertices as `order` has them;
+/// of a matrix the order of its rows.
+std::string order_in_words(const Candidate& candidate, bool is_matrix = false);
+
+/// Returns in one sentence which candidate was measured to be best for a workload, by how much, and when it
+/// has paid for itself; or that none is better than the mesh's own order.
+std::string comparison_in_words(const Advice& advice, Workload workload);
+
 }  // namespace meshorder

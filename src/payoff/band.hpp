@@ -7,7 +7,7 @@
 
 namespace meshorder {
 
-/// A synthetic mesh of the same size whose natural order streams: its kernel times are a lower bound.
+/// A synthetic mesh of the same size whose natural order streams: its kernel times are a reference.
 struct Band {
   Mesh mesh;
   CsrGraph graph;  ///< to be passed to KernelBench as the mesh's vertex graph
@@ -16,7 +16,7 @@ struct Band {
 /// Returns the ideal streaming problem of a mesh's size: as many vertices, edges and simplices as `mesh`,
 /// with vertex i joined to i ± 1 … ± k and each simplex on some of the vertices i … i + k, ascending and in
 /// all combinations, so that simplices use every edge as those of a mesh do. Every kernel reads and writes
-/// memory front to back and finds reused data in the first cache: a practical lower bound for the orders of
+/// memory front to back and finds reused data in the first cache: a reference for the orders of
 /// `mesh`, in which a body of two or three dimensions has to be cut.
 ///
 /// `graph` is the vertex graph of `mesh`. The counts are exact, except that a degenerate mesh gets the edges
@@ -26,7 +26,7 @@ struct Band {
 Band ideal_band(const Mesh& mesh, const CsrGraph& graph);
 
 /// Returns a pattern of as many rows and entries as that of a matrix, spread evenly over the rows and side by
-/// side around the diagonal: a lower bound for products, likewise. O(entries).
+/// side around the diagonal: a reference for products. O(entries).
 EntryPattern ideal_pattern(const EntryPattern& pattern);
 
 }  // namespace meshorder

@@ -36,6 +36,13 @@ std::size_t worst(const std::array<KernelAdvice, kKernels.size()>& kernels) {
   return static_cast<std::size_t>(std::max_element(kernels.begin(), kernels.end(), less) - kernels.begin());
 }
 
+/// Returns the place of the kernel that a workload is about; kKernels.size() of those about all or none.
+std::size_t kernel_of(Workload workload) {
+  const auto found =
+      std::ranges::find_if(kKernels, [&](Kernel kernel) { return to_string(kernel) == to_string(workload); });
+  return static_cast<std::size_t>(found - kKernels.begin());
+}
+
 /// Returns the kernels that run slower in a candidate: "; it makes the springs kernel 1.2× slower".
 std::string losses(const Advice& advice, std::size_t candidate) {
   std::string words;
@@ -55,6 +62,30 @@ bool is_vague(const Advice& advice, std::size_t kernel, double factor) {
   constexpr double kBeyondNoise = 4;
   constexpr double kLeastNoise = 0.05;
   return !advice.doubt.empty() && factor - 1 < kBeyondNoise * std::max(kLeastNoise, advice.floor[kernel]);
+}
+
+/// The same of the mean of a workload's kernels.
+bool is_vague(const Advice& advice, Workload workload, double factor) {
+  for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
+    const bool counts = workload == Workload::all || k == kernel_of(workload);
+    if (counts && is_vague(advice, k, factor)) return true;
+  }
+  return false;
+}
+
+/// Returns after how many runs of a kernel, which gains, a candidate has paid for itself: "17 runs of the
+/// springs kernel".
+std::string runs_to_pay(const Advice& advice, const Candidate& candidate, std::size_t kernel) {
+  const double saved_ms = advice.as_is.costs.best_known()[kernel] - candidate.costs.best_known()[kernel];
+  return fmt::format("{} of the {} kernel", times(std::ceil(1e3 * candidate.order_seconds / saved_ms), "run"),
+                     kKernelTitles[kernel]);
+}
+
+/// Returns "the springs kernel runs", "the kernels run", or of a matrix "products are".
+std::string runs_of(const Advice& advice, Workload workload) {
+  if (advice.is_matrix) return "products are";
+  const std::size_t k = kernel_of(workload);
+  return k < kKernels.size() ? fmt::format("the {} kernel runs", kKernelTitles[k]) : "the kernels run";
 }
 
 /// The verdict where it is: the direction alone.
@@ -98,6 +129,64 @@ std::optional<std::size_t> advised(const Advice& advice) {
   return with_first >= same_time(advice, kKernels[k]) ? 0 : advice.kernels[k].candidate;
 }
 
+std::optional<double> certain_gain(const Advice& advice) {
+  const std::optional<std::size_t> taken = advised(advice);
+  if (!taken) return std::nullopt;
+  const std::size_t k = worst(advice.kernels);
+  const double factor = advice.as_is.costs.best_known()[k] / advice.candidates[*taken].costs.best_known()[k];
+  return is_vague(advice, k, factor) ? std::nullopt : std::optional(factor);
+}
+
+Workload told_by_kernels(const Advice& advice, Workload workload) {
+  return kernel_of(workload) < kernels_of(advice).size() ? workload : Workload::all;
+}
+
+std::string order_in_words(const Candidate& candidate, bool is_matrix) {
+  const std::string& vertices = candidate.vertices.name;
+  const std::string& elements = candidate.elements.name;
+  const bool moves_both_alike = vertices == "original" || vertices == "scrambled";
+  const bool is_usual = elements == (moves_both_alike ? vertices : "lexmax");
+  return is_matrix || is_usual ? vertices : vertices + "/" + elements;
+}
+
+std::string comparison_in_words(const Advice& advice, Workload workload) {
+  const Workload told = told_by_kernels(advice, workload);
+  const bool is_mean = told == Workload::all && !advice.is_matrix;
+  const std::string runs = runs_of(advice, told);
+  const std::optional<std::size_t> best = winner_for(told, advice);
+  if (!best) {
+    const std::size_t k = worst(advice.kernels);
+    // the best of many orders by one kernel alone is above 1 by chance, too
+    if (is_mean && advice.kernels[k].factor > 1 + 2 * (same_time(advice, kKernels[k]) - 1)) {
+      return fmt::format("no order is better for all kernels; best for the {} kernel is {}", kKernelTitles[k],
+                         order_in_words(advice.candidates[advice.kernels[k].candidate]));
+    }
+    return fmt::format(
+        "nothing to gain: {} no faster in these orders than in the file's own, beyond the uncertainty of the "
+        "measurement{}",
+        runs, on_threads(advice.threads));
+  }
+  const Candidate& candidate = advice.candidates[*best];
+  const double factor = factor_for(told, advice, *best);
+  const std::string order = order_in_words(candidate, advice.is_matrix);
+  if (is_vague(advice, told, factor)) {
+    return fmt::format(
+        "{} faster{} in {} than in the file's own order (measured while the machine was busy: by how much is "
+        "in doubt)",
+        runs, on_threads(advice.threads), order);
+  }
+  const double steps = steps_to_pay(advice, *best);
+  std::string pays;
+  if (told != Workload::all && !advice.is_matrix) {
+    pays = " and pays after " + runs_to_pay(advice, candidate, kernel_of(told));
+  } else if (steps > 0) {
+    pays = " and pays after " + times(steps, advice.is_matrix ? "product" : "time step");
+  }
+  return fmt::format("{} {:.2f}× faster{} in {} than in the file's own order{}; it takes {}{}", runs, factor,
+                     on_threads(advice.threads), order, is_mean ? ", in their geometric mean" : "",
+                     duration(candidate.order_seconds), pays);
+}
+
 inline namespace v0_3 {
 
 std::string to_string(const Advice& advice) {
@@ -119,16 +208,10 @@ std::string to_string(const Advice& advice) {
     return in_doubt(fmt::format("the {} kernel runs", kKernelTitles[k]), "slower", on_threads(advice.threads),
                     command_for(candidate));
   }
-  const std::string pays =
-      steps > 0 ? "within " + times(steps, "time step")
-                : fmt::format(
-                      "within {} of the {} kernel",
-                      times(std::ceil(1e3 * candidate.order_seconds /
-                                      (advice.as_is.costs.best_known()[k] - candidate.costs.best_known()[k])),
-                            "run"),
-                      kKernelTitles[k]);
+  const std::string pays = steps > 0 ? times(steps, "time step") : runs_to_pay(advice, candidate, k);
   return fmt::format(
-      "as it is, the {} kernel runs {:.1f}× slower{} than it could{}; `{}` takes {} and pays for itself {}{}",
+      "as it is, the {} kernel runs {:.1f}× slower{} than it could{}; `{}` takes {} and pays for itself "
+      "within {}{}",
       kKernelTitles[k], factor, measured ? on_threads(advice.threads) : "",
       measured ? " (measured here)" : " (predicted" + of_machine + ")", command_for(candidate),
       duration(candidate.order_seconds), pays, losses(advice, *taken));

@@ -2,6 +2,7 @@
 """How the command speaks: help, JSON keys, exit codes, one line for an error and nothing left behind."""
 import json
 import os
+import re
 import resource
 import stat
 
@@ -96,21 +97,21 @@ def test_compare_keys(command):
     made = command.json("models", "make", "grid", "--size", "6")["models"][0]["path"]
     result = command.json("compare", made, "--methods", "original,fiedler,fiedler/fiedler,rcm", "--budget", "0.5")
     names = [(m["vertices"], m["elements"]) for m in result["methods"]]
-    assert names == [("scrambled", "scrambled"), ("original", "original"), ("fiedler", "lexmax"), ("fiedler", "fiedler"),
-                     ("rcm", "lexmax")]
+    assert names == [("original", "original"), ("fiedler", "lexmax"), ("fiedler", "fiedler"), ("rcm", "lexmax")]
+    assert result["reference"] == "original" and result["methods"][0]["seconds"] == 0
     for method in result["methods"]:
         assert method["seconds"] >= 0 and method["edge_span"]["mean"] > 0
         assert set(method["kernels"]) == {"spmv", "element", "assembly", "springs"}
         assert method["taken"] == {half: method[half] for half in ("vertices", "elements")}
         for kernel in method["kernels"].values():
-            assert kernel["milliseconds"] > 0 and kernel["speedup"] > 0 and kernel["of_floor"] > 0
-    floor = result["floor"]
-    assert floor["vertices"] == "band" and floor["edge_span"]["max"] < 10
-    assert set(floor["kernels"]) == {"spmv", "element", "assembly", "springs"}
-    for name, kernel in floor["kernels"].items():
-        assert kernel["of_floor"] == pytest.approx(1)
+            assert kernel["milliseconds"] > 0 and kernel["speedup"] > 0 and kernel["of_band"] > 0
+    band = result["band"]
+    assert band["vertices"] == "band" and band["edge_span"]["max"] < 10
+    assert set(band["kernels"]) == {"spmv", "element", "assembly", "springs"}
+    for name, kernel in band["kernels"].items():
+        assert kernel["of_band"] == pytest.approx(1)
         reference = result["methods"][0]["kernels"][name]
-        assert reference["of_floor"] == pytest.approx(reference["best_milliseconds"] / kernel["best_milliseconds"])
+        assert reference["of_band"] == pytest.approx(reference["best_milliseconds"] / kernel["best_milliseconds"])
     assert all(kernel["speedup"] == 1 for kernel in result["methods"][0]["kernels"].values())
 
 
@@ -119,14 +120,15 @@ def test_compare_on_two_threads(command):
     arguments = ["compare", made, "--methods", "hilbert", "--budget", "0.5"]
     result = command.json(*arguments, "--threads", "2")
     assert result["threads"] == 2
-    scrambled, hilbert = result["methods"]
-    assert 0 < hilbert["redundancy"] < scrambled["redundancy"] <= 1
-    for row in (scrambled, hilbert, result["floor"]):
+    original, hilbert = result["methods"]
+    assert 0 < hilbert["redundancy"] < 1 and 0 < original["redundancy"] < 1
+    for row in (original, hilbert, result["band"]):
         assert set(row["parallel_kernels"]) == set(row["kernels"])
         for kernel in row["parallel_kernels"].values():
-            assert kernel["milliseconds"] > 0 and kernel["speedup"] > 0 and kernel["of_floor"] > 0
-    assert all(kernel["speedup"] == 1 for kernel in scrambled["parallel_kernels"].values())
-    text = command.ok(*arguments, "--threads", "2").stdout
+            assert kernel["milliseconds"] > 0 and kernel["speedup"] > 0 and kernel["of_band"] > 0
+    assert all(kernel["speedup"] == 1 for kernel in original["parallel_kernels"].values())
+    text = command.ok(*arguments, "--threads", "2", "--details").stdout
+    assert "than in the file's own order on 2 threads, the best marked by *" in text
     assert "Kernels (plain) on 1 thread:" in text and "Kernels (plain) on 2 threads:" in text
     assert result["kernel_set"] == "plain"
     assert command.json(*arguments, "--kernels", "tuned")["kernel_set"] == "tuned"
@@ -134,10 +136,60 @@ def test_compare_on_two_threads(command):
     assert alone["threads"] == 1 and "parallel_kernels" not in alone["methods"][0]
 
 
+def rows_of_compare(text):
+    """The numbers of the table by the name of the order, and whether they are marked."""
+    table = text.split("the best marked by *\n")[1]
+    heads, *rows = table.splitlines()
+    assert heads.split() == ["order", "cost", "all", "SpMV", "element", "force", "assembly", "springs"]
+    cells = re.compile(r"(\d+\.\d\d)([* ])")
+    return {row[:26].strip(): [(float(number), mark == "*") for number, mark in cells.findall(row[35:])]
+            for row in rows[:rows.index(next(row for row in rows if row.startswith("band is no order")))]}
+
+
 def test_compare_for_people(command):
     made = command.json("models", "make", "grid", "--size", "4")["models"][0]["path"]
-    text = command.ok("compare", made, "--methods", "auto", "--for", "springs", "--budget", "0.1").stdout
-    assert "auto takes " in text and "\nband " in text
+    text = command.ok("compare", made, "--methods", "auto,rcm/original,scrambled", "--for", "springs", "--budget",
+                      "0.1").stdout
+    assert text.startswith(f"{made}: ") and "auto takes " in text
+    rows = rows_of_compare(text)
+    named, [auto] = [name for name in rows if "auto" not in name], [name for name in rows if "auto" in name]
+    assert named == ["original", "rcm/original", "scrambled", "band"] and auto.endswith(" (auto)")
+    assert rows["original"] == [(1.0, mark) for _, mark in rows["original"]] and len(rows["original"]) == 5
+    for column in range(5):
+        cells = [rows[name][column] for name in rows if name != "band"]
+        assert max(number for number, _ in cells) == max(number for number, marked in cells if marked)
+    assert not any(marked for _, marked in rows["band"])
+    rest = "\n".join(line for line in text.splitlines() if not line.startswith("auto takes "))
+    for shown in ("Predicted", "milliseconds", "span"):
+        assert shown not in rest, "--details shows it"
+
+
+def test_the_line_that_compare_proposes_makes_the_best_order(command, tmp_path):
+    made = command.json("models", "make", "grid", "--size", "16")["models"][0]["path"]
+    command.ok("order", made, "-o", "scrambled.node", "--vertices", "scrambled", "--elements", "scrambled")
+    result = command.json("compare", "scrambled.node", "--methods", "hilbert,rcm", "--budget", "1")
+    verdict = result["verdict"]
+    assert verdict["factor"] > 1.3 and verdict["best"] in (1, 2)
+    best = result["methods"][verdict["best"]]["vertices"]
+    assert f"faster in {best} than in the file's own order" in verdict["sentence"]
+    text = command.ok("compare", "scrambled.node", "--methods", "hilbert,rcm", "--budget", "1").stdout
+    assert " in their geometric mean; it takes " in text.splitlines()[0] or "is in doubt" in text.splitlines()[0]
+    line = text.splitlines()[1].removeprefix("to order it: meshorder ").split()
+    command.ok(*line)
+    again = command.json("compare", "ordered-scrambled.node", "--methods", "hilbert,rcm", "--budget", "1")["verdict"]
+    assert again["factor"] < 1.3
+    assert command.json("compare", made, "--methods", "original", "--budget", "0.1")["verdict"] == {
+        "sentence": None, "best": None, "factor": 1}
+
+
+def test_compare_names_an_order_that_auto_takes_once(command):
+    made = command.json("models", "make", "grid", "--size", "4")["models"][0]["path"]
+    methods = command.json("compare", made, "--budget", "0.01")["methods"]
+    assert [method["vertices"] for method in methods[:2]] == ["original", "auto"]
+    taken = [tuple(method["taken"].values()) for method in methods]
+    assert len(set(taken)) == len(taken) and {"scrambled"} & {vertices for vertices, _ in taken} == set()
+    named = command.json("compare", made, "--methods", f"auto,{'/'.join(taken[1])}", "--budget", "0.01")["methods"]
+    assert [tuple(method["taken"].values()) for method in named[1:]] == [taken[1]] * 2, "but both that somebody names"
 
 
 def test_models_keys(command, tmp_path, monkeypatch):

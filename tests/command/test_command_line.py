@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 
@@ -127,9 +128,17 @@ def test_json_holds_the_version_and_the_warnings(command, mesh, line):
     ("info mesh.node other.node", "unexpected argument 'other.node'; see meshorder info --help"),
     ("models make grid --sise 3", "unknown option '--sise'; did you mean '--size'? see meshorder models make --help"),
     ("help ordr", "unknown command 'ordr'; did you mean 'order'?"),
+    ("inof mesh.node", "unknown command 'inof'; did you mean 'info'?"),
+    ("order mesh.node -o a.vtu --vertices hilbret", "unknown vertex order 'hilbret'; did you mean 'hilbert'?"),
+    ("compare mesh.node --methods rcm/lexmx", "unknown element order 'lexmx'; did you mean 'lexmax'?"),
+    ("order mesh.node -o a.vtu --for spring", "unknown use 'spring'; did you mean 'springs'?"),
+    ("order mesh.node -o a.vkt", "a.vkt: unknown extension '.vkt'; did you mean '.vtk'?"),
+    ("order mesh.node", "there is no output; write meshorder order mesh.node -o ordered-mesh.node"),
+    ("order 'a b.msh.gz'", "there is no output; write meshorder order 'a b.msh.gz' -o 'ordered-a b.msh'"),
+    ("order", "MESH is required; see meshorder order --help"),
 ])
 def test_what_is_unknown_offers_the_nearest(command, mesh, line, says):
-    assert command.fails(*line.split()) == f"meshorder: {says}"
+    assert command.fails(*shlex.split(line)) == f"meshorder: {says}"
 
 
 def test_help_and_version_in_words(command):
@@ -192,7 +201,7 @@ def test_an_option_without_a_value_takes_no_other_for_it(command, mesh, tmp_path
 
 
 def widths(text):
-    return [len(line) for line in text.splitlines() if not line.startswith(("grid.node: ", "auto takes"))]
+    return [len(line) for line in text.splitlines() if not line.startswith(("grid.node: ", "to order it: ", "auto takes"))]
 
 
 @pytest.mark.parametrize("words", [[], ["order"], ["apply"], ["info"], ["compare"], ["simulate"], ["reproduce"],
@@ -204,7 +213,7 @@ def test_help_fits_100_columns(command, words):
 @pytest.mark.parametrize("arguments", [["info", "--details"], ["info", "--details", "--cache", "48K,1M,32M"],
                                        ["info", "--measure"],
                                        ["compare", "--budget", "0.2"],
-                                       ["compare", "--budget", "0.2", "--threads", "2", "--cache", "48K,1M,4M,32M"]])
+                                       ["compare", "--budget", "0.2", "--threads", "2", "--details", "--cache", "48K,1M,4M,32M"]])
 def test_tables_fit_100_columns(command, arguments):
     made = command.json(*GRID)["models"][0]["path"]
     text = command.ok(*arguments, made).stdout.replace(made, "grid.node")
@@ -221,7 +230,7 @@ def test_tables_for_people_are_those_of_json(command):
     made = command.json(*GRID)["models"][0]["path"]
     arguments = ["compare", made, "--methods", "rcm", "--cache", "4K,64K", "--budget", "0.1"]
     reuse = command.json(*arguments)["methods"][1]["reuse"]
-    text = command.ok(*arguments).stdout
+    text = command.ok(*arguments, "--details").stdout
     rows = [line.split()[2:] for line in text.split("Predicted for each")[1].split("Kernels (")[0].splitlines()
             if line.startswith("rcm ")]
     shown = [word for row in rows for word in row]

@@ -11,7 +11,7 @@ import pytest
 
 import conftest
 
-ORDERINGS = ["original", "fiedler", "vf-fiedler", "scrambled", "vf-scrambled"]
+ORDERINGS = ["original", "fiedler", "vf-fiedler", "scrambled", "vf-scrambled", "meshorder"]
 SMALL = ["--scenario", "constrained", "--scenario", "bounce", "--mesh", "ball-3", "--budget", "0.1"]
 
 

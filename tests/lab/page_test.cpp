@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/page/page.hpp"
 
+#include "lab/report/page/headlines.hpp"
 #include "lab/report/page/viewer_sources.hpp"
 #include "support/files.hpp"
 #include "unpacked.hpp"
@@ -150,6 +151,57 @@ TEST(Page, IsWrittenWholeOrNotAtAll) {
   write_page(sample_page(), folder.path() / "a.html");
   EXPECT_EQ(test::content_of(folder.path() / "a.html"), to_html(sample_page()));
   EXPECT_THROW(write_page(sample_page(), folder.path() / "missing" / "a.html"), InputError);
+}
+
+/// A mesh whose products take 3 ms as it is and 2 ms in another order, and whose springs take longer in that.
+StudyResults timed() {
+  StudyResults results;
+  results.orderings = {{"original", "As it is", "original", "original"},
+                       {"meshorder", "meshorder order", "auto", "auto"}};
+  MeshRecord mesh;
+  mesh.name = "a <mesh>";
+  mesh.gain = 1.5;
+  mesh.verdict = "`meshorder order` pays";
+  for (const OrderingSpec& ordering : results.orderings) mesh.orders.emplace_back().ordering = ordering.name;
+  mesh.orders[0].kernels[0].measured_ms = 3;
+  mesh.orders[1].kernels[0].measured_ms = 2;
+  mesh.orders[0].kernels[3].measured_ms = 1;
+  mesh.orders[1].kernels[3].measured_ms = 4;
+  mesh.orders[0].kernels[1].measured_ms = mesh.orders[1].kernels[1].measured_ms = 5;
+  results.meshes = {mesh};
+  return results;
+}
+
+TEST(Headlines, SayWhatIsGainedAndDrawEachKernelBeforeAndAfter) {
+  const std::string html = headlines_of(timed());
+  EXPECT_NE(html.find("<p class=\"answer\"><code>meshorder order</code> pays.</p>"), std::string::npos)
+      << html;
+  EXPECT_EQ(html.find("<h3>"), std::string::npos) << "the title names a single mesh";
+  EXPECT_NE(html.find("<p class=\"gain\">1.5× "), std::string::npos) << html;
+  EXPECT_NE(
+      html.find(
+          "<dt>SpMV</dt><dd><div class=\"before\"><span style=\"width:100.0%\"></span><b>3.00 ms</b> As it "
+          "is</div><div class=\"after\"><span style=\"width:66.7%\"></span><b>2.00 ms</b> meshorder "
+          "order</div></dd>"),
+      std::string::npos)
+      << html;
+  EXPECT_NE(html.find("<dt>springs</dt><dd><div class=\"before\"><span style=\"width:25.0%\">"),
+            std::string::npos);
+  EXPECT_EQ(html.find("assembly"), std::string::npos) << "was not timed";
+}
+
+TEST(Headlines, HaveNoNumberThatIsInDoubtAndNoneOfStudies) {
+  StudyResults results = timed();
+  results.meshes[0].gain = 0;
+  EXPECT_EQ(headlines_of(results).find("class=\"gain\""), std::string::npos);
+  results.scenarios.emplace_back();
+  EXPECT_EQ(headlines_of(results), "");
+  results = timed();
+  results.meshes[0].orders.pop_back();
+  results.meshes[0].verdict.clear();
+  EXPECT_EQ(headlines_of(results), "") << "nothing to compare with";
+  results.meshes = {timed().meshes[0], timed().meshes[0]};
+  EXPECT_NE(headlines_of(results).find("<h3>a &lt;mesh&gt;</h3>"), std::string::npos);
 }
 
 }  // namespace

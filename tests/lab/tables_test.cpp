@@ -163,8 +163,8 @@ TEST(Tables, SayWhatIsCertainInEveryFormat) {
   for (const TableCell& each : {saves, open, costs}) table.rows.push_back({{"s", {}, false}, each});
   EXPECT_EQ(to_markdown({table}),
             "## T\n\n| Scenario | Order |\n| --- | ---: |\n| s | +3.0 (+2.0 … +4.0), saves |\n"
-            "| s | +1.0 (−1.0 … +3.0), not told apart |\n| s | −3.0, costs |\n");
-  EXPECT_NE(to_csv({table}).find("t,s,Order,\"+1.0 (−1.0 … +3.0), not told apart\",1\r\n"),
+            "| s | +1.0 (−1.0 … +3.0), no clear difference |\n| s | −3.0, costs |\n");
+  EXPECT_NE(to_csv({table}).find("t,s,Order,\"+1.0 (−1.0 … +3.0), no clear difference\",1\r\n"),
             std::string::npos);
   const std::string html = to_html(table);
   EXPECT_NE(
@@ -179,10 +179,10 @@ TEST(Tables, SayWhatIsCertainInEveryFormat) {
       std::string::npos);
   EXPECT_EQ(to_text(table),
             "T\n"
-            "Scenario                               Order\n"
-            "s                  +3.0 (+2.0 … +4.0), saves\n"
-            "s         +1.0 (−1.0 … +3.0), not told apart\n"
-            "s                                −3.0, costs\n");
+            "Scenario                                    Order\n"
+            "s                       +3.0 (+2.0 … +4.0), saves\n"
+            "s         +1.0 (−1.0 … +3.0), no clear difference\n"
+            "s                                     −3.0, costs\n");
 }
 
 TEST(Tables, StateTheErrorOfPredictions) {

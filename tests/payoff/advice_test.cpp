@@ -232,6 +232,53 @@ TEST(Verdict, SaysTheDirectionAloneWhereTimesAreInDoubt) {
   EXPECT_NE(to_string(advice).find("nothing to gain"), std::string::npos);
 }
 
+TEST(Comparison, NamesTheBestOrderOfAllKernelsOrOfOne) {
+  Advice advice = made_up({2, 2, 2, 2}, {1, 1, 1, 1}, {1, 1, 1, 1});
+  advice.as_is.costs.measured = {4, 4, 4, 4};
+  advice.candidates[0].costs.measured = {2, 2, 2, 2};
+  advice.candidates[1].costs.measured = {4, 4, 4, 1};
+  advice.candidates[0].vertices.name = "hilbert";
+  advice.candidates[1].vertices.name = "rcm";
+  for (Candidate& candidate : advice.candidates) candidate.elements.name = "lexmax";
+  for (Candidate& candidate : advice.candidates) candidate.order_seconds = 0.3;
+  advice.kernels = kernel_advice(advice);
+  EXPECT_EQ(
+      comparison_in_words(advice, Workload::all),
+      "the kernels run 2.00× faster in hilbert than in the file's own order, in their geometric mean; it "
+      "takes 300 ms and pays after 2 time steps");
+  EXPECT_EQ(
+      comparison_in_words(advice, Workload::springs),
+      "the springs kernel runs 4.00× faster in rcm than in the file's own order; it takes 300 ms and pays "
+      "after 100 runs of the springs kernel");
+  EXPECT_EQ(comparison_in_words(advice, Workload::fill), comparison_in_words(advice, Workload::all))
+      << "no kernel tells";
+  EXPECT_DOUBLE_EQ(*certain_gain(advice), 2) << "of the order that is advised";
+  advice.doubt = "the machine was busy";
+  advice.floor.fill(0.5);
+  EXPECT_EQ(
+      comparison_in_words(advice, Workload::all),
+      "the kernels run faster in hilbert than in the file's own order (measured while the machine was busy: "
+      "by how much is in doubt)");
+  EXPECT_EQ(certain_gain(advice), std::nullopt);
+}
+
+TEST(Comparison, SaysWhereNothingIsGainedAndDoesNotTakeChanceForAGain) {
+  Advice advice = made_up({2, 2, 2, 2}, {1, 1, 1, 1}, {1, 1, 1, 1});
+  advice.as_is.costs.measured = {4, 4, 4, 4};
+  for (Candidate& candidate : advice.candidates) candidate.costs.measured = {3.7, 4, 4, 4};
+  advice.kernels = kernel_advice(advice);
+  EXPECT_EQ(comparison_in_words(advice, Workload::all),
+            "nothing to gain: the kernels run no faster in these orders than in the file's own, beyond the "
+            "uncertainty "
+            "of the measurement");
+  advice.candidates[1].costs.measured = {2, 8, 8, 8};
+  advice.candidates[1].vertices.name = "rcm";
+  advice.candidates[1].elements.name = "original";
+  advice.kernels = kernel_advice(advice);
+  EXPECT_EQ(comparison_in_words(advice, Workload::all),
+            "no order is better for all kernels; best for the SpMV kernel is rcm/original");
+}
+
 TEST(SavedInTimeStep, CountsRunsLossesAndNoNoise) {
   const Advice advice = made_up({2, 4, 30, 1}, {2.1, 2, 10, 2}, {3, 4, 30, 1});
   EXPECT_DOUBLE_EQ(saved_in_time_step(advice, 0), 2 + 20);

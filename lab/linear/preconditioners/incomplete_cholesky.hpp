@@ -12,7 +12,7 @@ namespace meshorder {
 /// A ≈ L D Lᵀ by 3×3 blocks in the pattern of A (Meijerink, van der Vorst 1977), L unit lower triangular and
 /// in float, which is accurate enough for an incomplete factor. If a pivot is not positive definite, the
 /// diagonal blocks are enlarged and the factorisation restarts (Manteuffel 1980). Measured against Jacobi in
-/// docs/benchmarks.md.
+/// docs/evidence/benchmarks.md.
 ///
 /// Vertices are eliminated in their order, but for those that join a chunk of rows to one before it: they
 /// come last. What is within chunks is then factored and solved on threads. The chunks depend on the pattern

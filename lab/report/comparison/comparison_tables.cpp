@@ -15,10 +15,10 @@
 namespace meshorder {
 namespace {
 
-/// Returns "A saves more", "B saves more" or "not told apart".
+/// Returns "A saves more", "B saves more" or "no clear difference".
 TableCell words_cell(const std::optional<SavingDifference>& difference) {
   if (!difference || !difference->beyond_noise) {
-    TableCell cell = text_cell("not told apart");
+    TableCell cell = text_cell("no clear difference");
     cell.weak = true;
     return cell;
   }
@@ -41,7 +41,7 @@ Table savings_table(const StudyResults& a, const StudyResults& b) {
       "comparison",
       "What the orders save in both studies",
       fmt::format("Per cent of the time that the same steps take in the order “{}”, with 95 % confidence "
-                  "intervals. Saves, costs: the interval lies on one side of 0. Not told apart: it holds 0, "
+                  "intervals. Saves, costs: the interval lies on one side of 0. No clear difference: it holds 0, "
                   "or there is none. B − A: percentage points, with the interval that follows from both.",
                   title_of(a, a.reference)),
       {"Scenario and order", "A, %", "B, %", "B − A", "In words"},

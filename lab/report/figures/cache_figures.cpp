@@ -108,7 +108,7 @@ std::string key(const StudyResults& results, const MeshRecord& mesh) {
                                 style.colour, gnuplot_key(title_of(results, ordering.name))));
   }
   return fmt::format(
-      "unset border\nunset tics\nunset grid\nset key center center horizontal textcolor '#222222' "
+      "unset border\nunset tics\nunset grid\nset key center center horizontal maxcols 2 textcolor '#222222' "
       "samplen 2\nset xrange [0:1]\nset yrange [0:1]\nplot {}\n",
       fmt::join(plots, ", "));
 }
@@ -136,25 +136,27 @@ Figure cache_figure(const StudyResults& results, const MeshRecord& mesh) {
   // in pixels, like the text
   constexpr int kWidth = 520;
   constexpr int kLeft = 54;
-  constexpr int kTop = 80;
+  constexpr int kKeyRow = 22;
+  const int key_height = kKeyRow * (static_cast<int>(mesh.orders.size()) + 1) / 2;
+  const int panels = key_height + 40;
   constexpr int kRow = 140;
   // the first ones; a matrix has products alone
   const auto is_run = [&](const KernelRecord& kernel) { return kernel.accesses > 0; };
   const std::array<KernelRecord, kKernels.size()>& records = mesh.orders.front().kernels;
   const auto kernels = static_cast<std::size_t>(std::count_if(records.begin(), records.end(), is_run));
-  const int height = kTop + kRow * static_cast<int>(kernels);
+  const int height = panels + kRow * static_cast<int>(kernels);
   const int column = (kWidth - kLeft) / static_cast<int>(mesh.hierarchies.size());
   std::string script = plain_axes() + "set multiplot\nset grid noxtics\nunset key\n";
   for (std::size_t k = 0; k < kernels; ++k) {
     for (std::size_t h = 0; h < mesh.hierarchies.size(); ++h) {
       const int left = kLeft + column * static_cast<int>(h);
-      const int top = kTop + kRow * static_cast<int>(k);
+      const int top = panels + kRow * static_cast<int>(k);
       script += place({left, left + column - 14, top, top + kRow - 34}, kWidth, height);
       script += panel(results, mesh, k, h);
     }
   }
-  script += "set title ''\nunset label 1\n" + place({0, kWidth, 0, 44}, kWidth, height) + key(results, mesh) +
-            "unset multiplot";
+  script += "set title ''\nunset label 1\n" + place({0, kWidth, 0, key_height}, kWidth, height) +
+            key(results, mesh) + "unset multiplot";
   figure.svg = draw({figure.name, figure.title, figure.caption, kWidth, height, script});
   return figure;
 }

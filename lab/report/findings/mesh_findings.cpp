@@ -56,13 +56,13 @@ std::optional<double> last_level_misses(const StudyResults& results, const std::
 std::string misses_on(const StudyResults& results, std::size_t hierarchy) {
   const auto whole = last_level_misses(results, results.reference, hierarchy);
   const NamedCaches& caches = results.meshes.front().hierarchies[hierarchy];
-  if (!whole || caches.caches.level_bytes.empty()) return {};
+  if (!whole || *whole <= 0 || caches.caches.level_bytes.empty()) return {};
   std::string words = fmt::format("{} times on {} ({})", metric(*whole), caches.name,
                                   bytes_in_words(static_cast<double>(caches.caches.level_bytes.back())));
   std::vector<std::string> others;
   for (const OrderingSpec& ordering : results.orderings) {
     const auto misses = last_level_misses(results, ordering.name, hierarchy);
-    if (!misses || ordering.name == results.reference || *whole <= 0) continue;
+    if (!misses || ordering.name == results.reference) continue;
     others.push_back(
         fmt::format("{:.2f} times as often in {}", *misses / *whole, title_of(results, ordering.name)));
   }
@@ -79,38 +79,6 @@ std::string misses_in_words(const StudyResults& results) {
   return fmt::format(
       "In simulation, one run of each kernel on each mesh in “{}” misses the last-level cache {}.",
       title_of(results, results.reference), fmt::join(parts, "; "));
-}
-
-/// Returns the kernel and order that gain most over the reference in measured time, and those that lose most.
-std::string kernels_of(const StudyResults& results, const MeshRecord& mesh) {
-  const MeshOrderRecord* const reference = find_order(mesh, results.reference);
-  if (reference == nullptr) return {};
-  struct Case {
-    double factor = 1;
-    std::string words;
-  };
-  Case best;
-  Case worst;
-  for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    for (const MeshOrderRecord& order : mesh.orders) {
-      const double ms = order.kernels[k].measured_ms;
-      const double whole = reference->kernels[k].measured_ms;
-      if (&order == reference || ms <= 0 || whole <= 0) continue;
-      const auto words = [&](const char* how, double times) {
-        return fmt::format("{} runs {:.2f} times {} in {}", kKernelTitles[k], times, how,
-                           title_of(results, order.ordering));
-      };
-      if (whole / ms > best.factor) best = {whole / ms, words("faster", whole / ms)};
-      if (whole / ms < worst.factor) worst = {whole / ms, words("slower", ms / whole)};
-    }
-  }
-  std::vector<std::string> parts;
-  for (const Case& found : {best, worst}) {
-    if (!found.words.empty()) parts.push_back(found.words);
-  }
-  if (parts.empty()) return {};
-  return fmt::format("Measured kernels on {}, compared with “{}”: {}.", mesh.name,
-                     title_of(results, results.reference), fmt::join(parts, "; "));
 }
 
 /// Returns how far the predicted speedups of all kernels together are off.
@@ -141,13 +109,10 @@ std::string predictions_in_words(const StudyResults& results) {
 
 std::vector<std::string> mesh_findings(const StudyResults& results) {
   std::vector<std::string> findings;
-  for (const MeshRecord& mesh : results.meshes) {
-    if (!mesh.verdict.empty()) findings.push_back(fmt::format("{}: {}.", mesh.name, mesh.verdict));
-    if (results.scenarios.empty()) findings.push_back(kernels_of(results, mesh));
-  }
   findings.push_back(spans_in_words(results));
   findings.push_back(misses_in_words(results));
-  findings.push_back(predictions_in_words(results));
+  // on a page on meshes they are in the part on prediction
+  if (!results.scenarios.empty()) findings.push_back(predictions_in_words(results));
   std::erase(findings, "");
   return findings;
 }

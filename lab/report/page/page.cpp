@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "io/stream/base64.hpp"
 #include "io/stream/output_file.hpp"
+#include "lab/report/page/headlines.hpp"
 #include "lab/report/page/packed_arrays.hpp"
 #include "lab/report/page/prose.hpp"
 #include "lab/report/page/viewer_sources.hpp"
@@ -140,6 +141,7 @@ std::string fill_page(std::string_view frame, const Page& page) {
     const std::string_view name = placeholder.substr(std::min(blank + 1, placeholder.size()));
     if (word == "title") return xml_escaped(page.title);
     if (word == "has") return words_of(page);
+    if (word == "headlines") return headlines_of(page.results);
     if (word == "findings") return findings_in(page);
     if (word == "table") return table_of(page, name);
     if (word == "figures") return figures_in(page, name);

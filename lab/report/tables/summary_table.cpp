@@ -53,8 +53,8 @@ Table summary_table(const StudyResults& results) {
   Table table{"summary",
               "What the orders save",
               fmt::format("Per cent of the time that the same steps take in the order “{}”, with the 95 % "
-                          "confidence interval. Saves, costs: the interval lies on one side of 0. Not told "
-                          "apart: it holds 0, or one run was too short for an interval.",
+                          "confidence interval. Saves, costs: the interval lies on one side of 0. No "
+                          "clear difference: it holds 0, or one run was too short for an interval.",
                           title_of(results, results.reference)),
               {"Scenario"},
               {}};

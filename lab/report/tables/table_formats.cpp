@@ -34,7 +34,7 @@ std::string_view words_of(Certainty certainty) {
     case Certainty::saves:
       return "saves";
     case Certainty::open:
-      return "not told apart";
+      return "no clear difference";
     case Certainty::costs:
       return "costs";
     case Certainty::unsaid:

@@ -13,7 +13,7 @@ namespace meshorder {
 enum class Certainty {
   unsaid,  ///< the cell is of something else
   saves,   ///< the interval lies above 0
-  open,    ///< it holds 0, or there is none: not told apart
+  open,    ///< it holds 0, or there is none: no clear difference
   costs    ///< it lies below 0
 };
 
