@@ -161,7 +161,8 @@ def choices(command):
     names = [model["name"] for model in json.loads(run(command, "models", "list", "--json"))["models"]]
     vertices = [method["name"] for method in methods["vertices"]]
     elements = [method["name"] for method in methods["elements"]]
-    return {"--vertices": vertices, "--cells": vertices, "--elements": elements, "--order": vertices, "--orders": vertices,
+    machines = [machine["name"] for machine in json.loads(run(command, "calibrate", "--list", "--json"))["machines"]]
+    return {"--machine": machines, "--vertices": vertices, "--cells": vertices, "--elements": elements, "--order": vertices, "--orders": vertices,
             "--methods": vertices, "SCENARIO": [scenario["name"] for scenario in scenarios],
             "NAME": [name for name in names if not re.search(r"-\d+$", name)] + ["all"]}
 
@@ -175,6 +176,11 @@ def words_for(entry, known):
         if name in known and entry.value:
             return known[name]
     return []
+
+
+def takes_list(entry):
+    """Whether an option takes several of these words, with commas between them."""
+    return "separated by commas" in entry.sentence
 
 
 def takes_file(entry):
@@ -194,11 +200,11 @@ def bash(pages, known):
             listed = words_for(entry, known)
             if entry.value:
                 names = " | ".join(f"'{' '.join(page.words)} {name}'" for name in entry.names)
-                values.append(f"    {names}) words='{' '.join(listed)}' ;;")
+                values.append(f"    {names}) words='{' '.join(listed)}'{' comma=,' if takes_list(entry) else ''} ;;")
     nested = " | ".join(f"'{' '.join(page.words)}'" for page in pages if len(page.words) > 1)
     return f"""# bash completion of meshorder, made from its --help
 _meshorder() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}} at='meshorder' options='' words='' i
+  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}} at='meshorder' options='' words='' comma='' i
   for ((i = 1; i < COMP_CWORD; ++i)); do
     case "$at ${{COMP_WORDS[i]}}" in {nested})
       at+=" ${{COMP_WORDS[i]}}" ;;
@@ -212,8 +218,11 @@ _meshorder() {{
       esac
       [[ $current != -* ]] || words=$options ;;
   esac
+  # of a list its last word
+  local before=''
+  [[ -z $comma || $current != *,* ]] || before=${{current%,*}},
   # files, where nothing of these fits
-  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+  mapfile -t COMPREPLY < <(compgen -P "$before" -W "$words" -- "${{current#"$before"}}")
 }}
 complete -o default -F _meshorder meshorder
 """
@@ -225,8 +234,10 @@ def zsh_text(text):
 
 def zsh(pages, known):
     def action(entry):
-        listed = words_for(entry, known)
-        return f"({' '.join(listed)})" if listed else "_files" if takes_file(entry) else " "
+        listed = " ".join(words_for(entry, known))
+        if listed and takes_list(entry):
+            return f"_values -s , {zsh_text(entry.placeholder)} {listed}"
+        return f"({listed})" if listed else "_files" if takes_file(entry) else " "
 
     def option(entry):
         spec = f"[{zsh_text(entry.sentence)}]"
@@ -282,7 +293,8 @@ def fish(pages, known):
                 line += f" -l {name[2:]}" if name.startswith("--") else f" -s {name[1:]}"
             if entry.value:
                 listed = words_for(entry, known)
-                line += f" -x -a {quoted(' '.join(listed))}" if listed else " -r"
+                words = f"(__fish_append , {' '.join(listed)})" if takes_list(entry) else " ".join(listed)
+                line += f" -x -a {quoted(words)}" if listed else " -r"
             lines.append(f"{line} -d {quoted(entry.sentence)}")
         for entry in page.arguments:
             listed = words_for(entry, known)

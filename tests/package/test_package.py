@@ -153,6 +153,10 @@ def test_every_subcommand_has_a_manual_page(prefix, tmp_path):
     ("meshorder order mesh.off --elements lex", "lexmax"),
     ("meshorder simulate --order hilb", "hilbert hilbert-fronts"),
     ("meshorder models make dr", "dragon"),
+    ("meshorder compare mesh.off --methods rcm,hilb", "rcm,hilbert rcm,hilbert-fronts"),
+    ("meshorder compare mesh.off --methods rcm,bfs,mo", "rcm,bfs,morton"),
+    ("meshorder order mesh.off --vertices rcm,hilb", ""),
+    ("meshorder info mesh.off --machine ", "this zen3"),
     ("meshorder order ", ""),  # files
 ])
 def test_bash_completes(prefix, typed, completed):
@@ -257,6 +261,7 @@ def test_subproject():
     assert "Warning" not in said
     rules = (USER_BUILD / "build.ninja").read_text()
     assert "-Werror" not in rules and "gtest" not in rules and "march" not in rules
+    assert " -O3 -DNDEBUG" in rules, "optimised where nobody says how"
     run("cmake", "--build", USER_BUILD)
     run_tests(USER_BUILD, 1)
     assert not list(USER_BUILD.rglob("cmake_install.cmake")) or not list(USER_BUILD.rglob("meshorder-config.cmake"))
