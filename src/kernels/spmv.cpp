@@ -84,7 +84,7 @@ HWY_EXPORT(product_of_streamed_doubles);
 HWY_EXPORT(product_of_floats);
 
 /// Whether the processor is known to read blocks of doubles faster where they are not prefetched. Zen 4 does,
-/// Zen 3 does not, others were not measured (docs/benchmarks.md, What the product asks for).
+/// Zen 3 does not, others were not measured (docs/evidence/benchmarks.md, What the product asks for).
 bool streams_by_itself() {
   static const bool result = is_zen4(family_of_this_machine());
   return result;
