@@ -1,0 +1,93 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "cells/cell_arrays.hpp"
+#include "graph/clean_graph.hpp"
+#include "graph/csr_graph.hpp"
+#include "ordering/carried.hpp"
+#include "ordering/method.hpp"
+
+#include <optional>
+#include <span>
+
+namespace meshorder {
+
+/// What an update of a `Reorderer` knows of the vertices and of which belong together.
+class Neighbourhood {
+ public:
+  Neighbourhood() = default;
+  virtual ~Neighbourhood() = default;
+  Neighbourhood(const Neighbourhood&) = delete;
+  Neighbourhood(Neighbourhood&&) = delete;
+  Neighbourhood& operator=(const Neighbourhood&) = delete;
+  Neighbourhood& operator=(Neighbourhood&&) = delete;
+
+  [[nodiscard]] virtual Index size() const = 0;
+  /// Returns `Update::span_log2` of an order.
+  ///
+  /// @param place_of  the new place of each vertex; none: as they are
+  [[nodiscard]] virtual double span_log2(std::span<const Index> place_of) const = 0;
+  /// Returns the largest `span_log2` that does not ask for a new order.
+  [[nodiscard]] virtual double most_span(double fresh, double slack) const { return fresh * (1 + slack); }
+  /// Returns the neighbours of some vertices, which ascend.
+  [[nodiscard]] virtual NeighbourRows rows_of(std::span<const Index> vertices) const = 0;
+  /// Orders the vertices by that method.
+  [[nodiscard]] virtual Order order_by(std::string_view method, const OrderOptions& options) = 0;
+  /// Returns the method that `auto` takes.
+  [[nodiscard]] virtual MethodChoice choice(Workload workload) = 0;
+};
+
+/// Of a graph. Refers to it.
+class GraphNeighbourhood : public Neighbourhood {
+ public:
+  GraphNeighbourhood(const GraphArrays& graph, const PointsView& points) : graph_(graph), points_(points) {}
+
+  [[nodiscard]] Index size() const override { return graph_.size(); }
+  [[nodiscard]] double span_log2(std::span<const Index> place_of) const override;
+  [[nodiscard]] NeighbourRows rows_of(std::span<const Index> vertices) const override;
+  [[nodiscard]] Order order_by(std::string_view method, const OrderOptions& options) override;
+  [[nodiscard]] MethodChoice choice(Workload workload) override;
+
+ private:
+  const GraphArrays& graph_;
+  const PointsView& points_;
+};
+
+/// Of a mesh. Refers to it, and builds its graph when an order is computed.
+class CellNeighbourhood : public Neighbourhood {
+ public:
+  CellNeighbourhood(const CellArrays& cells, const PointsView& points) : cells_(cells), points_(points) {}
+
+  [[nodiscard]] Index size() const override { return cells_.vertex_count; }
+  [[nodiscard]] double span_log2(std::span<const Index> place_of) const override;
+  [[nodiscard]] NeighbourRows rows_of(std::span<const Index> vertices) const override;
+  [[nodiscard]] Order order_by(std::string_view method, const OrderOptions& options) override;
+  [[nodiscard]] MethodChoice choice(Workload workload) override;
+
+ private:
+  const CsrGraph& graph();
+  [[nodiscard]] Shape shape_of(Index cell) const;
+
+  const CellArrays& cells_;
+  const PointsView& points_;
+  std::optional<CsrGraph> graph_;
+};
+
+/// Of points alone, whose place is that on a curve.
+class PointNeighbourhood : public Neighbourhood {
+ public:
+  explicit PointNeighbourhood(const PointsView& points) : points_(points) {}
+
+  [[nodiscard]] Index size() const override { return static_cast<Index>(points_.size()); }
+  [[nodiscard]] double span_log2(std::span<const Index> place_of) const override;
+  /// On the curve itself nothing is away from its place, so that the slack is one of log₂ n.
+  [[nodiscard]] double most_span(double fresh, double slack) const override;
+  [[nodiscard]] NeighbourRows rows_of(std::span<const Index> vertices) const override;
+  [[nodiscard]] Order order_by(std::string_view method, const OrderOptions& options) override;
+  [[nodiscard]] MethodChoice choice(Workload workload) override;
+
+ private:
+  const PointsView& points_;
+};
+
+}  // namespace meshorder

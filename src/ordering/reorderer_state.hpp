@@ -1,0 +1,58 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace meshorder {
+
+/// The times of the steps since the last new order: their number k after it, and sums for a line through
+/// them.
+struct Observed {
+  double count = 0;
+  double k = 0;
+  double kk = 0;
+  double t = 0;
+  double kt = 0;
+
+  void add(double number, double seconds) {
+    ++count;
+    k += number;
+    kk += number * number;
+    t += seconds;
+    kt += number * seconds;
+  }
+  /// Returns by how much a step takes longer than the one before; 0 where that is not known.
+  [[nodiscard]] double slope() const {
+    constexpr double kFewest = 5;
+    const double spread = count * kk - k * k;
+    return count >= kFewest && spread > 0 ? (count * kt - k * t) / spread : 0;
+  }
+};
+
+/// What a `Reorderer` keeps from update to update.
+struct ReordererState {
+  std::uint8_t begun = 0;
+  Index count = 0;      ///< vertices of the last update
+  Index since = 0;      ///< updates since the last order that was computed anew
+  Index interval = 10;  ///< after so many there is another one
+  double fresh_span = 0;
+  double fresh_seconds = 0;  ///< that the last order took that was computed without a start vector; 0: none
+  double warm_seconds = 0;   ///< with one
+  Observed observed;
+  std::string method;          ///< that the renewals take; "auto" where the first one was no better
+  std::vector<double> vector;  ///< a start for the next Fiedler vector, by the places after the last update
+};
+
+/// Returns the state as bytes, with a mark and a checksum, in the order of bytes of this machine.
+std::vector<std::byte> to_bytes(const ReordererState& state);
+
+/// Returns the state that such bytes hold. Throws InvalidArgument unless they are whole.
+ReordererState reorderer_state(std::span<const std::byte> bytes);
+
+}  // namespace meshorder
