@@ -4,6 +4,7 @@
 /// @file
 /// Includes all public headers of the components that are installed.
 
+#include <meshorder/changing.hpp>
 #include <meshorder/error.hpp>
 #include <meshorder/fiedler.hpp>
 #include <meshorder/options.hpp>

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Orders of meshes that are given as arrays, and meshes of files.
+#include "cells.hpp"
 #include "mesh/boundary.hpp"
 #include "module.hpp"
 #include "options.hpp"
@@ -32,41 +33,6 @@ namespace meshorder::python {
 namespace {
 
 using python::described;
-
-/// Cells as Python gives them: blocks of one shape each, or offsets, vertices and VTK's types (or none).
-using Blocks = std::vector<std::pair<std::string, Array>>;
-using Mixed = std::tuple<Array, Array, std::optional<Array>>;
-using GivenCells = std::variant<Blocks, Mixed>;
-using GivenPoints = std::optional<nb::ndarray<nb::ro, nb::device::cpu>>;
-
-Shape parse_shape(const std::string& name) {
-  for (int s = 0; s < kShapes; ++s) {
-    if (to_string(static_cast<Shape>(s)) == name) return static_cast<Shape>(s);
-  }
-  throw InvalidArgument("cells: unknown shape '" + name + "'");
-}
-
-CellsView cells_view(const Blocks& given) {
-  std::vector<CellBlock> blocks;
-  for (const auto& [shape, vertices] : given) {
-    if (vertices.ndim() != 2) throw InvalidArgument("cells: expected a row of vertices for each cell");
-    blocks.push_back({parse_shape(shape), static_cast<int>(vertices.shape(1)), index_view(vertices)});
-  }
-  return CellsView::blocks(blocks);
-}
-
-CellsView cells_view(const Mixed& given) {
-  const auto& [offsets, vertices, types] = given;
-  std::span<const std::uint8_t> vtk_types;
-  if (types) vtk_types = {static_cast<const std::uint8_t*>(types->data()), types->size()};
-  return CellsView::mixed(index_view(offsets), index_view(vertices), vtk_types);
-}
-
-MeshView mesh_view(const GivenPoints& points, const GivenCells& cells, std::size_t vertex_count) {
-  return {.points = points ? points_view(*points) : PointsView(),
-          .cells = std::visit([](const auto& given) { return cells_view(given); }, cells),
-          .vertex_count = vertex_count};
-}
 
 nb::tuple described(MeshOrder order) {
   return nb::make_tuple(described(std::move(order.vertices)), described(std::move(order.cells)));

@@ -22,6 +22,7 @@ from . import _interpreter  # noqa: F401  # before anything loads the extension 
 from ._core import build_info
 from ._core import version as __version__
 from ._errors import Error, InputError, InternalError, InvalidArgument, Stopped, TooLarge, Unavailable
+from ._changing import Reorderer, Update
 from ._files import make_mesh, read, to_bytes, write
 from ._graphs import Fiedler, FiedlerComponent, Order, Quality, fiedler, quality
 from ._meshes import Mesh, MeshOrder
@@ -37,7 +38,7 @@ from ._try import Trial, TriedOrder, try_orders
 __all__ = [
     "Advice", "Calibration", "Candidate", "Comparison", "Error", "Fiedler", "FiedlerComponent", "InputError",
     "InternalError", "InvalidArgument", "Mesh", "MeshOrder", "MethodInfo", "Options", "Order", "Permutation",
-    "Quality", "Stopped", "TooLarge", "Trial", "TriedOrder", "Unavailable", "__version__", "advise", "build_info",
+    "Quality", "Reorderer", "Stopped", "TooLarge", "Trial", "TriedOrder", "Unavailable", "Update", "__version__", "advise", "build_info",
     "calibrate", "compare", "fiedler", "load_methods", "make_mesh", "methods", "order", "order_edges", "order_mesh",
     "quality", "read", "register", "reorder", "show", "to_bytes", "try_orders", "unregister", "write",
 ]  # fmt: skip
