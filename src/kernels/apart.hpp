@@ -14,8 +14,8 @@ namespace meshorder {
 /// Processors compare a load with the stores before it by the low 12 bits of their addresses first, and many
 /// let it wait where these agree. A kernel that reads positions[v] and adds to forces[v] would wait for the
 /// stores to all vertices near v if both arrays began at a page: springs took 1.4 to 2.2 times as long on an
-/// Intel Xeon (docs/evidence/benchmarks.md). Vertices near v are some 30 of 32 bytes; a distance of 64 bytes does not
-/// suffice.
+/// Intel Xeon (docs/evidence/benchmarks.md). Vertices near v are some 30 of 32 bytes; a distance of 64 bytes
+/// does not suffice.
 inline constexpr std::size_t kApart = 1088;
 
 /// Whether the addresses differ by less than kApart modulo 4096.

@@ -28,8 +28,8 @@ namespace meshorder {
 ///
 /// Memory: 0.6 to 0.9 times the matrix. O(blocks) for set-up, update and cycle, on all threads but for the
 /// aggregates. `apply` uses scratch memory of the object and must not be called by two threads at a time.
-/// Measured against Jacobi in docs/evidence/benchmarks.md. Throws InvalidArgument unless there is a point for each
-/// row.
+/// Measured against Jacobi in docs/evidence/benchmarks.md. Throws InvalidArgument unless there is a point for
+/// each row.
 std::unique_ptr<Preconditioner> make_multigrid(const BlockCsr& pattern, std::span<const Point> points);
 
 }  // namespace meshorder

@@ -40,10 +40,11 @@ Table savings_table(const StudyResults& a, const StudyResults& b) {
   Table table{
       "comparison",
       "What the orders save in both studies",
-      fmt::format("Per cent of the time that the same steps take in the order “{}”, with 95 % confidence "
-                  "intervals. Saves, costs: the interval lies on one side of 0. No clear difference: it holds 0, "
-                  "or there is none. B − A: percentage points, with the interval that follows from both.",
-                  title_of(a, a.reference)),
+      fmt::format(
+          "Per cent of the time that the same steps take in the order “{}”, with 95 % confidence "
+          "intervals. Saves, costs: the interval lies on one side of 0. No clear difference: it holds 0, "
+          "or there is none. B − A: percentage points, with the interval that follows from both.",
+          title_of(a, a.reference)),
       {"Scenario and order", "A, %", "B, %", "B − A", "In words"},
       {}};
   if (paper) table.columns.emplace_back("Paper, %");
