@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <random>
 #include <tuple>
 #include <utility>
@@ -22,8 +23,8 @@ namespace {
 constexpr int kSide = 40;
 
 struct Surface {
-  Eigen::MatrixXd V;
-  Eigen::MatrixXi F;
+  Eigen::MatrixXd points;  // libigl's V
+  Eigen::MatrixXi faces;   // libigl's F
 };
 
 // Returns a wavy square of kSide × kSide points, numbered at random.
@@ -34,15 +35,17 @@ Surface sample() {
   for (int i = kSide * kSide - 1; i > 0; --i)
     std::swap(number[static_cast<std::size_t>(i)], number[random() % static_cast<unsigned>(i + 1)]);
   Surface surface;
-  surface.V.resize(kSide * kSide, 3);
-  surface.F.resize(2 * (kSide - 1) * (kSide - 1), 3);
-  const auto at = [&](int x, int y) { return number[static_cast<std::size_t>(x + kSide * y)]; };
+  surface.points.resize(kSide * kSide, 3);
+  surface.faces.resize(2 * (kSide - 1) * (kSide - 1), 3);
+  const auto at = [&](int x, int y) {
+    return number[static_cast<std::size_t>(x) + kSide * static_cast<std::size_t>(y)];
+  };
   for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x) surface.V.row(at(x, y)) << x, y, std::sin(0.3 * x);
+    for (int x = 0; x < kSide; ++x) surface.points.row(at(x, y)) << x, y, std::sin(0.3 * x);
   for (int y = 0, f = 0; y + 1 < kSide; ++y) {
     for (int x = 0; x + 1 < kSide; ++x) {
-      surface.F.row(f++) << at(x, y), at(x + 1, y), at(x, y + 1);
-      surface.F.row(f++) << at(x + 1, y), at(x + 1, y + 1), at(x, y + 1);
+      surface.faces.row(f++) << at(x, y), at(x + 1, y), at(x, y + 1);
+      surface.faces.row(f++) << at(x + 1, y), at(x + 1, y + 1), at(x, y + 1);
     }
   }
   return surface;
@@ -50,15 +53,15 @@ Surface sample() {
 
 Eigen::SparseMatrix<double> laplacian(const Surface& s) {
   std::vector<Eigen::Triplet<double>> entries;
-  for (Eigen::Index f = 0; f < s.F.rows(); ++f) {
+  for (Eigen::Index f = 0; f < s.faces.rows(); ++f) {
     for (int k = 0; k < 3; ++k) {
-      const int a = s.F(f, k);
-      const int b = s.F(f, (k + 1) % 3);
+      const int a = s.faces(f, k);
+      const int b = s.faces(f, (k + 1) % 3);
       for (const auto& [i, j, value] : {std::tuple(a, a, 1.0), {b, b, 1.0}, {a, b, -1.0}, {b, a, -1.0}})
         entries.emplace_back(i, j, value);
     }
   }
-  Eigen::SparseMatrix<double> matrix(s.V.rows(), s.V.rows());
+  Eigen::SparseMatrix<double> matrix(s.points.rows(), s.points.rows());
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
 }
@@ -66,25 +69,24 @@ Eigen::SparseMatrix<double> laplacian(const Surface& s) {
 // Returns the sum of the lengths of all sides, which no order changes.
 double length(const Surface& s) {
   double sum = 0;
-  for (Eigen::Index f = 0; f < s.F.rows(); ++f)
-    for (int k = 0; k < 3; ++k) sum += (s.V.row(s.F(f, k)) - s.V.row(s.F(f, (k + 1) % 3))).norm();
+  for (Eigen::Index f = 0; f < s.faces.rows(); ++f)
+    for (int k = 0; k < 3; ++k)
+      sum += (s.points.row(s.faces(f, k)) - s.points.row(s.faces(f, (k + 1) % 3))).norm();
   return sum;
 }
 
 bool is_near(double a, double b) { return std::abs(a - b) < 1e-9 * std::abs(b); }
 
-}  // namespace
-
-int main() {
+bool is_right() {
   Surface surface = sample();
   const Eigen::SparseMatrix<double> before = laplacian(surface);
   const double length_before = length(surface);
-  Eigen::VectorXd height = surface.V.col(2);
+  Eigen::VectorXd height = surface.points.col(2);
 
-  // a mesh: V and F move, and what else belongs to vertices
-  const mo::MeshOrder order = mo::reorder(surface.V, surface.F);
+  // a mesh: points and faces move, and what else belongs to vertices
+  const mo::MeshOrder order = mo::reorder(surface.points, surface.faces);
   mo::move_rows(order.vertices.permutation, height);
-  const bool mesh_is_same = is_near(length(surface), length_before) && height == surface.V.col(2);
+  const bool mesh_is_same = is_near(length(surface), length_before) && height == surface.points.col(2);
 
   // a matrix: its own order
   const auto rows = mo::permutation_matrix(mo::order_vertices(mo::graph_view(before), "rcm").permutation);
@@ -95,16 +97,27 @@ int main() {
 
   // the other storage order gives the same order, and a transposed mesh is refused
   const Surface again = sample();
-  const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> points = again.V;
-  const Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor> faces = again.F;
+  const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> points = again.points;
+  const Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor> faces = again.faces;
   const bool storage_is_all_one =
       mo::order_mesh(points, faces).vertices.permutation == order.vertices.permutation;
   bool transposed_is_refused = false;
   try {
-    (void)mo::order_mesh(again.V.transpose().eval(), again.F);
+    (void)mo::order_mesh(again.points.transpose().eval(), again.faces);
   } catch (const mo::InvalidArgument& error) {
     transposed_is_refused = true;
     std::printf("transposed: %s\n", error.what());
   }
-  return mesh_is_same && matrix_is_same && storage_is_all_one && transposed_is_refused ? 0 : 1;
+  return mesh_is_same && matrix_is_same && storage_is_all_one && transposed_is_refused;
+}
+
+}  // namespace
+
+int main() {
+  try {
+    return is_right() ? 0 : 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }

@@ -32,10 +32,10 @@ template <class Derived>
     throw InvalidArgument("points: " + std::to_string(points.rows()) + " × " + std::to_string(points.cols()) +
                           " numbers; a row for each point and 1 to 3 columns are wanted");
   }
-  constexpr auto bytes = static_cast<Offset>(sizeof(typename Derived::Scalar));
+  constexpr auto kBytes = static_cast<Offset>(sizeof(typename Derived::Scalar));
   const Derived& matrix = points.derived();
-  return {matrix.data(), matrix.rows(), static_cast<int>(matrix.cols()), matrix.rowStride() * bytes,
-          matrix.colStride() * bytes};
+  return {matrix.data(), matrix.rows(), static_cast<int>(matrix.cols()), matrix.rowStride() * kBytes,
+          matrix.colStride() * kBytes};
 }
 
 /// Returns a view of the pattern of a matrix.
@@ -113,14 +113,14 @@ void move_rows(const Permutation& permutation, Eigen::PlainObjectBase<Derived>& 
     throw InvalidArgument("move_rows: " + std::to_string(values.rows()) + " rows, must be " +
                           std::to_string(permutation.size()));
   }
-  constexpr auto bytes = static_cast<Offset>(sizeof(typename Derived::Scalar));
+  constexpr auto kBytes = static_cast<Offset>(sizeof(typename Derived::Scalar));
   const typename Derived::PlainObject old = values;
   const bool by_rows = values.colStride() == 1;
   const Eigen::Index strips = by_rows ? 1 : values.cols();
   for (Eigen::Index c = 0; c < strips; ++c) {
     permutation.move_rows(
-        old.data() + c * old.colStride(), old.rowStride() * bytes, values.data() + c * values.colStride(),
-        values.rowStride() * bytes,
+        old.data() + c * old.colStride(), old.rowStride() * kBytes, values.data() + c * values.colStride(),
+        values.rowStride() * kBytes,
         sizeof(typename Derived::Scalar) * (by_rows ? static_cast<std::size_t>(values.cols()) : 1));
   }
 }

@@ -25,6 +25,7 @@ class SymmetricGaussSeidel {
   using StorageIndex = Matrix::StorageIndex;
   enum { ColsAtCompileTime = Eigen::Dynamic, MaxColsAtCompileTime = Eigen::Dynamic };
 
+  // NOLINTNEXTLINE(readability-identifier-naming): Eigen's name
   SymmetricGaussSeidel& analyzePattern(const Matrix& /*matrix*/) { return *this; }
   SymmetricGaussSeidel& factorize(const Matrix& matrix) { return compute(matrix); }
   SymmetricGaussSeidel& compute(const Matrix& matrix) {

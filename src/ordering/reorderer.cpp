@@ -142,7 +142,7 @@ class Reorderer::Inside {
 
   /// Returns after how many updates there is a new order: when what steps lose outweighs its cost, where that
   /// is known.
-  [[nodiscard]] Index interval(const ReordererState& memory) const {
+  [[nodiscard]] static Index interval(const ReordererState& memory) {
     const double slope = memory.observed.slope();
     const double cost = memory.warm_seconds > 0 ? memory.warm_seconds : memory.fresh_seconds;
     if (slope <= 0 || cost <= 0) return memory.interval;

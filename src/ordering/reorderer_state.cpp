@@ -54,51 +54,50 @@ std::uint64_t checksum_of(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-std::vector<std::byte> to_bytes(const ReordererState& memory) {
+std::vector<std::byte> to_bytes(const ReordererState& state) {
   Bytes out;
   out.add(kMark);
-  out.add(memory.begun);
-  out.add(memory.count);
-  out.add(memory.since);
-  out.add(memory.interval);
-  for (const double number :
-       {memory.fresh_span, memory.fresh_seconds, memory.warm_seconds, memory.observed.count,
-        memory.observed.k, memory.observed.kk, memory.observed.t, memory.observed.kt})
+  out.add(state.begun);
+  out.add(state.count);
+  out.add(state.since);
+  out.add(state.interval);
+  for (const double number : {state.fresh_span, state.fresh_seconds, state.warm_seconds, state.observed.count,
+                              state.observed.k, state.observed.kk, state.observed.t, state.observed.kt})
     out.add(number);
-  out.add(static_cast<std::uint64_t>(memory.method.size()));
-  for (const char letter : memory.method) out.add(letter);
-  out.add(static_cast<std::uint64_t>(memory.vector.size()));
-  for (const double number : memory.vector) out.add(number);
+  out.add(static_cast<std::uint64_t>(state.method.size()));
+  for (const char letter : state.method) out.add(letter);
+  out.add(static_cast<std::uint64_t>(state.vector.size()));
+  for (const double number : state.vector) out.add(number);
   out.add(checksum_of(out.bytes()));
   return std::move(out.bytes());
 }
 
-ReordererState reorderer_state(std::span<const std::byte> state) {
-  Reader in(state);
+ReordererState reorderer_state(std::span<const std::byte> bytes) {
+  Reader in(bytes);
   if (in.take<std::uint64_t>() != kMark) throw InvalidArgument("state: this is none of a Reorderer");
   constexpr std::size_t kSum = sizeof(std::uint64_t);
-  if (state.size() < 2 * kSum ||
-      Reader(state.last(kSum)).take<std::uint64_t>() != checksum_of(state.first(state.size() - kSum)))
+  if (bytes.size() < 2 * kSum ||
+      Reader(bytes.last(kSum)).take<std::uint64_t>() != checksum_of(bytes.first(bytes.size() - kSum)))
     throw InvalidArgument("state: it is cut off or damaged");
-  ReordererState memory;
-  memory.begun = in.take<std::uint8_t>();
-  memory.count = in.take<Index>();
-  memory.since = in.take<Index>();
-  memory.interval = in.take<Index>();
+  ReordererState state;
+  state.begun = in.take<std::uint8_t>();
+  state.count = in.take<Index>();
+  state.since = in.take<Index>();
+  state.interval = in.take<Index>();
   for (double* const number :
-       {&memory.fresh_span, &memory.fresh_seconds, &memory.warm_seconds, &memory.observed.count,
-        &memory.observed.k, &memory.observed.kk, &memory.observed.t, &memory.observed.kt})
+       {&state.fresh_span, &state.fresh_seconds, &state.warm_seconds, &state.observed.count,
+        &state.observed.k, &state.observed.kk, &state.observed.t, &state.observed.kt})
     *number = in.take<double>();
   const auto letters = in.take<std::uint64_t>();
   if (letters > in.left()) throw InvalidArgument("state: it is cut off or damaged");
-  for (std::uint64_t i = 0; i < letters; ++i) memory.method += in.take<char>();
+  for (std::uint64_t i = 0; i < letters; ++i) state.method += in.take<char>();
   const auto entries = in.take<std::uint64_t>();
   if (entries > in.left() / sizeof(double)) throw InvalidArgument("state: it is cut off or damaged");
-  for (std::uint64_t i = 0; i < entries; ++i) memory.vector.push_back(in.take<double>());
-  const bool fits = memory.count >= 0 && memory.interval >= 1 && in.left() == kSum &&
-                    (memory.vector.empty() || std::cmp_equal(memory.vector.size(), memory.count));
+  for (std::uint64_t i = 0; i < entries; ++i) state.vector.push_back(in.take<double>());
+  const bool fits = state.count >= 0 && state.interval >= 1 && in.left() == kSum &&
+                    (state.vector.empty() || std::cmp_equal(state.vector.size(), state.count));
   if (!fits) throw InvalidArgument("state: it is cut off or damaged");
-  return memory;
+  return state;
 }
 
 }  // namespace meshorder
