@@ -9,6 +9,7 @@
 #include <cctype>
 #include <concepts>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -119,6 +120,7 @@ Enum parse(std::string_view text) {
     if (text == name) return value;
   }
   std::vector<std::string> names;
+  names.reserve(std::size(EnumNames<Enum>::names));
   for (const auto& [value, name] : EnumNames<Enum>::names) names.emplace_back(name);
   throw InvalidArgument(unknown_in_words(EnumNames<Enum>::kind, std::string(text), names));
 }

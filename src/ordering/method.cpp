@@ -106,6 +106,7 @@ const auto* find_method(const Methods& methods, std::string_view name) {
   }
 #endif
   std::vector<std::string> names;
+  names.reserve(known.size());
   for (const MethodInfo& method : known) names.push_back(method.name);
   throw InvalidArgument(unknown_in_words(std::string(kind) + " order", std::string(name), names));
 }
