@@ -116,7 +116,7 @@ def test_the_index_takes_both(sdist):
 def test_all_name_one_version():
     version = meshorder.__version__
     assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text()
-    assert f"Version {version}}}" in (ROOT / "README.md").read_text()
+    assert f"Version {version}}}" in (ROOT / "docs" / "start.md").read_text()
 
 
 @of_sources

@@ -60,9 +60,26 @@ def test_what_orders_bring_in_programs_is_what_was_kept():
     printed = subprocess.run([sys.executable, conftest.ROOT / "benchmarks" / "programs.py", "--from", kept], check=True,
                              capture_output=True, text=True).stdout
     assert printed in (conftest.ROOT / "docs" / "hosts.md").read_text()
-    drawn = subprocess.run([sys.executable, conftest.ROOT / "docs" / "pictures" / "draw_programs.py", kept, "/dev/stdout"],
-                           check=True, capture_output=True, text=True).stdout
-    assert drawn == (conftest.ROOT / "docs" / "pictures" / "programs.svg").read_text()
+    of_readme = ["icofoam-pcg", "freefem", "ngsolve", "petsc", "ccx-spooles", "dolfinx"]
+    for picture, programs in (("programs", []), ("gains", of_readme)):
+        script = conftest.ROOT / "docs" / "pictures" / "draw_programs.py"
+        drawn = subprocess.run([sys.executable, script, kept, "/dev/stdout", *programs], check=True, capture_output=True,
+                               text=True).stdout
+        assert drawn == (kept.parent / f"{picture}.svg").read_text()
+
+
+def test_what_the_readme_says_of_programs_is_what_was_kept():
+    kept = json.loads((conftest.ROOT / "docs" / "pictures" / "programs.json").read_text())
+    readme = (conftest.ROOT / "README.md").read_text()
+    rows = re.findall(r"^\| (\w+), .*? \| ([\d.]+) s \| ([\d.]+) s \| (?:\*\*([\d.]+) times|no gain)", readme, re.MULTILINE)
+    assert len(rows) == 6
+    for program, as_it_is, best, times in rows:
+        found, = [one for name, one in kept.items() if one["title"].startswith(program)
+                  and f"{one['orders'][0]['time']:.3g}" == as_it_is]
+        order, = [order for order in found["orders"] if order["name"] == found["best"]]
+        assert f"{order['time']:.3g}" == best
+        assert (found["verdict"] == "faster") == bool(times)
+        assert not times or f"{order['ratio']:.1f}" == times
 
 
 def test_simulations(command, tmp_path):
