@@ -109,11 +109,21 @@ def without_comments(text):
 
 def test_public_headers_are_few_and_name_no_other_library(prefix):
     headers = [path for path in (prefix / "include").rglob("*") if path.is_file()]
-    assert 10 <= len(headers) <= 24
+    assert 10 <= len(headers) <= 26
     for path in headers:
+        if path.name == "eigen.hpp":
+            continue  # whoever includes it brings Eigen
         found = re.findall(r"\b(?:tbb|eigen|fmt|metis|hwy)\b", without_comments(path.read_text(encoding="utf-8")),
                            re.IGNORECASE)
         assert not found, path
+
+
+def test_the_header_for_eigen_is_installed_and_compiles(prefix, tmp_path):
+    if not pathlib.Path("/usr/include/eigen3").exists():
+        pytest.skip("no Eigen")
+    (tmp_path / "eigen.cpp").write_text("#include <meshorder/eigen.hpp>\n")
+    run("c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{prefix / 'include'}",
+        "-isystem", "/usr/include/eigen3", tmp_path / "eigen.cpp")
 
 
 @pytest.mark.parametrize("compiler", ["c++", "clang++"])
