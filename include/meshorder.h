@@ -174,6 +174,56 @@ MO_API mo_status mo_order_mesh(const mo_in* cell_offsets, const mo_in* cell_vert
 MO_API mo_status mo_order_edges(const mo_in* ends, const mo_in* vertex_new_to_old, int32_t base,
                                 const mo_out* new_to_old);
 
+/** Keeps the order of a graph, mesh or set of particles that changes fresh. One update at a time. */
+typedef struct mo_reorderer mo_reorderer;
+
+/** How an update came by its order, the cheapest first. */
+enum {
+  MO_REPAIR_NONE = 0,    /**< nothing moves */
+  MO_REPAIR_CARRIED = 1, /**< vertices that stayed keep their order, new ones come next to their neighbours */
+  MO_REPAIR_WARM = 2,    /**< computed anew, from the last Fiedler vector */
+  MO_REPAIR_FRESH = 3    /**< computed anew */
+};
+
+/**
+ * Makes a reorderer, to be destroyed by `mo_reorderer_destroy`.
+ *
+ * @param options         of its orders, or null; its arrays must be empty, `progress` and `user` must stay
+ * valid
+ * @param slack           share, >= 0, by which neighbours may be farther apart than in the last fresh order;
+ * 0.02
+ * @param budget_seconds  >= 0: no order is computed anew that took longer the last time; infinity: no limit
+ * @param reorderer       written; null after a failure
+ */
+MO_API mo_status mo_reorderer_create(const mo_options* options, double slack, double budget_seconds,
+                                     mo_reorderer** reorderer);
+
+/** Ends a reorderer; does nothing for a null pointer. */
+MO_API void mo_reorderer_destroy(mo_reorderer* reorderer);
+
+/**
+ * Brings the order up to date. Call it when connectivity or positions have changed, and move all arrays by
+ * the result.
+ *
+ * @param offsets     n + 1, ascending, the first is the base of the options; null where there are points
+ * alone
+ * @param neighbours  offsets[n] - base numbers from the base on, or null
+ * @param points      dimension * n coordinates, or null
+ * @param dimension   1 to 3; not used without points
+ * @param previous    for each vertex its place after the last update, from the base on, base - 1 for a new
+ * one, each at most once; null: the same vertices in the same places
+ * @param new_to_old  n integers, or null: the present place of the vertex at each new place, from the base on
+ * @param old_to_new  n integers, or null: the new place of each vertex, from the base on
+ * @param repair      or null: MO_REPAIR_...
+ */
+MO_API mo_status mo_reorderer_update(mo_reorderer* reorderer, const mo_in* offsets, const mo_in* neighbours,
+                                     const mo_in* points, int32_t dimension, const mo_in* previous,
+                                     const mo_out* new_to_old, const mo_out* old_to_new, int32_t* repair);
+
+/** Tells how long, >= 0, the step took that followed the last update: then there is a new order when what
+ * steps lose outweighs what it costs. Optional. */
+MO_API mo_status mo_reorderer_observe(mo_reorderer* reorderer, double step_seconds);
+
 /**
  * Computes the Fiedler vector of every connected component: norm 1 and sum 0 in each, but for
  * isolated vertices, which have 0.

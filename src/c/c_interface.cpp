@@ -4,6 +4,7 @@
 #include "base/status.hpp"
 #include "base/stopwatch.hpp"
 #include "ordering/foreign_method.hpp"
+#include <meshorder/changing.hpp>
 #include <meshorder/error.hpp>
 #include <meshorder/fiedler.hpp>
 #include <meshorder/options.hpp>
@@ -20,6 +21,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <span>
@@ -344,6 +346,13 @@ Permutation permutation_of(const IndexView& new_to_old, int base) {
   return Permutation::from_new_to_old(std::move(map));
 }
 
+/// Returns the places from 0 on, -1 for new vertices.
+std::vector<std::int64_t> places_before(const IndexView& previous, int base) {
+  std::vector<std::int64_t> places(previous.size());
+  for (std::size_t v = 0; v < places.size(); ++v) places[v] = previous[v] - base;
+  return places;
+}
+
 /// Returns a copy of a name that lives as long as the process.
 const char* kept(std::string name) {
   // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): never destroyed
@@ -364,6 +373,11 @@ mo_status guarded(const Work& work) noexcept {
 }  // namespace meshorder
 
 using namespace meshorder;
+
+struct mo_reorderer {
+  Reorderer inside;
+  int base;
+};
 
 uint32_t mo_version() { return version(); }
 
@@ -434,6 +448,52 @@ mo_status mo_order_edges(const mo_in* ends, const mo_in* vertex_new_to_old, int3
     std::vector<std::int64_t> from_zero(given.size());
     for (std::size_t k = 0; k < given.size(); ++k) from_zero[k] = given[k] - base;
     write(order_edges(from_zero, vertices).new_to_old(), base, new_to_old, "new_to_old");
+  });
+}
+
+mo_status mo_reorderer_create(const mo_options* options, double slack, double budget_seconds,
+                              mo_reorderer** reorderer) {
+  if (reorderer != nullptr) *reorderer = nullptr;
+  return guarded([&] {
+    if (reorderer == nullptr) fail("reorderer", "there is no place to write it to");
+    const mo_options given = complete_options(options);
+    const int base = base_of(given.base);
+    Reorderer inside({.method = std::string(name_or_auto(given.method)),
+                      .slack = slack,
+                      .budget_seconds = budget_seconds,
+                      .order = order_options(given)});
+    *reorderer = std::make_unique<mo_reorderer>(mo_reorderer{std::move(inside), base}).release();
+  });
+}
+
+void mo_reorderer_destroy(mo_reorderer* reorderer) {
+  const std::unique_ptr<mo_reorderer> ends_here(reorderer);
+}
+
+mo_status mo_reorderer_update(mo_reorderer* reorderer, const mo_in* offsets, const mo_in* neighbours,
+                              const mo_in* points, int32_t dimension, const mo_in* previous,
+                              const mo_out* new_to_old, const mo_out* old_to_new, int32_t* repair) {
+  return guarded([&] {
+    if (reorderer == nullptr) fail("reorderer", "there is none");
+    const int base = reorderer->base;
+    const PointsView coordinates = points_of(points, dimension);
+    const GraphView graph = offsets == nullptr ? GraphView() : graph_of(offsets, neighbours, nullptr, base);
+    const std::size_t n = offsets == nullptr ? coordinates.size() : graph.offsets.size() - 1;
+    check_integers(new_to_old, n, "new_to_old");
+    check_integers(old_to_new, n, "old_to_new");
+    const std::vector<std::int64_t> places = places_before(integers(previous, "previous"), base);
+    const Update update = offsets == nullptr ? reorderer->inside.update(coordinates, places)
+                                             : reorderer->inside.update(graph, coordinates, places);
+    write(update.permutation.new_to_old(), base, new_to_old, "new_to_old");
+    write(update.permutation.old_to_new(), base, old_to_new, "old_to_new");
+    if (repair != nullptr) *repair = static_cast<std::int32_t>(update.repair);
+  });
+}
+
+mo_status mo_reorderer_observe(mo_reorderer* reorderer, double step_seconds) {
+  return guarded([&] {
+    if (reorderer == nullptr) fail("reorderer", "there is none");
+    reorderer->inside.observe(step_seconds);
   });
 }
 

@@ -1,5 +1,6 @@
 /* Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT */
 /* A caller in C99: orders, Fiedler vectors, methods of its own, and the statuses of mistakes. */
+#include <math.h>
 #include <meshorder.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -212,6 +213,46 @@ static void test_edges(void) {
   CHECK(mo_order_edges(&odd, &vertices, 1, &edges) == MO_INVALID_ARGUMENT);
   CHECK(mo_order_edges(&outside, &vertices, 0, &edges) == MO_INVALID_ARGUMENT);
   CHECK(mo_order_edges(&ends, NULL, 1, &edges) == MO_INVALID_ARGUMENT);
+}
+
+/* A path of six vertices, 0 - 2 - 4 - 1 - 3 - 5, from 1 on; then the third along it goes and a new one comes
+ * to the end. */
+static void test_reorderer(void) {
+  static const int32_t path_offsets[] = {1, 2, 4, 6, 8, 10, 11};
+  static const int32_t path_neighbours[] = {3, 4, 5, 1, 5, 2, 6, 2, 3, 4};
+  const mo_in offsets = in32(path_offsets, COUNT(path_offsets));
+  const mo_in neighbours = in32(path_neighbours, COUNT(path_neighbours));
+  static const int32_t all_new[] = {0, 0, 0, 0, 0, 0};
+  static const int32_t twice[] = {1, 1, 3, 4, 5, 6};
+  const mo_in previous = in32(all_new, COUNT(all_new));
+  const mo_in faulty = in32(twice, COUNT(twice));
+  mo_options options = options_of("rcm");
+  mo_reorderer* reorderer = NULL;
+  int32_t new_to_old[6];
+  int32_t repair = -1;
+  int v;
+  const mo_out places = out32(new_to_old, 6);
+  options.base = 1;
+  CHECK(mo_reorderer_create(&options, 0.02, INFINITY, &reorderer) == MO_OK);
+  CHECK(mo_reorderer_update(reorderer, &offsets, &neighbours, NULL, 0, &previous, &places, NULL, &repair) ==
+        MO_OK);
+  CHECK(repair == MO_REPAIR_FRESH);
+  for (v = 0; v < 6; ++v) {
+    static const int32_t along[] = {1, 3, 5, 2, 4, 6};
+    CHECK(new_to_old[v] == along[v] || new_to_old[v] == along[5 - v]);
+  }
+  CHECK(mo_reorderer_update(reorderer, &offsets, &neighbours, NULL, 0, &faulty, NULL, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  CHECK(strstr(mo_last_error(), "entries 0 and 1 are both 0") != NULL);
+  CHECK(mo_reorderer_observe(reorderer, 0.5) == MO_OK);
+  CHECK(mo_reorderer_observe(reorderer, -1) == MO_INVALID_ARGUMENT);
+  mo_reorderer_destroy(reorderer);
+  mo_reorderer_destroy(NULL);
+  CHECK(mo_reorderer_create(&options, -1, INFINITY, &reorderer) == MO_INVALID_ARGUMENT);
+  CHECK(reorderer == NULL);
+  CHECK(mo_reorderer_create(&options, 0.02, INFINITY, NULL) == MO_INVALID_ARGUMENT);
+  CHECK(mo_reorderer_update(NULL, &offsets, &neighbours, NULL, 0, NULL, NULL, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
 }
 
 /* An address between those that an array can have. */
@@ -475,6 +516,7 @@ int main(void) {
   test_defaults();
   test_mesh();
   test_edges();
+  test_reorderer();
   test_alignment();
   test_fiedler();
   test_mistakes();
