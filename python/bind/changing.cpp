@@ -4,19 +4,24 @@
 #include "cells.hpp"
 #include "module.hpp"
 #include "options.hpp"
+#include "results.hpp"
 #include <meshorder/changing.hpp>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace meshorder::python {
 namespace {
+
+using python::described;
 
 using Previous = std::optional<Array>;
 
@@ -66,7 +71,7 @@ nb::dict update_points(Reorderer& self, const nb::ndarray<nb::ro, nb::device::cp
 
 nb::bytes state_of(const Reorderer& self) {
   const std::vector<std::byte> state = self.state();
-  return {state.data(), state.size()};
+  return nb::bytes(state.data(), state.size());
 }
 
 void restore(Reorderer& self, const nb::bytes& state) {
