@@ -205,6 +205,7 @@ MO_API void mo_reorderer_destroy(mo_reorderer* reorderer);
  * Brings the order up to date. Call it when connectivity or positions have changed, and move all arrays by
  * the result.
  *
+ * @param reorderer   made by `mo_reorderer_create`
  * @param offsets     n + 1, ascending, the first is the base of the options; null where there are points
  * alone
  * @param neighbours  offsets[n] - base numbers from the base on, or null

@@ -104,7 +104,8 @@ template <class V, class F>
 
 /// Moves the rows of a matrix or vector to their new places: all that belongs to vertices, or to cells.
 ///
-/// @param values  n × k, in either storage order; of a trivially copyable type
+/// @param permutation  of n places
+/// @param values       n × k, in either storage order; of a trivially copyable type
 /// @throws InvalidArgument if it has not n rows; nothing is changed then
 /// @note O(n · k), with a copy of the matrix.
 template <class Derived>

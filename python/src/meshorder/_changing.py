@@ -30,7 +30,7 @@ class Update:
         repair: how the order came about: "none"; "carried": what was there keeps its order, what is new comes next to its
             neighbours; "warm": computed anew from the last Fiedler vector; "fresh": computed anew.
         reason: why there is a new order, or none; a sentence.
-        span_log2: how near neighbours are: the mean of ⌊log₂ |i − j|⌋ over the edges of a sample of the vertices; of points
+        span_log2: how near neighbours are: the mean of ⌊log₂ span⌋ over the edges of a sample of the vertices; of points
             alone the mean of log₂ (1 + places away from the curve). To be compared for one method only.
         fresh_span_log2: the same of the last order that was computed anew.
         added: number of new vertices.
