@@ -9,7 +9,7 @@ import conftest
 import schemas
 
 # what earlier versions did not write; it may be missing
-ADDED = {"revision", "precision"}
+ADDED = {"revision", "precision", "gain"}
 SCHEMA = schemas.read_schema(conftest.ROOT / "docs" / "results.schema.json")
 
 
