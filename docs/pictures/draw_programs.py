@@ -38,9 +38,9 @@ def main():
     results = json.loads(Path(sys.argv[1]).read_text())
     names = sys.argv[3:] or list(results)
     height = TOP + ROW * len(names)
-    lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {LEFT + WIDTH + 150} {height}" '
+    lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {LEFT + WIDTH + 190} {height}" '
              'font-family="sans-serif" font-size="13">',
-             f'<rect width="{LEFT + WIDTH + 150}" height="{height}" fill="white"/>',
+             f'<rect width="{LEFT + WIDTH + 190}" height="{height}" fill="white"/>',
              f'<text x="{LEFT}" y="20" font-weight="bold">time as the generator left the mesh, and in the best order</text>']
     for number, name in enumerate(names):
         lines += bars(number, results[name]["title"], results[name])
