@@ -75,6 +75,7 @@ int iterations(const Matrix& matrix, const Vector& right) {
 }  // namespace
 
 Iterations iterations_in(GraphRef graph, const Permutation& order) {
+  if (graph.size() == 0) return {};  // Eigen reads beyond the end of a matrix of nothing
   const Matrix matrix = laplacian(graph, order);
   Vector right(matrix.rows());
   Random random(1);
