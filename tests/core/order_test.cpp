@@ -657,7 +657,8 @@ TEST(FiedlerVector, HasNumbersEvenWhereTheWeightsOverflow) {
   }
 }
 
-/// A grid of triangles whose vertices are numbered at random, and its points.
+/// A grid of triangles whose vertices are numbered at random, and its points. Squares are cut along either
+/// diagonal, so that `auto` does not take it for a lattice.
 struct Sheet {
   static constexpr Index kSide = 30;
   std::vector<Point> points{static_cast<std::size_t>(kSide * kSide)};
@@ -670,8 +671,11 @@ struct Sheet {
       for (Index x = 0; x < kSide; ++x) {
         points[at(x, y)] = {static_cast<double>(x), static_cast<double>(y), 0.1 * x};
         if (x + 1 == kSide || y + 1 == kSide) continue;
-        triangles.push_back({at(x, y), at(x + 1, y), at(x, y + 1)});
-        triangles.push_back({at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)});
+        const bool rises = (x * x + 3 * x * y + 5 * y) % 7 < 3;
+        const Index first = rises ? at(x, y) : at(x + 1, y);
+        const Index second = rises ? at(x + 1, y + 1) : at(x, y + 1);
+        triangles.push_back({first, second, rises ? at(x + 1, y) : at(x, y)});
+        triangles.push_back({first, second, rises ? at(x, y + 1) : at(x + 1, y + 1)});
       }
     }
   }
@@ -688,6 +692,7 @@ TEST(OrderMesh, NoticesTransposedPoints) {
   }
   const PointsView misread(by_axes, 3);
   const Order by_auto = order_mesh({misread, cells}).vertices;
+  EXPECT_NE(by_auto.method, right.method);
   EXPECT_THAT(by_auto.notes, ElementsAre(HasSubstr("is an array transposed")));
   EXPECT_EQ(by_auto.permutation, order_mesh({{}, cells, sheet.points.size()}).vertices.permutation)
       << "does not go by the coordinates";
@@ -721,6 +726,7 @@ TEST(OrderVertices, NoticesPointsOfAnotherGraph) {
   EXPECT_THAT(order_vertices(graph, "hilbert", {}, others).notes, ElementsAre(HasSubstr("of another mesh")));
   const std::vector<Point> all_in_one(sheet.points.size());
   EXPECT_THAT(order_vertices(graph, "hilbert", {}, all_in_one).notes, testing::IsEmpty());
+  EXPECT_THAT(order_vertices(graph, "rcm", {}, others).notes, testing::IsEmpty()) << "does not go by them";
 }
 
 }  // namespace

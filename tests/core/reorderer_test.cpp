@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "ordering/reorderer_state.hpp"
 #include "support/graph_views.hpp"
 #include "support/refusal.hpp"
 #include "support/sample_graphs.hpp"
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <span>
@@ -219,6 +221,33 @@ TEST(Reorderer, RenewsFiedlerOrdersFromTheLastVector) {
   }
   EXPECT_THAT(repairs, testing::Contains(Repair::warm));
   EXPECT_THAT(repairs, testing::Not(testing::Contains(Repair::fresh)));
+}
+
+/// Whether the start vector that is kept rises or falls along the arrays, as that of a Fiedler order does.
+bool vector_is_sorted(const Reorderer& reorderer) {
+  const std::vector<double> vector = reorderer_state(reorderer.state()).vector;
+  return !vector.empty() &&
+         (std::ranges::is_sorted(vector) || std::ranges::is_sorted(vector, std::ranges::greater()));
+}
+
+TEST(Reorderer, KeepsTheFiedlerVectorByThePlacesOfTheArrays) {
+  const CsrGraph sheet = test::grid(30, 20);
+  CsrGraph graph = renumbered(sheet, test::shuffled(sheet.size(), 1).old_to_new());
+  Reorderer reorderer({.method = "fiedler", .slack = 100});
+  const auto update = [&](const std::vector<Index>& previous) {
+    const Update made = reorderer.update(test::view_of(graph), {}, previous);
+    graph = renumbered(graph, made.permutation.old_to_new());
+    return made.repair;
+  };
+  EXPECT_EQ(update({}), Repair::fresh);
+  EXPECT_TRUE(vector_is_sorted(reorderer));
+  // the caller's arrays come in another sequence
+  const Permutation moved = test::shuffled(sheet.size(), 2);
+  graph = renumbered(graph, moved.old_to_new());
+  EXPECT_EQ(update({moved.new_to_old().begin(), moved.new_to_old().end()}), Repair::carried);
+  EXPECT_TRUE(vector_is_sorted(reorderer));
+  EXPECT_EQ(update({}), Repair::none);
+  EXPECT_TRUE(vector_is_sorted(reorderer));
 }
 
 TEST(Reorderer, LeavesALatticeAsItIs) {
