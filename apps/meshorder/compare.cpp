@@ -153,7 +153,7 @@ void compute_orders(Comparison& comparison, const Mesh& mesh, const CsrGraph& gr
     c.span = edge_span(graph, c.order.vertices.permutation);
     if (predicts) {
       c.reuse = reuse_of_kernels(mesh, graph, c.order.vertices.permutation, c.order.cells.permutation);
-      c.iterations = iterations_in(graph, c.order.vertices.permutation);
+      if (arguments.details) c.iterations = iterations_in(graph, c.order.vertices.permutation);
     }
     note_convergence(c.order.vertices.fiedler, "the vertices by " + c.vertices, notes);
     computed.push_back(std::move(c));

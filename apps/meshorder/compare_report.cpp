@@ -64,13 +64,7 @@ std::string label(const ComparedOrder& order, bool is_matrix) {
   return order_in_words(methods, is_matrix) + (order.vertices == "auto" ? " (auto)" : "");
 }
 
-std::string bar(double share) {
-  constexpr double kWidth = 12;
-  std::string result;
-  const long length = std::lround(kWidth * std::clamp(share, 0.0, 1.0));
-  for (long i = 0; i < length; ++i) result += "█";
-  return result.empty() ? "▏" : result;
-}
+constexpr int kBarWidth = 12;
 
 /// A column of the table: how many times faster each order is than the file's own, and last the band.
 struct Column {
@@ -110,10 +104,7 @@ std::vector<Column> columns_of(const Comparison& comparison, const KernelTable& 
 void print_speedups(const Console& console, const Comparison& comparison, const KernelTable& table,
                     Workload told) {
   const std::vector<Column> columns = columns_of(comparison, table);
-  std::size_t judged = 0;
-  for (std::size_t k = 0; told != Workload::all && k < kKernels.size(); ++k) {
-    if (to_string(kKernels[k]) == to_string(told)) judged = k + 1;
-  }
+  const std::size_t judged = told == Workload::all ? 0 : kernel_of(told) + 1;
   const auto width = [](const Column& c) { return std::max<std::size_t>(7, c.title.size() + 1); };
   std::string heads = fmt::format("{:<26} {:>8}", "order", "cost");
   for (const Column& c : columns) heads += fmt::format("{:>{}} ", c.title, width(c));
@@ -128,7 +119,7 @@ void print_speedups(const Console& console, const Comparison& comparison, const 
     for (const Column& c : columns)
       row +=
           fmt::format("{:>{}.2f}{}", c.factors[i], width(c), !is_band && c.factors[i] == c.best ? '*' : ' ');
-    console.print("{} {}", row, bar(columns[judged].factors[i] / longest));
+    console.print("{} {}", row, bar(columns[judged].factors[i] / longest, kBarWidth));
   }
 }
 

@@ -27,7 +27,7 @@ struct ComparedOrder {
   double seconds = 0;  ///< cost of the order: graph and both methods; 0 for the file's own
   EdgeSpan span;
   std::optional<KernelReuse> reuse;      ///< of a repeated run; none for a large mesh, nor where nobody asks
-  std::optional<Iterations> iterations;  ///< likewise
+  std::optional<Iterations> iterations;  ///< likewise, by --details alone
 };
 
 /// Kernels measured with a number of threads.

@@ -132,15 +132,12 @@ std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const CsrGra
 /// Prints a bar for each power of two, in proportion to its number of edges or entries.
 void print_histogram(const Console& console, std::string_view title, const std::vector<Offset>& bins) {
   if (bins.empty()) return;
-  constexpr double kWidth = 50;
-  const Offset largest = *std::max_element(bins.begin(), bins.end());
+  constexpr int kWidth = 50;
+  const auto largest = static_cast<double>(*std::max_element(bins.begin(), bins.end()));
   console.print("\n{}", title);
   for (std::size_t k = 0; k < bins.size(); ++k) {
-    const long length = std::lround(kWidth * static_cast<double>(bins[k]) / static_cast<double>(largest));
-    std::string bar;
-    for (long i = 0; i < length; ++i) bar += "█";
-    if (length == 0 && bins[k] > 0) bar = "▏";
-    console.print("{:>13} {:>12}  {}", "from " + with_commas(1LL << k), with_commas(bins[k]), bar);
+    console.print("{:>13} {:>12}  {}", "from " + with_commas(1LL << k), with_commas(bins[k]),
+                  bins[k] > 0 ? bar(static_cast<double>(bins[k]) / largest, kWidth) : "");
   }
 }
 

@@ -43,13 +43,7 @@ std::string with_ratio(const TrialReport& report, std::size_t order) {
                      range.empty() ? range : " (" + range + ")");
 }
 
-std::string bar(double share) {
-  constexpr double kWidth = 24;
-  std::string result;
-  const long length = std::lround(kWidth * std::clamp(share, 0.0, 1.0));
-  for (long i = 0; i < length; ++i) result += "█";
-  return result.empty() ? "▏" : result;
-}
+constexpr int kBarWidth = 24;
 
 /// Returns a time in seconds, or a number that the program printed.
 std::string time_cell(const TrialReport& report, double time) {
@@ -148,7 +142,7 @@ void print_trial(const Console& console, const TrialReport& report) {
       console.print("{:<20} {:>9} {:>7.3f} {:>11} {:>5}{} {:>9}  {}", name,
                     time_cell(report, median(order.times)), speedup.ratio, interval(speedup),
                     order.times.size(), has_counts ? fmt::format(" {:>8.6g}", order.count) : "",
-                    memory_cell(order.peak_bytes), bar(median(order.times) / longest));
+                    memory_cell(order.peak_bytes), bar(median(order.times) / longest, kBarWidth));
     }
   }
 }

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <string_view>
@@ -138,6 +139,13 @@ std::string ordered_name(const std::string& mesh) {
   const std::filesystem::path file = std::filesystem::path(mesh).filename();
   // outputs are not compressed
   return "ordered-" + (file.extension() == ".gz" ? file.stem() : file).string();
+}
+
+std::string bar(double share, int width) {
+  std::string result;
+  const long length = std::lround(width * std::clamp(share, 0.0, 1.0));
+  for (long i = 0; i < length; ++i) result += "█";
+  return result.empty() ? "▏" : result;
 }
 
 std::string in_shell(const std::string& text) {

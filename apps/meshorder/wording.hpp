@@ -46,6 +46,9 @@ void note_convergence(const std::vector<FiedlerComponent>& components, const std
 /// Returns the name that proposals give to the mesh in a new order: "ordered-dragon.veg".
 std::string ordered_name(const std::string& mesh);
 
+/// Returns a bar that is a share, 0 … 1, of `width` blocks long, at least a thin one.
+std::string bar(double share, int width);
+
 /// Returns a word that a shell reads as this text.
 std::string in_shell(const std::string& text);
 

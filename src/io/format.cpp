@@ -291,8 +291,10 @@ const Format& format_named(std::string_view name) {
   for (const LackingFormat& format : kLackingFormats) {
     if (same_but_for_case(format.name, name)) throw_lacking(format, "the format '" + std::string(name) + "'");
   }
-  throw InvalidArgument("unknown format '" + std::string(name) + "'; known are " +
-                        join(kFormats, [](const Format& format) { return format.key(); }));
+  std::vector<std::string> known;
+  known.reserve(kFormats.size());
+  for (const Format& format : kFormats) known.push_back(format.key());
+  throw InvalidArgument(unknown_in_words("format", std::string(name), known));
 }
 
 const Format* format_of_bytes(std::string_view bytes) {

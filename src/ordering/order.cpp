@@ -8,6 +8,7 @@
 #include "graph/clean_graph.hpp"
 #include "ordering/input_checks.hpp"
 #include "ordering/method.hpp"
+#include "ordering/method_named.hpp"
 #include "ordering/order_cells.hpp"
 #include "ordering/points_fit.hpp"
 #include "spectral/fiedler.hpp"
@@ -29,7 +30,9 @@ void append(std::vector<std::string>& notes, const std::vector<std::string>& mor
 /// Returns the points; notes where they do not fit, and then keeps them from `auto`, which would go by them.
 PointsView points_to_go_by(const PointsView& points, GraphRef graph, std::string_view method,
                            std::vector<std::string>& notes) {
-  if (points_fit(graph, points)) return points;
+  if (points.empty()) return points;
+  const bool goes_by_points = method == "auto" || needs_points(vertex_methods(), method);
+  if (!goes_by_points || points_fit(graph, points)) return points;
   notes.emplace_back(
       "neighbours are as far apart as any two points: is an array transposed, or of another mesh?");
   return method == "auto" ? PointsView() : points;

@@ -94,7 +94,8 @@ class Reorderer::Inside {
       renew(update, hood, next, is_first, std::move(carried), carried_span);
     }
     update.fresh_span_log2 = next.fresh_span;
-    if (!next.vector.empty()) next.vector = moved(update.permutation, next.vector);
+    if (!next.vector.empty() && update.repair != Repair::none)
+      next.vector = moved(update.permutation, next.vector);
     update.seconds = stopwatch.seconds();
     memory_ = std::move(next);
     return update;

@@ -96,6 +96,10 @@ std::optional<std::size_t> advised(const Advice& advice);
 /// be gained, and where by how much is in doubt.
 std::optional<double> certain_gain(const Advice& advice);
 
+/// Returns the place in kKernels of the kernel that a workload is about; kKernels.size() of those about all
+/// or none.
+std::size_t kernel_of(Workload workload);
+
 /// Returns the workload, or `all` for one that no kernel of the advice tells.
 Workload told_by_kernels(const Advice& advice, Workload workload);
 

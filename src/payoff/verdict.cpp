@@ -11,6 +11,12 @@
 
 namespace meshorder {
 
+std::size_t kernel_of(Workload workload) {
+  const auto found =
+      std::ranges::find_if(kKernels, [&](Kernel kernel) { return to_string(kernel) == to_string(workload); });
+  return static_cast<std::size_t>(found - kKernels.begin());
+}
+
 std::string command_for(const Candidate& candidate, bool is_matrix) {
   const bool by_auto =
       !candidate.vertices.reason.empty() && (is_matrix || !candidate.elements.reason.empty());
@@ -34,13 +40,6 @@ std::string times(double count, const char* what) {
 std::size_t worst(const std::array<KernelAdvice, kKernels.size()>& kernels) {
   const auto less = [](const KernelAdvice& a, const KernelAdvice& b) { return a.factor < b.factor; };
   return static_cast<std::size_t>(std::max_element(kernels.begin(), kernels.end(), less) - kernels.begin());
-}
-
-/// Returns the place of the kernel that a workload is about; kKernels.size() of those about all or none.
-std::size_t kernel_of(Workload workload) {
-  const auto found =
-      std::ranges::find_if(kKernels, [&](Kernel kernel) { return to_string(kernel) == to_string(workload); });
-  return static_cast<std::size_t>(found - kKernels.begin());
 }
 
 /// Returns the kernels that run slower in a candidate: "; it makes the springs kernel 1.2× slower".
