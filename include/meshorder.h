@@ -221,8 +221,8 @@ MO_API mo_status mo_reorderer_update(mo_reorderer* reorderer, const mo_in* offse
                                      const mo_in* points, int32_t dimension, const mo_in* previous,
                                      const mo_out* new_to_old, const mo_out* old_to_new, int32_t* repair);
 
-/** Tells how long, >= 0, the step took that followed the last update: then there is a new order when what
- * steps lose outweighs what it costs. Optional. */
+/** Reports how long, >= 0, the step took that followed the last update. From the fifth report on a new order
+ * comes when the time that slower steps lose exceeds its cost. Optional. */
 MO_API mo_status mo_reorderer_observe(mo_reorderer* reorderer, double step_seconds);
 
 /**

@@ -109,17 +109,18 @@ class MESHORDER_API Reorderer {
   /// @throws InvalidArgument for other methods, besides
   Update update(const PointsView& points, const IndexView& previous = {});
 
-  /// Tells how long the step took that followed the last update: then there is a new order when what steps
-  /// lose outweighs what it costs, √(2 cost / slope) steps after the last one. Optional.
+  /// Reports how long the step took that followed the last update. From the fifth report on a new order comes
+  /// when the time that slower steps lose exceeds its cost: √(2 cost / slope) steps after the last one.
+  /// Optional.
   ///
   /// @param step_seconds  ≥ 0 and finite
   /// @throws InvalidArgument otherwise
   void observe(double step_seconds);
 
-  /// Returns what `restore` needs to go on where this object stands: in a checkpoint, beside the arrays.
+  /// Returns the state, for a checkpoint: `restore` continues from it.
   [[nodiscard]] std::vector<std::byte> state() const;
 
-  /// Takes over a state. The options are not part of it, but for the method's name, which must be the same.
+  /// Continues from a state of the same method. The other options are not part of it.
   ///
   /// @throws InvalidArgument for bytes that are no whole state, or one of another method; the object is
   /// unchanged then

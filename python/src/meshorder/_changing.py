@@ -145,9 +145,9 @@ class Reorderer:
         return Update(**made)
 
     def observe(self, step_seconds: float) -> None:
-        """Tells how long the step took that followed the last update.
+        """Reports how long the step took that followed the last update.
 
-        Then there is a new order when what steps lose outweighs what it costs. Optional.
+        From the fifth report on a new order comes when the time that slower steps lose exceeds its cost. Optional.
 
         Args:
             step_seconds: ≥ 0 and finite.
@@ -160,13 +160,13 @@ class Reorderer:
 
     @property
     def state(self) -> bytes:
-        """What `restore` needs to go on from here: for a checkpoint, beside the arrays."""
+        """The state as bytes, for a checkpoint: `restore` continues from it."""
         with self._lock:
             state: bytes = self._inside.state()
             return state
 
     def restore(self, state: bytes) -> None:
-        """Takes over a state; it must be of the same method.
+        """Continues from a state of the same method.
 
         Args:
             state: bytes that `state` gave.
