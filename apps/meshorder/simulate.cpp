@@ -39,6 +39,7 @@ struct SimulateArguments : Common {
   std::string preconditioner;
   std::string precision;
   Index steps = 0;
+  std::optional<Index> order_every;
   OrderOptions ordering;
 
   std::string frames;
@@ -48,19 +49,36 @@ struct SimulateArguments : Common {
   std::string resume;
 };
 
+nlohmann::ordered_json or_null(const std::string& text) {
+  return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
+}
+
 void list_scenarios(const Console& console) {
   auto scenarios = nlohmann::ordered_json::array();
   for (const BuiltInScenario& built_in : built_in_scenarios()) {
     const Scenario scenario = find_scenario(std::string(built_in.name));
     console.print_list("  {:<14} {}", scenario.name, scenario.title);
-    scenarios.push_back({{"name", scenario.name}, {"title", scenario.title}, {"mesh", scenario.mesh}});
+    scenarios.push_back(
+        {{"name", scenario.name}, {"title", scenario.title}, {"mesh", or_null(scenario.mesh)}});
   }
   console.print_json({{"scenarios", scenarios}});
+}
+
+/// Throws InvalidArgument for what is given and means nothing to a fluid.
+void refuse_for_fluids(const SimulateArguments& arguments) {
+  for (const auto& [name, value] :
+       {std::pair("--mesh", &arguments.mesh), std::pair("--preconditioner", &arguments.preconditioner),
+        std::pair("--precision", &arguments.precision)}) {
+    if (!value->empty())
+      throw InvalidArgument(std::string(name) + " is for elastic bodies; a fluid makes its own mesh and " +
+                            "solves in double precision");
+  }
 }
 
 /// Returns the scenario with the replacements of the command line.
 Scenario scenario_of(const SimulateArguments& arguments) {
   Scenario scenario = find_scenario(arguments.scenario);
+  if (scenario.is_fluid()) refuse_for_fluids(arguments);
   if (!arguments.mesh.empty()) {
     scenario.mesh = arguments.mesh;
     scenario.mesh_folder.reset();
@@ -73,6 +91,11 @@ Scenario scenario_of(const SimulateArguments& arguments) {
   if (!arguments.vertices.empty()) scenario.vertex_order = arguments.vertices;
   if (!arguments.elements.empty()) scenario.element_order = arguments.elements;
   if (arguments.steps > 0) scenario.steps = arguments.steps;
+  if (arguments.order_every) {
+    if (!scenario.is_fluid())
+      throw InvalidArgument("--order-every is for fluids; the mesh of " + scenario.name + " never changes");
+    scenario.fluid().order_every = *arguments.order_every;
+  }
   if (!arguments.preconditioner.empty()) {
     if (!scenario.is_implicit())
       throw InvalidArgument("--preconditioner is for backward Euler; " + scenario.name +
@@ -81,7 +104,11 @@ Scenario scenario_of(const SimulateArguments& arguments) {
   }
   if (!arguments.precision.empty()) {
     const auto precision = parse<MatrixPrecision>(arguments.precision);
-    std::visit([&](auto& options) { options.precision = precision; }, scenario.integrator);
+    if (scenario.is_implicit()) {
+      scenario.implicit().precision = precision;
+    } else {
+      scenario.projective().precision = precision;
+    }
   }
   return scenario;
 }
@@ -118,7 +145,7 @@ class Run {
     if (arguments.resume.empty()) {
       frames_->write(simulation.body->state());
     } else {
-      frames_->resume_after(resumed_from_);
+      frames_->resume_after(record_);
     }
   }
 
@@ -134,9 +161,11 @@ class Run {
       progress.stage(fmt::format("step {} of {}", step, last), from, from + share);
       StepReport report = simulation_.body->step();
       const MotionState state = simulation_.body->state();
-      add(std::move(report),
-          distance_from_shape(simulation_.mesh.points, state.positions, simulation_.vertices),
-          simulation_.body->balance(), record_);
+      const double distance =
+          simulation_.scenario.is_fluid()
+              ? 0
+              : distance_from_shape(simulation_.mesh.points, state.positions, simulation_.vertices);
+      add(std::move(report), distance, simulation_.body->balance(), record_);
       if (frames_ && frames_->is_due(step)) frames_->write(state);
       const bool interrupted = interruption && Interruption::signal() != 0;
       if (interruption && (step == last || interrupted || step % arguments_.checkpoint_every == 0))
@@ -179,14 +208,22 @@ void run(const SimulateArguments& arguments) {
     confine(files);
   }
   Progress progress(!console.quiet());
-  const std::string path = mesh_path(scenario, progress);
-  progress.stage("reading " + path, 0.5, 0.7);
-  const Stopwatch reading;
+  std::string path;  // stays empty for a fluid
+  double read_seconds = 0;
   Notes notes;
-  Mesh mesh = read_to_work_on(scenario.mesh_file(path), notes);
-  const double read_seconds = reading.seconds();
-  progress.stage("setting up", 0.7, 1);
-  Simulation simulation = set_up(std::move(scenario), std::move(mesh), path, arguments.ordering);
+  Simulation simulation;
+  if (scenario.is_fluid()) {
+    progress.stage("setting up", 0, 1);
+    simulation = set_up_fluid(std::move(scenario), arguments.ordering);
+  } else {
+    path = mesh_path(scenario, progress);
+    progress.stage("reading " + path, 0.5, 0.7);
+    const Stopwatch reading;
+    Mesh mesh = read_to_work_on(scenario.mesh_file(path), notes);
+    read_seconds = reading.seconds();
+    progress.stage("setting up", 0.7, 1);
+    simulation = set_up(std::move(scenario), std::move(mesh), path, arguments.ordering);
+  }
   Run steps(arguments, simulation);
   progress.finish();
 
@@ -202,11 +239,8 @@ void run(const SimulateArguments& arguments) {
   print_summary(console, simulation, steps.record());
   if (steps.frames() != nullptr) console.print("{:<10} {}", "frames", steps.frames()->collection().string());
   if (!arguments.checkpoint.empty()) console.print("{:<10} {}", "checkpoint", arguments.checkpoint);
-  const auto or_null = [](const std::string& text) {
-    return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
-  };
   nlohmann::ordered_json result = to_json(simulation, steps.record());
-  result["mesh"] = path;
+  result["mesh"] = or_null(path);
   result["setup_seconds"]["read"] = read_seconds;
   result["resumed_from"] = arguments.resume.empty() ? nlohmann::ordered_json(nullptr)
                                                     : nlohmann::ordered_json(steps.resumed_from());
@@ -229,6 +263,10 @@ void add_scenario_options(CLI::App& subcommand, SimulateArguments& arguments) {
       ->excludes(order);
   subcommand.add_option("--elements", arguments.elements, "Method for elements, see `meshorder methods`")
       ->excludes(order);
+  subcommand
+      .add_option("--order-every", arguments.order_every,
+                  "For fluids: steps from one order of the particles to the next; 0: when it pays")
+      ->check(in_range(0, 1'000'000));
   subcommand.add_option("--steps", arguments.steps, "Number of steps")->check(in_range(1, 1'000'000));
   subcommand.add_option("--preconditioner", arguments.preconditioner,
                         "For backward Euler: " + names_of<PreconditionerKind>());
@@ -261,10 +299,12 @@ void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {
 
 void add_simulate(CLI::App& subcommand) {
   subcommand.description(
-      "Simulate an elastic body as a scenario describes, with the mesh in a given order, and time it.");
+      "Simulate an elastic body or water as a scenario describes, with the mesh in a given order, and time "
+      "it.");
   subcommand.footer(
       "Example:\n"
-      "  meshorder simulate falling --order fiedler --vtk frames");
+      "  meshorder simulate falling --order fiedler --vtk frames\n"
+      "  meshorder simulate splash --order scrambled");
   const auto arguments = std::make_shared<SimulateArguments>();
   add_scenario_options(subcommand, *arguments);
   add_output_options(subcommand, *arguments);

@@ -3,6 +3,7 @@
 
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "lab/fluid/fluid.hpp"
 #include "lab/scenario/vertex_choice.hpp"
 #include "wording.hpp"
 
@@ -33,7 +34,7 @@ StepReport sums(const MotionRecord& record) {
 /// Returns the time that is in no part of a step.
 double other(const StepReport::Seconds& seconds) {
   return seconds.total - seconds.assembly - seconds.solve - seconds.local - seconds.global -
-         seconds.collision;
+         seconds.collision - seconds.triangulation - seconds.order - seconds.motion;
 }
 
 /// Returns the smallest and the largest of a number over the steps, of which there is at least one.
@@ -84,6 +85,9 @@ nlohmann::ordered_json to_json(const Balance& balance) {
 }
 
 nlohmann::ordered_json material_json(const Scenario& scenario) {
+  if (scenario.is_fluid())
+    return {
+        {"model", "fluid"}, {"density", scenario.fluid().density}, {"viscosity", scenario.fluid().viscosity}};
   nlohmann::ordered_json json;
   if (scenario.is_implicit()) {
     json["model"] = to_string(scenario.model);
@@ -122,6 +126,20 @@ nlohmann::ordered_json integrator_json(const ProjectiveScenario& options) {
           {"duals", options.keep_duals ? "kept" : "reset"}};
 }
 
+nlohmann::ordered_json integrator_json(const FluidScenario& options) {
+  return {
+      {"method", "particle-fem"},   {"time_step", options.time_step}, {"gravity", options.gravity},
+      {"courant", options.courant}, {"evening", options.evening},     {"volume_gain", options.volume_gain},
+      {"spacing", options.spacing}, {"basin", options.basin},         {"column", options.column}};
+}
+
+nlohmann::ordered_json solver_json(const FluidScenario& options) {
+  return {{"preconditioner", "jacobi"},
+          {"tolerance", options.solve.tolerance},
+          {"max_iterations", options.solve.max_iterations},
+          {"precision", "double"}};
+}
+
 nlohmann::ordered_json solver_json(const ImplicitOptions& options) {
   return {{"preconditioner", to_string(options.preconditioner)},
           {"tolerance", options.solve.tolerance},
@@ -142,6 +160,9 @@ nlohmann::ordered_json solver_json(const ProjectiveScenario& options) {
 }
 
 std::string material_in_words(const Scenario& scenario) {
+  if (scenario.is_fluid())
+    return fmt::format("fluid, nu {:g} m²/s, rho {:g} kg/m³", scenario.fluid().viscosity,
+                       scenario.fluid().density);
   const Material& material = scenario.material;
   std::string words;
   if (scenario.is_implicit()) {
@@ -164,6 +185,10 @@ std::string method_in_words(const ImplicitOptions& options) {
                      options.precision == MatrixPrecision::single ? " in single precision" : "");
 }
 
+std::string method_in_words(const FluidScenario& options) {
+  return fmt::format("particle finite elements, CG with jacobi to {:g}", options.solve.tolerance);
+}
+
 std::string method_in_words(const ProjectiveScenario& options) {
   return fmt::format("ADMM, {}{} iterations, duals {}{}", options.tolerance > 0 ? "at most " : "",
                      options.iterations, options.keep_duals ? "kept" : "reset",
@@ -179,6 +204,32 @@ std::string contact_in_words(const ProjectiveScenario& options) {
   }
   if (options.contact.with_itself) words += words.empty() ? "with itself" : ", with itself";
   return words + ", by uzawa";
+}
+
+/// Prints where the time of a fluid went, and how often it was ordered.
+void print_fluid_steps(const Console& console, const Simulation& simulation, const MotionRecord& record) {
+  const auto steps = static_cast<double>(record.steps.size());
+  const StepReport sum = sums(record);
+  const StepReport::Seconds& seconds = sum.seconds;
+  const auto a_step = [&](double total) { return duration(total / steps); };
+  console.print("\n{:<10} {}: {} a step, of which triangulation {}, order {}, assembly {}, CG {}, motion {}",
+                "time", duration(seconds.total), a_step(seconds.total), a_step(seconds.triangulation),
+                a_step(seconds.order), a_step(seconds.assembly), a_step(seconds.solve),
+                a_step(seconds.motion));
+  const auto [lowest, highest] = range(record, &StepReport::cg_iterations);
+  console.print("{:<10} {} iterations, {:.1f} a step, {} to {}", "CG", with_commas(sum.cg_iterations),
+                sum.cg_iterations / steps, lowest, highest);
+  const auto& fluid = dynamic_cast<const Fluid&>(*simulation.body);
+  if (!fluid.order().ordering().stays())
+    console.print("{:<10} {} times anew in this run", "ordered", fluid.order().fresh_orders());
+  double time = 0;
+  for (const StepRecord& step : record.steps) time += step.report.time_step;
+  console.print("{:<10} {:.4g} s of the flow; {} tetrahedra in the last step", "flow", time,
+                with_commas(fluid.mesh().tetrahedra()));
+  console.print("{:<10} {:.2f} % of that at the start; {} of {} particles fly alone", "volume",
+                100 * fluid.volume() / fluid.volume_at_start(),
+                with_commas(std::ranges::count(fluid.mesh().alone, 1)),
+                with_commas(simulation.mesh.vertex_count()));
 }
 
 void print_steps(const Console& console, const Scenario& scenario, const MotionRecord& record) {
@@ -236,22 +287,38 @@ void print_header(const Console& console, const Simulation& simulation, const st
                                ? fmt::format(", scaled to {:g} m", scenario.longest_side)
                            : scenario.height > 0 ? fmt::format(", {:g} m high", scenario.height)
                                                  : "";
-  console.print("{:<10} {}: {} vertices, {} tetrahedra{}", "mesh", mesh,
-                with_commas(simulation.mesh.vertex_count()), with_commas(simulation.tetrahedra), size);
-  console.print("{:<10} vertices {}, elements {}", "order", method_in_words(simulation.order.vertices.method),
-                method_in_words(simulation.order.cells.method));
+  if (scenario.is_fluid()) {
+    const FluidScenario& fluid = scenario.fluid();
+    const FluidOrdering& order = dynamic_cast<const Fluid&>(*simulation.body).order().ordering();
+    console.print("{:<10} {} particles {:.3g} m apart, {} tetrahedra at the start", "water",
+                  with_commas(simulation.mesh.vertex_count()), fluid.spacing,
+                  with_commas(simulation.tetrahedra));
+    console.print("{:<10} particles {}{}, tetrahedra {} in each step", "order", order.vertices,
+                  order.stays()      ? ""
+                  : order.every == 0 ? ", anew when it pays"
+                                     : fmt::format(", anew every {} steps", order.every),
+                  order.elements);
+  } else {
+    console.print("{:<10} {}: {} vertices, {} tetrahedra{}", "mesh", mesh,
+                  with_commas(simulation.mesh.vertex_count()), with_commas(simulation.tetrahedra), size);
+    console.print("{:<10} vertices {}, elements {}", "order",
+                  method_in_words(simulation.order.vertices.method),
+                  method_in_words(simulation.order.cells.method));
+  }
   console.print("{:<10} {}", "material", material_in_words(scenario));
-  console.print("{:<10} {} of {:g} s by {}, {} thread{}", "steps", scenario.steps,
-                scenario.motion().time_step,
+  console.print("{:<10} {} of {}{:g} s by {}, {} thread{}", "steps", scenario.steps,
+                scenario.is_fluid() ? "at most " : "", scenario.motion().time_step,
                 std::visit([](const auto& options) { return method_in_words(options); }, scenario.integrator),
                 thread_count(), thread_count() == 1 ? "" : "s");
-  if (!scenario.is_implicit() && touches(scenario.projective()))
+  if (scenario.is_projective() && touches(scenario.projective()))
     console.print("{:<10} {}", "contact", contact_in_words(scenario.projective()));
   flush_stdout();
 }
 
 void print_summary(Console& console, const Simulation& simulation, const MotionRecord& record) {
-  if (!record.steps.empty()) {
+  if (!record.steps.empty() && simulation.scenario.is_fluid()) {
+    print_fluid_steps(console, simulation, record);
+  } else if (!record.steps.empty()) {
     print_steps(console, simulation.scenario, record);
     print_shape(console, simulation, record);
   }
@@ -310,9 +377,14 @@ nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord&
       },
       scenario.integrator);
   auto& seconds = json["seconds"] = {{"total", sum.total}};
-  if (scenario.is_implicit()) {
+  if (!scenario.is_projective()) {
     seconds["assembly"] = sum.assembly;
     seconds["solve"] = sum.solve;
+    if (scenario.is_fluid()) {
+      seconds["triangulation"] = sum.triangulation;
+      seconds["order"] = sum.order;
+      seconds["motion"] = sum.motion;
+    }
   } else {
     seconds["local"] = sum.local;
     seconds["global"] = sum.global;
@@ -327,7 +399,15 @@ nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord&
     shape_distance.push_back(step.shape_distance);
   }
   json["step_seconds"] = step_seconds;
-  if (scenario.is_implicit()) {
+  if (scenario.is_fluid()) {
+    json["time_steps"] = each(record, &StepReport::time_step);
+    json["cg_iterations"] = each(record, &StepReport::cg_iterations);
+    const auto& fluid = dynamic_cast<const Fluid&>(*simulation.body);
+    json["volume"] = fluid.volume();
+    json["volume_at_start"] = fluid.volume_at_start();
+    json["fresh_orders"] = fluid.order().fresh_orders();
+    json["alone"] = std::ranges::count(fluid.mesh().alone, 1);
+  } else if (scenario.is_implicit()) {
     json["cg_iterations"] = each(record, &StepReport::cg_iterations);
     json["newton_iterations"] = each(record, &StepReport::newton_iterations);
   } else {

@@ -128,6 +128,7 @@ StepReport ProjectiveDynamics<Real>::step() {
   }
   if (contacts_ && report.admm_iterations < options_.iterations) solve(true, report);
   finish(report);
+  report.time_step = options_.time_step;
   report.seconds.total = stopwatch.seconds();
   return report;
 }

@@ -141,6 +141,7 @@ StepReport BackwardEuler::step() {
   std::swap(positions_, moved_);
   std::swap(velocities_, iterate.velocities);
   ++steps_;
+  report.time_step = options_.time_step;
   report.seconds.total = stopwatch.seconds();
   return report;
 }

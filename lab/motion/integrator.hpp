@@ -35,12 +35,14 @@ struct StepReport {
   double penetration = 0.0;    ///< largest depth of a surface vertex in an obstacle at the end of the step, m
   Index vertices_in_itself = 0;  ///< surface vertices inside the body at the step's end
 
+  double time_step = 0.0;             ///< s
   double residual = 0.0;              ///< of the last linear solve, or of the last ADMM iteration; relative
   std::vector<std::string> warnings;  ///< messages, which name the vertex
   struct Seconds {
     double total = 0.0;
-    double assembly = 0.0, solve = 0.0;                 // implicit
-    double local = 0.0, global = 0.0, collision = 0.0;  // ADMM
+    double assembly = 0.0, solve = 0.0;                     // implicit
+    double local = 0.0, global = 0.0, collision = 0.0;      // ADMM
+    double triangulation = 0.0, order = 0.0, motion = 0.0;  // fluids, besides assembly and solve
 
     Seconds& operator+=(const Seconds& other) {
       total += other.total;
@@ -49,6 +51,9 @@ struct StepReport {
       local += other.local;
       global += other.global;
       collision += other.collision;
+      triangulation += other.triangulation;
+      order += other.order;
+      motion += other.motion;
       return *this;
     }
     bool operator==(const Seconds&) const = default;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view kMagic = "meshorder state\n";
 constexpr std::uint32_t kOrderMark = 0x01020304;
-constexpr std::uint32_t kCheckpointVersion = 2;
+constexpr std::uint32_t kCheckpointVersion = 3;
 constexpr std::size_t kLengthAt = kMagic.size() + 2 * sizeof(std::uint32_t);
 constexpr std::size_t kHeader = kLengthAt + sizeof(std::uint64_t);
 
@@ -103,12 +103,13 @@ void visit_numbers(Step& step, Work work) {
   work(report.residual);
   work(report.penetration);
   auto& seconds = report.seconds;
-  for (auto* const part : {&seconds.total, &seconds.assembly, &seconds.solve, &seconds.local, &seconds.global,
-                           &seconds.collision})
+  for (auto* const part :
+       {&seconds.total, &seconds.assembly, &seconds.solve, &seconds.local, &seconds.global,
+        &seconds.collision, &seconds.triangulation, &seconds.order, &seconds.motion, &report.time_step})
     work(*part);
   work(step.shape_distance);
 }
-constexpr std::int64_t kMinStepBytes = 6 * 4 + 10 * 8;
+constexpr std::int64_t kMinStepBytes = 6 * 4 + 14 * 8;
 
 void pack(const MotionRecord& record, Packer& out) {
   out.count(record.steps.size());

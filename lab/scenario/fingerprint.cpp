@@ -53,6 +53,18 @@ std::uint64_t checksum_of(const MeshOrder& order) {
   return sum.value();
 }
 
+std::uint64_t checksum_of(const FluidOptions& options) {
+  Checksum sum;
+  for (const Point& vector : {options.gravity, options.basin, options.column}) sum.add(vector);
+  for (const double number :
+       {options.time_step, options.spacing, options.jitter, options.wave, options.density, options.viscosity,
+        options.courant, options.evening, options.volume_gain, options.solve.tolerance})
+    sum.add(number);
+  sum.add(options.solve.max_iterations);
+  sum.add(options.lid);
+  return sum.value();
+}
+
 std::uint64_t checksum_of(const ImplicitOptions& options, const Body& body, const MotionState& start) {
   Checksum sum;
   add_motion(options, start, sum);

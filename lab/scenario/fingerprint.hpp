@@ -23,6 +23,7 @@ struct Fingerprint {
 // The checksums. O(size of the arguments) each.
 std::uint64_t checksum_of(const std::vector<Point>& points, const Simplices& simplices);
 std::uint64_t checksum_of(const MeshOrder& order);
+std::uint64_t checksum_of(const FluidOptions& options);
 /// Of a body that starts in that state.
 std::uint64_t checksum_of(const ImplicitOptions& options, const Body& body, const MotionState& start);
 /// Obstacles and precision are taken from `scenario`: `options` holds the obstacles only as opaque objects.

@@ -56,7 +56,7 @@ FrameWriter::FrameWriter(const Simulation& simulation, fs::path folder, Index ev
     : folder_(std::move(folder)),
       name_(simulation.scenario.name),
       every_(every),
-      time_step_(simulation.scenario.motion().time_step),
+      fluid_(dynamic_cast<const Fluid*>(simulation.body.get())),
       collection_(folder_ / (name_ + ".pvd")),
       rest_(simulation.mesh.points),
       embedded_(embed_vertices(simulation.mesh, cut_into_simplices(simulation.mesh))),
@@ -69,18 +69,19 @@ FrameWriter::FrameWriter(const Simulation& simulation, fs::path folder, Index ev
   if (code)
     throw InputError(folder_.string(), "cannot be made: " + code.message(), "name a folder for the frames");
   (void)OutputFile(FilePath::derived(collection_));  // fail before the work if it cannot be written
+  frame_.format_metadata = metadata_of(simulation.mesh);
+  if (fluid_ != nullptr) return;
   std::vector<DataArray> arrays = own_arrays(frame_, simulation.order);
   arrays.insert(arrays.end(), std::make_move_iterator(frame_.data.begin()),
                 std::make_move_iterator(frame_.data.end()));
   frame_.data = std::move(arrays);
   frame_.vertex_ids.clear();  // ids would only repeat the order
   frame_.cell_ids.clear();
-  frame_.format_metadata = metadata_of(simulation.mesh);
   write_obstacles(simulation);
 }
 
 void FrameWriter::write_obstacles(const Simulation& simulation) const {
-  if (simulation.scenario.is_implicit() || simulation.scenario.projective().obstacles.empty()) return;
+  if (!simulation.scenario.is_projective() || simulation.scenario.projective().obstacles.empty()) return;
   const double extent = bounding_box(rest_, simulation.vertices).longest_side();
   write_mesh_to(surfaces_of(simulation.scenario.projective().obstacles, extent),
                 FilePath::derived(folder_ / (name_ + "-obstacles.vtu")), {});
@@ -88,17 +89,19 @@ void FrameWriter::write_obstacles(const Simulation& simulation) const {
 
 std::string FrameWriter::file_name(Index step) const { return fmt::format("{}-{:06}.vtu", name_, step); }
 
-void FrameWriter::list(Index step) { entries_.push_back({time_step_ * step, file_name(step)}); }
+void FrameWriter::list(Index step, double time) { entries_.push_back({time, file_name(step)}); }
 
-void FrameWriter::resume_after(Index step) {
+void FrameWriter::resume_after(const MotionRecord& record) {
   std::error_code code;
-  for (Index earlier = 0; earlier <= step; earlier += every_) {
-    if (fs::exists(folder_ / file_name(earlier), code)) list(earlier);
+  double time = 0;
+  for (Index step = 0; step <= index_size(record.steps); ++step) {
+    const double last = step > 0 ? record.steps[step - 1].report.time_step : 0;
+    time = fluid_ != nullptr ? time + last : step * last;
+    if (is_due(step) && fs::exists(folder_ / file_name(step), code)) list(step, time);
   }
 }
 
-void FrameWriter::write(MotionState state) {
-  move_embedded(embedded_, rest_, state);
+void FrameWriter::take(const MotionState& state) {
   auto& displacement = std::get<std::vector<float>>(frame_.data[kDisplacement].values);
   auto& velocity = std::get<std::vector<float>>(frame_.data[kVelocity].values);
   for (std::size_t v = 0; v < rest_.size(); ++v) {
@@ -108,10 +111,42 @@ void FrameWriter::write(MotionState state) {
       frame_.points[v][c] = static_cast<float>(state.positions[v][c]);
     }
   }
+}
+
+void FrameWriter::take(const Fluid& fluid, const MotionState& state) {
+  const std::vector<Index>& numbers = fluid.numbers();
+  std::vector<float> velocity(3 * numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      velocity[3 * i + c] = static_cast<float>(state.velocities[numbers[i]][c]);
+      frame_.points[i][c] = static_cast<float>(state.positions[numbers[i]][c]);
+    }
+  }
+  const std::vector<double>& pressures = fluid.pressures();
+  frame_.data = {
+      {"velocity", Association::vertices, 3, std::move(velocity), {}, {}},
+      {"pressure", Association::vertices, 1, std::vector<float>(pressures.begin(), pressures.end()), {}, {}},
+      {"original_vertex", Association::vertices, 1, numbers, {}, {}}};
+  const std::vector<Index>& corners = fluid.mesh().corners;
+  frame_.cells = {};
+  frame_.cells.shapes.assign(corners.size() / 4, Shape::tetrahedron);
+  frame_.cells.vertices = corners;
+  frame_.cells.offsets.resize(corners.size() / 4 + 1);
+  for (std::size_t cell = 0; cell < frame_.cells.offsets.size(); ++cell)
+    frame_.cells.offsets[cell] = static_cast<Offset>(4 * cell);
+}
+
+void FrameWriter::write(MotionState state) {
+  if (fluid_ != nullptr) {
+    take(*fluid_, state);
+  } else {
+    move_embedded(embedded_, rest_, state);
+    take(state);
+  }
   Notes notes;
   write_mesh_to(frame_, FilePath::derived(folder_ / file_name(state.step)), {.notes = &notes});
   if (entries_.empty()) notes_ = std::move(notes);
-  list(state.step);
+  list(state.step, state.time);
   write_pvd(entries_, FilePath::derived(collection_));
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "io/vtu.hpp"
+#include "lab/fluid/fluid.hpp"
 #include "lab/scenario/embedded_vertices.hpp"
+#include "lab/scenario/motion_file.hpp"
 #include "lab/scenario/simulation.hpp"
 
 #include <filesystem>
@@ -16,14 +18,16 @@ namespace meshorder {
 /// A frame is the moved mesh with its data and, on its vertices, `displacement` (m, from rest) and `velocity`
 /// (m/s) in single precision, as the points are. `original_vertex` and `original_cell` are the numbers in the
 /// mesh's file, from 0, so that frames of two orders can be compared. NAME-obstacles.vtu holds the obstacles.
+/// A frame of a fluid has the particles in their order, with `velocity`, `pressure` (Pa) and
+/// `original_vertex`, and the tetrahedra of the last step.
 class FrameWriter {
  public:
   /// Makes the folder. Frames are those of the start and of every `every`-th step. Throws Error if the folder
   /// cannot be made or written.
   FrameWriter(const Simulation& simulation, std::filesystem::path folder, Index every);
 
-  /// Lists the frames up to `step` that an earlier run left in the folder.
-  void resume_after(Index step);
+  /// Lists the frames of the steps so far that an earlier run left in the folder.
+  void resume_after(const MotionRecord& record);
 
   /// Returns whether a frame is due after `step`.
   [[nodiscard]] bool is_due(Index step) const { return step % every_ == 0; }
@@ -39,14 +43,16 @@ class FrameWriter {
  private:
   void write_obstacles(const Simulation& simulation) const;
   [[nodiscard]] std::string file_name(Index step) const;
-  void list(Index step);
+  void list(Index step, double time);
+  void take(const MotionState& state);
+  void take(const Fluid& fluid, const MotionState& state);
 
   std::filesystem::path folder_;
   std::string name_;
   Index every_;
-  double time_step_;
+  const Fluid* fluid_;  ///< null for a body
   std::filesystem::path collection_;
-  std::vector<Point> rest_;
+  std::vector<Point> rest_;  ///< of a body
   std::vector<EmbeddedVertex> embedded_;
   Mesh frame_;
   std::vector<PvdEntry> entries_;

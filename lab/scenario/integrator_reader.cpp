@@ -11,10 +11,12 @@ namespace {
 constexpr NumberRange kTolerance{.min = 0, .max = 1, .min_open = true, .max_open = true};
 constexpr int kMostIterations = 1'000'000;
 
-enum class Method : std::uint8_t { backward_euler, admm };
+enum class Method : std::uint8_t { backward_euler, admm, particle_fem };
 constexpr std::array kMethods{std::pair{Method::backward_euler, "backward-euler"},
-                              std::pair{Method::admm, "admm"}};
+                              std::pair{Method::admm, "admm"},
+                              std::pair{Method::particle_fem, "particle-fem"}};
 constexpr std::array kContactSolvers{std::pair{true, "uzawa"}};  // the only one
+constexpr std::array kFluidModels{std::pair{true, "fluid"}};     // the only one
 constexpr std::array kDuals{std::pair{true, "kept"}, std::pair{false, "reset"}};
 
 void read_count(const JsonValue& owner, std::string_view key, int most, int& count) {
@@ -195,6 +197,42 @@ void read_contact(const JsonValue& value, ProjectiveScenario& options) {
   read_count(value, "max_iterations", kMostIterations, solver.max_iterations);
 }
 
+// ---- fluids
+
+void read_water(const JsonValue& value, FluidOptions& options) {
+  value.expect_keys({"basin", "lid", "column", "spacing", "jitter", "wave"});
+  options.basin = value["basin"].vector();
+  options.column = value["column"].vector();
+  options.spacing = value["spacing"].number(kPositive);
+  if (const auto lid = value.find("lid")) options.lid = lid->truth();
+  if (const auto jitter = value.find("jitter")) options.jitter = jitter->number(kNotNegative);
+  if (const auto wave = value.find("wave")) options.wave = wave->number();
+}
+
+FluidScenario read_fluid(const JsonValue& root, const JsonValue& material, const JsonValue& integrator) {
+  FluidScenario options;
+  read_water(root["water"], options);
+  material.expect_keys({"model", "density", "viscosity"});
+  (void)material["model"].one_of(kFluidModels);
+  options.density = material["density"].number(kPositive);
+  if (const auto viscosity = material.find("viscosity")) options.viscosity = viscosity->number(kNotNegative);
+  integrator.expect_keys({"method", "time_step", "gravity", "courant", "evening", "volume_gain"});
+  if (const auto courant = integrator.find("courant")) options.courant = courant->number(kPositive);
+  if (const auto evening = integrator.find("evening")) options.evening = evening->number(kNotNegative);
+  if (const auto gain = integrator.find("volume_gain")) options.volume_gain = gain->number(kNotNegative);
+  if (const auto solver = root.find("solver")) {
+    solver->expect_keys({"tolerance", "max_iterations"});
+    if (const auto tolerance = solver->find("tolerance"))
+      options.solve.tolerance = tolerance->number(kTolerance);
+    read_count(*solver, "max_iterations", kMostIterations, options.solve.max_iterations);
+  }
+  if (const auto order = root.find("order")) {
+    if (const auto every = order->find("every"))
+      options.order_every = static_cast<Index>(every->whole(0, kMostIterations));
+  }
+  return options;
+}
+
 }  // namespace
 
 void read_integrator(const JsonValue& root, Scenario& scenario) {
@@ -206,8 +244,25 @@ void read_integrator(const JsonValue& root, Scenario& scenario) {
     options.time_step = integrator["time_step"].number(kPositive);
     if (const auto gravity = integrator.find("gravity")) options.gravity = gravity->vector();
   };
-  const auto method = integrator.find("method");
-  if (!method || method->one_of(kMethods) == Method::backward_euler) {
+  const auto method_name = integrator.find("method");
+  const Method method = method_name ? method_name->one_of(kMethods) : Method::backward_euler;
+  if (root.has("water") != (method == Method::particle_fem))
+    throw root.error("water and the method particle-fem belong together", "give both or neither");
+  if (method == Method::particle_fem) {
+    if (contact) throw contact->error("is unknown to particle-fem", "leave it out");
+    FluidScenario options = read_fluid(root, material, integrator);
+    read_common(options);
+    try {
+      check_options(options);
+    } catch (const InvalidArgument& error) {
+      throw root["water"].error(error.what(), "change the file");
+    }
+    scenario.integrator = std::move(options);
+    return;
+  }
+  if (const auto order = root.find("order"); order && order->has("every"))
+    throw(*order)["every"].error("is for water, whose mesh changes", "leave it out");
+  if (method == Method::backward_euler) {
     ImplicitOptions options;
     read_implicit_material(material, scenario);
     read_implicit(integrator, options);

@@ -8,6 +8,7 @@
 #include "kernels/material.hpp"
 #include "kernels/regions.hpp"
 #include "lab/admm/projective_dynamics.hpp"
+#include "lab/fluid/particles.hpp"
 #include "lab/implicit/backward_euler.hpp"
 #include <meshorder/error.hpp>
 
@@ -87,13 +88,19 @@ struct ProjectiveScenario : ProjectiveOptions {
   std::vector<ScenarioObstacle> obstacles;
 };
 
+/// Options of a fluid, and how often its particles are ordered.
+struct FluidScenario : FluidOptions {
+  Index order_every = 0;  ///< see FluidOrdering::every
+};
+
 /// A simulation: mesh, material, loads, integrator and solver. Independent of the order of vertices and
-/// elements. docs/simulate.md describes its file.
+/// elements. A fluid makes its own mesh and has neither material nor loads but gravity. docs/simulate.md
+/// describes its file.
 struct Scenario {
   std::string file;  ///< the path it was read from
   std::string name;
   std::string title;  ///< may be empty
-  std::string mesh;   ///< a model's name, or the path of a file
+  std::string mesh;   ///< a model's name, or the path of a file; empty for a fluid
   /// The folder that the mesh must lie in; none if the user named the mesh.
   std::optional<std::filesystem::path> mesh_folder;
   double longest_side = 0;      ///< of the bounding box that the mesh is scaled to, m; 0: not scaled
@@ -110,7 +117,7 @@ struct Scenario {
   std::vector<RegionMaterial> regions;
 
   /// Its forces and prescribed motions are empty; `forces` and `motions` below describe them.
-  std::variant<ImplicitOptions, ProjectiveScenario> integrator;
+  std::variant<ImplicitOptions, ProjectiveScenario, FluidScenario> integrator;
   std::vector<ScenarioStart> start;  ///< if two apply to a vertex, the later one wins
   std::vector<ScenarioForce> forces;
   std::vector<ScenarioMotion> motions;  ///< fixed vertices have the velocity 0
@@ -126,6 +133,12 @@ struct Scenario {
   [[nodiscard]] bool is_implicit() const noexcept {
     return std::holds_alternative<ImplicitOptions>(integrator);
   }
+  [[nodiscard]] bool is_projective() const noexcept {
+    return std::holds_alternative<ProjectiveScenario>(integrator);
+  }
+  [[nodiscard]] bool is_fluid() const noexcept { return std::holds_alternative<FluidScenario>(integrator); }
+  [[nodiscard]] const FluidScenario& fluid() const { return std::get<FluidScenario>(integrator); }
+  [[nodiscard]] FluidScenario& fluid() { return std::get<FluidScenario>(integrator); }
   [[nodiscard]] const ImplicitOptions& implicit() const { return std::get<ImplicitOptions>(integrator); }
   [[nodiscard]] ImplicitOptions& implicit() { return std::get<ImplicitOptions>(integrator); }
   [[nodiscard]] const ProjectiveScenario& projective() const {

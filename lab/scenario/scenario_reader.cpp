@@ -67,9 +67,23 @@ StepRange step_range(const JsonValue& owner) {
 }
 
 void read_order(const JsonValue& value, Scenario& scenario) {
-  value.expect_keys({"vertices", "elements"});
+  value.expect_keys({"vertices", "elements", "every"});
   if (const auto vertices = value.find("vertices")) scenario.vertex_order = vertices->text();
   if (const auto elements = value.find("elements")) scenario.element_order = elements->text();
+}
+
+void read_mesh_name(const JsonValue& root, Scenario& scenario) {
+  if (root.has("water")) {
+    for (const std::string_view key : {"mesh", "scale", "place", "start", "forces", "fixed", "prescribed"}) {
+      if (const auto value = root.find(key))
+        throw value->error("is unknown to water, which makes its own mesh", "leave it out");
+    }
+    return;
+  }
+  scenario.mesh = root["mesh"].text();
+  if (names_a_model(scenario.mesh)) return;
+  scenario.mesh_folder = fs::path(root.file()).parent_path();
+  scenario.mesh = (*scenario.mesh_folder / scenario.mesh).string();
 }
 
 void read_scale(const JsonValue& value, Scenario& scenario) {
@@ -141,18 +155,14 @@ bool names_a_model(std::string_view mesh) {
 Scenario parse_scenario(std::string_view text, const std::string& file) {
   const nlohmann::json json = parse_json(text, file);
   const JsonValue root(json, file);
-  root.expect_keys({"$schema", "name", "title", "mesh", "scale", "place", "order", "material", "integrator",
-                    "solver", "contact", "start", "forces", "fixed", "prescribed", "steps", "paper",
-                    "notes"});
+  root.expect_keys({"$schema", "name", "title", "mesh", "water", "scale", "place", "order", "material",
+                    "integrator", "solver", "contact", "start", "forces", "fixed", "prescribed", "steps",
+                    "paper", "notes"});
   Scenario scenario;
   scenario.file = file;
   scenario.name = root["name"].name_in_files();
   if (const auto title = root.find("title")) scenario.title = title->text();
-  scenario.mesh = root["mesh"].text();
-  if (!names_a_model(scenario.mesh)) {
-    scenario.mesh_folder = fs::path(file).parent_path();
-    scenario.mesh = (*scenario.mesh_folder / scenario.mesh).string();
-  }
+  read_mesh_name(root, scenario);
   if (const auto scale = root.find("scale")) read_scale(*scale, scenario);
   if (const auto place = root.find("place")) {
     place->expect_keys({"bottom"});

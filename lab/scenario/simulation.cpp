@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/simulation.hpp"
 
+#include "base/checksum.hpp"
 #include "base/stopwatch.hpp"
+#include "lab/fluid/fluid.hpp"
 #include "lab/scenario/scenario_obstacles.hpp"
 #include "lab/scenario/vertex_choice.hpp"
 #include "mesh/graphs.hpp"
@@ -12,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace meshorder {
@@ -157,7 +160,36 @@ void set_up_projective(Simplices simplices, const MotionState& start, Simulation
   }
 }
 
+/// Identifies how a fluid is ordered.
+std::uint64_t checksum_of(const FluidOrdering& ordering) {
+  Checksum sum;
+  sum.add_all(ordering.vertices);
+  sum.add_all(ordering.elements);
+  sum.add(ordering.every);
+  return sum.value();
+}
+
 }  // namespace
+
+Simulation set_up_fluid(Scenario scenario, const OrderOptions& ordering) {
+  const Stopwatch setup_time;
+  const FluidScenario& options = scenario.fluid();
+  const FluidOrdering orders{scenario.vertex_order, scenario.element_order, options.order_every, ordering};
+  auto fluid = std::make_unique<Fluid>(options, orders, delaunay_program());
+  Simulation result;
+  result.mesh.points = fluid->state().positions;
+  result.order.vertices.permutation = Permutation::identity(result.mesh.vertex_count());
+  result.order.vertices.method.name = scenario.vertex_order;
+  result.order.cells.method.name = scenario.element_order;
+  result.tetrahedra = fluid->mesh().tetrahedra();
+  result.vertices.resize(result.mesh.points.size());
+  std::iota(result.vertices.begin(), result.vertices.end(), Index{0});
+  result.fingerprint = {checksum_of(result.mesh.points, {}), checksum_of(orders), checksum_of(options)};
+  result.body = std::move(fluid);
+  result.scenario = std::move(scenario);
+  result.setup_seconds = setup_time.seconds();
+  return result;
+}
 
 void require_volume_cells(const Mesh& mesh, const std::string& file) {
   const int dimension = mesh.cells.highest_dimension();

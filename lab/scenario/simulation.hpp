@@ -26,6 +26,10 @@ struct Simulation {
   double setup_seconds = 0;  ///< for the body
 };
 
+/// Makes the fluid of a scenario; `mesh` has its particles at the start, and neither cells nor an order.
+/// Throws as `Fluid`.
+Simulation set_up_fluid(Scenario scenario, const OrderOptions& ordering = {});
+
 /// Throws Error, which names `file`, unless the mesh has volume cells.
 void require_volume_cells(const Mesh& mesh, const std::string& file);
 

@@ -44,7 +44,7 @@ std::string mesh_of_size(std::string_view size, const std::string& mesh) {
 }
 
 bool fits_in_memory(std::string_view size, const Scenario& scenario) {
-  return size != "2m" || scenario.is_implicit();
+  return size != "2m" || !scenario.is_projective();
 }
 
 }  // namespace meshorder

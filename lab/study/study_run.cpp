@@ -220,7 +220,7 @@ class Study {
           difference_of(read_motion(motions[i].file()), reference, subject.body.longest_side);
     const FinishedFile kept{motions.front().path(), folder.file(folder.motion(subject.scenario.name))};
     put_in_place({&kept, 1});
-    if (subject.scenario.is_implicit() || subject.scenario.projective().obstacles.empty()) return;
+    if (!subject.scenario.is_projective() || subject.scenario.projective().obstacles.empty()) return;
     write_mesh_to(surfaces_of(subject.scenario.projective().obstacles, subject.body.longest_side),
                   folder.file(folder.obstacles(subject.scenario.name)), {});
   }

@@ -106,11 +106,19 @@ ScenarioRecord StudyStore::new_record(const Scenario& scenario) const {
   ScenarioRecord record;
   record.name = scenario.name;
   record.title = scenario.title.empty() ? scenario.name : scenario.title;
-  record.method = scenario.is_implicit() ? "backward-euler" : "admm";
-  record.material =
-      scenario.is_implicit() ? to_string(scenario.model) : to_string(scenario.projective().model);
-  record.precision =
-      to_string(std::visit([](const auto& options) { return options.precision; }, scenario.integrator));
+  if (scenario.is_fluid()) {
+    record.method = "particle-fem";
+    record.material = "fluid";
+    record.precision = to_string(MatrixPrecision::double_);
+  } else if (scenario.is_implicit()) {
+    record.method = "backward-euler";
+    record.material = to_string(scenario.model);
+    record.precision = to_string(scenario.implicit().precision);
+  } else {
+    record.method = "admm";
+    record.material = to_string(scenario.projective().model);
+    record.precision = to_string(scenario.projective().precision);
+  }
   for (const OrderingSpec& ordering : results_.orderings)
     record.orders.emplace_back().ordering = ordering.name;
   return record;

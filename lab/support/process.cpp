@@ -145,11 +145,26 @@ ChildProcess::~ChildProcess() {
 void ChildProcess::send(std::string_view line) {
   std::string text(line);
   text += '\n';
-  for (std::string_view left = text; !left.empty();) {
-    const ssize_t sent = ::send(socket_, left.data(), left.size(), MSG_NOSIGNAL);
+  send_bytes(std::as_bytes(std::span(text)));
+}
+
+void ChildProcess::send_bytes(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0) throw_ended();
-    left.remove_prefix(static_cast<std::size_t>(sent));
+    bytes = bytes.subspan(static_cast<std::size_t>(sent));
+  }
+}
+
+void ChildProcess::receive_bytes(std::span<std::byte> bytes) {
+  while (!bytes.empty()) {
+    std::clearerr(replies_);
+    errno = 0;
+    const std::size_t received = std::fread(bytes.data(), 1, bytes.size(), replies_);
+    bytes = bytes.subspan(received);
+    // a signal that the parent takes note of interrupts the wait
+    if (!bytes.empty() && errno != EINTR) throw_ended();
   }
 }
 

@@ -3,15 +3,18 @@
 
 #include <sys/types.h>
 
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace meshorder {
 
-/// A child process that reads lines of text from its standard input and writes lines to its standard output.
+/// A child process that reads lines of text or bytes from its standard input and writes such to its standard
+/// output.
 /// Ctrl-C does not reach it. It ends no later than this process.
 class ChildProcess {
  public:
@@ -33,6 +36,13 @@ class ChildProcess {
   /// Waits for the child's next line and returns it without its line break. Throws Error, which says how the
   /// child ended, if there is none.
   std::string receive();
+
+  /// Sends bytes. Throws Error if the child has ended.
+  void send_bytes(std::span<const std::byte> bytes);
+
+  /// Waits for as many bytes as there is room for. Throws Error, which says how the child ended, if it ends
+  /// before.
+  void receive_bytes(std::span<std::byte> bytes);
 
  private:
   [[noreturn]] void throw_ended();

@@ -1,0 +1,32 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/fluid/particles.hpp"
+#include "lab/fluid/triangulation.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// The mesh of a fluid: what is left of a triangulation where particles are near each other.
+struct FluidMesh {
+  std::vector<Index> corners;       ///< 4 of each tetrahedron, positively oriented
+  double flat = 0;                  ///< volume, m³, below which one only says who is near whom
+  std::vector<std::uint8_t> alone;  ///< whether a particle has no tetrahedron but flat ones
+  std::vector<std::uint8_t> free;   ///< whether a particle is alone or lies on the free surface
+
+  [[nodiscard]] Offset tetrahedra() const noexcept { return static_cast<Offset>(corners.size() / 4); }
+};
+
+/// Returns the alpha shape (Edelsbrunner, Mücke 1994) of a triangulation: the tetrahedra whose circumscribed
+/// sphere is smaller than 1.35 spacings. A face between it and the outside is free unless all its corners lie
+/// on one wall. Tetrahedra smaller than 0.003 cubic spacings are flat. O(tetrahedra).
+FluidMesh alpha_shape(const Triangulation& triangulation, std::span<const Point> points,
+                      std::span<const Walls> walls, double spacing);
+
+/// Returns the faces between the mesh and the outside, 3 corners of each, outward. O(tetrahedra).
+std::vector<Index> outer_faces(const FluidMesh& mesh);
+
+}  // namespace meshorder

@@ -1,0 +1,84 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/fluid/fluid_order.hpp"
+#include "lab/fluid/particles.hpp"
+#include "lab/fluid/scalar_system.hpp"
+#include "lab/fluid/triangulation.hpp"
+#include "lab/motion/integrator.hpp"
+
+#include <vector>
+
+namespace meshorder {
+
+/// An incompressible fluid with a free surface, by the particle finite element method (Idelsohn, Oñate, Del
+/// Pin 2004): the particles are the vertices of a mesh that is made anew in each step, with linear velocities
+/// and pressures.
+///
+/// A step: the alpha shape of the particles' Delaunay triangulation; their order; the velocity u* after
+/// viscosity, (M + τν K) u' = M u, and gravity, u* = u' + τg; the pressure p with τ/ρ ∫ ∇q·∇p = ∫ ∇q·u* for
+/// all q and p = 0 on the free surface; u = u* − τ/ρ ∇p; the particles move by Δt u, and a little apart.
+/// Velocities are those in the middle between two positions, so τ is the mean of this Δt and the last one:
+/// free particles follow their parabola, and waves keep their height. Walls are smooth: ∫ ∇q·u* knows no flow
+/// through them, and particles stay on a wall that they reach.
+///
+/// Positions and velocities of states and balances are in the order of the particles at the start.
+class Fluid : public Integrator {
+ public:
+  /// Throws InvalidArgument for options out of range and unknown methods, Error if the particles cannot be
+  /// triangulated.
+  Fluid(const FluidOptions& options, FluidOrdering ordering, Triangulate triangulate);
+
+  /// The same with particles of the caller's.
+  Fluid(const FluidOptions& options, Particles particles, FluidOrdering ordering, Triangulate triangulate);
+
+  [[nodiscard]] MotionState state() const override;
+  void set_state(const MotionState& state) override;
+  StepReport step() override;
+  [[nodiscard]] Balance balance() const override;
+  [[nodiscard]] std::size_t bytes() const override;
+
+  // ---- of the last step, in the order of the particles now
+  /// Returns the mesh that the step was computed on.
+  [[nodiscard]] const FluidMesh& mesh() const noexcept { return mesh_; }
+  /// Returns the number of each particle at the start.
+  [[nodiscard]] const std::vector<Index>& numbers() const noexcept { return numbers_; }
+  [[nodiscard]] const std::vector<double>& pressures() const noexcept { return pressures_; }  ///< Pa
+  /// Returns the volume of the mesh, m³.
+  [[nodiscard]] double volume() const noexcept { return volume_; }
+  /// Returns the volume that the particles of the mesh had at the start, m³.
+  [[nodiscard]] double volume_at_start() const noexcept { return volume_at_start_; }
+  [[nodiscard]] const FluidOrder& order() const noexcept { return order_; }
+
+ private:
+  void make_mesh();
+  void check_finite() const;
+  void reorder();
+  [[nodiscard]] double next_time_step() const;
+  void add_viscosity(double kick, StepReport& report);
+  void project(double kick, double dt, StepReport& report);
+  void move(double dt);
+  [[nodiscard]] std::vector<Point> evening() const;
+
+  FluidOptions options_;
+  Triangulate triangulate_;
+  FluidOrder order_;
+  Index steps_ = 0;
+  double time_ = 0;
+  double last_time_step_ = 0;  ///< s; 0 before the first step
+
+  // of the particles, moved together
+  std::vector<Point> positions_;
+  std::vector<Point> velocities_;
+  std::vector<double> pressures_;
+  std::vector<Walls> walls_;
+  std::vector<Index> numbers_;
+  std::vector<double> shares_;  ///< volume that belonged to each particle at the start, m³
+
+  FluidMesh mesh_;
+  ScalarSystem system_;
+  double volume_ = 0;
+  double volume_at_start_ = 0;
+};
+
+}  // namespace meshorder

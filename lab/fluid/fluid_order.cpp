@@ -1,0 +1,51 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "lab/fluid/fluid_order.hpp"
+
+#include "ordering/method_named.hpp"
+#include <meshorder/error.hpp>
+
+#include <utility>
+
+namespace meshorder {
+namespace {
+
+CellsView cells_of(const FluidMesh& mesh) { return CellsView::uniform(Shape::tetrahedron, 4, mesh.corners); }
+
+Reorderer reorderer_for(const FluidOrdering& ordering) {
+  return Reorderer({.method = ordering.stays() ? "auto" : ordering.vertices, .order = ordering.options});
+}
+
+}  // namespace
+
+FluidOrder::FluidOrder(FluidOrdering ordering)
+    : ordering_(std::move(ordering)), reorderer_(reorderer_for(ordering_)) {
+  ordering_.options.check = Check::none;
+  if (!method_named(element_methods(), ordering_.elements))
+    throw InvalidArgument("unknown method for elements '" + ordering_.elements + "'; see meshorder methods");
+}
+
+std::optional<Permutation> FluidOrder::particles(Index step, const FluidMesh& mesh,
+                                                 std::span<const Point> points) {
+  if (ordering_.stays() && (step > 0 || ordering_.vertices == "original")) return std::nullopt;
+  if (ordering_.every == 0 && !ordering_.stays()) {
+    Update update = reorderer_.update(MeshView{.points = points, .cells = cells_of(mesh)});
+    fresh_ += update.repair == Repair::warm || update.repair == Repair::fresh ? 1 : 0;
+    if (update.repair == Repair::none) return std::nullopt;
+    return std::move(update.permutation);
+  }
+  if (!ordering_.stays() && step % ordering_.every != 0) return std::nullopt;
+  ++fresh_;
+  const Graph graph = vertex_graph(cells_of(mesh), points.size());
+  return order_vertices(graph, ordering_.vertices, ordering_.options, points).permutation;
+}
+
+void FluidOrder::sort(FluidMesh& mesh, std::span<const Point> points) const {
+  if (ordering_.elements == "original" || mesh.corners.empty()) return;
+  const Order order = order_elements(cells_of(mesh), Permutation::identity(static_cast<Index>(points.size())),
+                                     ordering_.elements, ordering_.options, points);
+  std::vector<Index> sorted(mesh.corners.size());
+  order.permutation.move(mesh.corners, sorted, 4);
+  mesh.corners = std::move(sorted);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,64 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/point.hpp"
+#include "lab/linear/cg/solve.hpp"
+#include "lab/motion/loads.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// Water in a basin whose walls are planes, and how it is simulated. `MotionOptions::time_step` is the
+/// longest step; forces and prescribed motions are not used.
+struct FluidOptions : MotionOptions {
+  Point basin{};             ///< its extent from the origin, m: y is the height of its walls
+  bool lid = false;          ///< whether the basin is closed at the top
+  Point column{};            ///< extent of the water in the corner at the origin, m
+  double spacing = 0;        ///< of the particles at the start, m
+  double jitter = 0.2;       ///< most that a particle is moved along each axis at the start, in spacings
+  double wave = 0;           ///< height of a wave cos(πx / L) of the surface, as a share of the column's
+  double density = 1000;     ///< kg/m³
+  double viscosity = 0;      ///< kinematic, m²/s
+  double courant = 0.5;      ///< most that a particle moves in a step, in spacings
+  double evening = 0.05;     ///< most that particles are moved apart in a step, in spacings
+  double volume_gain = 0.2;  ///< share of lost volume that is won back in a step
+  SolveOptions solve{.tolerance = 1e-5, .max_iterations = 2000};  ///< of the pressure
+};
+
+/// Particles, or tetrahedra, that a thread takes at a time; sums are made of so many parts.
+inline constexpr Index kParticlesInChunk = 1 << 12;
+
+/// The walls that a particle lies on, along which alone it moves: bit 2 · axis of the wall at 0, bit
+/// 2 · axis + 1 of that at the basin's extent.
+using Walls = std::uint8_t;
+inline constexpr Walls kNoWalls = 0;
+
+/// Returns the wall at 0, or at the extent, of an axis.
+constexpr Walls wall(int axis, bool at_extent) {
+  return static_cast<Walls>(1U << static_cast<unsigned>(2 * axis + (at_extent ? 1 : 0)));
+}
+/// Returns whether a particle may not move along an axis.
+constexpr bool is_held(Walls walls, int axis) {
+  return (walls & (wall(axis, false) | wall(axis, true))) != 0;
+}
+
+struct Particles {
+  std::vector<Point> positions;  ///< m
+  std::vector<Walls> walls;
+};
+
+/// Returns the particles at the start: a lattice, row by row along z, moved a little within the water.
+/// O(particles).
+Particles particles_at_start(const FluidOptions& options);
+
+/// Moves a particle that left the basin back to its wall, on which it stays.
+void keep_inside(const FluidOptions& options, Point& position, Walls& walls);
+
+/// Throws InvalidArgument, which names the value, for options out of range and for more than `most`
+/// particles.
+void check_options(const FluidOptions& options, double most = 2e7);
+
+}  // namespace meshorder

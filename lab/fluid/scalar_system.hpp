@@ -1,0 +1,46 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "lab/fluid/alpha_shape.hpp"
+#include "lab/linear/cg/solve.hpp"
+#include <meshorder/order.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// Linear elements of a mesh of tetrahedra with one unknown for each vertex: the matrix K of ∫ ∇q·∇p and the
+/// lumped masses M of ∫ q. Sums run along rising numbers of tetrahedra, so they are the same for any number
+/// of threads.
+struct ScalarSystem {
+  Graph pattern;                 ///< of K without its diagonal
+  std::vector<double> values;    ///< of K, one for each neighbour, m
+  std::vector<double> diagonal;  ///< of K, m
+  std::vector<double> masses;    ///< volume that belongs to each vertex, m³
+
+  [[nodiscard]] Index size() const noexcept { return static_cast<Index>(diagonal.size()); }
+};
+
+/// Assembles both. O(tetrahedra).
+ScalarSystem assemble(const FluidMesh& mesh, std::span<const Point> points);
+
+/// Solves (α K + β M) x = b by conjugate gradients with the diagonal as preconditioner, x the start and the
+/// result. Where `held` is not 0, x stays and its row is left out; it must be 0 there. The same bits for any
+/// number of threads.
+SolveReport solve(const ScalarSystem& system, double alpha, double beta, std::span<const std::uint8_t> held,
+                  std::span<const double> b, std::span<double> x, const SolveOptions& options);
+
+/// ∫ ∇q·u of the piecewise linear u, for the hat function q of each vertex.
+std::vector<double> divergence(const FluidMesh& mesh, std::span<const Point> points,
+                               std::span<const Point> u);
+
+/// ∫ q ∇p of the piecewise linear p.
+std::vector<Point> gradient(const FluidMesh& mesh, std::span<const Point> points, std::span<const double> p);
+
+/// ∫ q ∇u of the piecewise linear u: row c is the gradient of its component c.
+std::vector<std::array<Point, 3>> gradient(const FluidMesh& mesh, std::span<const Point> points,
+                                           std::span<const Point> u);
+
+}  // namespace meshorder

@@ -1,0 +1,31 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+#include "base/point.hpp"
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// The tetrahedra of a Delaunay triangulation, positively oriented.
+struct Triangulation {
+  std::vector<std::array<Index, 4>> corners;
+  /// The tetrahedron across the face that lies opposite each corner; −1 outside the hull.
+  std::vector<std::array<Index, 4>> neighbours;
+};
+
+/// Triangulates points. None of them may be NaN or infinite. A point that coincides with another has no
+/// tetrahedron, and points of one plane have none at all. The triangulation depends on the places of the
+/// points, but not on their numbers.
+using Triangulate = std::function<Triangulation(std::span<const Point>)>;
+
+/// Returns a function that has the program `meshorder-delaunay` triangulate, which is started once. Its calls
+/// throw Error if the program ended. Throws Error if there is no such program. Who can replace the program in
+/// the folder of this one or on PATH runs code as its user anyway; what it answers is checked before use.
+Triangulate delaunay_program();
+
+}  // namespace meshorder
