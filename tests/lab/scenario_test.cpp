@@ -245,10 +245,11 @@ TEST(Scenario, ErrorsOfAdmmNameThePlace) {
 }
 
 TEST(Scenario, BuiltInOnesAreThePapers) {
-  ASSERT_EQ(built_in_scenarios().size(), 6U);
+  ASSERT_EQ(built_in_scenarios().size(), 9U);
   for (const BuiltInScenario& built_in : built_in_scenarios()) {
     const Scenario scenario = find_scenario(std::string(built_in.name));
     EXPECT_EQ(scenario.name, built_in.name);
+    if (scenario.is_fluid()) continue;
     EXPECT_EQ(scenario.steps, 240);
     EXPECT_EQ(scenario.is_implicit(), scenario.mesh == "dragon" && scenario.name != "stretch");
   }
@@ -473,6 +474,61 @@ TEST(VertexChoice, ErrorsListWhatTheMeshHas) {
   EXPECT_NE(no_array.find("no array 'colour'"), std::string::npos) << no_array;
   const std::string empty = message_of(choice_of(By::box, "", 0, {2, 2, 2}, {3, 3, 3}));
   EXPECT_NE(empty.find("fixed[0].on: no vertex"), std::string::npos) << empty;
+}
+
+std::string water(std::string_view from = "", std::string_view to = "") {
+  std::string text = R"({
+    "name": "pool", "water": {"basin": [2, 3, 1], "column": [1, 1, 1], "spacing": 0.25, "wave": 0.1},
+    "order": {"vertices": "auto", "elements": "lexmax", "every": 7},
+    "material": {"model": "fluid", "density": 900, "viscosity": 1e-3},
+    "integrator": {"method": "particle-fem", "time_step": 0.02, "gravity": [0, -9.81, 0], "courant": 0.4},
+    "solver": {"tolerance": 1e-6, "max_iterations": 99}, "steps": 5})";
+  if (!from.empty()) text.replace(text.find(from), from.size(), to);
+  return text;
+}
+
+TEST(Scenario, ReadsWater) {
+  const Scenario s = parse_scenario(water(), "pool.json");
+  ASSERT_TRUE(s.is_fluid());
+  EXPECT_FALSE(s.is_implicit());
+  EXPECT_EQ(s.mesh, "");
+  EXPECT_EQ(s.vertex_order, "auto");
+  const FluidScenario& options = s.fluid();
+  EXPECT_EQ(options.basin, (Point{2, 3, 1}));
+  EXPECT_EQ(options.column, (Point{1, 1, 1}));
+  EXPECT_EQ(options.spacing, 0.25);
+  EXPECT_EQ(options.wave, 0.1);
+  EXPECT_EQ(options.density, 900);
+  EXPECT_EQ(options.viscosity, 1e-3);
+  EXPECT_EQ(options.time_step, 0.02);
+  EXPECT_EQ(options.gravity[1], -9.81);
+  EXPECT_EQ(options.courant, 0.4);
+  EXPECT_EQ(options.solve.tolerance, 1e-6);
+  EXPECT_EQ(options.solve.max_iterations, 99);
+  EXPECT_EQ(options.order_every, 7);
+  EXPECT_EQ(s.motion().time_step, 0.02);
+}
+
+TEST(Scenario, ReportsFaultsOfWater) {
+  struct Broken {
+    const char* from;
+    const char* to;
+    const char* expected;
+  };
+  for (const Broken& broken :
+       {Broken{R"("spacing": 0.25)", R"("spacing": 1e-9)", "water: a spacing of 1e-09 makes"},
+        Broken{R"("column": [1, 1, 1])", R"("column": [3, 1, 1])", "water: the column is 3"},
+        Broken{R"("courant": 0.4)", R"("courant": 4)", "water: the courant number is 4"},
+        Broken{R"("wave": 0.1)", R"("depth": 1)", "water"},
+        Broken{R"("model": "fluid")", R"("model": "stvk")", "material.model: 'stvk' is unknown"},
+        Broken{R"("method": "particle-fem")", R"("method": "admm")", "belong together"},
+        Broken{R"("steps": 5)", R"("steps": 5, "mesh": "dragon")", "mesh: is unknown to water"},
+        Broken{R"("steps": 5)", R"("steps": 5, "forces": [])", "forces: is unknown to water"},
+        Broken{R"("steps": 5)", R"("steps": 5, "contact": {})", "contact: is unknown to particle-fem"}}) {
+    const std::string message = error_of(water(broken.from, broken.to));
+    EXPECT_NE(message.find(broken.expected), std::string::npos) << message << "\n  lacks " << broken.expected;
+  }
+  EXPECT_NE(error_of(with(R"("order": {"every": 2})")).find("order.every: is for water"), std::string::npos);
 }
 
 }  // namespace
