@@ -8,6 +8,7 @@
 #include "lab/scenario/scenario.hpp"
 #include "lab/study/results_json.hpp"
 #include "lab/study/study_run.hpp"
+#include "lab/support/process.hpp"
 #include "progress.hpp"
 
 #include <CLI/CLI.hpp>
@@ -38,10 +39,15 @@ struct ReproduceArguments : Common {
   bool no_pin = false;
 };
 
-StudyPlan plan_of(const ReproduceArguments& arguments) {
+StudyPlan plan_of(const ReproduceArguments& arguments, Console& console) {
   StudyPlan plan = arguments.plan;
   if (plan.scenarios.empty()) {
-    for (const BuiltInScenario& scenario : built_in_scenarios()) plan.scenarios.emplace_back(scenario.name);
+    plan.scenarios = study_scenarios();
+    const bool has_mesh = !plan.mesh.empty();
+    if (has_mesh || meshorder::find_program("meshorder-delaunay").empty()) {
+      plan.scenarios.pop_back();
+      if (!has_mesh) console.warn("splash is left out: it needs the program meshorder-delaunay");
+    }
   }
   for (const std::string& order : arguments.orders) {
     OrderingSpec ordering = study_ordering(order);
@@ -78,7 +84,7 @@ void report(Console& console, const StudyFolder& folder, Progress& progress) {
 
 void run(const ReproduceArguments& arguments) {
   Console console(arguments);
-  const StudyPlan plan = plan_of(arguments);
+  const StudyPlan plan = plan_of(arguments, console);
   const StudyFolder folder(arguments.folder, arguments.is_folder_named);
   Progress progress(!console.quiet());
   const Interruption interruption;
@@ -99,7 +105,8 @@ void run(const ReproduceArguments& arguments) {
 
 void add_reproduce(CLI::App& subcommand) {
   subcommand.description(
-      "Repeat the paper's study on this machine: six scenarios, in the paper's five orders and in that of\n"
+      "Repeat the paper's study on this machine: six scenarios and a fluid, in the paper's five orders and "
+      "in that of\n"
       "`meshorder order`; tables and a page.");
   subcommand.footer(
       "Examples:\n"

@@ -34,6 +34,16 @@ constexpr std::array<std::array<int, 3>, 4> kFaces{{{1, 2, 3}, {0, 3, 2}, {0, 1,
 
 }  // namespace
 
+Cells FluidMesh::cells() const {
+  Cells cells;
+  cells.shapes.assign(corners.size() / 4, Shape::tetrahedron);
+  cells.vertices = corners;
+  cells.offsets.resize(corners.size() / 4 + 1);
+  for (std::size_t cell = 0; cell < cells.offsets.size(); ++cell)
+    cells.offsets[cell] = static_cast<Offset>(4 * cell);
+  return cells;
+}
+
 FluidMesh alpha_shape(const Triangulation& triangulation, std::span<const Point> points,
                       std::span<const Walls> walls, double spacing) {
   const double flat = kFlat * spacing * spacing * spacing;
@@ -67,7 +77,7 @@ FluidMesh alpha_shape(const Triangulation& triangulation, std::span<const Point>
   return mesh;
 }
 
-std::vector<Index> outer_faces(const FluidMesh& mesh) {
+std::vector<std::array<Index, 3>> outer_faces(const FluidMesh& mesh) {
   using Face = std::array<Index, 3>;
   struct Side {
     Face sorted, outward;
@@ -84,13 +94,13 @@ std::vector<Index> outer_faces(const FluidMesh& mesh) {
     }
   }
   std::ranges::sort(sides, {}, &Side::sorted);
-  std::vector<Index> faces;
+  std::vector<Face> faces;
   for (std::size_t i = 0; i < sides.size(); ++i) {
     if (i + 1 < sides.size() && sides[i].sorted == sides[i + 1].sorted) {
       ++i;
       continue;
     }
-    faces.insert(faces.end(), sides[i].outward.begin(), sides[i].outward.end());
+    faces.push_back(sides[i].outward);
   }
   return faces;
 }

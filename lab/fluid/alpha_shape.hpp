@@ -3,6 +3,7 @@
 
 #include "lab/fluid/particles.hpp"
 #include "lab/fluid/triangulation.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <cstdint>
 #include <span>
@@ -17,6 +18,8 @@ struct FluidMesh {
   std::vector<std::uint8_t> alone;  ///< whether a particle has no tetrahedron but flat ones
   std::vector<std::uint8_t> free;   ///< whether a particle is alone or lies on the free surface
 
+  /// Returns the tetrahedra as cells of a mesh.
+  [[nodiscard]] Cells cells() const;
   [[nodiscard]] Offset tetrahedra() const noexcept { return static_cast<Offset>(corners.size() / 4); }
 };
 
@@ -26,7 +29,7 @@ struct FluidMesh {
 FluidMesh alpha_shape(const Triangulation& triangulation, std::span<const Point> points,
                       std::span<const Walls> walls, double spacing);
 
-/// Returns the faces between the mesh and the outside, 3 corners of each, outward. O(tetrahedra).
-std::vector<Index> outer_faces(const FluidMesh& mesh);
+/// Returns the faces between the mesh and the outside, anticlockwise as seen from there. O(tetrahedra).
+std::vector<std::array<Index, 3>> outer_faces(const FluidMesh& mesh);
 
 }  // namespace meshorder

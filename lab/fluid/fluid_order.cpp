@@ -20,6 +20,7 @@ Reorderer reorderer_for(const FluidOrdering& ordering) {
 FluidOrder::FluidOrder(FluidOrdering ordering)
     : ordering_(std::move(ordering)), reorderer_(reorderer_for(ordering_)) {
   ordering_.options.check = Check::none;
+  if (ordering_.elements == "auto") ordering_.elements = "lexmax";  // pays at once, whatever the mesh
   if (!method_named(element_methods(), ordering_.elements))
     throw InvalidArgument("unknown method for elements '" + ordering_.elements + "'; see meshorder methods");
 }

@@ -127,13 +127,7 @@ void FrameWriter::take(const Fluid& fluid, const MotionState& state) {
       {"velocity", Association::vertices, 3, std::move(velocity), {}, {}},
       {"pressure", Association::vertices, 1, std::vector<float>(pressures.begin(), pressures.end()), {}, {}},
       {"original_vertex", Association::vertices, 1, numbers, {}, {}}};
-  const std::vector<Index>& corners = fluid.mesh().corners;
-  frame_.cells = {};
-  frame_.cells.shapes.assign(corners.size() / 4, Shape::tetrahedron);
-  frame_.cells.vertices = corners;
-  frame_.cells.offsets.resize(corners.size() / 4 + 1);
-  for (std::size_t cell = 0; cell < frame_.cells.offsets.size(); ++cell)
-    frame_.cells.offsets[cell] = static_cast<Offset>(4 * cell);
+  frame_.cells = fluid.mesh().cells();
 }
 
 void FrameWriter::write(MotionState state) {

@@ -171,6 +171,17 @@ std::uint64_t checksum_of(const FluidOrdering& ordering) {
 
 }  // namespace
 
+Mesh mesh_at_start(const Scenario& scenario) {
+  const FluidScenario& options = scenario.fluid();
+  Particles particles = particles_at_start(options);
+  const FluidMesh made = alpha_shape(delaunay_program()(particles.positions), particles.positions,
+                                     particles.walls, options.spacing);
+  Mesh mesh;
+  mesh.points = std::move(particles.positions);
+  mesh.cells = made.cells();
+  return mesh;
+}
+
 Simulation set_up_fluid(Scenario scenario, const OrderOptions& ordering) {
   const Stopwatch setup_time;
   const FluidScenario& options = scenario.fluid();

@@ -30,6 +30,9 @@ struct Simulation {
 /// Throws as `Fluid`.
 Simulation set_up_fluid(Scenario scenario, const OrderOptions& ordering = {});
 
+/// Returns the mesh of a fluid at the start.
+Mesh mesh_at_start(const Scenario& scenario);
+
 /// Throws Error, which names `file`, unless the mesh has volume cells.
 void require_volume_cells(const Mesh& mesh, const std::string& file);
 

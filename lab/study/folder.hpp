@@ -48,6 +48,11 @@ class StudyFolder {
   [[nodiscard]] std::filesystem::path motion(std::string_view scenario) const {
     return data() / (std::string(scenario) + "-motion.npy");
   }
+  /// The surface of a fluid in the frames: a NumPy array of rows (frame, three vertices); no such file for a
+  /// body.
+  [[nodiscard]] std::filesystem::path surfaces(std::string_view scenario) const {
+    return data() / (std::string(scenario) + "-surfaces.npy");
+  }
   /// The obstacles of a scenario as a surface mesh; no such file without obstacles.
   [[nodiscard]] std::filesystem::path obstacles(std::string_view scenario) const {
     return data() / (std::string(scenario) + "-obstacles.vtu");

@@ -86,10 +86,16 @@ inline constexpr auto kFields<MeshRecord> = std::tuple{Field{"name", &MeshRecord
                                                        Field{"gain", &MeshRecord::gain, false, true}};
 
 template <>
-inline constexpr auto kFields<StepReport::Seconds> = std::tuple{
-    Field{"total", &StepReport::Seconds::total},   Field{"assembly", &StepReport::Seconds::assembly},
-    Field{"solve", &StepReport::Seconds::solve},   Field{"local", &StepReport::Seconds::local},
-    Field{"global", &StepReport::Seconds::global}, Field{"collision", &StepReport::Seconds::collision}};
+inline constexpr auto kFields<StepReport::Seconds> =
+    std::tuple{Field{"total", &StepReport::Seconds::total},
+               Field{"assembly", &StepReport::Seconds::assembly},
+               Field{"solve", &StepReport::Seconds::solve},
+               Field{"local", &StepReport::Seconds::local},
+               Field{"global", &StepReport::Seconds::global},
+               Field{"collision", &StepReport::Seconds::collision},
+               Field{"triangulation", &StepReport::Seconds::triangulation, true},
+               Field{"order", &StepReport::Seconds::order, true},
+               Field{"motion", &StepReport::Seconds::motion, true}};
 
 template <>
 inline constexpr auto kFields<RunRecord> =

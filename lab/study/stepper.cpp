@@ -6,9 +6,11 @@
 #include "base/text.hpp"
 #include "io/npy.hpp"
 #include "io/stream/read_limits.hpp"
+#include "lab/fluid/fluid.hpp"
 #include "lab/scenario/embedded_vertices.hpp"
 #include "lab/scenario/motion_file.hpp"
 #include "lab/scenario/simulation.hpp"
+#include "lab/scenario/surface_file.hpp"
 #include "lab/scenario/vertex_choice.hpp"
 #include "payoff/machine.hpp"
 #include <meshorder/error.hpp>
@@ -31,6 +33,13 @@ Permutation order_of(const std::string& path, Index count, const std::string& wh
 
 Simulation set_up(const StepperTask& task) {
   Scenario scenario = find_scenario(task.scenario);
+  if (scenario.is_fluid()) {
+    scenario.vertex_order = task.vertex_method;
+    scenario.element_order = task.element_method;
+    scenario.fluid().order_every = task.vertex_method == "auto" ? 0 : 1;
+    if (task.spacing > 0) scenario.fluid().spacing = task.spacing;
+    return set_up_fluid(std::move(scenario));
+  }
   if (task.mesh != scenario.mesh) scenario.mesh_folder.reset();
   Mesh mesh = read_mesh_from(scenario.mesh_file(task.mesh));
   MeshOrder order;
@@ -72,6 +81,7 @@ class Stepping {
   StepperTimes take(const StepperTurn& turn) {
     if (!turn.frames.empty() && !frames_) {
       frames_.emplace(turn.frames, simulation_.mesh.vertex_count());
+      if (!turn.surfaces.empty()) surfaces_.emplace(turn.surfaces);
       add_frame();
     }
     StepperTimes times;
@@ -88,6 +98,7 @@ class Stepping {
       if (frames_ && step_ % turn.frame_every == 0) add_frame();
     }
     if (frames_ && turn.last) frames_->commit();
+    if (surfaces_ && turn.last) surfaces_->commit();
     return times;
   }
 
@@ -103,6 +114,15 @@ class Stepping {
     MotionState state = simulation_.body->state();
     move_embedded(embedded_, simulation_.mesh.points, state);
     frames_->add(in_own_order(state, simulation_.order.vertices.permutation));
+    if (surfaces_) add_surface(dynamic_cast<const Fluid&>(*simulation_.body));
+  }
+
+  void add_surface(const Fluid& fluid) {
+    std::vector<std::array<Index, 3>> triangles = outer_faces(fluid.mesh());
+    for (std::array<Index, 3>& triangle : triangles) {
+      for (Index& v : triangle) v = fluid.numbers()[v];
+    }
+    surfaces_->add(triangles);
   }
 
   Simulation simulation_;
@@ -111,6 +131,7 @@ class Stepping {
   Index step_ = 0;
   std::vector<WarningRecord> warnings_;
   std::optional<MotionFile> frames_;
+  std::optional<SurfaceFile> surfaces_;  ///< of a fluid
 };
 
 /// Returns a text as it is where it is UTF-8, else, as a path may be of any bytes, their numbers.
@@ -140,13 +161,21 @@ nlohmann::json to_json(const StepperTask& task) {
           {"mesh", bytes_in_json(task.mesh)},
           {"vertex_order", bytes_in_json(task.vertex_order)},
           {"cell_order", bytes_in_json(task.cell_order)},
-          {"processors", task.processors}};
+          {"processors", task.processors},
+          {"vertex_method", task.vertex_method},
+          {"element_method", task.element_method},
+          {"spacing", task.spacing}};
 }
 
 StepperTask stepper_task(const nlohmann::json& message) {
-  return {bytes_of(message.at("scenario")), bytes_of(message.at("mesh")),
-          bytes_of(message.at("vertex_order")), bytes_of(message.at("cell_order")),
-          message.at("processors").get<std::vector<int>>()};
+  return {bytes_of(message.at("scenario")),
+          bytes_of(message.at("mesh")),
+          bytes_of(message.at("vertex_order")),
+          bytes_of(message.at("cell_order")),
+          message.at("processors").get<std::vector<int>>(),
+          message.at("vertex_method"),
+          message.at("element_method"),
+          message.at("spacing")};
 }
 
 nlohmann::json to_json(const StepperReady& ready) {
@@ -163,12 +192,16 @@ StepperReady stepper_ready(const nlohmann::json& message) {
 }
 
 nlohmann::json to_json(const StepperTurn& turn) {
-  return {
-      {"steps", turn.steps}, {"frames", turn.frames}, {"frame_every", turn.frame_every}, {"last", turn.last}};
+  return {{"steps", turn.steps},
+          {"frames", turn.frames},
+          {"frame_every", turn.frame_every},
+          {"last", turn.last},
+          {"surfaces", turn.surfaces}};
 }
 
 StepperTurn stepper_turn(const nlohmann::json& message) {
-  return {message.at("steps"), message.at("frames"), message.at("frame_every"), message.at("last")};
+  return {message.at("steps"), message.at("frames"), message.at("frame_every"), message.at("last"),
+          message.at("surfaces")};
 }
 
 nlohmann::json to_json(const StepperTimes& times) {
@@ -180,7 +213,10 @@ nlohmann::json to_json(const StepperTimes& times) {
             {"solve", s.solve},
             {"local", s.local},
             {"global", s.global},
-            {"collision", s.collision}}},
+            {"collision", s.collision},
+            {"triangulation", s.triangulation},
+            {"order", s.order},
+            {"motion", s.motion}}},
           {"cg_iterations", times.cg_iterations},
           {"admm_iterations", times.admm_iterations},
           {"contact_iterations", times.contact_iterations},
@@ -190,7 +226,8 @@ nlohmann::json to_json(const StepperTimes& times) {
 StepperTimes stepper_times(const nlohmann::json& message) {
   const nlohmann::json& s = message.at("seconds");
   return {message.at("step_seconds").get<std::vector<double>>(),
-          {s.at("total"), s.at("assembly"), s.at("solve"), s.at("local"), s.at("global"), s.at("collision")},
+          {s.at("total"), s.at("assembly"), s.at("solve"), s.at("local"), s.at("global"), s.at("collision"),
+           s.at("triangulation"), s.at("order"), s.at("motion")},
           message.at("cg_iterations"),
           message.at("admm_iterations"),
           message.at("contact_iterations"),

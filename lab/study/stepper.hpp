@@ -20,11 +20,15 @@ namespace meshorder {
 
 /// What to simulate.
 struct StepperTask {
-  std::string scenario;         ///< a name or a file
-  std::string mesh;             ///< a file, instead of the scenario's own
-  std::string vertex_order;     ///< file of the NumPy array old_to_new; empty: the mesh's own order
-  std::string cell_order;       ///< the same for cells
-  std::vector<int> processors;  ///< to bind the process to; empty: not bound
+  std::string scenario = {};         ///< a name or a file
+  std::string mesh = {};             ///< a file, instead of the scenario's own
+  std::string vertex_order = {};     ///< file of the NumPy array old_to_new; empty: the mesh's own order
+  std::string cell_order = {};       ///< the same for cells
+  std::vector<int> processors = {};  ///< to bind the process to; empty: not bound
+  // of a fluid, which has no mesh and no files of orders
+  std::string vertex_method = {};   ///< "auto": kept by a Reorderer; others: anew in each step
+  std::string element_method = {};  ///< in each step
+  double spacing = 0;               ///< instead of the scenario's own; 0: that
 };
 
 /// Describes a body that is ready to be simulated.
@@ -42,9 +46,10 @@ struct StepperReady {
 /// Asks for steps.
 struct StepperTurn {
   Index steps = 0;
-  std::string frames;     ///< file for the motion, in the mesh's own order; empty: no frames
-  Index frame_every = 1;  ///< a frame at the start and after every so many steps
-  bool last = false;      ///< completes the file of the frames
+  std::string frames;         ///< file for the motion, in the mesh's own order; empty: no frames
+  Index frame_every = 1;      ///< a frame at the start and after every so many steps
+  bool last = false;          ///< completes the file of the frames
+  std::string surfaces = {};  ///< file for the surface of a fluid in the frames; empty: none
 };
 
 /// Timings and iteration counts of the steps of a turn.

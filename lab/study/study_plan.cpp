@@ -43,6 +43,15 @@ std::string mesh_of_size(std::string_view size, const std::string& mesh) {
   throw InvalidArgument("unknown size '" + std::string(size) + "'; known are paper, 300k and 2m");
 }
 
+std::vector<std::string> study_scenarios() {
+  return {"falling", "constrained", "stretch", "unsquash", "bowl", "bounce", "splash"};
+}
+
+double spacing_of_size(std::string_view size) {
+  if (size == "paper") return 0;
+  return mesh_of_size(size, "") == "grid-122" ? 1.0 / 100 : 1.0 / 53;
+}
+
 bool fits_in_memory(std::string_view size, const Scenario& scenario) {
   return size != "2m" || !scenario.is_projective();
 }

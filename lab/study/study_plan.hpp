@@ -44,6 +44,14 @@ struct StudyPlan {
 /// for any other size.
 std::string mesh_of_size(std::string_view size, const std::string& mesh);
 
+/// Returns the names of the built-in scenarios that a study runs: those of the paper's simulators, and the
+/// fluid that it wishes for.
+std::vector<std::string> study_scenarios();
+
+/// Returns the particles' distance of a study's size for a fluid, m: 0 for "paper", its own. Throws
+/// InvalidArgument as `mesh_of_size`.
+double spacing_of_size(std::string_view size);
+
 /// Returns whether a scenario fits in memory at that size. ADMM's factored matrix of a solid with two million
 /// vertices does not fit in a workstation's memory.
 bool fits_in_memory(std::string_view size, const Scenario& scenario);

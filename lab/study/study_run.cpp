@@ -84,6 +84,7 @@ class Study {
     Subject subject;
     subject.argument = argument;
     subject.scenario = find_scenario(argument);
+    if (subject.scenario.is_fluid()) return choose_fluid(std::move(subject));
     std::string& mesh = subject.scenario.mesh;
     mesh = plan_.mesh.empty() ? mesh_of_size(plan_.size, mesh) : plan_.mesh;
     if (!plan_.mesh.empty()) subject.scenario.mesh_folder.reset();
@@ -96,10 +97,24 @@ class Study {
     if (subject.mesh.size() > kLongestNameInFiles)
       throw InputError(mesh, "its name is too long to become part of file names",
                        fmt::format("give it one of at most {} bytes", kLongestNameInFiles));
+    add(std::move(subject));
+  }
+
+  /// A fluid's mesh at the start is studied under the scenario's name.
+  void choose_fluid(Subject subject) {
+    if (!plan_.mesh.empty())
+      throw InvalidArgument(subject.scenario.name + " makes its own mesh: leave out --mesh, or the scenario");
+    const double spacing = spacing_of_size(plan_.size);
+    if (spacing > 0) subject.scenario.fluid().spacing = spacing;
+    subject.mesh = subject.scenario.name;
+    add(std::move(subject));
+  }
+
+  void add(Subject subject) {
     for (const Subject& other : subjects_) {
       if (other.scenario.name == subject.scenario.name)
         throw InvalidArgument("two scenarios have the name " + other.scenario.name);
-      if (other.mesh == subject.mesh && other.scenario.mesh != mesh)
+      if (other.mesh == subject.mesh && other.scenario.mesh != subject.scenario.mesh)
         throw InvalidArgument("two meshes have the name " + subject.mesh);
     }
     subjects_.push_back(std::move(subject));
@@ -108,7 +123,7 @@ class Study {
   /// Makes the mesh and its orders and runs the first step, so that errors show before hours are spent.
   void prepare(Subject& subject, const Share& share) {
     subject.mesh_path = subject.scenario.mesh;
-    if (names_a_model(subject.mesh_path)) {
+    if (!subject.scenario.is_fluid() && names_a_model(subject.mesh_path)) {
       MakeOptions options;
       options.progress = [&](std::string_view step, double) {
         stage("model " + subject.mesh + ": " + std::string(step), share);
@@ -117,7 +132,7 @@ class Study {
     }
     if (!store_.has_mesh(subject.mesh)) study_mesh_of(subject, share.part(0, 0.8));
     stage(subject.scenario.name + ": the first step", share.part(0.8, 1));
-    const Stepper rehearsal(program_, plan_.threads, task_of(subject, plan_.orderings.front().name));
+    const Stepper rehearsal(program_, plan_.threads, task_of(subject, plan_.orderings.front()));
     subject.body = rehearsal.ready();
     subject.turns = plan_turns(subject.body, plan_.steps.value_or(subject.scenario.steps),
                                plan_.scenario_seconds, static_cast<int>(plan_.orderings.size()));
@@ -137,7 +152,8 @@ class Study {
   }
 
   void study_mesh_of(const Subject& subject, const Share& share) {
-    Mesh mesh = read_mesh_from(subject.scenario.mesh_file(subject.mesh_path));
+    Mesh mesh = subject.scenario.is_fluid() ? mesh_at_start(subject.scenario)
+                                            : read_mesh_from(subject.scenario.mesh_file(subject.mesh_path));
     require_volume_cells(mesh, subject.mesh_path);
     mesh.cell_blocks.clear();  // orders are compared, not a file's layout
     MeshStudyOptions options;
@@ -152,10 +168,16 @@ class Study {
     store_.keep(mesh, std::move(studied));
   }
 
-  [[nodiscard]] StepperTask task_of(const Subject& subject, const std::string& ordering) const {
+  [[nodiscard]] StepperTask task_of(const Subject& subject, const OrderingSpec& ordering) const {
+    if (subject.scenario.is_fluid())
+      return {.scenario = subject.argument,
+              .processors = processors_,
+              .vertex_method = ordering.vertices,
+              .element_method = ordering.elements,
+              .spacing = spacing_of_size(plan_.size)};
     return {subject.argument, subject.mesh_path,
-            store_.folder().vertex_order(subject.mesh, ordering).string(),
-            store_.folder().cell_order(subject.mesh, ordering).string(), processors_};
+            store_.folder().vertex_order(subject.mesh, ordering.name).string(),
+            store_.folder().cell_order(subject.mesh, ordering.name).string(), processors_};
   }
 
   [[nodiscard]] double remaining_seconds(const Subject& subject) const {
@@ -174,14 +196,17 @@ class Study {
   }
 
   bool run_once(const Subject& subject, int run, const Share& share) {
-    Round round{program_, plan_.threads, {}, {}, subject.turns, run};
+    Round round{program_, plan_.threads, {}, {}, {}, subject.turns, run};
     std::vector<Scratch> motions;
     for (const OrderingSpec& ordering : plan_.orderings) {
-      round.tasks.push_back(task_of(subject, ordering.name));
+      round.tasks.push_back(task_of(subject, ordering));
       if (run > 0) continue;
       motions.emplace_back(store_.folder().motion(subject.scenario.name));
       round.motions.push_back(motions.back().file().string());
     }
+    std::optional<Scratch> surfaces;
+    if (run == 0 && subject.scenario.is_fluid())
+      round.surfaces = surfaces.emplace(store_.folder().surfaces(subject.scenario.name)).file().string();
     const std::string what = fmt::format("{}, run {} of {}", subject.scenario.name, run + 1, plan_.runs);
     stage(what, share);
     const auto runs = run_round(round, subject.body.fingerprint, [&](double done) {
@@ -190,6 +215,11 @@ class Study {
     });
     if (!runs) return false;
     if (run == 0) store_.begin(record_of(subject, motions));
+    if (surfaces) {
+      const FinishedFile kept{surfaces->path(),
+                              store_.folder().file(store_.folder().surfaces(subject.scenario.name))};
+      put_in_place({&kept, 1});
+    }
     store_.keep(subject.scenario.name, *runs);
     return true;
   }

@@ -104,6 +104,7 @@ std::optional<std::vector<RunRecord>> run_round(const Round& round, const std::s
       for (std::size_t i = 0; i < group.size(); ++i) {
         const std::size_t order = group[(first + i) % group.size()];
         if (!round.motions.empty()) turn.frames = round.motions[order];
+        turn.surfaces = order == 0 ? round.surfaces : "";
         add(steppers[order]->take(turn), runs[order]);
         steps_done += turn.steps;
         if (!after_turn(steps_done / all_steps)) return std::nullopt;

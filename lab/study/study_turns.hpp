@@ -31,6 +31,7 @@ struct Round {
   int threads = 1;
   std::vector<StepperTask> tasks;    ///< one for each order
   std::vector<std::string> motions;  ///< a file for each order's frames; empty: no frames
+  std::string surfaces;              ///< a file for the surface of a fluid in the first order; empty: none
   TurnPlan plan;
   int number = 0;  ///< index of the run; the order of index `number` modulo their number begins
 };

@@ -125,13 +125,9 @@ TEST_F(AlphaShapeTest, outer_faces_enclose_the_volume) {
   const Particles particles = particles_at_start(options);
   const FluidMesh mesh = alpha_shape(delaunay_program()(particles.positions), particles.positions,
                                      particles.walls, options.spacing);
-  const std::vector<Index> faces = outer_faces(mesh);
   double volume = 0;
-  for (std::size_t f = 0; f < faces.size(); f += 3) {
-    volume += dot(particles.positions[faces[f]],
-                  cross(particles.positions[faces[f + 1]], particles.positions[faces[f + 2]])) /
-              6;
-  }
+  for (const auto& [a, b, c] : outer_faces(mesh))
+    volume += dot(particles.positions[a], cross(particles.positions[b], particles.positions[c])) / 6;
   EXPECT_NEAR(volume, 1, 0.02);
   for (std::size_t i = 0; i < particles.positions.size(); ++i) {
     const Point& x = particles.positions[i];

@@ -19,7 +19,9 @@ struct PhaseStyle {
   const char* colour;
   int pattern;
 };
-constexpr std::array kPhases{PhaseStyle{&Phases::elements, "by element", "#0072b2", 3},
+constexpr std::array kPhases{PhaseStyle{&Phases::mesh, "mesh", "#56b4e9", 5},
+                             PhaseStyle{&Phases::order, "order", "#cc79a7", 6},
+                             PhaseStyle{&Phases::elements, "by element", "#0072b2", 3},
                              PhaseStyle{&Phases::system, "system", "#e69f00", 4},
                              PhaseStyle{&Phases::collision, "collision", "#009e73", 1},
                              PhaseStyle{&Phases::other, "other", "#7f7f7f", 2}};

@@ -51,26 +51,31 @@ inline std::string title_of(const StudyResults& results, std::string_view orderi
   return std::string(ordering);
 }
 
-/// Seconds of a scenario's steps by part, mean of the runs. Both methods have the same parts: work by element
-/// (assembly; ADMM's local step), the system of equations (the solve; the global step), collisions, and the
-/// rest.
+/// Seconds of a scenario's steps by part, mean of the runs. All methods have the same parts: making the mesh
+/// and ordering it (fluids), work by element (assembly; ADMM's local step), the system of equations (the
+/// solve; the global step), collisions, and the rest.
 struct Phases {
+  double mesh = 0;
+  double order = 0;
   double elements = 0;
   double system = 0;
   double collision = 0;
   double other = 0;
 
-  [[nodiscard]] double total() const { return elements + system + collision + other; }
+  [[nodiscard]] double total() const { return mesh + order + elements + system + collision + other; }
 };
 inline Phases phases_of(const ScenarioOrderRecord& order) {
   Phases sum;
   for (const RunRecord& run : order.runs) {
     const StepReport::Seconds& s = run.seconds;
     const double share = 1.0 / static_cast<double>(order.runs.size());
+    sum.mesh += share * s.triangulation;
+    sum.order += share * s.order;
     sum.elements += share * (s.assembly + s.local);
     sum.system += share * (s.solve + s.global);
     sum.collision += share * s.collision;
-    sum.other += share * std::max(0.0, s.total - s.assembly - s.local - s.solve - s.global - s.collision);
+    sum.other += share * std::max(0.0, s.total - s.triangulation - s.order - s.assembly - s.local - s.solve -
+                                           s.global - s.collision);
   }
   return sum;
 }

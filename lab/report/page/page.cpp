@@ -55,8 +55,14 @@ Json describe(const PageMotion& motion, const StudyResults& results, PackedArray
     json["mesh"] = record->mesh;
   }
   json["steps"] = motion.steps;
-  json["triangles"] = arrays.add(motion.surface.triangles);
-  json["frames"] = arrays.add_frames(motion.frames);
+  if (motion.surfaces.empty()) {
+    json["triangles"] = arrays.add(motion.surface.triangles);
+    json["frames"] = arrays.add_frames(motion.frames);
+  }
+  for (std::size_t f = 0; f < motion.surfaces.size(); ++f) {
+    json["surfaces"].push_back({{"positions", arrays.add_places(motion.frames[f])},
+                                {"triangles", arrays.add(motion.surfaces[f].triangles)}});
+  }
   json["obstacle"] = nullptr;
   if (!motion.obstacle.triangles.empty()) {
     json["obstacle"] = {{"positions", arrays.add_places(motion.obstacle_points)},

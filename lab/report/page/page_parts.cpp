@@ -26,6 +26,16 @@ std::vector<std::size_t> shown_frames(std::size_t frames, std::size_t most) {
   return shown;
 }
 
+/// Returns the surface of a fluid, simplified.
+template <class Place>
+SurfaceView fluid_surface(const std::vector<std::array<Index, 3>>& triangles, Index vertices,
+                          const Place& place, Index most_triangles) {
+  Mesh mesh;
+  for (Index v = 0; v < vertices; ++v) mesh.points.push_back(place(v));
+  for (const std::array<Index, 3>& triangle : triangles) mesh.cells.push_back(Shape::triangle, triangle);
+  return triangles.empty() ? SurfaceView{} : surface_view(mesh, most_triangles);
+}
+
 }  // namespace
 
 PageMesh page_mesh(const std::string& name, const Mesh& mesh,
@@ -45,7 +55,7 @@ PageMesh page_mesh(const std::string& name, const Mesh& mesh,
 }
 
 PageMotion page_motion(const ScenarioRecord& scenario, const Mesh& mesh, const Motion& motion,
-                       const Mesh* obstacles, const PageDetail& detail) {
+                       const FluidSurfaces& surfaces, const Mesh* obstacles, const PageDetail& detail) {
   if (motion.vertices != mesh.vertex_count()) {
     throw InvalidArgument(
         fmt::format("a motion of {} vertices for a mesh of {}", motion.vertices, mesh.vertex_count()));
@@ -56,15 +66,20 @@ PageMotion page_motion(const ScenarioRecord& scenario, const Mesh& mesh, const M
   }
   PageMotion result;
   result.scenario = scenario.name;
-  result.surface = surface_view(mesh, detail.motion_triangles);
+  if (surfaces.empty()) result.surface = surface_view(mesh, detail.motion_triangles);
   for (const std::size_t f : shown_frames(motion.frames.size(), detail.frames)) {
     result.steps.push_back(scenario.frame_steps[f]);
+    const auto place = [&](Index v) {
+      const auto& [x, y, z] = motion.frames[f][v];
+      return Point{x, y, z};
+    };
+    if (!surfaces.empty())
+      result.surfaces.push_back(
+          fluid_surface(surfaces[f], motion.vertices, place, detail.motion_triangles / 2));
+    const SurfaceView& surface = surfaces.empty() ? result.surface : result.surfaces.back();
     std::vector<Point>& frame = result.frames.emplace_back();
-    frame.reserve(result.surface.vertices.size());
-    for (const Index v : result.surface.vertices) {
-      const auto& place = motion.frames[f][v];
-      frame.push_back({place[0], place[1], place[2]});
-    }
+    frame.reserve(surface.vertices.size());
+    for (const Index v : surface.vertices) frame.push_back(place(v));
   }
   if (obstacles != nullptr) {
     result.obstacle = surface_view(*obstacles, detail.motion_triangles);

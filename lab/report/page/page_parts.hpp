@@ -24,10 +24,13 @@ PageMesh page_mesh(const std::string& name, const Mesh& mesh,
                    const std::vector<std::pair<std::string, Permutation>>& orders,
                    const PageDetail& detail = {});
 
+/// The triangles of a fluid's surface in each frame; empty for a body.
+using FluidSurfaces = std::vector<std::vector<std::array<Index, 3>>>;
+
 /// Returns the motion of a scenario on the mesh's simplified surface, with as many frames as `detail` allows,
 /// evenly spread, first and last included. `obstacles` may be nullptr. Throws InvalidArgument if the motion
 /// differs from the mesh in its number of vertices, or from `frame_steps` in its number of frames.
 PageMotion page_motion(const ScenarioRecord& scenario, const Mesh& mesh, const Motion& motion,
-                       const Mesh* obstacles, const PageDetail& detail = {});
+                       const FluidSurfaces& surfaces, const Mesh* obstacles, const PageDetail& detail = {});
 
 }  // namespace meshorder

@@ -5,6 +5,7 @@
 #include "io/stream/output_file.hpp"
 #include "lab/report/findings/findings.hpp"
 #include "lab/report/page/prose.hpp"
+#include "lab/scenario/surface_file.hpp"
 #include "lab/study/results_json.hpp"
 #include <meshorder/error.hpp>
 
@@ -83,8 +84,12 @@ std::optional<PageMotion> motion_of(const StudyFolder& folder, const ScenarioRec
   std::optional<Mesh> obstacles;
   if (is_there(folder.obstacles(scenario.name)))
     obstacles = read_mesh_from(folder.file(folder.obstacles(scenario.name)));
+  FluidSurfaces surfaces;
+  if (is_there(folder.surfaces(scenario.name)))
+    surfaces =
+        read_surfaces(folder.file(folder.surfaces(scenario.name)), motion.frames.size(), motion.vertices);
   return naming(path, [&] {
-    return page_motion(scenario, mesh->second, motion, obstacles ? &*obstacles : nullptr, detail);
+    return page_motion(scenario, mesh->second, motion, surfaces, obstacles ? &*obstacles : nullptr, detail);
   });
 }
 

@@ -111,15 +111,24 @@ Table phases_table(const StudyResults& results) {
       "orders, so they may take a few more or less.",
       {"Scenario and order", "By element, s", "System, s", "Collision, s", "Other, s", "Iterations"},
       {}};
+  const bool has_fluid =
+      std::ranges::any_of(results.scenarios, [](const auto& one) { return one.method == "particle-fem"; });
+  if (has_fluid) {
+    table.columns.insert(table.columns.begin() + 1, {"Mesh, s", "Order, s"});
+    table.caption += " A fluid makes and orders its mesh in each step.";
+  }
   for_each_order(results, false, [&](const ScenarioRecord& scenario, const ScenarioOrderRecord& order) {
     const Phases phases = phases_of(order);
     const double iterations = mean_iterations(order);
-    table.rows.push_back({head_of(results, scenario, order),
-                          number_cell(phases.elements),
-                          number_cell(phases.system),
-                          number_cell(phases.collision),
-                          number_cell(phases.other),
-                          {metric(iterations), iterations, false}});
+    auto& row = table.rows.emplace_back();
+    row.push_back(head_of(results, scenario, order));
+    if (has_fluid) {
+      row.push_back(number_cell(phases.mesh));
+      row.push_back(number_cell(phases.order));
+    }
+    for (const double seconds : {phases.elements, phases.system, phases.collision, phases.other})
+      row.push_back(number_cell(seconds));
+    row.push_back({metric(iterations), iterations, false});
   });
   return table;
 }
