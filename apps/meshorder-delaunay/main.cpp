@@ -6,7 +6,7 @@
 // number m (8 bytes), the corners of m tetrahedra (four numbers of 4 bytes each), and the neighbours of each
 // across the face that lies opposite each corner, −1 outside the hull. Points are numbered from 0.
 //
-// CGAL is under the GPL there, so that this is a program of its own: README.md of meshorder-models.
+// These parts of CGAL are under the GPL, so this is a program of its own: see README.md of meshorder-models.
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Delaunay_triangulation_cell_base_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -23,7 +23,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HERE = pathlib.Path(__file__).resolve().parent
 # tests may be careless, and CGAL is nobody's style
-LEFT_OUT = re.compile(r"^(tests|benchmarks|apps/meshorder-models)/")
+LEFT_OUT = re.compile(r"^(tests|benchmarks|apps/meshorder-models|apps/meshorder-delaunay)/")
 DAYS_KEPT = 30
 
 

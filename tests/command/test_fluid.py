@@ -10,6 +10,7 @@ import meshio
 import numpy
 import pytest
 
+import browser
 import conftest
 import schemas
 
@@ -79,6 +80,35 @@ def test_every_order_has_the_same_flow(command, pool, order):
     expected = command.json("simulate", pool(), "--order", "original/original")["energy"][-1]
     result = command.json("simulate", pool(), "--order", order, "--order-every", "0")["energy"][-1]
     assert result["total"] == pytest.approx(expected["total"], rel=1e-6)
+
+
+def test_study_times_its_phases_and_plays_its_surface(command, pool, tmp_path):
+    command.ok("reproduce", "--quick", "--scenario", pool(), "--budget", "0.2", "--steps", "12", "-o", "study")
+    results = json.loads((tmp_path / "study" / "results.json").read_text())
+    assert schemas.faults(results, schemas.read_schema(conftest.ROOT / "docs" / "results.schema.json")) == []
+    scenario = results["scenarios"][0]
+    assert (scenario["name"], scenario["method"], scenario["mesh"]) == ("pool", "particle-fem", "pool")
+    by_order = {order["ordering"]: order["runs"][0]["seconds"] for order in scenario["orders"]}
+    assert len(by_order) == 6
+    for name, seconds in by_order.items():
+        assert min(seconds[part] for part in ("triangulation", "order", "assembly", "solve", "motion")) > 0, name
+    assert by_order["fiedler"]["order"] > by_order["scrambled"]["order"]  # anew in each step
+    assert all(order["motion"]["largest"] < 1e-4 for order in scenario["orders"])
+    assert "Mesh, s" in (tmp_path / "study" / "tables.csv").read_text()
+    driver = browser.open_chromium(tmp_path / "profile")
+    try:
+        page = browser.Browser(driver)
+        page.open(tmp_path / "study" / "report.html")
+        page.tab("motion")
+        page.wait("views.motion.motion instanceof FluidScene")
+        counts = page.run("return views.motion.motion.geometries.map((one) => one.index.count)")
+        assert len(counts) == 13 and min(counts) > 100
+        page.run("views.motion.go(12)")
+        assert page.run("return views.motion.motion.mesh.geometry === views.motion.motion.geometries[12]")
+        assert page.complaints() == []
+    finally:
+        driver.quit()
+    assert "makes its own mesh" in command.fails("reproduce", "--scenario", pool(), "--mesh", "grid-4", "-o", "other")
 
 
 def test_refuses_what_means_nothing_to_water(command, pool):

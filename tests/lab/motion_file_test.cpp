@@ -1,11 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/motion_file.hpp"
 
+#include "lab/scenario/surface_file.hpp"
 #include "support/files.hpp"
 #include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -86,6 +88,28 @@ TEST(MotionFile, BrokenFilesAreErrorsWithTheirNames) {
       EXPECT_NE(std::string(error.what()).find("b.npy"), std::string::npos);
       EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
     }
+  }
+}
+
+TEST(SurfaceFile, GivesBackTheTrianglesOfEachFrame) {
+  using Triangles = std::vector<std::array<Index, 3>>;
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "a.npy";
+  SurfaceFile file(path);
+  file.add(Triangles{{0, 1, 2}, {2, 1, 3}});
+  file.add(Triangles{});
+  file.add(Triangles{{3, 0, 1}});
+  EXPECT_FALSE(std::filesystem::exists(path));  // before it is complete
+  file.commit();
+  const std::vector<Triangles> surfaces = read_surfaces(path, 3, 4);
+  EXPECT_EQ(surfaces, (std::vector<Triangles>{{{0, 1, 2}, {2, 1, 3}}, {}, {{3, 0, 1}}}));
+  EXPECT_THROW(read_surfaces(path, 2, 4), Error);  // of more frames
+  EXPECT_THROW(read_surfaces(path, 3, 3), Error);  // of more vertices
+  const std::string content = test::content_of(path);
+  EXPECT_EQ(content.substr(10, 58), "{'descr': '<i4', 'fortran_order': False, 'shape': (3, 4), ");
+  for (const std::string& broken :
+       {content.substr(0, content.size() - 1), std::string("NUMPY"), "\x93" + content.substr(2)}) {
+    EXPECT_THROW(read_surfaces(folder.file("broken.npy", broken), 3, 4), Error);
   }
 }
 

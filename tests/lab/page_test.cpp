@@ -81,6 +81,21 @@ TEST(Page, CarriesTheObstacle) {
   EXPECT_NEAR(test::unpacked_places(html, obstacle["positions"])[2][2], 1, 1e-5);
 }
 
+TEST(Page, CarriesTheSurfacesOfAFluid) {
+  Page page = sample_page();
+  PageMotion& motion = page.motions[0];
+  motion.surface = {};
+  motion.frames = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  motion.surfaces = {{{4, 5, 6}, {{0, 1, 2}}}, {{1, 2, 3, 9}, {{0, 1, 2}, {1, 3, 2}}}};
+  const std::string html = fill_page("{{data}}", page);
+  const auto shown = manifest_of(html)["motions"][0];
+  EXPECT_FALSE(shown.contains("frames"));
+  EXPECT_EQ(unpacked(html, shown["surfaces"][0]["triangles"]), (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(unpacked(html, shown["surfaces"][1]["triangles"]),
+            (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2}));
+  EXPECT_NEAR(test::unpacked_places(html, shown["surfaces"][1]["positions"])[1][0], 2, 1e-4);
+}
+
 TEST(Page, CannotBeBrokenByNames) {
   const std::string html = fill_page("{{title}}|{{findings}}|{{figures spans}}|{{data}}", sample_page());
   EXPECT_TRUE(html.starts_with(
