@@ -105,9 +105,8 @@ void run(const ReproduceArguments& arguments) {
 
 void add_reproduce(CLI::App& subcommand) {
   subcommand.description(
-      "Repeat the paper's study on this machine: six scenarios and a fluid, in the paper's five orders and "
-      "in that of\n"
-      "`meshorder order`; tables and a page.");
+      "Repeat the paper's study on this machine: six scenarios and a fluid, in the paper's five\n"
+      "orders and in that of `meshorder order`; tables and a page.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder reproduce --quick -o results   a few steps of each scenario: some minutes\n"

@@ -299,8 +299,7 @@ void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {
 
 void add_simulate(CLI::App& subcommand) {
   subcommand.description(
-      "Simulate an elastic body or water as a scenario describes, with the mesh in a given order, and time "
-      "it.");
+      "Simulate an elastic body or water as a scenario describes, in a given order, and time it.");
   subcommand.footer(
       "Example:\n"
       "  meshorder simulate falling --order fiedler --vtk frames\n"

@@ -93,9 +93,9 @@ inline constexpr auto kFields<StepReport::Seconds> =
                Field{"local", &StepReport::Seconds::local},
                Field{"global", &StepReport::Seconds::global},
                Field{"collision", &StepReport::Seconds::collision},
-               Field{"triangulation", &StepReport::Seconds::triangulation, true},
-               Field{"order", &StepReport::Seconds::order, true},
-               Field{"motion", &StepReport::Seconds::motion, true}};
+               Field{"triangulation", &StepReport::Seconds::triangulation, false, true},
+               Field{"order", &StepReport::Seconds::order, false, true},
+               Field{"motion", &StepReport::Seconds::motion, false, true}};
 
 template <>
 inline constexpr auto kFields<RunRecord> =
