@@ -71,7 +71,7 @@ struct Update {
 /// sample, and nothing moves. A new order comes when neighbours are too far apart, and now and then to see
 /// whether it would be better: at first after 10 updates, and twice as rarely whenever that was in vain.
 ///
-/// Elements: `order_elements` with `lexmax` after every change of connectivity pays at once.
+/// Elements: `order_elements` with `max` after every change of connectivity pays at once.
 ///
 /// @note One update at a time. Without `budget_seconds`, `Run::time_limit` and `observe`, equal calls give
 /// equal orders, on

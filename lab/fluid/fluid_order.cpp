@@ -20,7 +20,8 @@ Reorderer reorderer_for(const FluidOrdering& ordering) {
 FluidOrder::FluidOrder(FluidOrdering ordering)
     : ordering_(std::move(ordering)), reorderer_(reorderer_for(ordering_)) {
   ordering_.options.check = Check::none;
-  if (ordering_.elements == "auto") ordering_.elements = "lexmax";  // pays at once, whatever the mesh
+  // pays at once, whatever the mesh; lexmax sorts three times as long and makes steps no faster
+  if (ordering_.elements == "auto") ordering_.elements = "max";
   if (!method_named(element_methods(), ordering_.elements))
     throw InvalidArgument("unknown method for elements '" + ordering_.elements + "'; see meshorder methods");
 }

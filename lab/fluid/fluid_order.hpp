@@ -17,7 +17,7 @@ namespace meshorder {
 struct FluidOrdering {
   /// Of the particles: "original" leaves them as they start, "scrambled" mixes them at the start.
   std::string vertices = "auto";
-  std::string elements = "lexmax";  ///< of the tetrahedra, in each step; "original" as they are triangulated
+  std::string elements = "auto";  ///< of the tetrahedra, in each step; "original" as they are triangulated
   /// Steps from one order of the particles to the next; 0: a `Reorderer` decides.
   Index every = 0;
   OrderOptions options = {};

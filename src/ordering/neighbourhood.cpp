@@ -2,6 +2,7 @@
 #include "ordering/neighbourhood.hpp"
 
 #include "cells/vertex_joins.hpp"
+#include "metrics/first_touches.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/space_filling.hpp"
 #include <meshorder/error.hpp>
@@ -58,6 +59,11 @@ Index place(std::span<const Index> place_of, Index v) {
   return place_of.empty() ? v : place_of[static_cast<std::size_t>(v)];
 }
 
+bool reads_forward(const GraphRef& graph) {
+  constexpr double kFew = 0.1;  // of the lines
+  return sampled_jump_share(graph, Permutation::identity(graph.size())) < kFew;
+}
+
 }  // namespace
 
 double GraphNeighbourhood::span_log2(std::span<const Index> place_of) const {
@@ -87,6 +93,8 @@ Order GraphNeighbourhood::order_by(std::string_view method, const OrderOptions& 
 MethodChoice GraphNeighbourhood::choice(Workload workload) {
   return choose_vertex_method({{graph_.offsets, graph_.neighbours}, points_}, workload);
 }
+
+bool GraphNeighbourhood::is_read_forward() { return reads_forward({graph_.offsets, graph_.neighbours}); }
 
 Shape CellNeighbourhood::shape_of(Index cell) const {
   return cells_.shapes.empty() ? Shape::polyhedron : cells_.shapes[static_cast<std::size_t>(cell)];
@@ -148,6 +156,8 @@ Order CellNeighbourhood::order_by(std::string_view method, const OrderOptions& o
 MethodChoice CellNeighbourhood::choice(Workload workload) {
   return choose_vertex_method({graph(), points_}, workload);
 }
+
+bool CellNeighbourhood::is_read_forward() { return reads_forward(graph()); }
 
 double PointNeighbourhood::span_log2(std::span<const Index> place_of) const {
   struct Sampled {

@@ -35,6 +35,9 @@ class Neighbourhood {
   [[nodiscard]] virtual Order order_by(std::string_view method, const OrderOptions& options) = 0;
   /// Returns the method that `auto` takes.
   [[nodiscard]] virtual MethodChoice choice(Workload workload) = 0;
+  /// Returns whether a sweep over the vertices as they are numbered reads memory forward, so that a new order
+  /// has nothing to win (see `jump_share`). Of points alone that is not known.
+  [[nodiscard]] virtual bool is_read_forward() { return false; }
 };
 
 /// Of a graph. Refers to it.
@@ -47,6 +50,7 @@ class GraphNeighbourhood : public Neighbourhood {
   [[nodiscard]] NeighbourRows rows_of(std::span<const Index> vertices) const override;
   [[nodiscard]] Order order_by(std::string_view method, const OrderOptions& options) override;
   [[nodiscard]] MethodChoice choice(Workload workload) override;
+  [[nodiscard]] bool is_read_forward() override;
 
  private:
   const GraphArrays& graph_;
@@ -63,6 +67,7 @@ class CellNeighbourhood : public Neighbourhood {
   [[nodiscard]] NeighbourRows rows_of(std::span<const Index> vertices) const override;
   [[nodiscard]] Order order_by(std::string_view method, const OrderOptions& options) override;
   [[nodiscard]] MethodChoice choice(Workload workload) override;
+  [[nodiscard]] bool is_read_forward() override;
 
  private:
   const CsrGraph& graph();

@@ -141,6 +141,15 @@ class Reorderer::Inside {
     update.span_log2 = span;
   }
 
+  /// Keeps the order after a look that found no better one.
+  static void pass(Update& update, ReordererState& next, bool is_first, Permutation carried, double span) {
+    if (!is_first) next.interval = std::min(2 * next.interval, kMostInterval);
+    next.since = 0;
+    next.observed = {};
+    next.fresh_span = span;
+    keep(update, std::move(carried), span);
+  }
+
   /// Returns after how many updates there is a new order: when what steps lose outweighs its cost, where that
   /// is known.
   [[nodiscard]] static Index interval(const ReordererState& memory) {
@@ -170,6 +179,12 @@ class Reorderer::Inside {
       update.complete = false;
       return keep(update, std::move(carried), carried_span);
     }
+    const bool by_auto = options_.method == "auto" && (is_first || next.method == "auto");
+    if (by_auto && carried.is_identity() && hood.is_read_forward()) {
+      next.method = "auto";
+      update.reason += "; a sweep over the numbering as it is already reads memory forward";
+      return pass(update, next, is_first, std::move(carried), carried_span);
+    }
     const Stopwatch stopwatch;
     if (next.method.empty())
       next.method = options_.method == "auto" ? hood.choice(options_.order.workload).name : options_.method;
@@ -180,12 +195,17 @@ class Reorderer::Inside {
     const std::string asked = is_first ? options_.method : next.method;
     Order order = hood.order_by(asked, options);
     last_seconds = stopwatch.seconds();
-    if (asked == "auto" && order.method.name == "original") next.method = "auto";
+    if (asked == "auto") next.method = order.method.name == "original" ? "auto" : order.method.name;
     const double span = hood.span_log2(places_of(order.permutation));
     const bool is_better =
         asked == "auto" ? order.method.name != "original" : is_first || span < carried_span;
     update.notes = std::move(order.notes);
     update.complete = order.complete;
+    if (!is_better) {
+      update.reason +=
+          order.method.reason.empty() ? "; a new one would be no better" : "; " + order.method.reason;
+      return pass(update, next, is_first, std::move(carried), carried_span);
+    }
     if (!is_first) {
       const double gain = span > 0 ? (carried_span - span) / span : 0;
       if (gain < options_.slack / 2) next.interval = std::min(2 * next.interval, kMostInterval);
@@ -193,22 +213,13 @@ class Reorderer::Inside {
     }
     next.since = 0;
     next.observed = {};
-    if (is_better) {
-      next.vector = std::move(order.vector);
-      next.fresh_span = span;
-      update.permutation = std::move(order.permutation);
-      update.repair = update.permutation.is_identity() ? Repair::none
-                      : is_warm                        ? Repair::warm
-                                                       : Repair::fresh;
-      update.span_log2 = span;
-      if (is_first && !order.method.reason.empty())
-        update.reason += ", " + order.method.name + ": " + order.method.reason;
-      return;
-    }
-    next.fresh_span = carried_span;
-    update.reason +=
-        order.method.reason.empty() ? "; a new one would be no better" : "; " + order.method.reason;
-    keep(update, std::move(carried), carried_span);
+    next.vector = std::move(order.vector);
+    next.fresh_span = span;
+    update.permutation = std::move(order.permutation);
+    update.repair = update.permutation.is_identity() ? Repair::none : is_warm ? Repair::warm : Repair::fresh;
+    update.span_log2 = span;
+    if (is_first && !order.method.reason.empty())
+      update.reason += ", " + order.method.name + ": " + order.method.reason;
   }
 
   ReordererOptions options_;
