@@ -87,7 +87,7 @@ SolveReport solve(const ScalarSystem& system, double alpha, double beta, std::sp
   std::vector<double> d(n, 0);
   std::vector<double> q(n, 0);
   std::vector<double> inverse(n, 0);  // of the diagonal; 0 where held
-  Norms norms = sum_over_chunks<Norms>(n, kParticlesInChunk, [&](Index begin, Index end) {
+  auto norms = sum_over_chunks<Norms>(n, kParticlesInChunk, [&](Index begin, Index end) {
     Norms part;
     for (Index i = begin; i < end; ++i) {
       if (held[i] != 0 || !(diagonal(i) > 0)) continue;
@@ -111,7 +111,7 @@ SolveReport solve(const ScalarSystem& system, double alpha, double beta, std::sp
       report.status = SolveStatus::iteration_limit;
       break;
     }
-    const double curvature = sum_over_chunks<double>(n, kParticlesInChunk, [&](Index begin, Index end) {
+    const auto curvature = sum_over_chunks<double>(n, kParticlesInChunk, [&](Index begin, Index end) {
       double part = 0;
       for (Index i = begin; i < end; ++i) {
         q[i] = inverse[i] > 0 ? product(d, i) : 0;
@@ -124,7 +124,7 @@ SolveReport solve(const ScalarSystem& system, double alpha, double beta, std::sp
       break;
     }
     const double step = norms.rz / curvature;
-    const Norms next = sum_over_chunks<Norms>(n, kParticlesInChunk, [&](Index begin, Index end) {
+    const auto next = sum_over_chunks<Norms>(n, kParticlesInChunk, [&](Index begin, Index end) {
       Norms part;
       for (Index i = begin; i < end; ++i) {
         x[i] += step * d[i];

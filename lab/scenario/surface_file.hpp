@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/index.hpp"
 #include "io/stream/output_file.hpp"
 
 #include <array>
