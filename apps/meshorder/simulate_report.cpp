@@ -325,9 +325,11 @@ void print_summary(Console& console, const Simulation& simulation, const MotionR
   console.print("{:<10} {:.1f} MB", "memory", static_cast<double>(simulation.body->bytes()) * 1e-6);
   const Balance& first = record.balances.front();
   const Balance& last = record.balances.back();
-  console.print("{:<10} kinetic {:.5g} → {:.5g} J, elastic {:.5g} → {:.5g} J, gravity {:.5g} → {:.5g} J",
-                "energy", first.kinetic, last.kinetic, first.elastic, last.elastic, first.potential,
-                last.potential);
+  const std::string elastic = simulation.scenario.is_fluid()
+                                  ? ""
+                                  : fmt::format("elastic {:.5g} → {:.5g} J, ", first.elastic, last.elastic);
+  console.print("{:<10} kinetic {:.5g} → {:.5g} J, {}gravity {:.5g} → {:.5g} J", "energy", first.kinetic,
+                last.kinetic, elastic, first.potential, last.potential);
   console.print("{:<10} {} → {} kg m/s", "momentum", in_words(first.momentum), in_words(last.momentum));
   console.print("{:<10} {:.4g} → {:.4g} kg m²/s about the origin", "angular", length(first.angular_momentum),
                 length(last.angular_momentum));

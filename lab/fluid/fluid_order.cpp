@@ -4,6 +4,9 @@
 #include "ordering/method_named.hpp"
 #include <meshorder/error.hpp>
 
+#include <fmt/format.h>
+
+#include <tuple>
 #include <utility>
 
 namespace meshorder {
@@ -11,20 +14,23 @@ namespace {
 
 CellsView cells_of(const FluidMesh& mesh) { return CellsView::uniform(Shape::tetrahedron, 4, mesh.corners); }
 
-Reorderer reorderer_for(const FluidOrdering& ordering) {
-  return Reorderer({.method = ordering.stays() ? "auto" : ordering.vertices, .order = ordering.options});
+FluidOrdering checked(FluidOrdering ordering) {
+  ordering.options.check = Check::none;  // the mesh is the program's own
+  // pays at once, whatever the mesh; lexmax sorts three times as long and makes steps no faster
+  if (ordering.elements == "auto") ordering.elements = "max";
+  for (const auto& [method, known, what] : {std::tuple(&ordering.vertices, vertex_methods(), "vertices"),
+                                            std::tuple(&ordering.elements, element_methods(), "elements")}) {
+    if (*method != "auto" && !method_named(known, *method))
+      throw InvalidArgument(fmt::format("unknown method for {} '{}'; see meshorder methods", what, *method));
+  }
+  return ordering;
 }
 
 }  // namespace
 
 FluidOrder::FluidOrder(FluidOrdering ordering)
-    : ordering_(std::move(ordering)), reorderer_(reorderer_for(ordering_)) {
-  ordering_.options.check = Check::none;
-  // pays at once, whatever the mesh; lexmax sorts three times as long and makes steps no faster
-  if (ordering_.elements == "auto") ordering_.elements = "max";
-  if (!method_named(element_methods(), ordering_.elements))
-    throw InvalidArgument("unknown method for elements '" + ordering_.elements + "'; see meshorder methods");
-}
+    : ordering_(checked(std::move(ordering))),
+      reorderer_({.method = ordering_.stays() ? "auto" : ordering_.vertices, .order = ordering_.options}) {}
 
 std::optional<Permutation> FluidOrder::particles(Index step, const FluidMesh& mesh,
                                                  std::span<const Point> points) {

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/fluid/particles.hpp"
 
+#include "base/memory.hpp"
 #include "base/random.hpp"
 #include <meshorder/error.hpp>
 
@@ -14,6 +15,8 @@
 namespace meshorder {
 namespace {
 
+/// Of all processes: the mesh, its triangulation and the arrays of a step.
+constexpr double kBytesOfParticle = 2500;
 constexpr double kSame = 1e-9;  ///< lengths that differ by less, relatively, are the same
 
 bool fills(const FluidOptions& options, int axis) {
@@ -68,7 +71,7 @@ void keep_inside(const FluidOptions& options, Point& position, Walls& walls) {
   }
 }
 
-void check_options(const FluidOptions& options, double most) {
+void check_options(const FluidOptions& options) {
   const auto is_positive = [](double x) { return x > 0 && std::isfinite(x); };
   const auto require_range = [](const char* name, double value, double low, double high, const char* range) {
     require(value >= low && value <= high, name, value, range);
@@ -83,9 +86,11 @@ void check_options(const FluidOptions& options, double most) {
             "the column", options.column[axis], "no larger than the basin");
     particles *= options.column[axis] / options.spacing + 1;
   }
-  if (particles > most)
-    throw InvalidArgument(fmt::format("a spacing of {} makes {:.2g} particles; at most {:.2g} are simulated",
-                                      options.spacing, particles, most));
+  const auto limit = static_cast<double>(memory_limit().bytes);
+  if (particles * kBytesOfParticle > limit || particles > kMaxIndex / 8)
+    throw InvalidArgument(fmt::format("a spacing of {} makes {:.2g} particles; memory is enough for {:.2g}",
+                                      options.spacing, particles,
+                                      std::min(limit / kBytesOfParticle, kMaxIndex / 8.0)));
   require(is_positive(options.density), "the density", options.density, "positive");
   require_range("the jitter", options.jitter, 0, 0.4, "0 to 0.4");
   require_range("the wave", options.wave, -0.9, 0.9, "-0.9 to 0.9");

@@ -57,8 +57,8 @@ Particles particles_at_start(const FluidOptions& options);
 /// Moves a particle that left the basin back to its wall, on which it stays.
 void keep_inside(const FluidOptions& options, Point& position, Walls& walls);
 
-/// Throws InvalidArgument, which names the value, for options out of range and for more than `most`
-/// particles.
-void check_options(const FluidOptions& options, double most = 2e7);
+/// Throws InvalidArgument, which names the value, for options out of range and for more particles than the
+/// memory limit allows.
+void check_options(const FluidOptions& options);
 
 }  // namespace meshorder
