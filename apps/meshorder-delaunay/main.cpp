@@ -30,7 +30,7 @@ using Triangulation =
     CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 using Row = std::array<std::int32_t, 4>;
 
-constexpr std::int64_t kMostPoints = std::int64_t{1} << 29;
+constexpr std::int64_t kMostPoints = std::int64_t{1} << 26;  // their tetrahedra are counted in 32 bits
 
 template <class T>
 bool read(T* to, std::size_t count) {

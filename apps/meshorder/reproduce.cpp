@@ -3,12 +3,11 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "interruption.hpp"
+#include "lab/fluid/triangulation.hpp"
 #include "lab/report/page/study_page.hpp"
 #include "lab/report/tables/paper_tables.hpp"
-#include "lab/scenario/scenario.hpp"
 #include "lab/study/results_json.hpp"
 #include "lab/study/study_run.hpp"
-#include "lab/support/process.hpp"
 #include "progress.hpp"
 
 #include <CLI/CLI.hpp>
@@ -44,8 +43,8 @@ StudyPlan plan_of(const ReproduceArguments& arguments, Console& console) {
   if (plan.scenarios.empty()) {
     plan.scenarios = study_scenarios();
     const bool has_mesh = !plan.mesh.empty();
-    if (has_mesh || meshorder::find_program("meshorder-delaunay").empty()) {
-      plan.scenarios.pop_back();
+    if (has_mesh || !has_delaunay_program()) {
+      std::erase(plan.scenarios, "splash");
       if (!has_mesh) console.warn("splash is left out: it needs the program meshorder-delaunay");
     }
   }

@@ -87,6 +87,9 @@ Scenario scenario_of(const SimulateArguments& arguments) {
     OrderNames order = order_named(arguments.order);
     scenario.vertex_order = std::move(order.vertices);
     scenario.element_order = std::move(order.elements);
+    // tetrahedra of water are sorted in each step, in the cheapest way
+    if (scenario.is_fluid() && arguments.order.find('/') == std::string::npos)
+      scenario.element_order = "auto";
   }
   if (!arguments.vertices.empty()) scenario.vertex_order = arguments.vertices;
   if (!arguments.elements.empty()) scenario.element_order = arguments.elements;
@@ -130,7 +133,11 @@ class Run {
       : arguments_(arguments), simulation_(simulation) {
     if (!arguments.resume.empty()) {
       Checkpoint checkpoint = read_checkpoint(arguments.resume, simulation.fingerprint);
-      simulation.body->set_state(checkpoint.state);
+      try {
+        simulation.body->set_state(checkpoint.state);
+      } catch (const InvalidArgument& error) {
+        throw InputError(arguments.resume, error.what(), "it was changed");
+      }
       record_ = std::move(checkpoint.record);
       resumed_from_ = checkpoint.state.step;
       if (resumed_from_ > simulation.scenario.steps) {
@@ -202,7 +209,8 @@ void run(const SimulateArguments& arguments) {
     throw InvalidArgument("give the name or the file of a scenario; --list shows the names");
   Scenario scenario = scenario_of(arguments);
 
-  if (!names_a_model(scenario.mesh)) {
+  // of water no file is read that a library parses
+  if (!scenario.is_fluid() && !names_a_model(scenario.mesh)) {
     Files files{.meshes = {scenario.mesh}, .others = {arguments.resume}, .outputs = {arguments.checkpoint}};
     if (!arguments.frames.empty()) files.folders.push_back(arguments.frames);
     confine(files);
@@ -258,7 +266,8 @@ void add_scenario_options(CLI::App& subcommand, SimulateArguments& arguments) {
   CLI::Option* const order = subcommand.add_option(
       "--order", arguments.order,
       "VERTICES or VERTICES/ELEMENTS. With only VERTICES, elements keep the file's order\n"
-      "for original, are scrambled for scrambled and follow lexmax otherwise");
+      "for original, are scrambled for scrambled and follow lexmax otherwise; those of water\n"
+      "follow max");
   subcommand.add_option("--vertices", arguments.vertices, "Method for vertices, see `meshorder methods`")
       ->excludes(order);
   subcommand.add_option("--elements", arguments.elements, "Method for elements, see `meshorder methods`")

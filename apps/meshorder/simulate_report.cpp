@@ -130,7 +130,8 @@ nlohmann::ordered_json integrator_json(const FluidScenario& options) {
   return {
       {"method", "particle-fem"},   {"time_step", options.time_step}, {"gravity", options.gravity},
       {"courant", options.courant}, {"evening", options.evening},     {"volume_gain", options.volume_gain},
-      {"spacing", options.spacing}, {"basin", options.basin},         {"column", options.column}};
+      {"spacing", options.spacing}, {"basin", options.basin},         {"column", options.column},
+      {"lid", options.lid},         {"jitter", options.jitter},       {"wave", options.wave}};
 }
 
 nlohmann::ordered_json solver_json(const FluidScenario& options) {
@@ -226,8 +227,8 @@ void print_fluid_steps(const Console& console, const Simulation& simulation, con
   for (const StepRecord& step : record.steps) time += step.report.time_step;
   console.print("{:<10} {:.4g} s of the flow; {} tetrahedra in the last step", "flow", time,
                 with_commas(fluid.mesh().tetrahedra()));
-  console.print("{:<10} {:.2f} % of that at the start; {} of {} particles fly alone", "volume",
-                100 * fluid.volume() / fluid.volume_at_start(),
+  console.print("{:<10} {:.2f} % of that at the start; {} of {} particles are outside the mesh", "volume",
+                fluid.volume_at_start() > 0 ? 100 * fluid.volume() / fluid.volume_at_start() : 0.0,
                 with_commas(std::ranges::count(fluid.mesh().alone, 1)),
                 with_commas(simulation.mesh.vertex_count()));
 }
@@ -364,7 +365,7 @@ nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord&
   nlohmann::ordered_json json{
       {"scenario", scenario.name},
       {"vertices", simulation.mesh.vertex_count()},
-      {"elements", element_count(simulation.mesh)},
+      {"elements", scenario.is_fluid() ? simulation.tetrahedra : element_count(simulation.mesh)},
       {"tetrahedra", simulation.tetrahedra},
       {"steps", record.steps.size()},
       {"threads", thread_count()},
@@ -424,7 +425,7 @@ nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord&
   json["energy"] = energy;
   json["momentum"] = momentum;
   json["angular_momentum"] = angular_momentum;
-  json["shape_distance"] = shape_distance;
+  if (!scenario.is_fluid()) json["shape_distance"] = shape_distance;
   json["warnings"] = warnings;
   json["bytes"] = simulation.body->bytes();
   json["paper"] = scenario.paper;

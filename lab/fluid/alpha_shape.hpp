@@ -5,6 +5,7 @@
 #include "lab/fluid/triangulation.hpp"
 #include <meshorder/mesh.hpp>
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,10 +15,11 @@ namespace meshorder {
 /// The mesh of a fluid: what is left of a triangulation where particles are near each other.
 struct FluidMesh {
   std::vector<Index> corners;       ///< 4 of each tetrahedron, positively oriented
-  double flat = 0;                  ///< volume, m³, below which one only says who is near whom
+  double flat = 0;                  ///< m³; smaller tetrahedra join vertices but are not integrated
   std::vector<std::uint8_t> alone;  ///< whether a particle has no tetrahedron but flat ones
   std::vector<std::uint8_t> free;   ///< whether a particle is alone or lies on the free surface
 
+  [[nodiscard]] CellsView view() const { return CellsView::uniform(Shape::tetrahedron, 4, corners); }
   /// Returns the tetrahedra as cells of a mesh.
   [[nodiscard]] Cells cells() const;
   [[nodiscard]] Offset tetrahedra() const noexcept { return static_cast<Offset>(corners.size() / 4); }

@@ -3,7 +3,7 @@
 
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
-#include "kernels/positions.hpp"
+#include "ordering/reorderer_state.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ namespace {
 constexpr double kMostVolumeGain = 0.02;  ///< share of the volume that is won back in a step at most
 constexpr double kReach = 1.3;            ///< spacings within which particles are moved apart
 
-/// Sets the components of a vector to 0 that point through the walls of a particle.
+/// Sets to 0 the components that point through a particle's walls.
 void hold(Walls walls, Point& vector) {
   for (int axis = 0; axis < 3; ++axis) {
     if (is_held(walls, axis)) vector[axis] = 0;
@@ -53,6 +53,13 @@ void check_memory(std::span<const double> memory, std::size_t n) {
   throw InvalidArgument("the state is not one of this fluid");
 }
 
+void note(const char* whose, const SolveReport& solved, StepReport& report) {
+  report.cg_iterations += solved.iterations;
+  if (solved.status == SolveStatus::converged) return;
+  report.warnings.push_back(fmt::format("{} solver ended after {} iterations: {}", whose, solved.iterations,
+                                        to_string(solved.status)));
+}
+
 /// Calls `work(i)` for 0 … n − 1, on all threads.
 template <class Work>
 void for_each(std::size_t n, const Work& work) {
@@ -64,8 +71,7 @@ void for_each(std::size_t n, const Work& work) {
 }  // namespace
 
 Fluid::Fluid(const FluidOptions& options, FluidOrdering ordering, Triangulate triangulate)
-    : Fluid((check_options(options), options), particles_at_start(options), std::move(ordering),
-            std::move(triangulate)) {}
+    : Fluid(options, particles_at_start(options), std::move(ordering), std::move(triangulate)) {}
 
 Fluid::Fluid(const FluidOptions& options, Particles particles, FluidOrdering ordering,
              Triangulate triangulate)
@@ -122,6 +128,9 @@ void Fluid::set_state(const MotionState& state) {
   std::vector<std::byte> order(state.memory.size() - 3 * n - 1);
   std::transform(state.memory.begin() + static_cast<std::ptrdiff_t>(3 * n + 1), state.memory.end(),
                  order.begin(), [](double byte) { return static_cast<std::byte>(byte); });
+  const ReordererState kept = reorderer_state(order);
+  if (kept.begun != 0 && std::cmp_not_equal(kept.count, n))
+    throw InvalidArgument("the state is not one of this fluid");
   order_.restore(order);
   std::vector<double> shares(n);
   for (std::size_t i = 0; i < n; ++i) shares[static_cast<std::size_t>(numbers_[i])] = shares_[i];
@@ -138,7 +147,16 @@ void Fluid::set_state(const MotionState& state) {
     shares_[i] = shares[particle];
   }
   make_mesh();
+  assemble_system();
+}
+
+void Fluid::assemble_system() {
   system_ = assemble(mesh_, positions_);
+  volume_ = volume_at_start_ = 0;
+  for (std::size_t i = 0; i < positions_.size(); ++i) {
+    volume_ += system_.masses[i];
+    if (mesh_.alone[i] == 0) volume_at_start_ += shares_[i];
+  }
 }
 
 void Fluid::make_mesh() {
@@ -184,7 +202,7 @@ void Fluid::add_viscosity(double kick, StepReport& report) {
     });
     const SolveReport solved =
         meshorder::solve(system_, kick * options_.viscosity, 1, held, old, next, options_.solve);
-    report.cg_iterations += solved.iterations;
+    note("the viscosity's", solved, report);
     for_each(n, [&](std::size_t i) { velocities_[i][axis] = next[i]; });
   }
 }
@@ -206,11 +224,8 @@ void Fluid::project(double kick, double dt, StepReport& report) {
   stopwatch = {};
   const SolveReport solved = meshorder::solve(system_, 1, 0, mesh_.free, b, pressures_, options_.solve);
   report.seconds.solve += stopwatch.seconds();
-  report.cg_iterations += solved.iterations;
+  note("the pressure's", solved, report);
   report.residual = solved.residual;
-  if (solved.status != SolveStatus::converged)
-    report.warnings.push_back(fmt::format("the pressure's solver ended after {} iterations: {}",
-                                          solved.iterations, to_string(solved.status)));
   stopwatch = {};
   const std::vector<Point> force = gradient(mesh_, positions_, pressures_);
   for_each(force.size(), [&](std::size_t i) {
@@ -277,19 +292,14 @@ StepReport Fluid::step() {
   reorder();
   report.seconds.order = stopwatch.seconds();
   stopwatch = {};
-  system_ = assemble(mesh_, positions_);
-  volume_ = volume_at_start_ = 0;
-  for (std::size_t i = 0; i < positions_.size(); ++i) {
-    volume_ += system_.masses[i];
-    if (mesh_.alone[i] == 0) volume_at_start_ += shares_[i];
-  }
+  assemble_system();
   report.seconds.assembly = stopwatch.seconds();
-  stopwatch = {};
   const double dt = next_time_step();
   const double kick = (last_time_step_ + dt) / 2;  // from the middle of the last step to that of this one
   const auto before = std::tuple(positions_, velocities_, pressures_, walls_);
+  stopwatch = {};
   if (options_.viscosity > 0) add_viscosity(kick, report);
-  // not held at walls: there, too, the pressure carries what gravity adds
+  // not held at walls: pressure balances gravity there, too
   for_each(velocities_.size(),
            [&](std::size_t i) { velocities_[i] = plus_scaled(velocities_[i], kick, options_.gravity); });
   report.seconds.solve = stopwatch.seconds();

@@ -36,6 +36,7 @@ class Fluid : public Integrator {
   void set_state(const MotionState& state) override;
   StepReport step() override;
   [[nodiscard]] Balance balance() const override;
+  /// Without the triangulation, which another process holds.
   [[nodiscard]] std::size_t bytes() const override;
 
   // ---- of the last step, in the order of the particles now
@@ -52,6 +53,7 @@ class Fluid : public Integrator {
 
  private:
   void make_mesh();
+  void assemble_system();
   void check_finite() const;
   void reorder();
   [[nodiscard]] double next_time_step() const;

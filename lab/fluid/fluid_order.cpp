@@ -10,13 +10,12 @@
 #include <utility>
 
 namespace meshorder {
-namespace {
 
-CellsView cells_of(const FluidMesh& mesh) { return CellsView::uniform(Shape::tetrahedron, 4, mesh.corners); }
+namespace {
 
 FluidOrdering checked(FluidOrdering ordering) {
   ordering.options.check = Check::none;  // the mesh is the program's own
-  // pays at once, whatever the mesh; lexmax sorts three times as long and makes steps no faster
+  // `max` pays at once; `lexmax` sorts three times as long and makes steps no faster
   if (ordering.elements == "auto") ordering.elements = "max";
   for (const auto& [method, known, what] : {std::tuple(&ordering.vertices, vertex_methods(), "vertices"),
                                             std::tuple(&ordering.elements, element_methods(), "elements")}) {
@@ -36,20 +35,20 @@ std::optional<Permutation> FluidOrder::particles(Index step, const FluidMesh& me
                                                  std::span<const Point> points) {
   if (ordering_.stays() && (step > 0 || ordering_.vertices == "original")) return std::nullopt;
   if (ordering_.every == 0 && !ordering_.stays()) {
-    Update update = reorderer_.update(MeshView{.points = points, .cells = cells_of(mesh)});
+    Update update = reorderer_.update(MeshView{.points = points, .cells = mesh.view()});
     fresh_ += update.repair == Repair::warm || update.repair == Repair::fresh ? 1 : 0;
     if (update.repair == Repair::none) return std::nullopt;
     return std::move(update.permutation);
   }
   if (!ordering_.stays() && step % ordering_.every != 0) return std::nullopt;
   ++fresh_;
-  const Graph graph = vertex_graph(cells_of(mesh), points.size());
+  const Graph graph = vertex_graph(mesh.view(), points.size());
   return order_vertices(graph, ordering_.vertices, ordering_.options, points).permutation;
 }
 
 void FluidOrder::sort(FluidMesh& mesh, std::span<const Point> points) const {
   if (ordering_.elements == "original" || mesh.corners.empty()) return;
-  const Order order = order_elements(cells_of(mesh), Permutation::identity(static_cast<Index>(points.size())),
+  const Order order = order_elements(mesh.view(), Permutation::identity(static_cast<Index>(points.size())),
                                      ordering_.elements, ordering_.options, points);
   std::vector<Index> sorted(mesh.corners.size());
   order.permutation.move(mesh.corners, sorted, 4);

@@ -17,6 +17,8 @@ namespace {
 
 /// Of all processes: the mesh, its triangulation and the arrays of a step.
 constexpr double kBytesOfParticle = 2500;
+/// A particle has six or seven tetrahedra, whose corners are numbered, too.
+constexpr Index kMostParticles = kMaxIndex / 32;
 constexpr double kSame = 1e-9;  ///< lengths that differ by less, relatively, are the same
 
 bool fills(const FluidOptions& options, int axis) {
@@ -31,6 +33,7 @@ Index intervals(const FluidOptions& options, int axis) {
 }  // namespace
 
 Particles particles_at_start(const FluidOptions& options) {
+  check_options(options);
   std::array<Index, 3> counts{};
   for (int axis = 0; axis < 3; ++axis) counts[axis] = intervals(options, axis);
   Particles particles;
@@ -87,13 +90,14 @@ void check_options(const FluidOptions& options) {
     particles *= options.column[axis] / options.spacing + 1;
   }
   const auto limit = static_cast<double>(memory_limit().bytes);
-  if (particles * kBytesOfParticle > limit || particles > kMaxIndex / 8)
+  if (particles * kBytesOfParticle > limit || particles > kMostParticles)
     throw InvalidArgument(fmt::format("a spacing of {} makes {:.2g} particles; memory is enough for {:.2g}",
                                       options.spacing, particles,
-                                      std::min(limit / kBytesOfParticle, kMaxIndex / 8.0)));
+                                      std::min(limit / kBytesOfParticle, double{kMostParticles})));
   require(is_positive(options.density), "the density", options.density, "positive");
   require_range("the jitter", options.jitter, 0, 0.4, "0 to 0.4");
   require_range("the wave", options.wave, -0.9, 0.9, "-0.9 to 0.9");
+  require(!options.lid || options.wave == 0, "the wave", options.wave, "0 under a lid");
   require_range("the viscosity", options.viscosity, 0, 1e9, "0 or more");
   require(options.courant > 0 && options.courant <= 1, "the courant number", options.courant,
           "above 0, up to 1");

@@ -6,7 +6,6 @@
 #include "lab/motion/loads.hpp"
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace meshorder {
@@ -50,8 +49,8 @@ struct Particles {
   std::vector<Walls> walls;
 };
 
-/// Returns the particles at the start: a lattice, row by row along z, moved a little within the water.
-/// O(particles).
+/// Returns the particles at the start: a lattice, row by row along z, moved a little within the water. Throws
+/// InvalidArgument as `check_options`. O(particles).
 Particles particles_at_start(const FluidOptions& options);
 
 /// Moves a particle that left the basin back to its wall, on which it stays.

@@ -38,7 +38,7 @@ void for_each_tetrahedron(const FluidMesh& mesh, std::span<const Point> points, 
 
 ScalarSystem assemble(const FluidMesh& mesh, std::span<const Point> points) {
   ScalarSystem system;
-  system.pattern = vertex_graph(CellsView::uniform(Shape::tetrahedron, 4, mesh.corners), points.size());
+  system.pattern = vertex_graph(mesh.view(), points.size());
   system.values.assign(system.pattern.neighbours().size(), 0);
   system.diagonal.assign(points.size(), 0);
   system.masses.assign(points.size(), 0);
@@ -106,7 +106,11 @@ SolveReport solve(const ScalarSystem& system, double alpha, double beta, std::sp
                         });
   SolveReport report;
   const double first = norms.rr;
-  while (norms.rr > target) {
+  while (!(norms.rr <= target)) {
+    if (!std::isfinite(norms.rr)) {
+      report.status = SolveStatus::not_finite;
+      break;
+    }
     if (report.iterations == options.max_iterations) {
       report.status = SolveStatus::iteration_limit;
       break;

@@ -5,6 +5,7 @@
 #include "lab/linear/cg/solve.hpp"
 #include <meshorder/order.hpp>
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -27,8 +28,8 @@ struct ScalarSystem {
 ScalarSystem assemble(const FluidMesh& mesh, std::span<const Point> points);
 
 /// Solves (α K + β M) x = b by conjugate gradients with the diagonal as preconditioner, x the start and the
-/// result. Where `held` is not 0, x stays and its row is left out; it must be 0 there. The same bits for any
-/// number of threads.
+/// result. Where `held` is not 0, x stays as it is and counts as given. `tolerance` is on ‖b − A x‖ / ‖b‖.
+/// The same bits for any number of threads.
 SolveReport solve(const ScalarSystem& system, double alpha, double beta, std::span<const std::uint8_t> held,
                   std::span<const double> b, std::span<double> x, const SolveOptions& options);
 

@@ -4,10 +4,11 @@
 #include "lab/support/process.hpp"
 #include <meshorder/error.hpp>
 
-#include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -33,7 +34,6 @@ Triangulation ask(ChildProcess& program, std::span<const Point> points) {
   program.send_bytes(std::as_bytes(points));
   std::int64_t tetrahedra = 0;
   program.receive_bytes(std::as_writable_bytes(std::span(&tetrahedra, 1)));
-  // each point lies on few tetrahedra, in the worst case on as many as there are points
   if (tetrahedra < 0 || tetrahedra > kMaxIndex / 4 || (count < 4 && tetrahedra > 0)) throw_misunderstood();
   Triangulation result;
   result.corners.resize(static_cast<std::size_t>(tetrahedra));
@@ -46,6 +46,8 @@ Triangulation ask(ChildProcess& program, std::span<const Point> points) {
 }
 
 }  // namespace
+
+bool has_delaunay_program() { return !find_program(kProgram).empty(); }
 
 Triangulate delaunay_program() {
   const std::filesystem::path path = find_program(kProgram);

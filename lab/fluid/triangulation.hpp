@@ -19,9 +19,12 @@ struct Triangulation {
 };
 
 /// Triangulates points. None of them may be NaN or infinite. A point that coincides with another has no
-/// tetrahedron, and points of one plane have none at all. The triangulation depends on the places of the
-/// points, but not on their numbers.
+/// tetrahedron, and points of one plane have none at all. The triangulation of points that differ
+/// does not depend on their numbers.
 using Triangulate = std::function<Triangulation(std::span<const Point>)>;
+
+/// Returns whether there is the program `meshorder-delaunay`.
+bool has_delaunay_program();
 
 /// Returns a function that has the program `meshorder-delaunay` triangulate, which is started once. Its calls
 /// throw Error if the program ended. Throws Error if there is no such program. Who can replace the program in

@@ -229,7 +229,8 @@ Checkpoint read_checkpoint(const FilePath& path, const Fingerprint& expected) {
   if (result.fingerprint.mesh != expected.mesh)
     refuse("is of another mesh or size", "give the scenario and --mesh that it was written with");
   if (result.fingerprint.order != expected.order)
-    refuse("is of another order", "give the --vertices and --elements that it was written with");
+    refuse("is of another order",
+           "give the --vertices, --elements and --order-every that it was written with");
   if (result.fingerprint.parameters != expected.parameters)
     refuse("is of another scenario", "give the scenario, --preconditioner and --precision of its run");
   result.state = read_state(file);

@@ -166,6 +166,9 @@ std::uint64_t checksum_of(const FluidOrdering& ordering) {
   sum.add_all(ordering.vertices);
   sum.add_all(ordering.elements);
   sum.add(ordering.every);
+  sum.add(ordering.options.seed);
+  sum.add(ordering.options.tolerance);
+  sum.add(ordering.options.workload);
   return sum.value();
 }
 

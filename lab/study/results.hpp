@@ -127,7 +127,7 @@ struct ScenarioOrderRecord {
 struct ScenarioRecord {
   std::string name;
   std::string title;        ///< may be empty
-  std::string method;       ///< "backward-euler" or "admm"
+  std::string method;       ///< "backward-euler", "admm" or "particle-fem"
   std::string material;     ///< "corotational", "springs"
   std::string precision;    ///< "double" or "single"; empty in results of earlier versions
   std::string mesh;         ///< MeshRecord::name

@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -37,7 +38,7 @@ Simulation set_up(const StepperTask& task) {
     scenario.vertex_order = task.vertex_method;
     scenario.element_order = task.element_method;
     scenario.fluid().order_every = task.vertex_method == "auto" ? 0 : 1;
-    if (task.spacing > 0) scenario.fluid().spacing = task.spacing;
+    scenario.fluid().spacing = task.spacing;
     return set_up_fluid(std::move(scenario));
   }
   if (task.mesh != scenario.mesh) scenario.mesh_folder.reset();

@@ -28,7 +28,7 @@ struct StepperTask {
   // of a fluid, which has no mesh and no files of orders
   std::string vertex_method = {};   ///< "auto": kept by a Reorderer; others: anew in each step
   std::string element_method = {};  ///< in each step
-  double spacing = 0;               ///< instead of the scenario's own; 0: that
+  double spacing = 0;               ///< of its particles, m
 };
 
 /// Describes a body that is ready to be simulated.

@@ -5,6 +5,8 @@
 #include "ordering/method_named.hpp"
 #include <meshorder/error.hpp>
 
+#include <cmath>
+
 namespace meshorder {
 
 std::vector<OrderingSpec> paper_orderings() {
@@ -47,9 +49,11 @@ std::vector<std::string> study_scenarios() {
   return {"falling", "constrained", "stretch", "unsquash", "bowl", "bounce", "splash"};
 }
 
-double spacing_of_size(std::string_view size) {
-  if (size == "paper") return 0;
-  return mesh_of_size(size, "") == "grid-122" ? 1.0 / 100 : 1.0 / 53;
+double spacing_of_size(std::string_view size, const FluidOptions& options) {
+  if (size == "paper") return options.spacing;
+  const double particles = mesh_of_size(size, "") == "grid-122" ? 2e6 : 3e5;
+  const Point& column = options.column;
+  return std::cbrt(column[0] * column[1] * column[2] / particles);
 }
 
 bool fits_in_memory(std::string_view size, const Scenario& scenario) {

@@ -48,9 +48,9 @@ std::string mesh_of_size(std::string_view size, const std::string& mesh);
 /// fluid that it wishes for.
 std::vector<std::string> study_scenarios();
 
-/// Returns the particles' distance of a study's size for a fluid, m: 0 for "paper", its own. Throws
-/// InvalidArgument as `mesh_of_size`.
-double spacing_of_size(std::string_view size);
+/// Returns the particles' distance of a study's size for a fluid, m: its own for "paper", else that of about
+/// 300,000 or two million particles. Throws InvalidArgument as `mesh_of_size`.
+double spacing_of_size(std::string_view size, const FluidOptions& options);
 
 /// Returns whether a scenario fits in memory at that size. ADMM's factored matrix of a solid with two million
 /// vertices does not fit in a workstation's memory.

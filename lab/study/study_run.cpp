@@ -104,8 +104,7 @@ class Study {
   void choose_fluid(Subject subject) {
     if (!plan_.mesh.empty())
       throw InvalidArgument(subject.scenario.name + " makes its own mesh: leave out --mesh, or the scenario");
-    const double spacing = spacing_of_size(plan_.size);
-    if (spacing > 0) subject.scenario.fluid().spacing = spacing;
+    subject.scenario.fluid().spacing = spacing_of_size(plan_.size, subject.scenario.fluid());
     subject.mesh = subject.scenario.name;
     add(std::move(subject));
   }
@@ -174,7 +173,7 @@ class Study {
               .processors = processors_,
               .vertex_method = ordering.vertices,
               .element_method = ordering.elements,
-              .spacing = spacing_of_size(plan_.size)};
+              .spacing = subject.scenario.fluid().spacing};
     return {subject.argument, subject.mesh_path,
             store_.folder().vertex_order(subject.mesh, ordering.name).string(),
             store_.folder().cell_order(subject.mesh, ordering.name).string(), processors_};
@@ -214,12 +213,12 @@ class Study {
       return !observer_.stop();
     });
     if (!runs) return false;
-    if (run == 0) store_.begin(record_of(subject, motions));
     if (surfaces) {
       const FinishedFile kept{surfaces->path(),
                               store_.folder().file(store_.folder().surfaces(subject.scenario.name))};
       put_in_place({&kept, 1});
     }
+    if (run == 0) store_.begin(record_of(subject, motions));
     store_.keep(subject.scenario.name, *runs);
     return true;
   }

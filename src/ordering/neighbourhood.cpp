@@ -90,10 +90,6 @@ Order GraphNeighbourhood::order_by(std::string_view method, const OrderOptions& 
                                    options);
 }
 
-MethodChoice GraphNeighbourhood::choice(Workload workload) {
-  return choose_vertex_method({{graph_.offsets, graph_.neighbours}, points_}, workload);
-}
-
 bool GraphNeighbourhood::is_read_forward() { return reads_forward({graph_.offsets, graph_.neighbours}); }
 
 Shape CellNeighbourhood::shape_of(Index cell) const {
@@ -153,10 +149,6 @@ Order CellNeighbourhood::order_by(std::string_view method, const OrderOptions& o
   return order_vertices_by_options(method, {graph(), points_}, options);
 }
 
-MethodChoice CellNeighbourhood::choice(Workload workload) {
-  return choose_vertex_method({graph(), points_}, workload);
-}
-
 bool CellNeighbourhood::is_read_forward() { return reads_forward(graph()); }
 
 double PointNeighbourhood::span_log2(std::span<const Index> place_of) const {
@@ -203,10 +195,6 @@ Order PointNeighbourhood::order_by(std::string_view method, const OrderOptions& 
   Order order = by_morton ? morton_vertices(input, options) : hilbert_vertices(input, options);
   order.method.name = by_morton ? "morton" : "hilbert";
   return order;
-}
-
-MethodChoice PointNeighbourhood::choice(Workload /*workload*/) {
-  return {"hilbert", "there are points alone"};
 }
 
 }  // namespace meshorder

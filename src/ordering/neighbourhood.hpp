@@ -33,8 +33,6 @@ class Neighbourhood {
   [[nodiscard]] virtual NeighbourRows rows_of(std::span<const Index> vertices) const = 0;
   /// Orders the vertices by that method.
   [[nodiscard]] virtual Order order_by(std::string_view method, const OrderOptions& options) = 0;
-  /// Returns the method that `auto` takes.
-  [[nodiscard]] virtual MethodChoice choice(Workload workload) = 0;
   /// Returns whether a sweep over the vertices as they are numbered reads memory forward, so that a new order
   /// has nothing to win (see `jump_share`). Of points alone that is not known.
   [[nodiscard]] virtual bool is_read_forward() { return false; }
@@ -49,7 +47,6 @@ class GraphNeighbourhood : public Neighbourhood {
   [[nodiscard]] double span_log2(std::span<const Index> place_of) const override;
   [[nodiscard]] NeighbourRows rows_of(std::span<const Index> vertices) const override;
   [[nodiscard]] Order order_by(std::string_view method, const OrderOptions& options) override;
-  [[nodiscard]] MethodChoice choice(Workload workload) override;
   [[nodiscard]] bool is_read_forward() override;
 
  private:
@@ -66,7 +63,6 @@ class CellNeighbourhood : public Neighbourhood {
   [[nodiscard]] double span_log2(std::span<const Index> place_of) const override;
   [[nodiscard]] NeighbourRows rows_of(std::span<const Index> vertices) const override;
   [[nodiscard]] Order order_by(std::string_view method, const OrderOptions& options) override;
-  [[nodiscard]] MethodChoice choice(Workload workload) override;
   [[nodiscard]] bool is_read_forward() override;
 
  private:
@@ -89,7 +85,6 @@ class PointNeighbourhood : public Neighbourhood {
   [[nodiscard]] double most_span(double fresh, double slack) const override;
   [[nodiscard]] NeighbourRows rows_of(std::span<const Index> vertices) const override;
   [[nodiscard]] Order order_by(std::string_view method, const OrderOptions& options) override;
-  [[nodiscard]] MethodChoice choice(Workload workload) override;
 
  private:
   const PointsView& points_;

@@ -20,8 +20,6 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace {
 
-constexpr Index kMostInterval = 1 << 20;
-
 /// Returns the start vector by the vertices of this update; 0 for new ones.
 std::vector<double> carried_vector(const std::vector<double>& vector, const VertexChanges& changes) {
   if (vector.empty() || changes.places.empty()) return vector;
@@ -85,7 +83,7 @@ class Reorderer::Inside {
     next.vector = carried_vector(memory_.vector, changes);
     next.begun = 1;
     next.count = hood.size();
-    ++next.since;
+    next.since = std::min(next.since + 1, kMaxIndex - 1);
     update.reason = is_first ? "this is the first order" : reason_to_renew(hood, next, carried_span);
     if (update.reason.empty()) {
       keep(update, std::move(carried), carried_span);
@@ -186,8 +184,7 @@ class Reorderer::Inside {
       return pass(update, next, is_first, std::move(carried), carried_span);
     }
     const Stopwatch stopwatch;
-    if (next.method.empty())
-      next.method = options_.method == "auto" ? hood.choice(options_.order.workload).name : options_.method;
+    if (next.method.empty()) next.method = options_.method;
     OrderOptions options = options_.order;
     if (is_warm) options.start = next.vector;
     // the first one is judged by `auto` as it judges any; where that keeps the numbering, so are the later

@@ -94,7 +94,13 @@ ReordererState reorderer_state(std::span<const std::byte> bytes) {
   const auto entries = in.take<std::uint64_t>();
   if (entries > in.left() / sizeof(double)) throw InvalidArgument("state: it is cut off or damaged");
   for (std::uint64_t i = 0; i < entries; ++i) state.vector.push_back(in.take<double>());
-  const bool fits = state.count >= 0 && state.interval >= 1 && in.left() == kSum &&
+  const auto is_amount = [](double x) { return x >= 0 && std::isfinite(x); };
+  const bool fits = state.begun <= 1 && state.count >= 0 && state.since >= 0 && state.since < kMaxIndex &&
+                    state.interval >= 1 && state.interval <= kMostInterval && is_amount(state.fresh_span) &&
+                    is_amount(state.fresh_seconds) && is_amount(state.warm_seconds) &&
+                    is_amount(state.observed.count) && is_amount(state.observed.k) &&
+                    is_amount(state.observed.kk) && is_amount(state.observed.t) &&
+                    is_amount(state.observed.kt) && in.left() == kSum &&
                     (state.vector.empty() || std::cmp_equal(state.vector.size(), state.count));
   if (!fits) throw InvalidArgument("state: it is cut off or damaged");
   return state;

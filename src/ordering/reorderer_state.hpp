@@ -35,6 +35,8 @@ struct Observed {
   }
 };
 
+inline constexpr Index kMostInterval = 1 << 20;  ///< updates from one new order to the next, at most
+
 /// What a `Reorderer` keeps from update to update.
 struct ReordererState {
   std::uint8_t begun = 0;

@@ -3,8 +3,10 @@
 import json
 import os
 import shutil
+import struct
 import subprocess
 import xml.etree.ElementTree
+import zlib
 
 import meshio
 import numpy
@@ -73,6 +75,19 @@ def test_resumed_runs_are_the_same_to_the_last_bit(command, pool):
     assert "of another scenario" in command.fails(
         "simulate", pool(material={**POOL["material"], "viscosity": 2e-3}), "--resume", "state")
     assert "of another order" in command.fails("simulate", pool(), "--order", "rcm", "--resume", "state")
+
+
+@pytest.mark.parametrize("place, value", [(0, float("nan")), (405, 64), (810, -1), (810, 405), (810, float("nan")), (811, 0),
+                                          (1215, -1), (1216, 256), (1217, 7)])
+def test_changed_checkpoints_are_refused(command, pool, place, value):
+    command.ok("simulate", pool(), "--steps", "2", "--checkpoint", "state")
+    state = bytearray((command.folder / "state").read_bytes())
+    memory = 32 + 3 * 8 + 4 + 8 + 8 + 405 * 6 * 8 + 8
+    assert struct.unpack_from("<q", state, memory - 8)[0] > 1216
+    struct.pack_into("<d", state, memory + 8 * place, value)
+    struct.pack_into("<I", state, len(state) - 4, zlib.crc32(state[:-4]))
+    (command.folder / "state").write_bytes(state)
+    assert "state: " in command.fails("simulate", pool(), "--resume", "state")
 
 
 @pytest.mark.parametrize("order", ["original", "scrambled", "auto", "fiedler"])

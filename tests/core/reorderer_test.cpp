@@ -346,6 +346,29 @@ TEST(Reorderer, RefusesStatesThatAreNotWholeOrOfAnotherMethod) {
   EXPECT_EQ(other.state(), state);
 }
 
+TEST(Reorderer, RefusesStatesWithNumbersThatItNeverWrites) {
+  const auto taken = [](auto change) {
+    ReordererState state;
+    state.begun = 1;
+    state.count = 3;
+    state.method = "auto\nbfs";
+    change(state);
+    Reorderer reorderer;
+    return refusal([&] { reorderer.restore(to_bytes(state)); });
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(taken([](ReordererState&) {}), "");
+  EXPECT_NE(taken([](ReordererState& s) { s.begun = 2; }), "");
+  EXPECT_NE(taken([](ReordererState& s) { s.count = -1; }), "");
+  EXPECT_NE(taken([](ReordererState& s) { s.since = -1; }), "");
+  EXPECT_NE(taken([](ReordererState& s) { s.since = kMaxIndex; }), "");
+  EXPECT_NE(taken([](ReordererState& s) { s.interval = 0; }), "");
+  EXPECT_NE(taken([](ReordererState& s) { s.interval = kMaxIndex; }), "");
+  EXPECT_NE(taken([](ReordererState& s) { s.fresh_span = kNan; }), "");
+  EXPECT_NE(taken([](ReordererState& s) { s.warm_seconds = -1; }), "");
+  EXPECT_NE(taken([](ReordererState& s) { s.observed.kt = kNan; }), "");
+}
+
 TEST(Reorderer, RefusesWhatDoesNotFitAndStaysAsItWas) {
   Cloud cloud(300);
   Reorderer reorderer({.method = "hilbert"});

@@ -152,7 +152,7 @@ std::string same_motion(const StudyResults& results) {
   }
   if (parted.empty()) return same;
   return fmt::format(
-      "{}{}The motions differ in {}: rounding depends on the order, and contacts and splashes amplify it. "
+      "{}{}The motions differ in {}: rounding depends on the order, and contacts amplify it. "
       "Their times are "
       "not for exactly the same work.",
       same, same.empty() ? "" : " ", in_words(parted));

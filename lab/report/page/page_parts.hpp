@@ -4,6 +4,7 @@
 #include "lab/report/page/page.hpp"
 #include "lab/scenario/motion_file.hpp"
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>

@@ -85,7 +85,12 @@ std::optional<PageMotion> motion_of(const StudyFolder& folder, const ScenarioRec
   if (is_there(folder.obstacles(scenario.name)))
     obstacles = read_mesh_from(folder.file(folder.obstacles(scenario.name)));
   FluidSurfaces surfaces;
-  if (is_there(folder.surfaces(scenario.name)))
+  if (scenario.method == "particle-fem" && !is_there(folder.surfaces(scenario.name))) {
+    notes.push_back(fmt::format("the page does not play {}: {} is missing", scenario.name,
+                                folder.surfaces(scenario.name).string()));
+    return std::nullopt;
+  }
+  if (scenario.method == "particle-fem")
     surfaces =
         read_surfaces(folder.file(folder.surfaces(scenario.name)), motion.frames.size(), motion.vertices);
   return naming(path, [&] {
