@@ -10,7 +10,6 @@
 #include <utility>
 
 namespace meshorder {
-
 namespace {
 
 FluidOrdering checked(FluidOrdering ordering) {

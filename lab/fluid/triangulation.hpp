@@ -19,16 +19,16 @@ struct Triangulation {
 };
 
 /// Triangulates points. None of them may be NaN or infinite. A point that coincides with another has no
-/// tetrahedron, and points of one plane have none at all. The triangulation of points that differ
-/// does not depend on their numbers.
+/// tetrahedron, and points of one plane have none at all. The triangulation of points that
+/// differ does not depend on their numbers.
 using Triangulate = std::function<Triangulation(std::span<const Point>)>;
 
 /// Returns whether there is the program `meshorder-delaunay`.
 bool has_delaunay_program();
 
 /// Returns a function that has the program `meshorder-delaunay` triangulate, which is started once. Its calls
-/// throw Error if the program ended. Throws Error if there is no such program. Who can replace the program in
-/// the folder of this one or on PATH runs code as its user anyway; what it answers is checked before use.
+/// throw Error if the program ended. Throws Error if there is no such program. It is looked for beside this
+/// program and on PATH, never where a scenario says, and is trusted like this one. Its answers are checked.
 Triangulate delaunay_program();
 
 }  // namespace meshorder
