@@ -105,9 +105,11 @@ VertexChanges changes_of(const IndexView& previous, Index size, Index count) {
     throw InvalidArgument("previous: " + std::to_string(previous.size()) + " entries for " +
                           std::to_string(size) + " vertices");
   }
+  std::size_t same = 0;
+  while (same < previous.size() && std::cmp_equal(previous[same], same)) ++same;
+  if (same == previous.size() && size == count) return changes;
   changes.places.resize(previous.size());
   std::vector<Index> vertex_at(static_cast<std::size_t>(count), -1);
-  bool is_same = size == count;
   for (std::size_t v = 0; v < previous.size(); ++v) {
     const std::int64_t place = previous[v];
     if (place < -1 || place >= count) {
@@ -116,7 +118,6 @@ VertexChanges changes_of(const IndexView& previous, Index size, Index count) {
                                         : ", outside -1 … " + std::to_string(count - 1)));
     }
     changes.places[v] = static_cast<Index>(place);
-    is_same = is_same && std::cmp_equal(place, v);
     if (place < 0) {
       changes.added.push_back(static_cast<Index>(v));
     } else if (Index& other = vertex_at[static_cast<std::size_t>(place)]; other >= 0) {
@@ -127,7 +128,6 @@ VertexChanges changes_of(const IndexView& previous, Index size, Index count) {
     }
   }
   changes.removed = count - (size - static_cast<Index>(changes.added.size()));
-  if (is_same) changes.places.clear();
   return changes;
 }
 

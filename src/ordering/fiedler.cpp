@@ -13,19 +13,31 @@
 namespace meshorder {
 namespace {
 
+/// Appends the vertices of a component, which ascend, by their values, ties by number.
+void append_sorted(const std::vector<Index>& component, const std::vector<double>& values,
+                   std::vector<Index>& new_to_old) {
+  const auto value = [&](Index k) { return values[component[k]]; };
+  double low = 0;  // values sum to 0
+  double high = 0;
+  for (const Index v : component) {
+    low = std::min(low, values[v]);
+    high = std::max(high, values[v]);
+  }
+  const Index n = index_size(component);
+  const double places = high > low ? (n - 1) / (high - low) : 0;
+  const auto place = [&](double x) { return std::min(static_cast<Index>((x - low) * places), n - 1); };
+  for (const Index k : sorted_by(n, value, n, place).new_to_old()) new_to_old.push_back(component[k]);
+}
+
 /// Returns component after component, largest first, each by ascending Fiedler value, ties by old number.
 Order by_fiedler_vector(GraphRef graph, std::span<const double> weights, const OrderOptions& options) {
   FiedlerVectors fiedler = fiedler_vectors(graph, weights, solver_options(options));
   report("sort");
   std::vector<Index> new_to_old;
   new_to_old.reserve(graph.size());
-  std::vector<std::pair<double, Index>> sorted;
   for (const std::vector<Index>& component : fiedler.component_vertices) {
     poll();
-    sorted.clear();
-    for (const Index v : component) sorted.emplace_back(fiedler.values[v], v);
-    sort_distinct(sorted);
-    for (const auto& [value, v] : sorted) new_to_old.push_back(v);
+    append_sorted(component, fiedler.values, new_to_old);
   }
   return {.permutation = Permutation::from_new_to_old(std::move(new_to_old)),
           .fiedler = std::move(fiedler.components),

@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "ordering/neighbourhood.hpp"
 
+#include "base/parallel.hpp"
 #include "cells/vertex_joins.hpp"
+#include "graph/row_access.hpp"
 #include "metrics/first_touches.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/space_filling.hpp"
@@ -23,18 +25,21 @@ constexpr Index kOneOf = 16;
 /// Graphs and meshes of fewer are looked at whole.
 constexpr Index kAllOf = 4096;
 
-/// One of each 16 numbers below n; which one a hash decides, so that no lattice keeps step with the sample.
-template <class Call>
-void for_sample(Index n, const Call& call) {
-  if (n < kAllOf) {
-    for (Index i = 0; i < n; ++i) call(i);
-    return;
-  }
-  for (Index begin = 0; begin < n; begin += kOneOf) {
+/// One of each 16 numbers below n, rising; which one a hash decides, so that no lattice keeps step with the
+/// sample.
+std::vector<Index> sample_of(Index n) {
+  std::vector<Index> sample(static_cast<std::size_t>(n < kAllOf ? n : chunk_count(n, kOneOf)));
+  for (Index k = 0; k < index_size(sample); ++k) {
+    if (n < kAllOf) {
+      sample[static_cast<std::size_t>(k)] = k;
+      continue;
+    }
+    const Offset begin = Offset{kOneOf} * k;
     const std::uint64_t hash = (static_cast<std::uint64_t>(begin) + 1) * 0x9e3779b97f4a7c15U >> 60U;
-    call(std::min(begin + static_cast<Index>(hash), n - 1));
-    if (begin > n - kOneOf) break;  // begin + kOneOf may not fit
+    sample[static_cast<std::size_t>(k)] =
+        static_cast<Index>(std::min(begin + static_cast<Offset>(hash), Offset{n} - 1));
   }
+  return sample;
 }
 
 /// The mean of ⌊log₂ span⌋.
@@ -69,9 +74,12 @@ bool reads_forward(const GraphRef& graph) {
 double GraphNeighbourhood::span_log2(std::span<const Index> place_of) const {
   const GraphRef graph(graph_.offsets, graph_.neighbours);
   SpanMean mean;
-  for_sample(graph.size(), [&](Index v) {
+  const std::vector<Index> sample = sample_of(graph.size());
+  for (Index k = 0; k < index_size(sample); ++k) {
+    prefetch_row(graph, sample, k);
+    const Index v = sample[static_cast<std::size_t>(k)];
     for (const Index u : graph[v]) mean.add(place(place_of, v), place(place_of, u));
-  });
+  }
   return mean.value();
 }
 
@@ -99,13 +107,13 @@ Shape CellNeighbourhood::shape_of(Index cell) const {
 double CellNeighbourhood::span_log2(std::span<const Index> place_of) const {
   const IncidenceRef cells = cells_.incidence();
   SpanMean mean;
-  for_sample(cells.size(), [&](Index c) {
+  for (const Index c : sample_of(cells.size())) {
     for_each_piece(shape_of(c), cells[c], [&](std::span<const Index> piece) {
       for (std::size_t i = 1; i < piece.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) mean.add(place(place_of, piece[i]), place(place_of, piece[j]));
       }
     });
-  });
+  }
   return mean.value();
 }
 
@@ -158,10 +166,10 @@ double PointNeighbourhood::span_log2(std::span<const Index> place_of) const {
   };
   const Lattice lattice = lattice_of(points_);
   std::vector<Sampled> sample;
-  for_sample(size(), [&](Index v) {
+  for (const Index v : sample_of(size())) {
     const auto cell = lattice.cell_of(point_at(points_, v));
     sample.push_back({hilbert_key(cell, lattice.axes(), lattice.bits()), place(place_of, v)});
-  });
+  }
   if (sample.empty()) return 0;
   std::ranges::sort(sample, {}, &Sampled::place);
   std::vector<std::pair<std::uint64_t, std::size_t>> by_key;

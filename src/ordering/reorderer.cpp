@@ -20,6 +20,10 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace {
 
+/// Of a warm order, in tolerances of a fresh one: the best mix of the last vector and of what coarser graphs
+/// show makes neighbours as near, without an iteration on the whole graph.
+constexpr double kWarmTolerance = 30;
+
 /// Returns the start vector by the vertices of this update; 0 for new ones.
 std::vector<double> carried_vector(const std::vector<double>& vector, const VertexChanges& changes) {
   if (vector.empty() || changes.places.empty()) return vector;
@@ -186,7 +190,10 @@ class Reorderer::Inside {
     const Stopwatch stopwatch;
     if (next.method.empty()) next.method = options_.method;
     OrderOptions options = options_.order;
-    if (is_warm) options.start = next.vector;
+    if (is_warm) {
+      options.start = next.vector;
+      options.tolerance *= kWarmTolerance;
+    }
     // the first one is judged by `auto` as it judges any; where that keeps the numbering, so are the later
     // ones
     const std::string asked = is_first ? options_.method : next.method;

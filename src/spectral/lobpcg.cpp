@@ -285,6 +285,7 @@ LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorB
     report("eigenvector");
     const bool last = result.iterations >= options.max_iterations || options.limit.is_over();
     if (last || done()) {
+      if (result.iterations == 0) break;  // nothing has drifted
       residuals = refresh<M>(s.x, problem, values, r);
       if (last || done()) break;
     }

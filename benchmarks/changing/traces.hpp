@@ -1,0 +1,47 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/index.hpp"
+#include "base/point.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace meshorder {
+
+/// A tetrahedral mesh after a step, in the trace's own numbers.
+struct TraceStep {
+  std::vector<Point> points = {};
+  std::vector<Index> corners = {};  ///< 4 of each tetrahedron
+  /// The number of each point in the step before, −1 for a new one; empty: as before.
+  std::vector<Index> previous = {};
+  /// For each number of the step before the one that has its place in a program's arrays now, −1 if the place
+  /// is closed; empty: the same. Points that no place has come last.
+  std::vector<Index> successors = {};
+};
+
+/// A mesh that changes in the same way on every run.
+class Trace {
+ public:
+  Trace() = default;
+  virtual ~Trace() = default;
+  Trace(const Trace&) = delete;
+  Trace(Trace&&) = delete;
+  Trace& operator=(const Trace&) = delete;
+  Trace& operator=(Trace&&) = delete;
+
+  /// Returns the next step; the first one has no `previous`.
+  virtual TraceStep next() = 0;
+};
+
+/// Returns a trace of about `count` points:
+/// stir    points of a jittered lattice turn in rolls, at most 0.3 spacings a step
+/// churn   the same, and 2 % of them vanish in each step, whose places others take that appear elsewhere
+/// refine  a ball with eight times as many points travels
+/// cut     the tetrahedra along a plane are taken out, a few in each step
+/// dam     a dam break, the scenario `splash`
+/// Throws std::invalid_argument for other names.
+std::unique_ptr<Trace> make_trace(const std::string& name, Index count, Index steps);
+
+}  // namespace meshorder
