@@ -40,7 +40,12 @@ long holder_of(int descriptor) {
 
 FolderLock::FolderLock(const std::filesystem::path& folder)
     : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  if (descriptor_ < 0) return;
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) {
+    held_.emplace(descriptor_);
+    return;
+  }
+  if (errno != EWOULDBLOCK) return;
   const long process = holder_of(descriptor_);
   ::close(descriptor_);
   throw InputError(folder.string(),

@@ -1,7 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/folder_locks.hpp"
+
 #include <filesystem>
+#include <optional>
 
 namespace meshorder {
 
@@ -19,6 +22,7 @@ class FolderLock {
 
  private:
   int descriptor_;
+  std::optional<HeldFolder> held_;
 };
 
 }  // namespace meshorder

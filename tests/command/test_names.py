@@ -1,5 +1,6 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Names of arrays, sets, files and scenarios that are no plain words: what files hold, what is printed."""
+import fcntl
 import json
 import os
 import re
@@ -148,6 +149,20 @@ def test_scenarios_have_names_for_files(command, name):
     assert "file names" in shown(command.fails("simulate", scenario_of(command.folder, name=name)).encode())
 
 
+def is_locked(folder):
+    """Whether another process holds the folder's lock."""
+    if not folder.is_dir():
+        return False
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return False
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(descriptor)
+
+
 def test_two_studies_do_not_share_a_folder(tmp_path, command):
     scenario = scenario_of(tmp_path)
     arguments = ["reproduce", "-o", "study", "--scenario", scenario, "--mesh", "ball-8", "--runs", "1000", "--budget",
@@ -155,13 +170,13 @@ def test_two_studies_do_not_share_a_folder(tmp_path, command):
     with subprocess.Popen([conftest.MESHORDER, *arguments], cwd=tmp_path, stderr=subprocess.DEVNULL,
                           stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL) as first:
         try:
-            for _ in range(600):
-                if list(tmp_path.glob("study/data/ball-8*")) or first.poll() is not None:
-                    break
+            while not is_locked(tmp_path / "study"):
+                assert first.poll() is None
                 time.sleep(0.05)
+            (tmp_path / "study" / "data" / "ball-8.vtu").write_text("of the first study")
             words = command.fails(*arguments)
             assert f"process {first.pid} is at work" in words and "study" in words
-            assert list(tmp_path.glob("study/data/ball-8*"))
+            assert (tmp_path / "study" / "data" / "ball-8.vtu").read_text() == "of the first study"
         finally:
             first.terminate()
             first.wait(timeout=60)

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/output_file.hpp"
 
+#include "io/stream/folder_locks.hpp"
 #include "io/stream/output_set.hpp"
 #include "io/stream/scratch.hpp"
 #include "io/stream/system_fault.hpp"
@@ -55,6 +56,29 @@ mode_t mode_of(const fs::path& path) {
   struct stat status {};
   EXPECT_EQ(::stat(path.c_str(), &status), 0);
   return status.st_mode & 07777U;
+}
+
+TEST(FolderLocks, LeaveOutFoldersThatThisProcessHolds) {
+  const TemporaryFolder folder;
+  const auto can_be_locked = [&] {
+    const int opened = ::open(folder.path().c_str(), O_RDONLY | O_DIRECTORY);
+    const bool result = ::flock(opened, LOCK_EX | LOCK_NB) == 0;
+    ::close(opened);
+    return result;
+  };
+  {
+    const FolderLocks locks({folder.path()});
+    EXPECT_FALSE(can_be_locked());
+  }
+  const int opened = ::open(folder.path().c_str(), O_RDONLY | O_DIRECTORY);
+  {
+    const HeldFolder held(opened);
+    const FolderLocks locks({folder.path()});
+    EXPECT_TRUE(can_be_locked());
+  }
+  const FolderLocks locks({folder.path()});
+  EXPECT_FALSE(can_be_locked());
+  ::close(opened);
 }
 
 TEST(OutputFile, AppearsWholeOrNotAtAll) {

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstddef>
 #include <map>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -16,10 +17,11 @@ namespace meshorder {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using Identity = std::pair<dev_t, ino_t>;
 constexpr std::chrono::seconds kLongestWait{10};
 constexpr std::chrono::milliseconds kPause{2};
 
-void lock(const Descriptor& folder, Clock::time_point last) {
+void wait_for_lock(const Descriptor& folder, Clock::time_point last) {
   while (::flock(folder.get(), LOCK_EX | LOCK_NB) != 0) {
     if (errno == EINTR) continue;
     if (errno != EWOULDBLOCK || Clock::now() > last) return;
@@ -27,13 +29,43 @@ void lock(const Descriptor& folder, Clock::time_point last) {
   }
 }
 
+/// The folders that this process holds.
+struct Held {
+  std::mutex mutex;
+  std::set<Identity> folders;
+
+  static Held& of_process() {
+    static Held held;
+    return held;
+  }
+};
+
 }  // namespace
 
+HeldFolder::HeldFolder(int descriptor) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) == 0) identity_ = {status.st_dev, status.st_ino};
+  Held& held = Held::of_process();
+  const std::lock_guard lock(held.mutex);
+  held.folders.insert(identity_);
+}
+
+HeldFolder::~HeldFolder() {
+  Held& held = Held::of_process();
+  const std::lock_guard lock(held.mutex);
+  held.folders.erase(identity_);
+}
+
 FolderLocks::FolderLocks(const std::set<std::filesystem::path>& folders) {
-  std::map<std::pair<dev_t, ino_t>, std::filesystem::path> by_identity;
+  std::map<Identity, std::filesystem::path> by_identity;
   for (const std::filesystem::path& folder : folders) {
     struct stat status {};
     if (::stat(folder.c_str(), &status) == 0) by_identity.try_emplace({status.st_dev, status.st_ino}, folder);
+  }
+  {
+    Held& held = Held::of_process();
+    const std::lock_guard lock(held.mutex);
+    for (const Identity& identity : held.folders) by_identity.erase(identity);
   }
   const Clock::time_point last = Clock::now() + kLongestWait;
   const std::size_t most = descriptors_for_locks() / 2;  // scratch folders take the others
@@ -41,7 +73,7 @@ FolderLocks::FolderLocks(const std::set<std::filesystem::path>& folders) {
     if (locked_.size() >= most) return;
     Descriptor opened(folder, O_RDONLY | O_DIRECTORY);
     if (!opened.is_open()) continue;
-    lock(opened, last);
+    wait_for_lock(opened, last);
     locked_.push_back(std::move(opened));
   }
 }

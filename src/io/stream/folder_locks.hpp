@@ -3,11 +3,30 @@
 
 #include "io/stream/descriptor.hpp"
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <set>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
+
+/// A folder on which this process holds a lock of its own, for as long as this object lives: `FolderLocks`
+/// leave it out, which would wait for this process itself.
+class HeldFolder {
+ public:
+  /// @param descriptor  of the open folder
+  explicit HeldFolder(int descriptor);
+  ~HeldFolder();
+  HeldFolder(const HeldFolder&) = delete;
+  HeldFolder(HeldFolder&&) = delete;
+  HeldFolder& operator=(const HeldFolder&) = delete;
+  HeldFolder& operator=(HeldFolder&&) = delete;
+
+ private:
+  std::pair<dev_t, ino_t> identity_{};
+};
 
 /// Locks on folders (`flock`), by which only one process at a time renames files there. Whoever may read a
 /// folder can lock it, so nobody waits for long: after ten seconds the locks are done without, and so they

@@ -33,6 +33,12 @@ class IdMap {
     return true;
   }
 
+  /// Appends the ids first, first + 1, … to a map that is empty. O(1).
+  void add_run(std::int64_t first, Index count) {
+    first_ = first;
+    size_ = count;
+  }
+
   /// Returns the position of `id`, −1 if it is not present. O(1).
   [[nodiscard]] Index find(std::int64_t id) const {
     if (ids_.empty()) {

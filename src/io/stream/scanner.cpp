@@ -24,12 +24,26 @@ std::string shown(std::string_view text) {
 }
 
 Scanner::Scanner(const FilePath& file, char comment)
-    : file_(file.string()), text_(file.read()), comment_(comment) {
-  text_.erase(0, text_.size() - without_byte_order_mark(text_).size());
+    : file_(file.string()),
+      whole_(std::make_shared<const std::string>(file.read())),
+      text_(without_byte_order_mark(*whole_)),
+      comment_(comment) {
   if (text_.empty()) throw InputError(file_, "is empty", "give a mesh file");
   constexpr std::string_view kWide("\xFE\xFF\0", 3);  // in the other byte order the fourth byte is the zero
   const bool is_wide = text_.starts_with(kWide) || (text_.starts_with("\xFF\xFE") && text_.find('\0') == 3);
   if (is_wide) throw InputError(file_, "is text in UTF-16", "save it in UTF-8");
+}
+
+Scanner Scanner::at(std::int64_t byte, std::int64_t line) const {
+  Scanner result = *this;
+  result.position_ = static_cast<std::size_t>(byte);
+  result.line_ = line;
+  return result;
+}
+
+void Scanner::move_to(const Scanner& other) {
+  position_ = other.position_;
+  line_ = other.line_;
 }
 
 void Scanner::seek(std::int64_t byte) {
@@ -87,7 +101,7 @@ std::string_view Scanner::peek_word() {
   };
   std::size_t end = position_;
   while (end < text_.size() && in_word(text_[end])) ++end;
-  return std::string_view(text_).substr(position_, end - position_);
+  return text_.substr(position_, end - position_);
 }
 
 std::string_view Scanner::word(std::string_view what) {
@@ -148,7 +162,7 @@ Index Scanner::checked_count(std::int64_t number, std::string_view what, std::in
 std::string_view Scanner::rest_of_line() {
   const std::size_t begin = position_;
   while (!at_break() && (comment_ == '\0' || text_[position_] != comment_)) ++position_;
-  std::string_view result = std::string_view(text_).substr(begin, position_ - begin);
+  std::string_view result = text_.substr(begin, position_ - begin);
   while (!at_break()) ++position_;
   next_line();
   while (!result.empty() && is_blank(result.back())) result.remove_suffix(1);
@@ -159,7 +173,7 @@ std::string_view Scanner::rest_of_line() {
 std::string_view Scanner::raw_line() {
   const std::size_t begin = position_;
   while (!at_break()) ++position_;
-  const std::string_view result = std::string_view(text_).substr(begin, position_ - begin);
+  const std::string_view result = text_.substr(begin, position_ - begin);
   next_line();
   return result;
 }
@@ -167,14 +181,14 @@ std::string_view Scanner::raw_line() {
 std::string_view Scanner::peek_line() const {
   std::size_t end = position_;
   while (end < text_.size() && !is_line_end(text_[end])) ++end;
-  return std::string_view(text_).substr(position_, end - position_);
+  return text_.substr(position_, end - position_);
 }
 
 std::string_view Scanner::binary_block(std::int64_t bytes, std::string_view what) {
   if (bytes < 0 || bytes > bytes_left()) {
     fail_at_byte("unexpected end of file in " + std::string(what), "it may be cut short");
   }
-  const auto result = std::string_view(text_).substr(position_, static_cast<std::size_t>(bytes));
+  const auto result = text_.substr(position_, static_cast<std::size_t>(bytes));
   position_ += result.size();
   return result;
 }

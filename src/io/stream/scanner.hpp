@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -27,6 +28,14 @@ class Scanner {
   /// Reads the whole file. Throws Error for a folder, an unreadable or an empty file.
   explicit Scanner(const FilePath& file, char comment = '\0');
 
+  /// Returns a scanner of the same text that stands elsewhere.
+  ///
+  /// @param byte  0 … size of the text
+  /// @param line  of that byte
+  [[nodiscard]] Scanner at(std::int64_t byte, std::int64_t line) const;
+  /// Moves to where another scanner of the same text is. O(1).
+  void move_to(const Scanner& other);
+
   // ---- position
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
   [[nodiscard]] std::int64_t line() const noexcept { return line_; }
@@ -36,6 +45,8 @@ class Scanner {
   }
   /// Returns the whole file, for formats that look ahead.
   [[nodiscard]] std::string_view all() const noexcept { return text_; }
+  /// Returns the character that begins a comment, \0 for none.
+  [[nodiscard]] char comment() const noexcept { return comment_; }
   /// Moves to that byte. O(bytes moved).
   void seek(std::int64_t byte);
 
@@ -115,7 +126,8 @@ class Scanner {
   bool take_any_number(T& value);
 
   std::string file_;
-  std::string text_;
+  std::shared_ptr<const std::string> whole_;  ///< shared by scanners of one text
+  std::string_view text_;                     ///< of it; a zero byte follows
   std::size_t position_ = 0;
   std::int64_t line_ = 1;
   char comment_;

@@ -1,8 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/resize_in_steps.hpp"
 #include "base/text.hpp"
 #include "io/labels.hpp"
 #include "io/not_together.hpp"
 #include "io/stream/id_map.hpp"
+#include "io/stream/regular_records.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/tetgen/tetgen.hpp"
@@ -12,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -113,6 +116,37 @@ void add_number(Scanner& in, IdMap& numbering, std::string_view what) {
     in.fail(fmt::format("{} {} is given twice", what, number), "each must be unique");
 }
 
+/// Takes numbers that a record has.
+bool take_all(Scanner& in, std::span<double> values) {
+  return std::ranges::all_of(values, [&](double& value) { return in.take_number(value); });
+}
+
+/// Reads records with their numbers, as `read_regular_records`; those are regular whose numbers run.
+template <class Read>
+Index read_numbered(Scanner& in, Index count, IdMap& numbering, const Read& read) {
+  constexpr std::int64_t kFarthest = std::int64_t{1} << 40;
+  std::int64_t first = 0;
+  Scanner ahead = in;
+  if (!ahead.take_number(first) || std::abs(first) > kFarthest) return 0;
+  const Index regular = read_regular_records(in, count, [&](Scanner& part, Index record) {
+    std::int64_t number = 0;
+    return part.take_number(number) && number == first + record && read(part, record) && part.at_line_end();
+  });
+  if (regular > 0) numbering.add_run(first, regular);
+  return regular;
+}
+
+/// Appends cells whose vertices are still to be read.
+void append_cells(Cells& cells, Shape shape, int nodes, Index count) {
+  const Index first = cells.size();
+  const Offset begin = cells.offsets.back();
+  cells.shapes.resize(static_cast<std::size_t>(Offset{first} + count), shape);
+  resize_in_steps(cells.offsets, static_cast<std::size_t>(Offset{first} + count + 1));
+  for (Index c = 1; c <= count; ++c)
+    cells.offsets[static_cast<std::size_t>(first) + c] = begin + Offset{c} * nodes;
+  resize_in_steps(cells.vertices, static_cast<std::size_t>(begin + Offset{count} * nodes));
+}
+
 /// Takes the mark of the files of a mesh out of the comments at the end of one; returns an empty text if
 /// there is none.
 std::string take_mark(std::string& comments) {
@@ -152,22 +186,28 @@ void read_points(Scanner& in, ReadContext& to) {
   Mesh& mesh = to.mesh;
   mesh.dimension = static_cast<int>(dimension);
   mesh.points.resize(count, {0, 0, 0});
-  std::vector<double> values;
-  values.reserve(count * attributes);
-  std::vector<std::int64_t> markers;
-  markers.reserve(marked ? count : 0);
-  for (Point& point : mesh.points) {
+  std::vector<double> values(static_cast<std::size_t>(count * attributes));
+  std::vector<std::int64_t> markers(marked ? count : 0);
+  const auto attributes_of = [&](Index v) {
+    return std::span(values).subspan(static_cast<std::size_t>(v * attributes),
+                                     static_cast<std::size_t>(attributes));
+  };
+  const Index regular = read_numbered(in, count, to.points, [&](Scanner& part, Index v) {
+    for (int k = 0; k < mesh.dimension; ++k) {
+      if (!part.take_number(mesh.points[v][k]) || !std::isfinite(mesh.points[v][k])) return false;
+    }
+    return take_all(part, attributes_of(v)) && (!marked || part.take_number(markers[v]));
+  });
+  for (Index v = regular; v < count; ++v) {
     begin_record(in, "a point");
     add_number(in, to.points, "the point");
     for (int k = 0; k < mesh.dimension; ++k) {
       const double x = parse_real(in, column(in, "a coordinate"), "a coordinate");
       if (!std::isfinite(x)) in.fail("a coordinate is not finite", "a finite number is needed");
-      point[k] = x;
+      mesh.points[v][k] = x;
     }
-    for (std::int64_t k = 0; k < attributes; ++k) {
-      values.push_back(parse_real(in, column(in, "an attribute"), "an attribute"));
-    }
-    if (marked) markers.push_back(whole(in, "the boundary marker"));
+    for (double& value : attributes_of(v)) value = parse_real(in, column(in, "an attribute"), "an attribute");
+    if (marked) markers[v] = whole(in, "the boundary marker");
     end_record(in);
   }
 
@@ -190,8 +230,7 @@ void read_points(Scanner& in, ReadContext& to) {
 // ---- cells
 
 /// Reads the points of a cell, from the file's order into VTK's.
-void read_cell_points(Scanner& in, const IdMap& points, std::span<const int> places,
-                      std::array<Index, 10>& cell) {
+void read_cell_points(Scanner& in, const IdMap& points, std::span<const int> places, std::span<Index> cell) {
   std::array<Index, 10> as_given{};
   for (std::size_t k = 0; k < places.size(); ++k) {
     const auto number =
@@ -211,17 +250,32 @@ void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, Rea
   Part& part = to.parts[file];
   const std::span<const int> order = places(file, nodes, false);
   Cells& cells = to.mesh.cells;
-  cells.reserve(Offset{cells.size()} + part.count, cells.offsets.back() + Offset{part.count} * nodes);
-  std::array<Index, 10> cell{};
-  for (Index c = 0; c < part.count; ++c) {
+  const Index first = cells.size();
+  append_cells(cells, shape, nodes, part.count);
+  part.attributes.resize(Offset{part.count} * part.attributes_per_cell);
+  part.markers.resize(marked ? part.count : 0);
+  const auto attributes_of = [&](Index c) {
+    return std::span(part.attributes)
+        .subspan(Offset{c} * part.attributes_per_cell, static_cast<std::size_t>(part.attributes_per_cell));
+  };
+  const Index regular = read_numbered(in, part.count, part.numbering, [&](Scanner& records, Index c) {
+    std::int64_t number = 0;
+    const std::span<Index> cell = cells[first + c];
+    std::array<Index, 10> as_given{};
+    for (int k = 0; k < nodes; ++k) {
+      if (!records.take_number(number)) return false;
+      as_given[k] = to.points.find(number);
+      if (as_given[k] < 0) return false;
+    }
+    for (int k = 0; k < nodes; ++k) cell[k] = as_given[order[k]];
+    return take_all(records, attributes_of(c)) && (!marked || records.take_number(part.markers[c]));
+  });
+  for (Index c = regular; c < part.count; ++c) {
     begin_record(in, "a cell");
     add_number(in, part.numbering, "the cell");
-    read_cell_points(in, to.points, order, cell);
-    cells.push_back(shape, {cell.data(), static_cast<std::size_t>(nodes)});
-    for (Index k = 0; k < part.attributes_per_cell; ++k) {
-      part.attributes.push_back(parse_real(in, column(in, "an attribute"), "an attribute"));
-    }
-    if (marked) part.markers.push_back(whole(in, "the boundary marker"));
+    read_cell_points(in, to.points, order, cells[first + c]);
+    for (double& value : attributes_of(c)) value = parse_real(in, column(in, "an attribute"), "an attribute");
+    if (marked) part.markers[c] = whole(in, "the boundary marker");
     end_record(in);
   }
 }

@@ -1,0 +1,107 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/stream/regular_records.hpp"
+
+#include "base/parallel.hpp"
+#include <meshorder/error.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+constexpr std::size_t kPartsAtOnce = 64;  // what is counted is still in the caches when it is read
+
+/// Some whole lines of a text.
+struct Part {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::int64_t lines = 0;
+  std::int64_t records = 0;
+
+  // once it is read
+  std::int64_t first_line = 0;
+  std::int64_t first_record = 0;
+  bool is_regular = false;
+};
+
+/// Counts the lines of a part, and those that are not empty and no comment.
+void count_lines(std::string_view text, char comment, Part& part) {
+  for (std::size_t at = part.begin; at < part.end;) {
+    const void* const found = std::memchr(text.data() + at, '\n', part.end - at);
+    const std::size_t end =
+        found == nullptr ? part.end : static_cast<std::size_t>(static_cast<const char*>(found) - text.data());
+    while (at < end && (text[at] == ' ' || text[at] == '\t' || text[at] == '\r')) ++at;
+    if (at < end && text[at] != comment) ++part.records;
+    if (found != nullptr) ++part.lines;
+    at = end + 1;
+  }
+}
+
+/// Divides the text from there on into parts.
+std::vector<Part> divided(std::string_view text, std::size_t begin, std::size_t bytes) {
+  std::vector<Part> parts;
+  while (parts.size() < kPartsAtOnce && begin < text.size()) {
+    std::size_t end = std::min(begin + bytes, text.size());
+    end = std::min(text.find('\n', end - 1), text.size() - 1) + 1;
+    parts.push_back({.begin = begin, .end = end});
+    begin = end;
+  }
+  return parts;
+}
+
+}  // namespace
+
+Index read_regular_records(Scanner& in, Index count, const std::function<bool(Scanner&, Index)>& read,
+                           std::size_t part_bytes) {
+  const std::string_view text = in.all();
+  std::int64_t done = 0;
+  while (done < count) {
+    std::vector<Part> parts = divided(text, static_cast<std::size_t>(in.byte()), part_bytes);
+    for_each_chunk(index_size(parts), 1, [&](Index k, Index, Index) {
+      count_lines(text, in.comment(), parts[static_cast<std::size_t>(k)]);
+    });
+    std::int64_t line = in.line();
+    std::int64_t record = done;
+    for (Part& part : parts) {
+      part.first_line = line;
+      part.first_record = record;
+      line += part.lines;
+      record += part.records;
+    }
+    std::vector<Scanner> ends(parts.size(), in);
+    for_each_chunk(index_size(parts), 1, [&](Index k, Index, Index) {
+      Part& part = parts[static_cast<std::size_t>(k)];
+      Scanner at = in.at(static_cast<std::int64_t>(part.begin), part.first_line);
+      const std::int64_t last = std::min<std::int64_t>(count, part.first_record + part.records);
+      try {
+        for (std::int64_t r = part.first_record; r < last; ++r) {
+          if (!read(at, static_cast<Index>(r))) return;
+        }
+        const auto end = static_cast<std::int64_t>(part.end);
+        if (at.byte() > end) return;
+        if (last == part.first_record + part.records) {
+          ends[static_cast<std::size_t>(k)] = in.at(end, part.first_line + part.lines);
+          part.is_regular = at.at_end() || at.byte() >= end;
+        } else {
+          ends[static_cast<std::size_t>(k)] = at;
+          part.is_regular = true;
+        }
+      } catch (const Error&) {  // the caller finds it again
+      }
+    });
+    const std::int64_t before = done;
+    for (std::size_t k = 0; k < parts.size() && done < count; ++k) {
+      if (!parts[k].is_regular) return static_cast<Index>(done);
+      done = std::min<std::int64_t>(count, done + parts[k].records);
+      in.move_to(ends[k]);
+    }
+    if (done == before) break;  // nothing is left
+  }
+  return static_cast<Index>(done);
+}
+
+}  // namespace meshorder

@@ -1,0 +1,103 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/stream/regular_records.hpp"
+
+#include "support/files.hpp"
+#include <meshorder/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+using test::TemporaryFolder;
+
+constexpr Index kRecords = 6;
+
+/// What a reader makes of a text: its numbers, where it ended, or what was wrong.
+struct Outcome {
+  std::vector<int> numbers;
+  std::string rest;
+  std::string fault;
+
+  bool operator==(const Outcome&) const = default;
+};
+
+/// Reads records of two numbers, the first `regular` ones of which are read already.
+Outcome read_rest(Scanner& in, Index regular, std::vector<int> numbers) {
+  Outcome outcome{.numbers = std::move(numbers)};
+  try {
+    for (Index record = regular; record < kRecords; ++record) {
+      if (in.at_end()) in.fail("no record", "");
+      for (std::size_t k = 0; k < 2; ++k) {
+        if (in.at_line_end()) in.fail("no number", "");
+        outcome.numbers[2 * static_cast<std::size_t>(record) + k] = in.integer<int>("a number");
+      }
+      if (!in.at_line_end()) in.fail("a number too many", "");
+    }
+    if (!in.at_end()) outcome.rest = std::to_string(in.line()) + ": " + std::string(in.word("a word"));
+  } catch (const Error& error) {
+    outcome.fault = error.what();
+  }
+  return outcome;
+}
+
+TEST(RegularRecords, AreReadAsOneAfterAnotherHoweverTheTextIsDivided) {
+  const TemporaryFolder folder;
+  const std::string good = "head\n1 2\n3 4\n5 6\n7 8\n9 10\n11 12\ntail 1\nmore\n";
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  const std::vector<std::string> texts = {good,
+                                          good.substr(0, good.find("\ntail")),
+                                          with("3 4\n", "# none\n\n  3   4 # two\n\t\n"),
+                                          with("3 4\n", "3 4\r\n\r\n"),
+                                          with("3 4\n", "3 4\r"),
+                                          with("3 4\n5 6\n", "3 4\r5 6\n\n"),
+                                          with("3 4\n", "3\n4\n"),
+                                          with("3 4\n5 6\n", "3 4 5 6\n"),
+                                          with("3 4\n5 6\n", "3\n4\n5 6 7 8\n"),
+                                          with("3 4\n", "3\n"),
+                                          with("9 10\n", "9 10 11\n"),
+                                          with("9 10\n", "9 x\n"),
+                                          with("9 10\n", "9 +10\n"),
+                                          with("9 10\n", "9 99999999999\n"),
+                                          with("11 12\n", "11\n"),
+                                          with("11 12\ntail", "11 12 tail"),
+                                          with("1 2\n", "\f\n1 2\n"),
+                                          with("1 2\n", "\n\n\n\n1 2\n"),
+                                          "head\n",
+                                          "head",
+                                          "head\n1 2"};
+  for (const std::string& text : texts) {
+    const std::string file = folder.file("a.txt", text);
+    Scanner strict(file, '#');
+    (void)strict.word("the head");
+    const Outcome expected = read_rest(strict, 0, std::vector<int>(2 * kRecords));
+    for (std::size_t bytes = 1; bytes <= text.size() + 1; ++bytes) {
+      Scanner in(file, '#');
+      (void)in.word("the head");
+      std::vector<int> numbers(2 * kRecords);
+      const Index regular = read_regular_records(
+          in, kRecords,
+          [&](Scanner& part, Index record) {
+            int* const at = numbers.data() + 2 * static_cast<std::ptrdiff_t>(record);
+            return part.take_number(at[0]) && part.take_number(at[1]) && part.at_line_end();
+          },
+          bytes);
+      if (text == good) EXPECT_EQ(regular, kRecords);
+      std::fill(numbers.begin() + 2 * static_cast<std::ptrdiff_t>(regular), numbers.end(), 0);
+      const Outcome outcome = read_rest(in, regular, std::move(numbers));
+      EXPECT_EQ(outcome.fault, expected.fault) << text << "in parts of " << bytes;
+      EXPECT_EQ(outcome.rest, expected.rest) << text << "in parts of " << bytes;
+      EXPECT_EQ(outcome.numbers, expected.numbers) << text << "in parts of " << bytes;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshorder
