@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -33,6 +35,21 @@ TEST(Scanner, ReadsNumbersAsPeopleWriteThem) {
   EXPECT_EQ(scanner.real("x"), 100.0);
   EXPECT_EQ(scanner.real("x"), 0.0);
   EXPECT_TRUE(std::isnan(scanner.real("x")));
+}
+
+TEST(Digits, ArePutAllAtOnce) {
+  std::vector<std::uint32_t> numbers{0, 99'999'999};
+  for (std::uint32_t power = 1; power < kDigitsAtOnce; power *= 10) {
+    for (std::uint32_t digit = 1; digit < 10; ++digit) {
+      for (const std::uint32_t by : {0U, 1U, 7U})
+        numbers.push_back(digit * power - std::min(by, digit * power));
+    }
+  }
+  for (std::uint32_t k = 0; k < 200'000; ++k) numbers.push_back(k * 2654435761U % kDigitsAtOnce);
+  for (const std::uint32_t number : numbers) {
+    std::array<char, 8> text{};
+    ASSERT_EQ(std::string(text.data(), put_digits(text.data(), number)), std::to_string(number));
+  }
 }
 
 TEST(Digits, AreReadAllAtOnce) {

@@ -1,9 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/large_pages.hpp"
+#include "io/append_cells.hpp"
 #include "io/gmsh/gmsh.hpp"
+#include "io/stream/regular_records.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <set>
@@ -51,6 +54,14 @@ int parameters_4(const Metadata& metadata, std::int32_t dimension) {
   return metadata.is_version_40() && dimension == 3 ? 0 : dimension;
 }
 
+/// Reads records of a text as `read_regular_records`; none of a binary file.
+template <class Read>
+Index read_regular(NumberReader& source, Index count, const Read& read) {
+  if (source.binary) return 0;
+  return read_regular_records(
+      source.scanner, count, [&](Scanner& in, Index record) { return read(in, record) && in.at_line_end(); });
+}
+
 /// Reads one block of nodes after its head; `parameters` gets four numbers for each.
 void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
                      std::vector<std::int64_t>& ids, std::vector<double>& parameters) {
@@ -58,11 +69,21 @@ void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
   const bool parametric = head[2] == 1;
   const int given = parameters_4(reading.metadata, head[0]);
   const bool number_with_point = reading.metadata.is_version_40();
-  for (Index i = 0; i < count && !number_with_point; ++i) ids.push_back(source.int64("the number of a node"));
+  if (!number_with_point) {
+    ids.resize(ids.size() + static_cast<std::size_t>(count));
+    const std::span block = std::span(ids).last(static_cast<std::size_t>(count));
+    const Index regular =
+        read_regular(source, count, [&](Scanner& in, Index i) { return in.take_number(block[i]); });
+    for (std::int64_t& id : block.subspan(regular)) id = source.int64("the number of a node");
+  }
   if (!parametric && !number_with_point) {
-    const std::size_t first = reading.mesh.points.size();
-    reading.mesh.points.resize(first + static_cast<std::size_t>(count));
-    for (Point& point : std::span(reading.mesh.points).subspan(first)) {
+    std::vector<Point>& points = reading.mesh.points;
+    points.resize(points.size() + static_cast<std::size_t>(count));
+    const std::span block = std::span(points).last(static_cast<std::size_t>(count));
+    const Index regular = read_regular(source, count, [&](Scanner& in, Index i) {
+      return std::ranges::all_of(block[i], [&](double& x) { return in.take_number(x) && std::isfinite(x); });
+    });
+    for (Point& point : block.subspan(regular)) {
       for (double& x : point) x = source.finite("a coordinate");
     }
     return;
@@ -90,22 +111,32 @@ void read_element_block(ReadContext& reading, const ElementType& type, Index cou
   };
   Cells& cells = reading.mesh.cells;
   const std::span<const int> order = vtk_order(type.shape, type.nodes);
-  const auto nodes = static_cast<std::size_t>(type.nodes);
-  const auto rows = static_cast<std::size_t>(count);
-  const std::size_t first = cells.vertices.size();
-  cells.shapes.insert(cells.shapes.end(), rows, type.shape);
-  resize_large(cells.vertices, first + rows * nodes);
-  reserve_large(cells.offsets, cells.offsets.size() + rows);
-  Index* target = cells.vertices.data() + first;
-  std::array<Index, 27> of_file{};  // only cells of second order are sorted
-  for (std::size_t c = 0; c < rows; ++c, target += nodes) {
-    const std::int64_t id = number("the number of an element");
-    ids.push_back(id);
-    Index* const read = order.empty() ? target : of_file.data();
-    for (std::size_t k = 0; k < nodes; ++k)
-      read[k] = place_of_node(reading, number("a node of an element"), "element", id);
-    for (std::size_t k = 0; k < order.size(); ++k) target[k] = of_file[static_cast<std::size_t>(order[k])];
-    cells.offsets.push_back(cells.offsets.back() + type.nodes);
+  const Index first = cells.size();
+  append_cells(cells, type.shape, type.nodes, count);
+  ids.resize(ids.size() + static_cast<std::size_t>(count));
+  const std::span block = std::span(ids).last(static_cast<std::size_t>(count));
+  const auto sort = [&](std::span<Index> cell) {  // only cells of second order
+    std::array<Index, 27> of_file{};
+    std::ranges::copy(cell.first(order.size()), of_file.begin());
+    for (std::size_t k = 0; k < order.size(); ++k) cell[k] = of_file[static_cast<std::size_t>(order[k])];
+  };
+  const Index regular = read_regular(source, count, [&](Scanner& in, Index c) {
+    if (!in.take_number(block[c])) return false;
+    const std::span<Index> cell = cells[first + c];
+    for (Index& v : cell) {
+      std::int64_t node = 0;
+      if (!in.take_number(node)) return false;
+      v = reading.nodes.find(node);
+      if (v < 0) return false;
+    }
+    if (!order.empty()) sort(cell);
+    return true;
+  });
+  for (Index c = regular; c < count; ++c) {
+    block[c] = number("the number of an element");
+    const std::span<Index> cell = cells[first + c];
+    for (Index& v : cell) v = place_of_node(reading, number("a node of an element"), "element", block[c]);
+    if (!order.empty()) sort(cell);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "io/all_formats.hpp"
 #include "io/labels.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
 
@@ -76,11 +77,11 @@ std::int64_t version(const WriteContext& from) {
 void write_vertices(OutputFile& out, const WriteContext& from) {
   const Mesh& mesh = from.mesh;
   out.print("\nVertices\n{}\n", mesh.vertex_count());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    for (int k = 0; k < mesh.dimension; ++k) out.real(k == 0 ? "" : " ", mesh.points[v][k]);
-    out.integer(" ", from.vertex_labels.any() ? from.vertex_labels.values[v] : 0);
-    out.write("\n");
-  }
+  write_rows(out, mesh.vertex_count(), [&](Text& row, Index v) {
+    for (int k = 0; k < mesh.dimension; ++k) row.real(k == 0 ? "" : " ", mesh.points[v][k]);
+    row.integer(" ", from.vertex_labels.any() ? from.vertex_labels.values[v] : 0);
+    row.write("\n");
+  });
 }
 
 /// Returns the positions of a kind's nodes in the file; empty for VTK's order.
@@ -93,16 +94,17 @@ std::vector<int> places(const WriteContext& from, std::size_t kind) {
 void write_cells(OutputFile& out, const WriteContext& from, std::size_t kind) {
   const auto& cells = from.layout.cells[kind];
   const std::vector<int> order = places(from, kind);
-  std::array<Index, 27> as_given{};
   out.print("\n{}\n{}\n", kCellKinds[kind].keyword, cells.size());
-  for (const Index c : cells) {
+  write_rows(out, index_size(cells), [&](Text& row, Index i) {
+    const Index c = cells[i];
     const auto cell = from.mesh.cells[c];
+    std::array<Index, 27> as_given{};
     for (std::size_t k = 0; k < cell.size(); ++k) as_given[order.empty() ? k : order[k]] = cell[k];
     for (std::size_t k = 0; k < cell.size(); ++k)
-      out.integer(k == 0 ? "" : " ", std::int64_t{as_given[k]} + 1);
-    out.integer(cell.empty() ? "" : " ", from.cell_labels.any() ? from.cell_labels.values[c] : 0);
-    out.write("\n");
-  }
+      row.integer(k == 0 ? "" : " ", std::int64_t{as_given[k]} + 1);
+    row.integer(cell.empty() ? "" : " ", from.cell_labels.any() ? from.cell_labels.values[c] : 0);
+    row.write("\n");
+  });
 }
 
 /// Writes the order of nodes in second-order cells.
@@ -154,7 +156,8 @@ void print_value(OutputFile& out, const Values& values, Offset at) {
 }
 
 /// Writes a section without the lines that name cells which were left out.
-void write_rows(OutputFile& out, const WriteContext& from, const Metadata::Rows& section, Notes& notes) {
+void write_section_rows(OutputFile& out, const WriteContext& from, const Metadata::Rows& section,
+                        Notes& notes) {
   const std::string_view columns = section.columns;
   const auto others = static_cast<std::size_t>(std::count(columns.begin(), columns.end(), '.'));
   const std::size_t named = columns.size() - others;
@@ -268,7 +271,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
     if (&array != label_array(mesh, array.association)) write_array(out, from, array, notes);
   }
   if (from.own) {
-    for (const Metadata::Rows& section : from.own->rows) write_rows(out, from, section, notes);
+    for (const Metadata::Rows& section : from.own->rows) write_section_rows(out, from, section, notes);
   }
   write_sections(out, from, false);
   out.print("\nEnd{}\n", from.own ? from.own->after_end : "");

@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
+#include "io/append_cells.hpp"
 #include "io/labels.hpp"
 #include "io/medit/medit.hpp"
+#include "io/stream/regular_records.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include <meshorder/error.hpp>
@@ -10,7 +12,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <memory>
+#include <span>
 #include <unordered_set>
 #include <utility>
 
@@ -243,11 +247,16 @@ class Reader {
   void read_vertices() {
     const Index count = in_.count("the count of Vertices", 2 * (mesh_.dimension + 1));
     mesh_.points.resize(count, {0, 0, 0});
-    std::vector<std::int64_t> references;
-    references.reserve(count);
-    for (Point& point : mesh_.points) {
-      for (int k = 0; k < mesh_.dimension; ++k) point[k] = in_.finite("a coordinate");
-      references.push_back(in_.integer<std::int64_t>("the reference of a vertex"));
+    std::vector<std::int64_t> references(count);
+    const Index regular = read_regular_records(in_, count, [&](Scanner& in, Index v) {
+      for (int k = 0; k < mesh_.dimension; ++k) {
+        if (!in.take_number(mesh_.points[v][k]) || !std::isfinite(mesh_.points[v][k])) return false;
+      }
+      return in.take_number(references[v]) && in.at_line_end();
+    });
+    for (Index v = regular; v < count; ++v) {
+      for (int k = 0; k < mesh_.dimension; ++k) mesh_.points[v][k] = in_.finite("a coordinate");
+      references[v] = in_.integer<std::int64_t>("the reference of a vertex");
     }
     has_vertices_ = true;
     mesh_.data.push_back(
@@ -273,13 +282,21 @@ class Reader {
     mesh_.cell_blocks.push_back(mesh_.cell_count());
     first_[kind] = mesh_.cell_count();
     counts_[kind] = count;
-    Cells& cells = mesh_.cells;
-    cells.reserve(Offset{cells.size()} + count, cells.offsets.back() + Offset{count} * nodes);
-    std::array<Index, 27> cell{};
-    for (Index c = 0; c < count; ++c) {
-      for (int k = 0; k < nodes; ++k) cell[k] = position(mesh_.vertex_count(), "a vertex of the cell");
-      cells.push_back(shape, {cell.data(), static_cast<std::size_t>(nodes)});
-      references_.push_back(in_.integer<std::int64_t>("the reference of a cell"));
+    const Index first = mesh_.cell_count();
+    append_cells(mesh_.cells, shape, nodes, count);
+    references_.resize(references_.size() + count);
+    const std::span references = std::span(references_).last(count);
+    const Index regular = read_regular_records(in_, count, [&](Scanner& in, Index c) {
+      for (Index& v : mesh_.cells[first + c]) {
+        std::int64_t number = 0;
+        if (!in.take_number(number) || number < 1 || number > mesh_.vertex_count()) return false;
+        v = static_cast<Index>(number - 1);
+      }
+      return in.take_number(references[c]) && in.at_line_end();
+    });
+    for (Index c = regular; c < count; ++c) {
+      for (Index& v : mesh_.cells[first + c]) v = position(mesh_.vertex_count(), "a vertex of the cell");
+      references[c] = in_.integer<std::int64_t>("the reference of a cell");
     }
   }
 

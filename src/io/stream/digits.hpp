@@ -38,4 +38,25 @@ inline Digits leading_digits(const char* text) noexcept {
   return {count, static_cast<std::uint32_t>(number)};
 }
 
+constexpr std::uint32_t kDigitsAtOnce = 100'000'000;  ///< `put_digits` takes less
+
+/// Puts the digits of a number below `kDigitsAtOnce` all at once, without a branch for each. Returns the end
+/// of them. Writes up to 8 bytes, whatever the number.
+inline char* put_digits(char* at, std::uint32_t number) noexcept {
+  // groups of four, pairs and digits, the first ones in the lowest bytes
+  const std::uint64_t fours = number / 10000 + (std::uint64_t{number % 10000} << 32U);
+  const std::uint64_t hundreds = (fours * 10486 >> 20U) & 0x0000007F0000007FU;
+  const std::uint64_t pairs = hundreds + ((fours - 100 * hundreds) << 16U);
+  const std::uint64_t tens = (pairs * 103 >> 10U) & 0x000F000F000F000FU;
+  const std::uint64_t digits = tens + ((pairs - 10 * tens) << 8U);
+  const int zeros = digits == 0 ? 7 : std::countr_zero(digits) / 8;
+  std::uint64_t text = (digits | (std::uint64_t{'0'} * 0x0101010101010101U)) >> (8 * zeros);
+  if constexpr (std::endian::native == std::endian::big) {
+    for (int k = 0; k < 8 - zeros; ++k) at[k] = static_cast<char>(text >> (8 * k));
+  } else {
+    std::memcpy(at, &text, sizeof(text));
+  }
+  return at + (8 - zeros);
+}
+
 }  // namespace meshorder

@@ -27,16 +27,16 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kFlushAt = std::size_t{1} << 20;
-constexpr std::size_t kMostDigits = 20;
-constexpr mode_t kMode = 0666;         // the umask or the folder's default ACL takes from it
-constexpr mode_t kPrivateMode = 0600;  // until it gets the mode of the old file
+constexpr std::size_t kAtOnce = std::size_t{1} << 16;  // so many bytes are written without a copy
+constexpr mode_t kMode = 0666;                         // the umask or the folder's default ACL takes from it
+constexpr mode_t kPrivateMode = 0600;                  // until it gets the mode of the old file
 
 }  // namespace
 
 struct OutputFile::Stream {
-  fmt::memory_buffer buffer;
+  Text text;
   OutputPlace place;
-  std::optional<Scratch> scratch;  ///< none: the buffer holds the whole file
+  std::optional<Scratch> scratch;  ///< none: the text is the whole file
   Descriptor file;
 };
 
@@ -69,44 +69,44 @@ OutputFile::OutputFile(FilePath target) : target_(std::move(target)), stream_(st
 OutputFile::OutputFile(OutputFile&& other) noexcept = default;
 OutputFile::~OutputFile() = default;
 
-void OutputFile::print_all(fmt::string_view format, fmt::format_args args) {
-  fmt::vformat_to(std::back_inserter(stream_->buffer), format, args);
-  if (stream_->buffer.size() > kFlushAt) flush();
+Text& OutputFile::text() noexcept { return stream_->text; }
+
+void OutputFile::flush_if_full() {
+  if (stream_->text.size() > kFlushAt) flush();
 }
 
 void OutputFile::write(std::string_view bytes) {
-  stream_->buffer.append(bytes.data(), bytes.data() + bytes.size());
-  if (stream_->buffer.size() > kFlushAt) flush();
+  auto& [text, place, scratch, file] = *stream_;
+  if (scratch && bytes.size() >= kAtOnce) {
+    flush();
+    check_written(file.write(bytes));
+    return;
+  }
+  text.write(bytes);
+  flush_if_full();
 }
 
 void OutputFile::integer(std::string_view before, std::int64_t value) {
-  // straight into the buffer: text formats write millions of these
-  char* const digits = std::copy(before.begin(), before.end(), room(before.size() + kMostDigits));
-  written(std::to_chars(digits, digits + kMostDigits, value).ptr);
+  text().integer(before, value);
+  flush_if_full();
 }
 
 void OutputFile::real(std::string_view before, double value) {
-  constexpr std::size_t kMostCharacters = 32;
-  char* const at = std::copy(before.begin(), before.end(), room(before.size() + kMostCharacters));
-  written(fmt::format_to(at, FMT_COMPILE("{}"), value));
+  text().real(before, value);
+  flush_if_full();
 }
 
-char* OutputFile::room(std::size_t bytes) {
-  fmt::memory_buffer& buffer = stream_->buffer;
-  buffer.reserve(buffer.size() + bytes);
-  return buffer.data() + buffer.size();
-}
+char* OutputFile::room(std::size_t bytes) { return text().room(bytes); }
 
 void OutputFile::written(const char* end) {
-  fmt::memory_buffer& buffer = stream_->buffer;
-  buffer.resize(static_cast<std::size_t>(end - buffer.data()));
-  if (buffer.size() > kFlushAt) flush();
+  text().written(end);
+  flush_if_full();
 }
 
 void OutputFile::write_over_start(std::string_view bytes) {
-  auto& [buffer, place, scratch, file] = *stream_;
+  auto& [text, place, scratch, file] = *stream_;
   if (!scratch) {
-    std::copy(bytes.begin(), bytes.end(), buffer.begin());
+    std::copy(bytes.begin(), bytes.end(), text.data());
     return;
   }
   flush();
@@ -116,10 +116,13 @@ void OutputFile::write_over_start(std::string_view bytes) {
 }
 
 void OutputFile::flush() {
-  auto& [buffer, place, scratch, file] = *stream_;
-  if (!scratch) return;
-  const int error = file.write({buffer.data(), buffer.size()});
-  buffer.clear();
+  if (!stream_->scratch) return;
+  const int error = stream_->file.write(stream_->text.view());
+  stream_->text.clear();
+  check_written(error);
+}
+
+void OutputFile::check_written(int error) const {
   if (error != 0) throw_system_fault(target_.string(), "cannot be written to the end", error);
 }
 
@@ -137,12 +140,12 @@ void OutputFile::close() {
 }
 
 void OutputFile::write_directly() {
-  const auto& [buffer, place, scratch, file] = *stream_;
-  if (FileStore* const store = target_.store()) return store->write(target(), fmt::to_string(buffer));
+  const auto& [text, place, scratch, file] = *stream_;
+  if (FileStore* const store = target_.store()) return store->write(target(), std::string(text.view()));
   if (!place.is_through) return;
   Descriptor out =
       place.own_descriptor >= 0 ? Descriptor(::dup(place.own_descriptor)) : Descriptor(place.path, O_WRONLY);
-  int error = out.is_open() ? out.write({buffer.data(), buffer.size()}) : errno;
+  int error = out.is_open() ? out.write(text.view()) : errno;
   if (const int closing = out.close(); error == 0) error = closing;
   if (error != 0) throw_system_fault(target_.string(), "cannot be written to the end", error);
 }

@@ -3,6 +3,7 @@
 
 #include "io/stream/byte_order.hpp"
 #include "io/stream/file_path.hpp"
+#include "io/stream/text.hpp"
 
 #include <fmt/core.h>
 
@@ -37,36 +38,23 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Writes formatted text; a double written as `{}` reads back to the same bits.
+  // as `Text`
   template <class... Args>
   void print(fmt::format_string<Args...> format, Args&&... args) {
-    print_all(format, fmt::make_format_args(args...));
+    text().print_all(format, fmt::make_format_args(args...));
+    flush_if_full();
   }
-
-  void write(std::string_view bytes);
-
-  /// Writes `before` and the digits of `value`; faster than `print`.
   void integer(std::string_view before, std::int64_t value);
-
-  /// Writes `before` and the number as `print` would as `{}`; faster.
   void real(std::string_view before, double value);
-
-  /// Writes `before` and a number of any type as `print` would as `{}`, by the fastest of these.
   template <class Number>
   void number(std::string_view before, Number value) {
-    if constexpr (std::is_same_v<Number, double>) {
-      real(before, value);
-    } else if constexpr (std::is_integral_v<Number> && (sizeof(Number) < 8 || std::is_signed_v<Number>)) {
-      integer(before, value);
-    } else {
-      print("{}{}", before, value);
-    }
+    text().number(before, value);
+    flush_if_full();
   }
-
-  /// Returns room for so many bytes more, for rows that are put together in place. The caller then calls
-  /// `written` with the end of what it put there, before anything else.
   [[nodiscard]] char* room(std::size_t bytes);
   void written(const char* end);
+
+  void write(std::string_view bytes);
 
   /// Writes the number's bytes in the given order.
   template <class T>
@@ -94,8 +82,10 @@ class OutputFile {
  private:
   struct Stream;
   friend class OutputSet;
-  void print_all(fmt::string_view format, fmt::format_args args);
+  [[nodiscard]] Text& text() noexcept;
+  void flush_if_full();
   void flush();
+  void check_written(int error) const;
 
   // for the set
   /// Writes a target that cannot be replaced, or one in a store.

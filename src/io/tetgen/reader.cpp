@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/resize_in_steps.hpp"
 #include "base/text.hpp"
+#include "io/append_cells.hpp"
 #include "io/labels.hpp"
 #include "io/not_together.hpp"
 #include "io/stream/id_map.hpp"
@@ -134,17 +134,6 @@ Index read_numbered(Scanner& in, Index count, IdMap& numbering, const Read& read
   });
   if (regular > 0) numbering.add_run(first, regular);
   return regular;
-}
-
-/// Appends cells whose vertices are still to be read.
-void append_cells(Cells& cells, Shape shape, int nodes, Index count) {
-  const Index first = cells.size();
-  const Offset begin = cells.offsets.back();
-  cells.shapes.resize(static_cast<std::size_t>(Offset{first} + count), shape);
-  resize_in_steps(cells.offsets, static_cast<std::size_t>(Offset{first} + count + 1));
-  for (Index c = 1; c <= count; ++c)
-    cells.offsets[static_cast<std::size_t>(first) + c] = begin + Offset{c} * nodes;
-  resize_in_steps(cells.vertices, static_cast<std::size_t>(begin + Offset{count} * nodes));
 }
 
 /// Takes the mark of the files of a mesh out of the comments at the end of one; returns an empty text if

@@ -7,6 +7,7 @@
 #include "io/all_formats.hpp"
 #include "io/labels.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 
@@ -253,13 +254,13 @@ void write_points(OutputFile& out, const WriteContext& from, Notes& notes) {
   const bool marked = has_markers(from.vertex_labels, all, ".node", notes);
 
   out.print("{}  {}  {}  {}\n", mesh.vertex_count(), from.layout.dimension, columns.size(), marked ? 1 : 0);
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    out.integer("", from.vertex_number(v));
-    for (int k = 0; k < from.layout.dimension; ++k) out.print("  {}", mesh.points[v][k]);
-    for (const Column& column : columns) out.print("  {}", text_of(column, v));
-    if (marked) out.print("  {}", from.vertex_labels.values[v]);
-    out.write("\n");
-  }
+  write_rows(out, mesh.vertex_count(), [&](Text& row, Index v) {
+    row.integer("", from.vertex_number(v));
+    for (int k = 0; k < from.layout.dimension; ++k) row.real("  ", mesh.points[v][k]);
+    for (const Column& column : columns) row.print("  {}", text_of(column, v));
+    if (marked) row.integer("  ", from.vertex_labels.values[v]);
+    row.write("\n");
+  });
 }
 
 void write_cells(OutputFile& out, File file, const WriteContext& from, const std::vector<Column>& columns,
@@ -267,16 +268,17 @@ void write_cells(OutputFile& out, File file, const WriteContext& from, const std
   const Mesh& mesh = from.mesh;
   const auto& cells = from.layout.cells[file];
   const auto order = places(file, from.layout.nodes[file], from.metadata.faces_name_opposite_edges);
-  std::array<Index, 10> as_given{};
-  for (Index i = 0; i < index_size(cells); ++i) {
+  write_rows(out, index_size(cells), [&](Text& row, Index i) {
     const Index c = cells[i];
-    out.integer("", from.cell_number(c, i));
-    for (std::size_t k = 0; k < order.size(); ++k) as_given[order[k]] = mesh.cells[c][k];
-    for (std::size_t k = 0; k < order.size(); ++k) out.integer(" ", from.vertex_number(as_given[k]));
-    for (const Column& column : columns) out.print("  {}", text_of(column, c));
-    if (marked) out.print("  {}", from.cell_labels.values[c]);
-    out.write("\n");
-  }
+    const auto cell = mesh.cells[c];
+    std::array<Index, 10> as_given{};
+    row.integer("", from.cell_number(c, i));
+    for (std::size_t k = 0; k < order.size(); ++k) as_given[order[k]] = cell[k];
+    for (std::size_t k = 0; k < order.size(); ++k) row.integer(" ", from.vertex_number(as_given[k]));
+    for (const Column& column : columns) row.print("  {}", text_of(column, c));
+    if (marked) row.integer("  ", from.cell_labels.values[c]);
+    row.write("\n");
+  });
 }
 
 void write_ele(OutputFile& out, const WriteContext& from, Notes& notes) {

@@ -1,0 +1,20 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/append_cells.hpp"
+
+#include "base/resize_in_steps.hpp"
+
+#include <cstddef>
+
+namespace meshorder {
+
+void append_cells(Cells& cells, Shape shape, int nodes, Index count) {
+  const Index first = cells.size();
+  const Offset begin = cells.offsets.back();
+  cells.shapes.resize(static_cast<std::size_t>(Offset{first} + count), shape);
+  resize_in_steps(cells.offsets, static_cast<std::size_t>(Offset{first} + count + 1));
+  for (Index c = 1; c <= count; ++c)
+    cells.offsets[static_cast<std::size_t>(first) + c] = begin + Offset{c} * nodes;
+  resize_in_steps(cells.vertices, static_cast<std::size_t>(begin + Offset{count} * nodes));
+}
+
+}  // namespace meshorder

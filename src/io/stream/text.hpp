@@ -1,0 +1,70 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/stream/digits.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+
+namespace meshorder {
+
+/// Text that is put together in memory.
+class Text {
+ public:
+  /// Appends formatted text; a double written as `{}` reads back to the same bits.
+  template <class... Args>
+  void print(fmt::format_string<Args...> format, Args&&... args) {
+    print_all(format, fmt::make_format_args(args...));
+  }
+  void print_all(fmt::string_view format, fmt::format_args args);
+
+  void write(std::string_view bytes) { buffer_.append(bytes.data(), bytes.data() + bytes.size()); }
+
+  /// Appends `before` and the digits of `value`; faster than `print`.
+  void integer(std::string_view before, std::int64_t value) {
+    if (value < 0 || value >= kDigitsAtOnce) return put_long(before, value);
+    char* const at = std::copy(before.begin(), before.end(), room(before.size() + sizeof(std::uint64_t)));
+    written(put_digits(at, static_cast<std::uint32_t>(value)));
+  }
+
+  /// Appends `before` and the number as `print` would as `{}`; faster.
+  void real(std::string_view before, double value);
+
+  /// Appends `before` and a number of any type as `print` would as `{}`, by the fastest of these.
+  template <class Number>
+  void number(std::string_view before, Number value) {
+    if constexpr (std::is_same_v<Number, double>) {
+      real(before, value);
+    } else if constexpr (std::is_integral_v<Number> && (sizeof(Number) < 8 || std::is_signed_v<Number>)) {
+      integer(before, value);
+    } else {
+      print("{}{}", before, value);
+    }
+  }
+
+  /// Returns room for so many bytes more. The caller then calls `written` with the end of what it put there,
+  /// before anything else.
+  [[nodiscard]] char* room(std::size_t bytes) {
+    buffer_.reserve(buffer_.size() + bytes);
+    return buffer_.data() + buffer_.size();
+  }
+  void written(const char* end) { buffer_.resize(static_cast<std::size_t>(end - buffer_.data())); }
+
+  [[nodiscard]] std::size_t size() const noexcept { return buffer_.size(); }
+  [[nodiscard]] std::string_view view() const noexcept { return {buffer_.data(), buffer_.size()}; }
+  [[nodiscard]] char* data() noexcept { return buffer_.data(); }
+  void clear() noexcept { buffer_.clear(); }
+
+ private:
+  void put_long(std::string_view before, std::int64_t value);
+
+  fmt::memory_buffer buffer_;
+};
+
+}  // namespace meshorder
