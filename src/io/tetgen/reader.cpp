@@ -162,11 +162,11 @@ std::string end_file(Scanner& in, Metadata::Part& part, Notes& notes) {
 // ---- points
 
 void read_points(Scanner& in, ReadContext& to) {
-  auto [records, dimension, attributes, has_markers] = header<4>(in, {0, 3, 0, 0});
+  const auto [records, dimension, given_attributes, has_markers] = header<4>(in, {0, 3, 0, 0});
   if (dimension != 2 && dimension != 3) {
     in.fail(fmt::format("the dimension is {}", dimension), "2 or 3 are possible");
   }
-  attributes = checked_attributes(in, attributes);
+  const std::int64_t attributes = checked_attributes(in, given_attributes);
   const bool marked = checked_markers(in, has_markers);
   if (records == 0) in.fail("the file has no points", "a mesh needs some");
   const Index count =
