@@ -12,8 +12,7 @@ void append_cells(Cells& cells, Shape shape, int nodes, Index count) {
   const Offset begin = cells.offsets.back();
   cells.shapes.resize(static_cast<std::size_t>(Offset{first} + count), shape);
   resize_in_steps(cells.offsets, static_cast<std::size_t>(Offset{first} + count + 1));
-  for (Index c = 1; c <= count; ++c)
-    cells.offsets[static_cast<std::size_t>(first) + c] = begin + Offset{c} * nodes;
+  for (Offset c = 1; c <= count; ++c) cells.offsets[static_cast<std::size_t>(first + c)] = begin + c * nodes;
   resize_in_steps(cells.vertices, static_cast<std::size_t>(begin + Offset{count} * nodes));
 }
 

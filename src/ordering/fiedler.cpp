@@ -16,6 +16,8 @@ namespace {
 /// Appends the vertices of a component, which ascend, by their values, ties by number.
 void append_sorted(const std::vector<Index>& component, const std::vector<double>& values,
                    std::vector<Index>& new_to_old) {
+  const Index n = index_size(component);
+  if (n == 1) return new_to_old.push_back(component[0]);  // there may be millions
   const auto value = [&](Index k) { return values[component[k]]; };
   double low = 0;  // values sum to 0
   double high = 0;
@@ -23,7 +25,6 @@ void append_sorted(const std::vector<Index>& component, const std::vector<double
     low = std::min(low, values[v]);
     high = std::max(high, values[v]);
   }
-  const Index n = index_size(component);
   const double places = high > low ? (n - 1) / (high - low) : 0;
   const auto place = [&](double x) { return std::min(static_cast<Index>((x - low) * places), n - 1); };
   for (const Index k : sorted_by(n, value, n, place).new_to_old()) new_to_old.push_back(component[k]);

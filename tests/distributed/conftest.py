@@ -8,7 +8,7 @@ import pytest
 
 @pytest.fixture(scope="session", autouse=True)
 def folder_of_sessions():
-    """A folder for the sessions of each test process: one mpirun that ends removes what another one that begins has just found."""
+    """Gives each test process a folder for Open MPI's sessions: an mpirun that ends removes a folder that it shares with others."""
     with tempfile.TemporaryDirectory(prefix="mpi-") as folder:
         os.environ["OMPI_MCA_orte_tmpdir_base"] = folder
         yield

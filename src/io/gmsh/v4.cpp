@@ -57,9 +57,7 @@ int parameters_4(const Metadata& metadata, std::int32_t dimension) {
 /// Reads records of a text as `read_regular_records`; none of a binary file.
 template <class Read>
 Index read_regular(NumberReader& source, Index count, const Read& read) {
-  if (source.binary) return 0;
-  return read_regular_records(
-      source.scanner, count, [&](Scanner& in, Index record) { return read(in, record) && in.at_line_end(); });
+  return source.binary ? 0 : read_regular_records(source.scanner, count, read);
 }
 
 /// Reads one block of nodes after its head; `parameters` gets four numbers for each.

@@ -252,7 +252,7 @@ class Reader {
       for (int k = 0; k < mesh_.dimension; ++k) {
         if (!in.take_number(mesh_.points[v][k]) || !std::isfinite(mesh_.points[v][k])) return false;
       }
-      return in.take_number(references[v]) && in.at_line_end();
+      return in.take_number(references[v]);
     });
     for (Index v = regular; v < count; ++v) {
       for (int k = 0; k < mesh_.dimension; ++k) mesh_.points[v][k] = in_.finite("a coordinate");
@@ -292,7 +292,7 @@ class Reader {
         if (!in.take_number(number) || number < 1 || number > mesh_.vertex_count()) return false;
         v = static_cast<Index>(number - 1);
       }
-      return in.take_number(references[c]) && in.at_line_end();
+      return in.take_number(references[c]);
     });
     for (Index c = regular; c < count; ++c) {
       for (Index& v : mesh_.cells[first + c]) v = position(mesh_.vertex_count(), "a vertex of the cell");

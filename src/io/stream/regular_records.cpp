@@ -13,7 +13,8 @@
 namespace meshorder {
 namespace {
 
-constexpr std::size_t kPartsAtOnce = 64;  // what is counted is still in the caches when it is read
+constexpr std::size_t kPartsAtOnce = 64;
+constexpr std::size_t kRecordBytes = 64;  // so much text is looked at for each record that is left, at first
 
 /// Some whole lines of a text.
 struct Part {
@@ -41,11 +42,13 @@ void count_lines(std::string_view text, char comment, Part& part) {
   }
 }
 
-/// Divides the text from there on into parts.
-std::vector<Part> divided(std::string_view text, std::size_t begin, std::size_t bytes) {
+/// Divides the text from there on into parts, as far as so many records may reach: a file may have many short
+/// runs of records, for each of which little may be looked at.
+std::vector<Part> divided(std::string_view text, std::size_t begin, std::size_t bytes, std::size_t records) {
   std::vector<Part> parts;
-  while (parts.size() < kPartsAtOnce && begin < text.size()) {
-    std::size_t end = std::min(begin + bytes, text.size());
+  const std::size_t last = std::min(text.size(), begin + records * kRecordBytes);
+  while (parts.size() < kPartsAtOnce && begin < last) {
+    std::size_t end = std::min(begin + bytes, last);
     end = std::min(text.find('\n', end - 1), text.size() - 1) + 1;
     parts.push_back({.begin = begin, .end = end});
     begin = end;
@@ -60,7 +63,8 @@ Index read_regular_records(Scanner& in, Index count, const std::function<bool(Sc
   const std::string_view text = in.all();
   std::int64_t done = 0;
   while (done < count) {
-    std::vector<Part> parts = divided(text, static_cast<std::size_t>(in.byte()), part_bytes);
+    std::vector<Part> parts = divided(text, static_cast<std::size_t>(in.byte()), part_bytes,
+                                      static_cast<std::size_t>(count - done));
     for_each_chunk(index_size(parts), 1, [&](Index k, Index, Index) {
       count_lines(text, in.comment(), parts[static_cast<std::size_t>(k)]);
     });
@@ -79,7 +83,7 @@ Index read_regular_records(Scanner& in, Index count, const std::function<bool(Sc
       const std::int64_t last = std::min<std::int64_t>(count, part.first_record + part.records);
       try {
         for (std::int64_t r = part.first_record; r < last; ++r) {
-          if (!read(at, static_cast<Index>(r))) return;
+          if (!read(at, static_cast<Index>(r)) || !at.at_line_end()) return;
         }
         const auto end = static_cast<std::int64_t>(part.end);
         if (at.byte() > end) return;

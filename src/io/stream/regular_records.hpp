@@ -19,8 +19,9 @@ namespace meshorder {
 ///
 /// @param in     is anywhere before the first record, after what comes before it
 /// @param count  ≥ 0, at most so many
-/// @param read   `read(part, record)` takes the words of a record; false: it is not regular. It writes only
-///               what belongs to the record, and may be called again for it. Errors make a record irregular
+/// @param read   `read(part, record)` takes the words of a record; false: it is not regular, which it is not
+///               either where more words follow on its line. It writes only what belongs to the record, and
+///               may be called again for it. Errors make a record irregular
 /// @param part_bytes  of a part, at least, > 0
 /// @note O(bytes); a few numbers for each part.
 Index read_regular_records(Scanner& in, Index count, const std::function<bool(Scanner&, Index)>& read,

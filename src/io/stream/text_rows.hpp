@@ -35,7 +35,7 @@ void write_rows(OutputFile& out, Index count, const Row& row) {
       Text& text = made[static_cast<std::size_t>(turn - 1)];
       text.clear();
       const Index begin = first + (turn - 1) * kRows;
-      const Index end = std::min(begin + kRows, first + rows);
+      const Index end = begin + std::min(kRows, first + rows - begin);
       for (Index i = begin; i < end; ++i) row(text, i);
     });
     first += rows;

@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -127,10 +126,10 @@ Index read_numbered(Scanner& in, Index count, IdMap& numbering, const Read& read
   constexpr std::int64_t kFarthest = std::int64_t{1} << 40;
   std::int64_t first = 0;
   Scanner ahead = in;
-  if (!ahead.take_number(first) || std::abs(first) > kFarthest) return 0;
+  if (!ahead.take_number(first) || first < -kFarthest || first > kFarthest) return 0;
   const Index regular = read_regular_records(in, count, [&](Scanner& part, Index record) {
     std::int64_t number = 0;
-    return part.take_number(number) && number == first + record && read(part, record) && part.at_line_end();
+    return part.take_number(number) && number == first + record && read(part, record);
   });
   if (regular > 0) numbering.add_run(first, regular);
   return regular;
