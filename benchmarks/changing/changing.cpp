@@ -26,10 +26,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -108,11 +108,9 @@ class Places {
     return result;
   }
 
+  /// Returns the place of each point.
   static std::vector<Index> inverse(const std::vector<Index>& at) {
-    std::vector<Index> result(at.size());
-    for (Index k = 0; k < index_size(at); ++k)
-      result[static_cast<std::size_t>(at[static_cast<std::size_t>(k)])] = k;
-    return result;
+    return Permutation::from_new_to_old(at).old_to_new();
   }
 
   std::vector<Index> at_;
