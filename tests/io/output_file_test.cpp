@@ -5,6 +5,7 @@
 #include "io/stream/output_set.hpp"
 #include "io/stream/scratch.hpp"
 #include "io/stream/system_fault.hpp"
+#include "io/stream/text_rows.hpp"
 #include "support/files.hpp"
 #include <meshorder/error.hpp>
 
@@ -79,6 +80,24 @@ TEST(FolderLocks, LeaveOutFoldersThatThisProcessHolds) {
   const FolderLocks locks({folder.path()});
   EXPECT_FALSE(can_be_locked());
   ::close(opened);
+}
+
+TEST(TextRows, AreWrittenInTheirOrder) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "rows.txt";
+  for (const Index count : {0, 1, 4095, 4096, 4097, 64 * 4096, 64 * 4096 + 1, 200'000, 600'000}) {
+    std::string expected = "head\n";
+    for (Index i = 0; i < count; ++i) expected += std::to_string(i) + (i % 3 == 0 ? " x\n" : "\n");
+    OutputFile file(path);
+    file.write("head\n");
+    write_rows(file, count, [](Text& row, Index i) {
+      row.integer("", i);
+      row.write(i % 3 == 0 ? " x\n" : "\n");
+    });
+    file.write("tail\n");
+    file.commit();
+    EXPECT_TRUE(content_of(path) == expected + "tail\n") << count;
+  }
 }
 
 TEST(OutputFile, AppearsWholeOrNotAtAll) {

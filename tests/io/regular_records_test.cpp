@@ -6,8 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
@@ -19,11 +21,9 @@ constexpr Index kRecords = 6;
 
 /// What a reader makes of a text: its numbers, where it ended, or what was wrong.
 struct Outcome {
-  std::vector<int> numbers;
-  std::string rest;
-  std::string fault;
-
-  bool operator==(const Outcome&) const = default;
+  std::vector<int> numbers = {};
+  std::string rest = {};
+  std::string fault = {};
 };
 
 /// Reads records of two numbers, the first `regular` ones of which are read already.
@@ -70,6 +70,10 @@ TEST(RegularRecords, AreReadAsOneAfterAnotherHoweverTheTextIsDivided) {
                                           with("11 12\ntail", "11 12 tail"),
                                           with("1 2\n", "\f\n1 2\n"),
                                           with("1 2\n", "\n\n\n\n1 2\n"),
+                                          with("3 4\n", "# a\r# b\n3 4\n"),
+                                          with("9 10\n", "# a\r# b\n9 x\n"),
+                                          with("3 4\n", "\v\n3\t4\n"),
+                                          "head\n1 2\n3 4\r",
                                           "head\n",
                                           "head",
                                           "head\n1 2"};
@@ -89,7 +93,7 @@ TEST(RegularRecords, AreReadAsOneAfterAnotherHoweverTheTextIsDivided) {
             return part.take_number(at[0]) && part.take_number(at[1]);
           },
           bytes);
-      if (text == good) EXPECT_EQ(regular, kRecords);
+      EXPECT_TRUE(text != good || regular == kRecords);
       std::fill(numbers.begin() + 2 * static_cast<std::ptrdiff_t>(regular), numbers.end(), 0);
       const Outcome outcome = read_rest(in, regular, std::move(numbers));
       EXPECT_EQ(outcome.fault, expected.fault) << text << "in parts of " << bytes;

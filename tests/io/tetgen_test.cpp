@@ -142,6 +142,9 @@ TEST(TetGen, WritesTheFilesAsTheyWere) {
   test::expect_same(read_mesh(folder.path() / "out.node"), mesh);
 }
 
+/// Returns the name of one of a mesh's files.
+std::string named(std::string stem, std::string_view extension) { return stem += extension; }
+
 TEST(TetGen, RefusesFilesThatWereNotWrittenTogether) {
   const TemporaryFolder folder;
   Mesh mesh = read_mesh(put(folder, {}));
@@ -152,25 +155,24 @@ TEST(TetGen, RefusesFilesThatWereNotWrittenTogether) {
       test::content_of(folder.path() / "a.node").substr(unmarked(folder.path() / "a.node").size());
   EXPECT_THAT(mark, testing::MatchesRegex("# meshorder [0-9a-f]+\n"));
   for (const char* const extension : {".ele", ".face", ".edge"}) {
-    EXPECT_THAT(test::content_of(folder.path() / ("a" + std::string(extension))), testing::EndsWith(mark));
+    EXPECT_THAT(test::content_of(folder.path() / named("a", extension)), testing::EndsWith(mark));
     // the old file with the new points, and one of another program
-    for (const std::string& other : {test::content_of(folder.path() / ("b" + std::string(extension))),
-                                     unmarked(folder.path() / ("a" + std::string(extension)))}) {
+    for (const std::string& other : {test::content_of(folder.path() / named("b", extension)),
+                                     unmarked(folder.path() / named("a", extension))}) {
       const TemporaryFolder mixed;
       for (const char* const name : {"a.node", "a.ele", "a.face", "a.edge"})
         (void)mixed.file(name, test::content_of(folder.path() / name));
-      (void)mixed.file("a" + std::string(extension), other);
-      EXPECT_THAT(
-          test::read_error(mixed.path() / "a.node"),
-          AllOf(HasSubstr("a" + std::string(extension) + ": was not written together with its .node file"),
-                HasSubstr("remove these lines")));
+      (void)mixed.file(named("a", extension), other);
+      EXPECT_THAT(test::read_error(mixed.path() / "a.node"),
+                  AllOf(HasSubstr(named("a", extension) + ": was not written together with its .node file"),
+                        HasSubstr("remove these lines")));
     }
   }
   // the mark is that of the mesh: written again, the files are the same
   write_mesh(read_mesh(folder.path() / "a.node"), folder.path() / "c.ele");
   for (const char* const extension : {".node", ".ele", ".face", ".edge"}) {
-    EXPECT_EQ(test::content_of(folder.path() / ("a" + std::string(extension))),
-              test::content_of(folder.path() / ("c" + std::string(extension))));
+    EXPECT_EQ(test::content_of(folder.path() / named("a", extension)),
+              test::content_of(folder.path() / named("c", extension)));
   }
 }
 

@@ -22,6 +22,7 @@ struct Part {
   std::size_t end = 0;
   std::int64_t lines = 0;
   std::int64_t records = 0;
+  bool has_other_ends = false;  ///< lines that end in CR alone, which are not counted
 
   // once it is read
   std::int64_t first_line = 0;
@@ -29,15 +30,21 @@ struct Part {
   bool is_regular = false;
 };
 
-/// Counts the lines of a part, and those that are not empty and no comment.
+/// Counts the lines of a part, and those that have a word, as a Scanner does.
 void count_lines(std::string_view text, char comment, Part& part) {
-  for (std::size_t at = part.begin; at < part.end;) {
-    const void* const found = std::memchr(text.data() + at, '\n', part.end - at);
-    const std::size_t end =
-        found == nullptr ? part.end : static_cast<std::size_t>(static_cast<const char*>(found) - text.data());
-    while (at < end && (text[at] == ' ' || text[at] == '\t' || text[at] == '\r')) ++at;
-    if (at < end && text[at] != comment) ++part.records;
+  const std::string_view whole = text.substr(part.begin, part.end - part.begin);
+  const bool has_returns = whole.find('\r') != std::string_view::npos;
+  for (std::size_t at = 0; at < whole.size();) {
+    const void* const found = std::memchr(whole.data() + at, '\n', whole.size() - at);
+    const std::size_t end = found == nullptr
+                                ? whole.size()
+                                : static_cast<std::size_t>(static_cast<const char*>(found) - whole.data());
+    std::string_view line = whole.substr(at, end - at);
     if (found != nullptr) ++part.lines;
+    if (found != nullptr && line.ends_with('\r')) line.remove_suffix(1);
+    if (has_returns && line.find('\r') != std::string_view::npos) part.has_other_ends = true;
+    const std::size_t word = line.find_first_not_of(" \t\f\v");
+    if (word != std::string_view::npos && (comment == '\0' || line[word] != comment)) ++part.records;
     at = end + 1;
   }
 }
@@ -79,21 +86,18 @@ Index read_regular_records(Scanner& in, Index count, const std::function<bool(Sc
     std::vector<Scanner> ends(parts.size(), in);
     for_each_chunk(index_size(parts), 1, [&](Index k, Index, Index) {
       Part& part = parts[static_cast<std::size_t>(k)];
+      if (part.has_other_ends) return;
       Scanner at = in.at(static_cast<std::int64_t>(part.begin), part.first_line);
       const std::int64_t last = std::min<std::int64_t>(count, part.first_record + part.records);
       try {
         for (std::int64_t r = part.first_record; r < last; ++r) {
-          if (!read(at, static_cast<Index>(r)) || !at.at_line_end()) return;
+          if (at.at_end()) return;
+          const std::int64_t own_line = at.line();
+          if (!read(at, static_cast<Index>(r)) || at.line() != own_line || !at.at_line_end()) return;
         }
-        const auto end = static_cast<std::int64_t>(part.end);
-        if (at.byte() > end) return;
-        if (last == part.first_record + part.records) {
-          ends[static_cast<std::size_t>(k)] = in.at(end, part.first_line + part.lines);
-          part.is_regular = at.at_end() || at.byte() >= end;
-        } else {
-          ends[static_cast<std::size_t>(k)] = at;
-          part.is_regular = true;
-        }
+        ends[static_cast<std::size_t>(k)] =
+            last < count ? in.at(static_cast<std::int64_t>(part.end), part.first_line + part.lines) : at;
+        part.is_regular = true;
       } catch (const Error&) {  // the caller finds it again
       }
     });
