@@ -27,7 +27,7 @@ inline namespace v0_3 {
 enum class Repair : std::uint8_t {
   none,     ///< nothing moves
   carried,  ///< vertices that stayed keep their order, new ones come next to their neighbours
-  warm,     ///< computed anew, from the last Fiedler vector
+  warm,     ///< computed anew from the last Fiedler vector, to 30 times the tolerance
   fresh,    ///< computed anew
 };
 

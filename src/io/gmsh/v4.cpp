@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <set>
@@ -79,7 +78,7 @@ void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
     points.resize(points.size() + static_cast<std::size_t>(count));
     const std::span block = std::span(points).last(static_cast<std::size_t>(count));
     const Index regular = read_regular(source, count, [&](Scanner& in, Index i) {
-      return std::ranges::all_of(block[i], [&](double& x) { return in.take_number(x) && std::isfinite(x); });
+      return std::ranges::all_of(block[i], [&](double& x) { return in.take_finite(x); });
     });
     for (Point& point : block.subspan(regular)) {
       for (double& x : point) x = source.finite("a coordinate");

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <memory>
 #include <span>
 #include <unordered_set>
@@ -250,7 +249,7 @@ class Reader {
     std::vector<std::int64_t> references(count);
     const Index regular = read_regular_records(in_, count, [&](Scanner& in, Index v) {
       for (int k = 0; k < mesh_.dimension; ++k) {
-        if (!in.take_number(mesh_.points[v][k]) || !std::isfinite(mesh_.points[v][k])) return false;
+        if (!in.take_finite(mesh_.points[v][k])) return false;
       }
       return in.take_number(references[v]);
     });

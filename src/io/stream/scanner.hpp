@@ -8,6 +8,7 @@
 #include <meshorder/error.hpp>
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -72,6 +73,8 @@ class Scanner {
   /// otherwise. Reads each byte once, where `word` and a parser read it twice.
   template <class T>
   bool take_number(T& value);
+  /// The same of a finite real number; one that is not is taken, too.
+  bool take_finite(double& value) { return take_number(value) && std::isfinite(value); }
   /// Takes the next word as an integer of type T.
   template <class T>
   T integer(std::string_view what);

@@ -182,7 +182,7 @@ void read_points(Scanner& in, ReadContext& to) {
   };
   const Index regular = read_numbered(in, count, to.points, [&](Scanner& part, Index v) {
     for (int k = 0; k < mesh.dimension; ++k) {
-      if (!part.take_number(mesh.points[v][k]) || !std::isfinite(mesh.points[v][k])) return false;
+      if (!part.take_finite(mesh.points[v][k])) return false;
     }
     return take_all(part, attributes_of(v)) && (!marked || part.take_number(markers[v]));
   });
