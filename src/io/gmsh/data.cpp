@@ -341,30 +341,20 @@ void write_view(NumberWriter& sink, const WriteContext& output, const View& view
   std::visit(
       [&](const auto& values) {
         const auto width = static_cast<std::size_t>(array->components);
-        for (Index row = 0; row < rows; ++row) {
+        write_rows(sink, rows, [&](RowWriter& to, Index row) {
           const Index place = array->is_dense() ? row : array->indices[row];
           const std::int64_t id =
               view.association == Association::vertices ? output.node_id(place) : output.cell_id(place);
-          if (sink.binary && view.per == PerElement::one && static_cast<std::size_t>(components) == width &&
-              std::in_range<std::int32_t>(id)) {
-            char* at = sink.out.room(sizeof(std::int32_t) + width * sizeof(double));
-            at = put_number(at, static_cast<std::int32_t>(id), sink.order);
-            for (std::size_t k = 0; k < width; ++k)
-              at = put_number(at, as_double(values[row * width + k]), sink.order);
-            sink.out.written(at);
-            continue;
-          }
-          sink.int32(id);
+          to.int32(id);
           int nodes = 1;
           if (view.per != PerElement::one) {
             nodes = nodes_of_entry(mesh, place, view.per, view.nodes);
-            sink.int32(nodes);
+            to.int32(nodes);
           }
           for (std::size_t k = 0; k < static_cast<std::size_t>(nodes) * components; ++k) {
-            sink.real(k < width ? as_double(values[row * width + k]) : 0.0);
+            to.real(k < width ? as_double(values[row * width + k]) : 0.0);
           }
-          sink.end_line();
-        }
+        });
       },
       array->values);
 }

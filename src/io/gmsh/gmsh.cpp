@@ -477,7 +477,8 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   add_views(layout, output, notes);
 
   OutputFile out(path);
-  NumberWriter sink{out, path.string(), layout.binary, layout.order};
+  const std::string file = path.string();
+  NumberWriter sink(out, file, layout.binary, layout.order);
   for (const Section& section : layout.sections) write_section(sink, output, section);
   out.commit();
 }
@@ -521,10 +522,10 @@ void add_cell(Mesh& mesh, const ElementType& type, std::span<const Index> nodes)
   mesh.cells.push_back(type.shape, std::span(sorted).first(order.size()));
 }
 
-void write_cell_nodes(NumberWriter& sink, const WriteContext& output, Index c, bool wide) {
+void write_cell_nodes(RowWriter& to, const WriteContext& output, Index c, bool wide) {
   const auto nodes = output.mesh.cells[c];
   const std::span<const int> order = vtk_order(output.types[c]->shape, output.types[c]->nodes);
-  const auto put = [&](Index vertex) { sink.number(output.node_id(vertex), wide); };
+  const auto put = [&](Index vertex) { to.number(output.node_id(vertex), wide); };
   if (order.empty()) {
     for (const Index vertex : nodes) put(vertex);
     return;

@@ -6,7 +6,11 @@
 #include "io/stream/id_map.hpp"
 #include "io/stream/number_reader.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/text_rows.hpp"
+#include <meshorder/error.hpp>
 #include <meshorder/mesh.hpp>
+
+#include <fmt/format.h>
 
 #include <array>
 #include <bit>
@@ -208,22 +212,59 @@ std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const Metadata& m
 // ---- writing
 
 /// Writes numbers as text, separated by blanks, or as binary.
-struct NumberWriter {
-  void int32(std::int64_t value);
-  void size(std::int64_t value);
+/// @tparam Out  OutputFile or Text
+template <class Out>
+class NumbersTo {
+ public:
+  NumbersTo(Out& to, std::string_view path, bool is_binary = false, std::endian bytes = std::endian::native)
+      : out(to), file(path), binary(is_binary), order(bytes) {}
+
+  void int32(std::int64_t value) {
+    if (!binary) return size(value);
+    if (!std::in_range<std::int32_t>(value)) {
+      throw InputError(std::string(file),
+                       fmt::format("the number {} does not fit in this binary file", value),
+                       "give nodes and elements numbers below 2147483648");
+    }
+    out.binary(static_cast<std::int32_t>(value), order);
+  }
+  void size(std::int64_t value) { binary ? out.binary(value, order) : out.integer(blank(), value); }
   void number(std::int64_t value, bool wide) { wide ? size(value) : int32(value); }
-  void real(double value);
+  void real(double value) { binary ? out.binary(value, order) : out.real(blank(), value); }
+  void word(std::string_view text) {
+    out.write(blank());
+    out.write(text);
+  }
   /// Ends the line in text; does nothing in binary.
-  void end_line();
+  void end_line() {
+    if (!binary) out.write("\n");
+    at_line_start_ = true;
+  }
   /// Writes a line with a number that is text in binary files too.
   void text_line(std::int64_t value) { out.print("{}\n", value); }
 
-  OutputFile& out;
-  std::string file;
-  bool binary = false;
-  std::endian order = std::endian::native;
-  bool at_line_start = true;
+  Out& out;
+  const std::string_view file;
+  const bool binary;
+  const std::endian order;
+
+ private:
+  std::string_view blank() { return std::exchange(at_line_start_, false) ? "" : " "; }
+
+  bool at_line_start_ = true;
 };
+using NumberWriter = NumbersTo<OutputFile>;
+using RowWriter = NumbersTo<Text>;
+
+/// Writes `row(to, i)` for each i, made on all threads.
+template <class Row>
+void write_rows(NumberWriter& sink, Index count, const Row& row) {
+  meshorder::write_rows(sink.out, count, [&](Text& text, Index i) {
+    RowWriter to(text, sink.file, sink.binary, sink.order);
+    row(to, i);
+    to.end_line();
+  });
+}
 
 /// The input of the writer: a mesh and its layout, read with it or made for a mesh of another format.
 struct WriteContext {
@@ -259,7 +300,7 @@ bool add_view(Metadata& layout, const DataArray& array, Notes& notes);
 std::string name_in_quotes(std::string_view name);
 
 /// Writes the numbers of a cell's nodes in Gmsh's order, as size_t (4.1) if `wide`, else as int.
-void write_cell_nodes(NumberWriter& sink, const WriteContext& output, Index c, bool wide);
+void write_cell_nodes(RowWriter& to, const WriteContext& output, Index c, bool wide);
 
 void write_nodes_2(NumberWriter& sink, const WriteContext& output);
 void write_elements_2(NumberWriter& sink, const WriteContext& output);

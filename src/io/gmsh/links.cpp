@@ -100,7 +100,7 @@ void read_periodic(ReadContext& reading) {
 void write_periodic(NumberWriter& sink, const WriteContext& output) {
   const bool affine_line = has_affine_line(output.layout);
   const bool wide = output.layout.has_wide_numbers();
-  NumberWriter text{sink.out, sink.file};
+  NumberWriter text(sink.out, sink.file);
   NumberWriter& to = output.layout.is_version_2() ? text : sink;
   to.number(index_size(output.layout.periodic), wide);
   to.end_line();
@@ -114,8 +114,7 @@ void write_periodic(NumberWriter& sink, const WriteContext& output) {
     } else if (!link.affine.empty() && to.binary) {
       to.size(kAffine);
     } else if (!link.affine.empty()) {
-      to.out.write("Affine");
-      to.at_line_start = false;
+      to.word("Affine");
     }
     for (const double value : link.affine) to.real(value);
     if (!affine_line || !link.affine.empty()) to.end_line();

@@ -5,11 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
 namespace meshorder::gmsh {
-// ---- reading
-
 IdMap number_ids(const NumberReader& source, const std::vector<std::int64_t>& ids, std::string_view what) {
   for (const std::int64_t id : ids) {
     if (id < 0)
@@ -44,44 +40,6 @@ void expect_end(ReadContext& reading, std::string_view section) {
                                         source.scanner.file(), source.scanner.line(), found, end));
   }
   (void)source.scanner.word(end);
-}
-
-// ---- writing
-
-void NumberWriter::int32(std::int64_t value) {
-  if (binary) {
-    if (value > std::numeric_limits<std::int32_t>::max() ||
-        value < std::numeric_limits<std::int32_t>::min()) {
-      throw InputError(file, "the number " + std::to_string(value) + " does not fit in this binary file",
-                       "give nodes and elements numbers below 2147483648");
-    }
-    out.binary(static_cast<std::int32_t>(value), order);
-  } else {
-    size(value);
-  }
-}
-
-void NumberWriter::size(std::int64_t value) {
-  if (binary) {
-    out.binary(value, order);
-  } else {
-    out.integer(at_line_start ? "" : " ", value);
-    at_line_start = false;
-  }
-}
-
-void NumberWriter::real(double value) {
-  if (binary) {
-    out.binary(value, order);
-  } else {
-    out.real(at_line_start ? "" : " ", value);
-    at_line_start = false;
-  }
-}
-
-void NumberWriter::end_line() {
-  if (!binary) out.write("\n");
-  at_line_start = true;
 }
 
 }  // namespace meshorder::gmsh

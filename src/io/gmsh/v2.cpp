@@ -207,19 +207,15 @@ void write_nodes_2(NumberWriter& sink, const WriteContext& output) {
   const Mesh& mesh = output.mesh;
   const std::vector<double>* parameters = parameters_of(mesh);
   sink.text_line(mesh.vertex_count());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    sink.int32(output.node_id(v));
-    for (const double x : mesh.points[v]) sink.real(x);
-    if (!output.node_entities.empty()) {
-      const std::size_t at = 2 * static_cast<std::size_t>(v);
-      sink.int32(output.node_entities[at]);
-      sink.int32(output.node_entities[at + 1]);
-      for (int k = 0; k < parameters_2(output.node_entities[at]); ++k) {
-        sink.real((*parameters)[2 * at + 1 + k]);
-      }
-    }
-    sink.end_line();
-  }
+  write_rows(sink, mesh.vertex_count(), [&](RowWriter& to, Index v) {
+    to.int32(output.node_id(v));
+    for (const double x : mesh.points[v]) to.real(x);
+    if (output.node_entities.empty()) return;
+    const std::size_t at = 2 * static_cast<std::size_t>(v);
+    to.int32(output.node_entities[at]);
+    to.int32(output.node_entities[at + 1]);
+    for (int k = 0; k < parameters_2(output.node_entities[at]); ++k) to.real((*parameters)[2 * at + 1 + k]);
+  });
 }
 
 void write_elements_2(NumberWriter& sink, const WriteContext& output) {
@@ -229,28 +225,29 @@ void write_elements_2(NumberWriter& sink, const WriteContext& output) {
                         std::find(output.placed.begin(), output.placed.end(), labels) != output.placed.end());
   const bool version_1 = output.layout.is_version_1();
   sink.text_line(mesh.cell_count());
-  Index run_end = 0;
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const ElementType& type = *output.types[c];
-    const std::size_t tag_count = version_1 ? 2 : tags.count(c);
-    if (sink.binary && c == run_end) {
-      while (run_end < mesh.cell_count() && output.types[run_end] == &type &&
-             tags.count(run_end) == tag_count) {
-        ++run_end;
-      }
-      sink.int32(type.number);
-      sink.int32(run_end - c);
-      sink.int32(static_cast<std::int64_t>(tag_count));
+  const auto tag_count = [&](Index c) { return version_1 ? 2 : tags.count(c); };
+  const auto write_row = [&](RowWriter& to, Index c) {
+    const std::size_t count = tag_count(c);
+    to.int32(output.cell_id(c));
+    if (!to.binary) {
+      to.int32(output.types[c]->number);
+      if (!version_1) to.int32(static_cast<std::int64_t>(count));
     }
-    sink.int32(output.cell_id(c));
-    if (!sink.binary) {
-      sink.int32(type.number);
-      if (!version_1) sink.int32(static_cast<std::int64_t>(tag_count));
-    }
-    for (std::size_t k = 0; k < tag_count; ++k) sink.int32(tags.tag(c, k));
-    if (version_1) sink.int32(type.nodes);
-    write_cell_nodes(sink, output, c, false);
-    sink.end_line();
+    for (std::size_t k = 0; k < count; ++k) to.int32(tags.tag(c, k));
+    if (version_1) to.int32(output.types[c]->nodes);
+    write_cell_nodes(to, output, c, false);
+  };
+  if (!sink.binary) return write_rows(sink, mesh.cell_count(), write_row);
+  Index end = 0;
+  for (Index begin = 0; begin < mesh.cell_count(); begin = end) {
+    const auto is_alike = [&](Index c) {
+      return output.types[c] == output.types[begin] && tag_count(c) == tag_count(begin);
+    };
+    while (end < mesh.cell_count() && is_alike(end)) ++end;
+    sink.int32(output.types[begin]->number);
+    sink.int32(end - begin);
+    sink.int32(static_cast<std::int64_t>(tag_count(begin)));
+    write_rows(sink, end - begin, [&](RowWriter& to, Index i) { write_row(to, begin + i); });
   }
 }
 

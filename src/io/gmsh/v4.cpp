@@ -192,31 +192,6 @@ void write_block_head(NumberWriter& sink, const WriteContext& output, const Empt
   sink.end_line();
 }
 
-/// Writes the elements of one block, all of one type.
-void write_rows(NumberWriter& sink, const WriteContext& output, Index begin, Index end) {
-  const ElementType& type = *output.types[begin];
-  const bool wide = output.layout.has_wide_numbers();
-  if (!sink.binary || !wide || !vtk_order(type.shape, type.nodes).empty()) {
-    for (Index c = begin; c < end; ++c) {
-      sink.number(output.cell_id(c), wide);
-      write_cell_nodes(sink, output, c, wide);
-      sink.end_line();
-    }
-    return;
-  }
-  constexpr Index kAtOnce = 256;
-  const std::size_t bytes = (1 + static_cast<std::size_t>(type.nodes)) * sizeof(std::int64_t);
-  for (Index first = begin; first < end;) {
-    const Index last = std::min(end - first, kAtOnce) + first;
-    char* at = sink.out.room(static_cast<std::size_t>(last - first) * bytes);
-    for (; first < last; ++first) {
-      at = put_number(at, output.cell_id(first), sink.order);
-      for (const Index v : output.mesh.cells[first]) at = put_number(at, output.node_id(v), sink.order);
-    }
-    sink.out.written(at);
-  }
-}
-
 /// Returns the beginnings of runs of equal heads, and the end of the last.
 template <class Head, class Breaks>
 std::vector<Index> runs(Index count, const Head& head, const Breaks& breaks) {
@@ -360,41 +335,29 @@ void write_nodes_4(NumberWriter& sink, const WriteContext& output) {
   };
 
   // successive nodes of one entity make a block, which keeps the order of the mesh
-  const auto write_point = [&](const EmptyBlock& block, Index v) {
-    for (const double x : mesh.points[v]) sink.real(x);
+  const auto write_point = [&](RowWriter& to, const EmptyBlock& block, Index v) {
+    for (const double x : mesh.points[v]) to.real(x);
     const int given = block[2] == 1 ? parameters_4(output.layout, block[0]) : 0;
-    for (int k = 0; k < given; ++k) sink.real((*parameters)[4 * static_cast<std::size_t>(v) + 1 + k]);
-    sink.end_line();
+    for (int k = 0; k < given; ++k) to.real((*parameters)[4 * static_cast<std::size_t>(v) + 1 + k]);
   };
   const std::vector<Index> starts = runs(mesh.vertex_count(), head, [](Index) { return false; });
   const auto& empty = output.layout.empty_node_blocks;
-  const bool number_with_point = output.layout.is_version_40();
   write_head(sink, output, starts.size() - 1 + empty.size(), mesh.vertex_count(), output.node_ids);
   for (const EmptyBlock& block : empty) write_block_head(sink, output, block, 0);
   for (std::size_t b = 0; b + 1 < starts.size(); ++b) {
     const EmptyBlock block = head(starts[b]);
     write_block_head(sink, output, block, starts[b + 1] - starts[b]);
-    if (number_with_point) {
-      for (Index v = starts[b]; v < starts[b + 1]; ++v) {
-        sink.number(output.node_id(v), output.layout.has_wide_numbers());
-        write_point(block, v);
-      }
+    const Index first = starts[b];
+    const Index count = starts[b + 1] - first;
+    if (output.layout.is_version_40()) {
+      write_rows(sink, count, [&](RowWriter& to, Index i) {
+        to.number(output.node_id(first + i), output.layout.has_wide_numbers());
+        write_point(to, block, first + i);
+      });
       continue;
     }
-    for (Index v = starts[b]; v < starts[b + 1]; ++v) {
-      sink.size(output.node_id(v));
-      sink.end_line();
-    }
-    if (sink.binary && block[2] == 0) {
-      const std::span<const Point> points(mesh.points.data() + starts[b], mesh.points.data() + starts[b + 1]);
-      for (const Point& point : points) {
-        char* at = sink.out.room(sizeof(Point));
-        for (const double x : point) at = put_number(at, x, sink.order);
-        sink.out.written(at);
-      }
-      continue;
-    }
-    for (Index v = starts[b]; v < starts[b + 1]; ++v) write_point(block, v);
+    write_rows(sink, count, [&](RowWriter& to, Index i) { to.size(output.node_id(first + i)); });
+    write_rows(sink, count, [&](RowWriter& to, Index i) { write_point(to, block, first + i); });
   }
 }
 
@@ -408,11 +371,16 @@ void write_elements_4(NumberWriter& sink, const WriteContext& output) {
   };
   const std::vector<Index> starts = runs(mesh.cell_count(), head, begins_block);
   const auto& empty = output.layout.empty_element_blocks;
+  const bool wide = output.layout.has_wide_numbers();
   write_head(sink, output, starts.size() - 1 + empty.size(), mesh.cell_count(), output.cell_ids);
   for (const EmptyBlock& block : empty) write_block_head(sink, output, block, 0);
   for (std::size_t b = 0; b + 1 < starts.size(); ++b) {
     write_block_head(sink, output, head(starts[b]), starts[b + 1] - starts[b]);
-    write_rows(sink, output, starts[b], starts[b + 1]);
+    write_rows(sink, starts[b + 1] - starts[b], [&](RowWriter& to, Index i) {
+      const Index c = starts[b] + i;
+      to.number(output.cell_id(c), wide);
+      write_cell_nodes(to, output, c, wide);
+    });
   }
 }
 

@@ -8,6 +8,7 @@
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/stored_matrix.hpp"
 #include <meshorder/error.hpp>
@@ -262,16 +263,16 @@ Number negative(Number value) {
     return -value;
 }
 
-void write_value(OutputFile& out, const DataArray& values, Field field, Index entry, Symmetry transposed) {
+void add_value(Text& row, const DataArray& values, Field field, Index entry, Symmetry transposed) {
   for (Offset k = 0; k < values.components; ++k) {
     const Offset at = Offset{entry} * values.components + k;
     const bool turned = changes_sign(transposed, k);
     if (field == Field::integer) {
       const std::int64_t value = whole_value(values, at);
-      out.integer(" ", turned ? negative(value) : value);
+      row.integer(" ", turned ? negative(value) : value);
     } else {
       const double value = real_value(values, at);
-      out.real(" ", turned ? -value : value);
+      row.real(" ", turned ? -value : value);
     }
   }
 }
@@ -313,14 +314,14 @@ void write_matrix(const Mesh& mesh, const FilePath& path, Notes& notes) {
   out.print("{} matrix coordinate {} {}\n", kBanner, to_string(field), to_string(symmetry));
   if (own != nullptr) out.write(own->comments);
   out.print("{} {} {}\n", mesh.vertex_count(), mesh.vertex_count(), mesh.cell_count());
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
+  write_rows(out, mesh.cell_count(), [&](Text& row, Index c) {
     const std::span<const Index> entry = mesh.cells[c];
     const bool transposed = is_transposed(entry, symmetry);
-    out.integer("", Offset{transposed ? entry.back() : entry.front()} + 1);
-    out.integer(" ", Offset{transposed ? entry.front() : entry.back()} + 1);
-    if (values != nullptr) write_value(out, *values, field, c, transposed ? symmetry : Symmetry::general);
-    out.write("\n");
-  }
+    row.integer("", Offset{transposed ? entry.back() : entry.front()} + 1);
+    row.integer(" ", Offset{transposed ? entry.front() : entry.back()} + 1);
+    if (values != nullptr) add_value(row, *values, field, c, transposed ? symmetry : Symmetry::general);
+    row.write("\n");
+  });
   out.commit();
   note_all_unsupported(mesh, "Matrix Market", std::array{values}, notes);
   if (own == nullptr) note_metadata_unsupported(mesh, "Matrix Market", notes);

@@ -8,6 +8,7 @@
 #include "io/matrix/matrix.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/reorder.hpp"
 #include "mesh/stored_matrix.hpp"
@@ -305,9 +306,9 @@ void write_graph(const Mesh& mesh, const FilePath& path, Notes& notes) {
     out.integer(" ", vertex_weights->components);
   }
   out.write("\n");
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+  write_rows(out, mesh.vertex_count(), [&](Text& row, Index v) {
     std::string_view blank;
-    const auto put = [&](std::int64_t number) { out.integer(std::exchange(blank, " "), number); };
+    const auto put = [&](std::int64_t number) { row.integer(std::exchange(blank, " "), number); };
     if (sizes != nullptr) put(whole_value(*sizes, v));
     const Index components = vertex_weights != nullptr ? vertex_weights->components : 0;
     for (Index k = 0; k < components; ++k) put(whole_value(*vertex_weights, Offset{v} * components + k));
@@ -318,8 +319,8 @@ void write_graph(const Mesh& mesh, const FilePath& path, Notes& notes) {
       put(std::int64_t{edge.vertex} + 1);
       if (edge_weights != nullptr) put(whole_value(*edge_weights, edge.value));
     }
-    out.write("\n");
-  }
+    row.write("\n");
+  });
   out.commit();
 
   if (graph.loops > 0) {

@@ -1,12 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/byte_order.hpp"
 #include "io/stream/digits.hpp"
 
 #include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -46,6 +48,12 @@ class Text {
     } else {
       print("{}{}", before, value);
     }
+  }
+
+  /// Appends the number's bytes in the given order.
+  template <class T>
+  void binary(T value, std::endian order) {
+    written(put_number(room(sizeof(T)), value, order));
   }
 
   /// Returns room for so many bytes more. The caller then calls `written` with the end of what it put there,

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,12 @@ template <class Row>
 void write_rows(OutputFile& out, Index count, const Row& row) {
   constexpr Index kRows = 4096;  // about 100 kB, which a cache holds
   constexpr Index kChunks = 64;  // made before they are written
+  if (count <= kRows) {
+    Text text;
+    for (Index i = 0; i < count; ++i) row(text, i);
+    out.write(text.view());
+    return;
+  }
   std::vector<Text> made;
   std::vector<Text> written;
   for (Index first = 0; first < count || !made.empty();) {
@@ -40,6 +47,20 @@ void write_rows(OutputFile& out, Index count, const Row& row) {
     });
     first += rows;
   }
+}
+
+/// Writes `count` numbers, `in_line` on each line, made as the rows are.
+///
+/// @param number  `number(text, before, i)` appends `before` and number i
+template <class Number>
+void write_lines(OutputFile& out, std::size_t count, std::size_t in_line, const Number& number) {
+  write_rows(out, static_cast<Index>((count + in_line - 1) / in_line), [&](Text& text, Index line) {
+    const std::size_t first = static_cast<std::size_t>(line) * in_line;
+    for (std::size_t i = first; i < std::min(first + in_line, count); ++i) {
+      number(text, i == first ? "" : " ", i);
+    }
+    text.write("\n");
+  });
 }
 
 }  // namespace meshorder

@@ -6,6 +6,7 @@
 #include "io/labels.hpp"
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 
@@ -216,21 +217,16 @@ class Su2Writer {
 
   void write(const std::vector<Index>& cells, bool numbered) {
     const bool turn = own_ == nullptr || !own_->wedges_face_inward;
-    std::int64_t number = 0;
-    for (const Index c : cells) {
-      const auto cell = mesh_.cells[c];
-      const Shape shape = mesh_.cells.shapes[c];
-      out_.integer("", kind_of(shape, static_cast<int>(cell.size()))->type);
+    write_rows(out_, index_size(cells), [&](Text& row, Index i) {
+      const auto cell = mesh_.cells[cells[i]];
+      const Shape shape = mesh_.cells.shapes[cells[i]];
+      row.integer("", kind_of(shape, static_cast<int>(cell.size()))->type);
       for (std::size_t k = 0; k < cell.size(); ++k) {
-        out_.integer(" ", cell[turn && shape == Shape::wedge ? kWedge[k] : k]);
+        row.integer(" ", cell[turn && shape == Shape::wedge ? kWedge[k] : k]);
       }
-      if (numbered) out_.integer(" ", number++);
-      out_.write("\n");
-    }
-  }
-
-  void put_reals(std::span<const double> numbers) {
-    for (std::size_t k = 0; k < numbers.size(); ++k) out_.real(k == 0 ? "" : " ", numbers[k]);
+      if (numbered) row.integer(" ", i);
+      row.write("\n");
+    });
   }
 
   void write_points() {
@@ -239,16 +235,11 @@ class Su2Writer {
     if (twice) out_.integer(" ", mesh_.vertex_count());
     out_.write("\n");
     const bool numbered = own_ != nullptr && own_->numbers_points;
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-      const Point& point = mesh_.points[v];
-      if (dimension_ == 3) {
-        put_reals(point);
-      } else {
-        put_reals(std::span(point).first(2));
-      }
-      if (numbered) out_.integer(" ", v);
-      out_.write("\n");
-    }
+    write_rows(out_, mesh_.vertex_count(), [&](Text& row, Index v) {
+      for (int k = 0; k < dimension_; ++k) row.real(k == 0 ? "" : " ", mesh_.points[v][k]);
+      if (numbered) row.integer(" ", v);
+      row.write("\n");
+    });
   }
 
   void write_surface_points(const std::vector<Metadata::SurfacePoint>& points) {

@@ -6,6 +6,7 @@
 #include "io/all_formats.hpp"
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/surface/obj_parts.hpp"
 #include "io/surface/surface_data.hpp"
 #include "io/unsupported.hpp"
@@ -183,20 +184,20 @@ class ObjWriter {
   void write_vertices() {
     // whole colours run to 255, those of OBJ to 1
     const double scale = colors_.integers ? 255 : 1;
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+    write_rows(out_, mesh_.vertex_count(), [&](Text& row, Index v) {
       const Point& p = mesh_.points[v];
-      out_.real("v ", p[0]);
-      out_.real(" ", p[1]);
-      out_.real(" ", p[2]);
+      row.real("v ", p[0]);
+      row.real(" ", p[1]);
+      row.real(" ", p[2]);
       const Index color = color_rows_.empty() ? v : color_rows_[v];
       const Index weight = weight_rows_.empty() ? v : weight_rows_[v];
       if (colors_.width > 0 && color >= 0) {
-        for (const double x : colors_[color].first(3)) out_.real(" ", x / scale);
+        for (const double x : colors_[color].first(3)) row.real(" ", x / scale);
       } else if (weights_ && weight >= 0) {
-        out_.print(" {}", (*weights_)[weight]);
+        row.number(" ", (*weights_)[weight]);
       }
-      out_.write("\n");
-    }
+      row.write("\n");
+    });
   }
 
   void write_lists() {

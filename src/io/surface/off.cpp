@@ -7,6 +7,7 @@
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/surface/surface_data.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
@@ -315,22 +316,22 @@ void note_losses(const Mesh& mesh, const Content& content, Notes& notes) {
   note_metadata_unsupported(mesh, "OFF", notes);
 }
 
-void write_numbers(OutputFile& out, std::span<const double> numbers) {
-  for (const double x : numbers) out.print(" {}", x);
+void add_numbers(Text& row, std::span<const double> numbers) {
+  for (const double x : numbers) row.real(" ", x);
 }
 
-/// Writes a real colour with a decimal point, as 1 and 1.0 differ in OFF.
-void write_color(OutputFile& out, std::span<const double> color, bool integers) {
+/// Appends a real colour with a decimal point, as 1 and 1.0 differ in OFF.
+void add_color(Text& row, std::span<const double> color, bool integers) {
   for (const double x : color) {
     std::string text = fmt::format("{}", x);
     if (!integers && text.find_first_not_of("+-0123456789") == std::string::npos) text += ".0";
-    out.print(" {}", text);
+    row.print(" {}", text);
   }
 }
 
-void write_face_color(OutputFile& out, const Content& content, Index face) {
+void add_face_color(Text& text, const Content& content, Index face) {
   if (content.face_colors.width > 0) {
-    return write_color(out, content.face_colors[face], content.face_colors.integers);
+    return add_color(text, content.face_colors[face], content.face_colors.integers);
   }
   const DataArray* const array = content.color_rows[face].first;
   const Offset row = content.color_rows[face].second;
@@ -340,7 +341,7 @@ void write_face_color(OutputFile& out, const Content& content, Index face) {
         if constexpr (std::is_arithmetic_v<typename std::decay_t<decltype(values)>::value_type>) {
           for (Index k = 0; k < array->components; ++k) {
             const auto x = static_cast<double>(values[row * array->components + k]);
-            write_color(out, {&x, 1}, holds_integers(array->values));
+            add_color(text, {&x, 1}, holds_integers(array->values));
           }
         }
       },
@@ -355,20 +356,22 @@ void write_off(const Mesh& mesh, const FilePath& path, Notes& notes) {
             content.normals.width > 0 ? "N" : "");
   if (metadata) out.write(metadata->comments);
   out.print("{} {} {}\n", mesh.vertex_count(), mesh.cell_count(), metadata ? metadata->edges : 0);
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+  write_rows(out, mesh.vertex_count(), [&](Text& row, Index v) {
     const Point& p = mesh.points[v];
-    out.print("{} {} {}", p[0], p[1], p[2]);
-    if (content.normals.width > 0) write_numbers(out, content.normals[v]);
-    if (content.colors.width > 0) write_color(out, content.colors[v], content.colors.integers);
-    if (content.texture.width > 0) write_numbers(out, content.texture[v]);
-    out.write("\n");
-  }
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    out.print("{}", mesh.cells.vertex_count(c));
-    for (const Index v : mesh.cells[c]) out.print(" {}", v);
-    write_face_color(out, content, c);
-    out.write("\n");
-  }
+    row.real("", p[0]);
+    row.real(" ", p[1]);
+    row.real(" ", p[2]);
+    if (content.normals.width > 0) add_numbers(row, content.normals[v]);
+    if (content.colors.width > 0) add_color(row, content.colors[v], content.colors.integers);
+    if (content.texture.width > 0) add_numbers(row, content.texture[v]);
+    row.write("\n");
+  });
+  write_rows(out, mesh.cell_count(), [&](Text& row, Index c) {
+    row.integer("", mesh.cells.vertex_count(c));
+    for (const Index v : mesh.cells[c]) row.integer(" ", v);
+    add_face_color(row, content, c);
+    row.write("\n");
+  });
   out.commit();
   note_losses(mesh, content, notes);
 }

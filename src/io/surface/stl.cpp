@@ -7,6 +7,7 @@
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 
@@ -344,22 +345,22 @@ void write_binary(const Mesh& mesh, const StlMetadata& metadata, const DataArray
   if (rounded) notes.emplace_back("coordinates are rounded to 32 bits, as binary STL has them");
 }
 
-void write_facet(const Mesh& mesh, Index cell, OutputFile& out) {
+void add_facet(Text& text, const Mesh& mesh, Index cell) {
   const auto t = mesh.cells[cell];
   const Point n = normal_of(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
-  out.print("facet normal {} {} {}\n  outer loop\n", n[0], n[1], n[2]);
+  text.print("facet normal {} {} {}\n  outer loop\n", n[0], n[1], n[2]);
   for (const Index v : t) {
     const Point& p = mesh.points[v];
-    out.print("    vertex {} {} {}\n", p[0], p[1], p[2]);
+    text.print("    vertex {} {} {}\n", p[0], p[1], p[2]);
   }
-  out.write("  endloop\nendfacet\n");
+  text.write("  endloop\nendfacet\n");
 }
 
 void write_solid(const Mesh& mesh, const std::string& name, const std::vector<Index>& cells,
                  OutputFile& out) {
   const std::string title = name.empty() ? "" : " " + name;
   out.print("solid{}\n", title);
-  for (const Index cell : cells) write_facet(mesh, cell, out);
+  write_rows(out, index_size(cells), [&](Text& text, Index i) { add_facet(text, mesh, cells[i]); });
   out.print("endsolid{}\n", title);
 }
 

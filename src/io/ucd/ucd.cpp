@@ -8,6 +8,7 @@
 #include "io/labels.hpp"
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
 
@@ -55,11 +56,11 @@ class Writer {
     if (own_ != nullptr) out_.write(own_->comments_before);
     out_.print("{} {} {} {} {}\n", mesh_.vertex_count(), mesh_.cell_count(), values_of(Association::vertices),
                values_of(Association::cells), own_ != nullptr ? own_->model_values : 0);
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-      out_.integer("", nodes_.of(v));
-      for (const double coordinate : mesh_.points[v]) out_.real(" ", coordinate);
-      out_.write("\n");
-    }
+    write_rows(out_, mesh_.vertex_count(), [&](Text& row, Index v) {
+      row.integer("", nodes_.of(v));
+      for (const double coordinate : mesh_.points[v]) row.real(" ", coordinate);
+      row.write("\n");
+    });
     write_cells();
     write_data(Association::vertices, nodes_);
     write_data(Association::cells, cells_);
@@ -119,19 +120,19 @@ class Writer {
 
   void write_cells() {
     const Labels materials = labels_of(mesh_, Association::cells);
-    std::array<Index, 8> as_given{};
-    for (Index c = 0; c < mesh_.cell_count(); ++c) {
+    write_rows(out_, mesh_.cell_count(), [&](Text& row, Index c) {
+      std::array<Index, 8> as_given{};
       const auto cell = mesh_.cells[c];
       const CellKind& kind = *kind_of(mesh_.cells.shapes[c], static_cast<int>(cell.size()));
-      out_.integer("", cells_.of(c));
-      out_.integer(" ", materials.any() ? materials.values[c] : 0);
-      out_.write(" ");
-      out_.write(kind.name);
+      row.integer("", cells_.of(c));
+      row.integer(" ", materials.any() ? materials.values[c] : 0);
+      row.write(" ");
+      row.write(kind.name);
       for (std::size_t k = 0; k < cell.size(); ++k)
         as_given[static_cast<std::size_t>(kind.places[k])] = cell[k];
-      for (std::size_t k = 0; k < cell.size(); ++k) out_.integer(" ", nodes_.of(as_given[k]));
-      out_.write("\n");
-    }
+      for (std::size_t k = 0; k < cell.size(); ++k) row.integer(" ", nodes_.of(as_given[k]));
+      row.write("\n");
+    });
     const auto missing = std::count(materials.given.begin(), materials.given.end(), false);
     if (missing > 0) notes_.push_back(fmt::format("{} cells have no label and get the material 0", missing));
   }
@@ -144,14 +145,14 @@ class Writer {
     out_.write("\n");
     for (const Array& array : arrays) out_.print("{}\n", array.label);
     const Index rows = association == Association::vertices ? mesh_.vertex_count() : mesh_.cell_count();
-    for (Index row = 0; row < rows; ++row) {
-      out_.integer("", numbers.of(row));
-      for (const Array& array : arrays) write_row(*array.array, row);
-      out_.write("\n");
-    }
+    write_rows(out_, rows, [&](Text& text, Index row) {
+      text.integer("", numbers.of(row));
+      for (const Array& array : arrays) add_values(text, *array.array, row);
+      text.write("\n");
+    });
   }
 
-  void write_row(const DataArray& array, Index row) {
+  static void add_values(Text& text, const DataArray& array, Index row) {
     std::visit(
         [&](const auto& values) {
           using Value = typename std::decay_t<decltype(values)>::value_type;
@@ -160,9 +161,9 @@ class Writer {
               const Value value = values[Offset{row} * array.components + k];
               // a float as the double that it is, which is read back
               if constexpr (std::is_same_v<Value, float>) {
-                out_.real(" ", double{value});
+                text.real(" ", double{value});
               } else {
-                out_.number(" ", value);
+                text.number(" ", value);
               }
             }
           }

@@ -8,6 +8,7 @@
 #include "io/named_parts.hpp"
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
 #include "io/vega/parts.hpp"
 #include <meshorder/error.hpp>
@@ -186,11 +187,11 @@ class VegaWriter {
     out_.write("\n");
   }
 
-  void write_row(const DataArray* array, Index row) {
+  static void add_values(Text& text, const DataArray* array, Index row) {
     if (!array) return;
     const auto& values = std::get<std::vector<double>>(array->values);
     for (Index k = 0; k < array->components; ++k) {
-      out_.real(" ", values[static_cast<Offset>(row) * array->components + k]);
+      text.real(" ", values[static_cast<Offset>(row) * array->components + k]);
     }
   }
 
@@ -199,14 +200,13 @@ class VegaWriter {
     const DataArray* marker = markers();
     out_.print("*VERTICES\n{} 3 {} {}\n", mesh_.vertex_count(), extra ? extra->components : 0,
                marker ? 1 : 0);
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-      const Point& p = mesh_.points[v];
-      out_.integer("", vertex_number(v));
-      for (const double x : p) out_.real(" ", x);
-      write_row(extra, v);
-      if (marker) out_.integer(" ", std::get<std::vector<std::int32_t>>(marker->values)[v]);
-      out_.write("\n");
-    }
+    write_rows(out_, mesh_.vertex_count(), [&](Text& row, Index v) {
+      row.integer("", vertex_number(v));
+      for (const double x : mesh_.points[v]) row.real(" ", x);
+      add_values(row, extra, v);
+      if (marker) row.integer(" ", std::get<std::vector<std::int32_t>>(marker->values)[v]);
+      row.write("\n");
+    });
     out_.write("\n");
   }
 
@@ -215,12 +215,12 @@ class VegaWriter {
     const int width = mesh_.cell_count() == 0 ? 4 : mesh_.cells.vertex_count(0);
     out_.print("*ELEMENTS\n{}\n{} {} {}\n", word_of(width), mesh_.cell_count(), width,
                extra ? extra->components : 0);
-    for (Index c = 0; c < mesh_.cell_count(); ++c) {
-      out_.integer("", element_number(c));
-      for (const Index v : mesh_.cells[c]) out_.integer(" ", vertex_number(v));
-      write_row(extra, c);
-      out_.write("\n");
-    }
+    write_rows(out_, mesh_.cell_count(), [&](Text& row, Index c) {
+      row.integer("", element_number(c));
+      for (const Index v : mesh_.cells[c]) row.integer(" ", vertex_number(v));
+      add_values(row, extra, c);
+      row.write("\n");
+    });
     out_.write("\n");
   }
 

@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/vtk/vtk.hpp"
 #include "mesh/values.hpp"
 
@@ -147,10 +148,8 @@ class LegacyWriter {
 
   template <class Number>
   void write_text(std::span<const Number> numbers, std::size_t in_line) {
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      out_.number(i == 0 ? "" : i % in_line == 0 ? "\n" : " ", numbers[i]);
-    }
-    if (!numbers.empty()) out_.write("\n");
+    write_lines(out_, numbers.size(), in_line,
+                [&](Text& line, std::string_view before, std::size_t i) { line.number(before, numbers[i]); });
   }
 
   template <class Stored, class Number>
@@ -255,9 +254,9 @@ class LegacyWriter {
     if (floats && layout_.binary) {
       write_binary<float>(numbers);
     } else if (floats) {
-      for (const Point& p : from_.mesh.points)
-        out_.print("{} {} {}\n", static_cast<float>(p[0]), static_cast<float>(p[1]),
-                   static_cast<float>(p[2]));
+      write_lines(out_, numbers.size(), 3, [&](Text& line, std::string_view before, std::size_t i) {
+        line.number(before, static_cast<float>(numbers[i]));
+      });
     } else {
       write_numbers<double>(numbers, 3);
     }
@@ -299,9 +298,11 @@ class LegacyWriter {
     }
     out_.print("{} {} {}\n", name, end - begin, size + end - begin);
     if (!layout_.binary) {
-      for (Index c = begin; c < end; ++c)
-        out_.print("{} {}\n", cells.vertex_count(c), fmt::join(cells[c], " "));
-      return;
+      return write_rows(out_, end - begin, [&](Text& row, Index i) {
+        row.integer("", cells.vertex_count(begin + i));
+        for (const Index v : cells[begin + i]) row.integer(" ", v);
+        row.write("\n");
+      });
     }
     for (Index c = begin; c < end; ++c) {
       const std::span<const Index> cell = cells[c];

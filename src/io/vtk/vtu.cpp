@@ -9,6 +9,7 @@
 #include "io/all_formats.hpp"
 #include "io/stream/base64.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include "mesh/values.hpp"
@@ -335,16 +336,11 @@ class VtuWriter {
   void write_text(const Array& array) {
     std::visit(
         [&](const auto& numbers) {
-          for (std::size_t i = 0; i < numbers.size(); ++i) {
-            const std::string_view before = i == 0 ? "" : i % 6 == 0 ? "\n" : " ";
-            using Number = std::decay_t<decltype(numbers[i])>;
-            if constexpr (std::is_same_v<Number, char>) {
-              out_.integer(before, static_cast<unsigned char>(numbers[i]));
-            } else {
-              out_.number(before, numbers[i]);
-            }
-          }
-          if (!numbers.empty()) out_.write("\n");
+          using Number = std::decay_t<decltype(numbers[0])>;
+          using Shown = std::conditional_t<std::is_same_v<Number, char>, unsigned char, Number>;
+          write_lines(out_, numbers.size(), 6, [&](Text& line, std::string_view before, std::size_t i) {
+            line.number(before, static_cast<Shown>(numbers[i]));
+          });
         },
         array.numbers);
   }
