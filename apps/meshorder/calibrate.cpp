@@ -164,10 +164,10 @@ void run(const CalibrateArguments& arguments) {
 
 void add_calibrate(CLI::App& subcommand) {
   subcommand.description(
-      "Measure this machine, so that `info` predicts times for it: what a thread gets of the caches,\n"
+      "Measure this machine, so that `info` predicts times for it: a thread's share of the caches,\n"
       "latencies, bandwidths, and what misses cost each kernel on one thread and on all. The result is\n"
       "kept for this processor and this build in $MESHORDER_CACHE, else in $XDG_CACHE_HOME/meshorder,\n"
-      "else in ~/.cache/meshorder. `info` does it by itself the first time, 40 to 60 s, unless --machine\n"
+      "else in ~/.cache/meshorder. The first `info` calibrates by itself, in 40 to 60 s, unless --machine\n"
       "or $MESHORDER_MACHINE names another machine.");
   subcommand.footer(
       "Examples:\n"
@@ -178,8 +178,8 @@ void add_calibrate(CLI::App& subcommand) {
       "--list", arguments->list, "List the machines that --machine takes, and do nothing else");
   subcommand
       .add_flag("--recheck", arguments->recheck,
-                "Run the kernels for some seconds, and say whether the machine is as it was when it was\n"
-                "calibrated")
+                "Run the kernels for some seconds, and say whether the machine is as it was in the\n"
+                "calibration")
       ->excludes(list);
   subcommand.add_option("--budget", arguments->seconds, "Seconds to spend")
       ->check(positive())

@@ -107,8 +107,8 @@ void add_keeping_options(CLI::App& subcommand, Keeping& keeping) {
       ->type_name("CELLS");
   subcommand.add_flag(
       "--strict", keeping.strict,
-      "Fail rather than leave out cells, arrays, sets or ids that the output format has no place\n"
-      "for; without it they are named on stderr");
+      "Fail if the output format has no place for some cells, arrays, sets or ids; without --strict\n"
+      "these are left out and named on stderr");
 }
 
 void add_seed_option(CLI::App& subcommand, std::uint64_t& seed) {
@@ -121,7 +121,7 @@ void add_workload_option(CLI::App& subcommand, OrderOptions& options) {
   subcommand
       .add_option_function<std::string>(
           "--for", [&options](const std::string& use) { options.workload = parse_workload(use); },
-          "What the order should be best for, if `auto` chooses it:\n" +
+          "Use or property for which `auto` chooses the order:\n" +
               join(kWorkloads, [](Workload use) { return to_string(use); }))
       ->type_name("USE")
       ->default_str(std::string(to_string(options.workload)));
@@ -132,7 +132,7 @@ void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
   add_seed_option(subcommand, options.seed);
   subcommand
       .add_option("--tolerance", options.tolerance,
-                  "Residual of Fiedler vectors relative to lambda2; below 0.1 orders of meshes hardly change")
+                  "Residual of Fiedler vectors relative to lambda2; below 0.1, mesh orders hardly change")
       ->check(positive())
       ->capture_default_str();
 }
@@ -141,8 +141,8 @@ CLI::Option* add_ids_option(CLI::App& subcommand, std::string& ids) {
   return subcommand
       .add_option("--ids", ids,
                   "Numbers that the file gives its vertices and cells: `renumber` sorts them along the new\n"
-                  "order; `keep` leaves each with its vertex or cell, so that other files that name it stay\n"
-                  "valid; `attach` sorts them, and adds the old ones as arrays `original`")
+                  "order; `keep` leaves each with its vertex or cell, so that other files that use the\n"
+                  "numbers stay valid; `attach` sorts them, and adds the old ones as arrays `original`")
       ->check(CLI::IsMember({"renumber", "keep", "attach"}))
       ->capture_default_str();
 }
@@ -150,8 +150,8 @@ CLI::Option* add_ids_option(CLI::App& subcommand, std::string& ids) {
 void add_cache_option(CLI::App& subcommand, std::string& caches) {
   subcommand.add_option(
       "--cache", caches,
-      "Caches to predict misses for: this (machine), paper, or the sizes of the levels, such as\n"
-      "48K,1M,32M");
+      "Caches to predict misses for: this (this machine's), paper (the paper's), or the sizes of the\n"
+      "levels, such as 48K,1M,32M");
 }
 
 void with_threads(int threads, const std::function<void()>& work) {

@@ -238,7 +238,7 @@ void add_compare(CLI::App& subcommand) {
       .add_option(
           "--methods", arguments->methods,
           "Orders to compare with the file's own, VERTICES or VERTICES/ELEMENTS, separated by commas\n"
-          "(default: auto, all methods for vertices but scrambled, and fiedler/fiedler)")
+          "(default: auto, all methods for vertices except scrambled, and fiedler/fiedler)")
       ->delimiter(',');
   subcommand.add_flag("--details", arguments->details,
                       "Also show edge spans, cache misses and milliseconds of each order");

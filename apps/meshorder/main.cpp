@@ -59,17 +59,17 @@ constexpr std::array kSubcommands{
 void describe(CLI::App& app) {
   app.description(
       "Reorders the vertices and elements of a simulation mesh, with all data in its file, so that\n"
-      "physics on it runs faster.\n\n"
+      "simulations on it run faster.\n\n"
       "  meshorder order  dragon.veg -o ordered.veg   order by the method chosen for the mesh\n"
       "  meshorder info   dragon.veg                  counts and spans; is it in a good order?\n"
       "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
       "  meshorder try wing.su2 -- SU2_CFD wing.cfg {} your own program in several orders\n"
       "  meshorder openfoam cavity                    order the cells of an OpenFOAM case\n"
-      "  meshorder calibrate                          measure this machine, for what info predicts\n"
+      "  meshorder calibrate                          measure this machine, for info's predictions\n"
 #ifdef MESHORDER_HAS_LAB
       "  meshorder simulate falling --mesh dragon.veg simulate an elastic body and time it\n"
       "  meshorder reproduce -o results               the paper's study on this machine, as a page\n"
-      "  meshorder report dragon.veg                  all of it as a page for the browser\n"
+      "  meshorder report dragon.veg                  mesh, orders and kernels as a page for the browser\n"
 #endif
   );
   app.name("meshorder");

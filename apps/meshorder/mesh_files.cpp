@@ -21,7 +21,7 @@ void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids
   subcommand.add_option(
       "--maps", files.maps,
       "Also write the permutations as NumPy files, PREFIX.vertices.old_to_new.npy and so on, and\n"
-      "PREFIX.maps.json, by which `apply` knows the mesh" +
+      "PREFIX.maps.json, by which `apply` recognises the mesh" +
           more_maps);
 }
 

@@ -392,12 +392,12 @@ void add_openfoam(CLI::App& subcommand) {
   subcommand.add_option("CASE", arguments->input, "Folder of the case, or its .foam file")->required();
   subcommand
       .add_option("--cells", arguments->cells,
-                  "Method for cells, one of those for vertices that `meshorder methods` lists")
+                  "Method for cells: one of the vertex methods that `meshorder methods` lists")
       ->capture_default_str();
   subcommand.add_option("--region", arguments->region, "Order the mesh of this region")->type_name("NAME");
   subcommand
       .add_option("--time", arguments->time,
-                  "Order the mesh of this time, as it stands in the folder's name, instead of `constant`")
+                  "Order the mesh of this time, written as in the folder's name, instead of `constant`")
       ->type_name("TIME");
   subcommand.add_flag("--parallel", arguments->parallel,
                       "Order the meshes of a decomposed case, in processor0, processor1, …");

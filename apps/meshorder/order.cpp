@@ -233,7 +233,7 @@ void run(const OrderArguments& arguments) {
 
 void add_order(CLI::App& subcommand) {
   subcommand.description(
-      "Reorder a mesh with all its data, labels and groups. The extension of the output is its format.");
+      "Reorder a mesh with all its data, labels and groups. The extension of the output sets its format.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder order dragon.veg -o ordered.veg\n"
@@ -257,25 +257,24 @@ void add_order(CLI::App& subcommand) {
   subcommand
       .add_option(
           "--group-by", arguments->reordering.group_by,
-          "Keep groups together: an array of integers that `meshorder info` lists, or `sets`.\n"
+          "Keep groups together. NAME is an array of integers that `meshorder info` lists, or `sets`.\n"
           "`label` is the file's own cell tag (Gmsh's first physical group, Medit's reference);\n"
           "gmsh:geometrical: Gmsh's entities; attribute: TetGen's regions; sets: Vega's regions and\n"
           "named physical groups. Cells are sorted by value, each group in the methods' order; a\n"
-          "vertex goes with the smallest value among its elements. An array on vertices groups only\n"
+          "vertex has the smallest value among its elements. An array on vertices groups only\n"
           "the vertices. Write cells:NAME or vertices:NAME if both have that array (default: cells).\n"
           "Cells and vertices without a value come last")
       ->type_name("NAME");
   subcommand.add_flag(
       "--measure", arguments->measure,
       "Time the kernels for about two seconds, in the file's order, in the one that `auto` takes and\n"
-      "in the two predicted to be the best of five others, and take the fastest. Worth it for meshes\n"
-      "that are computed on for long. The result may differ from run to run, and between machines");
+      "in the two predicted to be the best of five others, and take the fastest. Useful for meshes on\n"
+      "which programs run for long. The result may differ from run to run, and between machines");
   subcommand
       .add_flag(
           "--predict", arguments->predict,
-          "The same without timing: take the order whose predicted times on --machine are the least. Gives\n"
-          "the same order whenever it is called with the same costs; the first time on a machine\n"
-          "calibrates it, 40 to 60 s")
+          "Like --measure, without timing: take the order whose predicted times on --machine are the least.\n"
+          "The same costs give the same order; the first call on a machine calibrates it, in 40 to 60 s")
       ->excludes("--measure");
   add_machine_option(subcommand, arguments->machine);
   add_all_threads_option(subcommand, arguments->all_threads);

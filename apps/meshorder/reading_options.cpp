@@ -27,9 +27,9 @@ void add_reading_options(CLI::App& subcommand) {
   subcommand
       .add_option_function<std::string>(
           "--limit-memory", [](const std::string& text) { set_memory_limit(*limit_of(text)); },
-          "Refuse files that would take more memory than this, such as 4G, for values that are not written\n"
-          "out in the file (compressed, repeated or only counted), or for a graph of its cells. `none`: no\n"
-          "limit. Default: 256M and 100 times the file's size, at most three quarters of the memory")
+          "Memory limit, such as 4G, for values that a file does not write out (compressed, repeated or\n"
+          "only counted) and for the graph of its cells: files that need more are refused. `none`: no\n"
+          "limit. Default: 256M plus 100 times the file's size, at most three quarters of the memory")
       ->check(CLI::Validator(
           [](std::string& text) {
             return limit_of(text) ? std::string() : "'" + text + "' is no size, such as 4G, and not none";
@@ -42,15 +42,15 @@ void add_reading_options(CLI::App& subcommand) {
           [](const std::vector<std::string>& folders) {
             for (const std::string& folder : folders) allow_includes_from(folder);
           },
-          "Read files that the mesh includes also from this folder and those in it, not only from the\n"
-          "mesh's own; may be repeated")
+          "Also read included files from this folder and its subfolders, not only from the folder of the\n"
+          "mesh; may be repeated")
       ->check(CLI::ExistingDirectory)
       ->type_name("FOLDER")
       ->allow_extra_args(false);
   subcommand.add_flag_callback(
       "--trust", trust_files,
       "Read files that libraries parse (CGNS, Exodus, MED, VTKHDF, XDMF) with all rights of this process,\n"
-      "not in one that can reach nothing else");
+      "not in a separate, confined process");
 }
 
 }  // namespace meshorder::command

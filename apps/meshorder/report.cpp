@@ -315,7 +315,7 @@ void run(const ReportArguments& arguments) {
 
 void add_report(CLI::App& subcommand) {
   subcommand.description(
-      "Write a page for the browser: meshes coloured by their order, spans, caches, kernels, tables.\n"
+      "Write a page for the browser: meshes, coloured by their order; spans, caches, kernels, tables.\n"
       "The page is one file and needs no network.");
   subcommand.footer(
       "Examples:\n"

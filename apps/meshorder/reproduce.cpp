@@ -105,7 +105,7 @@ void run(const ReproduceArguments& arguments) {
 void add_reproduce(CLI::App& subcommand) {
   subcommand.description(
       "Repeat the paper's study on this machine: six scenarios and a fluid, in the paper's five\n"
-      "orders and in that of `meshorder order`; tables and a page.");
+      "orders and in that of `meshorder order`; writes tables and a page.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder reproduce --quick -o results   a few steps of each scenario: some minutes\n"
@@ -129,7 +129,7 @@ void add_reproduce(CLI::App& subcommand) {
       ->capture_default_str();
   subcommand
       .add_option("--orders", arguments->orders,
-                  "Orders besides these six: VERTICES/ELEMENTS, separated by commas")
+                  "Orders besides the six above: VERTICES/ELEMENTS, separated by commas")
       ->delimiter(',');
   subcommand.add_option("--runs", plan.runs, "Runs of each scenario in each order")
       ->check(in_range(1, 1000))

@@ -116,7 +116,7 @@ void take_program_to_try(std::vector<std::string>& arguments) {
 void add_try(CLI::App& subcommand) {
   subcommand.description(
       "Run a program of yours on a mesh as it is and in other orders, and say in which it runs faster.\n"
-      "The program comes after --. Of its words, {} stands for the mesh, {stem} for its name without\n"
+      "The program comes after --. In its arguments, {} stands for the mesh, {stem} for its name without\n"
       "extension, and {out} for a path for outputs. It runs without a shell, in a private folder with\n"
       "copies of the files beside the mesh; nothing of yours is changed.\n"
       "MESH may be the folder of an OpenFOAM case: the program then runs in copies of it.");
@@ -133,13 +133,13 @@ void add_try(CLI::App& subcommand) {
   subcommand
       .add_option("--methods", arguments->methods,
                   "Orders to try, VERTICES or VERTICES/ELEMENTS, separated by commas (default:\n"
-                  "auto,hilbert,rcm,spectral-fronts,hilbert-fronts; of a case of OpenFOAM\n"
+                  "auto,hilbert,rcm,spectral-fronts,hilbert-fronts; for an OpenFOAM case\n"
                   "auto,renumberMesh,bfs,fiedler,hilbert)")
       ->delimiter(',')
       ->allow_extra_args(false);
   subcommand
       .add_option("--budget", arguments->budget_seconds,
-                  "Seconds for all runs of the program; orders that it does not suffice for are left out")
+                  "Seconds for all runs of the program; orders for which they do not suffice are left out")
       ->check(positive())
       ->capture_default_str();
   subcommand
@@ -150,8 +150,8 @@ void add_try(CLI::App& subcommand) {
       .add_option(
           "--time", arguments->time,
           "What counts: `cpu`, the processor time of the program and all that it starts; `wall`, the\n"
-          "time by the clock; or a regular expression whose group is the last number in what the\n"
-          "program prints that it captures")
+          "time by the clock; or a regular expression with a group: the last number that the group\n"
+          "captures in the program's output")
       ->type_name("TIME")
       ->capture_default_str();
   subcommand
@@ -160,17 +160,18 @@ void add_try(CLI::App& subcommand) {
       ->type_name("REGEX");
   subcommand
       .add_option("--same", arguments->same,
-                  "Regular expression for numbers that the program prints: an order is out of the trial\n"
-                  "where they are not those of the first run")
+                  "Regular expression for numbers that the program prints: an order is left out\n"
+                  "if they differ from those of the first run")
       ->type_name("REGEX");
   subcommand
       .add_option(
           "--same-file", arguments->same_file,
-          "The same for a file that the program writes, word by word; {out} or a path in its folder.\n"
-          "Only for files in which the order of the mesh does not show")
+          "The same for a file that the program writes, compared word by word: {out} or a path in its\n"
+          "folder. Only for files that do not depend on the order of the mesh")
       ->type_name("FILE");
   subcommand
-      .add_option("--tolerance", arguments->tolerance, "Relative difference up to which numbers are the same")
+      .add_option("--tolerance", arguments->tolerance,
+                  "Relative difference up to which numbers count as the same")
       ->check(positive())
       ->capture_default_str();
   subcommand
