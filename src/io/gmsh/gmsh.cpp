@@ -11,6 +11,7 @@
 #include <array>
 #include <charconv>
 #include <map>
+#include <ranges>
 #include <set>
 #include <span>
 
@@ -525,14 +526,15 @@ void add_cell(Mesh& mesh, const ElementType& type, std::span<const Index> nodes)
 void write_cell_nodes(RowWriter& to, const WriteContext& output, Index c, bool wide) {
   const auto nodes = output.mesh.cells[c];
   const std::span<const int> order = vtk_order(output.types[c]->shape, output.types[c]->nodes);
-  const auto put = [&](Index vertex) { to.number(output.node_id(vertex), wide); };
-  if (order.empty()) {
-    for (const Index vertex : nodes) put(vertex);
-    return;
-  }
+  const auto put = [&](std::span<const Index> vertices) {
+    const auto ids = vertices | std::views::transform([&](Index v) { return output.node_id(v); });
+    if (wide) return to.all<std::int64_t>(ids);
+    for (const std::int64_t id : ids) to.int32(id);
+  };
+  if (order.empty()) return put(nodes);
   std::array<Index, 27> sorted{};
   for (std::size_t k = 0; k < order.size(); ++k) sorted[order[k]] = nodes[k];
-  for (const Index vertex : std::span(sorted).first(order.size())) put(vertex);
+  put(std::span(sorted).first(order.size()));
 }
 
 void fail_unknown_node(const ReadContext& reading, std::int64_t id, std::string_view owner,

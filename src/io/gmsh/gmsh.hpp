@@ -230,6 +230,17 @@ class NumbersTo {
   }
   void size(std::int64_t value) { binary ? out.binary(value, order) : out.integer(blank(), value); }
   void number(std::int64_t value, bool wide) { wide ? size(value) : int32(value); }
+  /// Writes numbers of at most 64 bits, in binary files all of them at once.
+  template <class Number>
+  void all(const auto& numbers) {
+    if (!binary) {
+      for (const Number number : numbers) out.number(blank(), number);
+      return;
+    }
+    char* at = out.room(std::size(numbers) * sizeof(Number));
+    for (const Number number : numbers) at = put_number(at, number, order);
+    out.written(at);
+  }
   void real(double value) { binary ? out.binary(value, order) : out.real(blank(), value); }
   void word(std::string_view text) {
     out.write(blank());

@@ -17,11 +17,11 @@ namespace meshorder {
 /// the next ones. The same bytes on any number of threads.
 ///
 /// @param row  `row(text, i)` appends row i
-/// @note Memory: 16 MB or so.
+/// @note Memory: 1 MB or so for each thread.
 template <class Row>
 void write_rows(OutputFile& out, Index count, const Row& row) {
-  constexpr Index kRows = 4096;  // about 100 kB, which a cache holds
-  constexpr Index kChunks = 64;  // made before they are written
+  constexpr Index kRows = 4096;             // about 100 kB, which a cache holds
+  const Index chunks = 4 * thread_count();  // made before they are written
   if (count <= kRows) {
     Text text;
     for (Index i = 0; i < count; ++i) row(text, i);
@@ -32,7 +32,7 @@ void write_rows(OutputFile& out, Index count, const Row& row) {
   std::vector<Text> written;
   for (Index first = 0; first < count || !made.empty();) {
     std::swap(made, written);
-    const Index rows = std::min(count - first, kRows * kChunks);
+    const Index rows = std::min(count - first, kRows * chunks);
     made.resize(static_cast<std::size_t>(chunk_count(rows, kRows)));
     parallel_loop(index_size(made) + 1, [&](Index turn) {
       if (turn == 0) {
