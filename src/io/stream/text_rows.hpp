@@ -7,46 +7,24 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 namespace meshorder {
 
 /// Writes rows of text, made on all threads, in their order; one of the threads writes while the others make
 /// the next ones. The same bytes on any number of threads.
 ///
-/// @param row  `row(text, i)` appends row i
+/// @param rows  `rows(text, begin, end)` appends rows begin … end−1
 /// @note Memory: 1 MB or so for each thread.
+void write_row_ranges(OutputFile& out, Index count, const std::function<void(Text&, Index, Index)>& rows);
+
+/// The same, where `row(text, i)` appends row i.
 template <class Row>
 void write_rows(OutputFile& out, Index count, const Row& row) {
-  constexpr Index kRows = 4096;             // about 100 kB, which a cache holds
-  const Index chunks = 4 * thread_count();  // made before they are written
-  if (count <= kRows) {
-    Text text;
-    for (Index i = 0; i < count; ++i) row(text, i);
-    out.write(text.view());
-    return;
-  }
-  std::vector<Text> made;
-  std::vector<Text> written;
-  for (Index first = 0; first < count || !made.empty();) {
-    std::swap(made, written);
-    const Index rows = std::min(count - first, kRows * chunks);
-    made.resize(static_cast<std::size_t>(chunk_count(rows, kRows)));
-    parallel_loop(index_size(made) + 1, [&](Index turn) {
-      if (turn == 0) {
-        for (const Text& text : written) out.write(text.view());
-        return;
-      }
-      Text& text = made[static_cast<std::size_t>(turn - 1)];
-      text.clear();
-      const Index begin = first + (turn - 1) * kRows;
-      const Index end = begin + std::min(kRows, first + rows - begin);
-      for (Index i = begin; i < end; ++i) row(text, i);
-    });
-    first += rows;
-  }
+  write_row_ranges(out, count, [&row](Text& text, Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) row(text, i);
+  });
 }
 
 /// Writes `count` numbers, `in_line` on each line, made as the rows are.
