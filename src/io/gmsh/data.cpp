@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <string>
 #include <utility>
 
@@ -351,9 +352,11 @@ void write_view(NumberWriter& sink, const WriteContext& output, const View& view
             nodes = nodes_of_entry(mesh, place, view.per, view.nodes);
             to.int32(nodes);
           }
-          for (std::size_t k = 0; k < static_cast<std::size_t>(nodes) * components; ++k) {
-            to.real(k < width ? as_double(values[row * width + k]) : 0.0);
-          }
+          const auto value = [&](std::size_t k) {
+            return k < width ? as_double(values[row * width + k]) : 0.0;
+          };
+          const std::size_t count = static_cast<std::size_t>(nodes) * components;
+          to.all<double>(std::views::iota(std::size_t{0}, count) | std::views::transform(value));
         });
       },
       array->values);

@@ -230,7 +230,7 @@ class NumbersTo {
   }
   void size(std::int64_t value) { binary ? out.binary(value, order) : out.integer(blank(), value); }
   void number(std::int64_t value, bool wide) { wide ? size(value) : int32(value); }
-  /// Writes numbers of at most 64 bits, in binary files all of them at once.
+  /// Writes all `numbers` as numbers of that type, which takes less time than one by one in binary files.
   template <class Number>
   void all(const auto& numbers) {
     if (!binary) {

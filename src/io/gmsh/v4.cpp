@@ -346,9 +346,9 @@ void write_nodes_4(NumberWriter& sink, const WriteContext& output) {
   for (const EmptyBlock& block : empty) write_block_head(sink, output, block, 0);
   for (std::size_t b = 0; b + 1 < starts.size(); ++b) {
     const EmptyBlock block = head(starts[b]);
-    write_block_head(sink, output, block, starts[b + 1] - starts[b]);
     const Index first = starts[b];
     const Index count = starts[b + 1] - first;
+    write_block_head(sink, output, block, count);
     if (output.layout.is_version_40()) {
       write_rows(sink, count, [&](RowWriter& to, Index i) {
         to.number(output.node_id(first + i), output.layout.has_wide_numbers());

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "base/parallel.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/text.hpp"
+#include <meshorder/number_view.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -27,7 +27,7 @@ void write_rows(OutputFile& out, Index count, const Row& row) {
   });
 }
 
-/// Writes `count` numbers, `in_line` on each line, made as the rows are.
+/// Writes `count` numbers as rows, `in_line` in each; fewer than 2³¹ rows.
 ///
 /// @param number  `number(text, before, i)` appends `before` and number i
 template <class Number>
