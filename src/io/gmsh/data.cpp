@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ranges>
 #include <string>
 #include <utility>
 
@@ -356,7 +355,7 @@ void write_view(NumberWriter& sink, const WriteContext& output, const View& view
             return k < width ? as_double(values[row * width + k]) : 0.0;
           };
           const std::size_t count = static_cast<std::size_t>(nodes) * components;
-          to.all<double>(std::views::iota(std::size_t{0}, count) | std::views::transform(value));
+          to.all<double>(count, value);
         });
       },
       array->values);

@@ -11,7 +11,6 @@
 #include <array>
 #include <charconv>
 #include <map>
-#include <ranges>
 #include <set>
 #include <span>
 
@@ -527,9 +526,10 @@ void write_cell_nodes(RowWriter& to, const WriteContext& output, Index c, bool w
   const auto nodes = output.mesh.cells[c];
   const std::span<const int> order = vtk_order(output.types[c]->shape, output.types[c]->nodes);
   const auto put = [&](std::span<const Index> vertices) {
-    const auto ids = vertices | std::views::transform([&](Index v) { return output.node_id(v); });
-    if (wide) return to.all<std::int64_t>(ids);
-    for (const std::int64_t id : ids) to.int32(id);
+    if (wide)
+      return to.all<std::int64_t>(vertices.size(),
+                                  [&](std::size_t k) { return output.node_id(vertices[k]); });
+    for (const Index v : vertices) to.int32(output.node_id(v));
   };
   if (order.empty()) return put(nodes);
   std::array<Index, 27> sorted{};

@@ -230,18 +230,22 @@ class NumbersTo {
   }
   void size(std::int64_t value) { binary ? out.binary(value, order) : out.integer(blank(), value); }
   void number(std::int64_t value, bool wide) { wide ? size(value) : int32(value); }
-  /// Writes all `numbers` as numbers of that type, which takes less time than one by one in binary files.
-  template <class Number>
-  void all(const auto& numbers) {
+  /// Writes `of(0)` … `of(count − 1)` as numbers of that type; takes less time than one by one in binary
+  /// files.
+  template <class Number, class Of>
+  void all(std::size_t count, const Of& of) {
     if (!binary) {
-      for (const Number number : numbers) out.number(blank(), number);
+      for (std::size_t k = 0; k < count; ++k) out.number(blank(), Number{of(k)});
       return;
     }
-    char* at = out.room(std::size(numbers) * sizeof(Number));
-    for (const Number number : numbers) at = put_number(at, number, order);
+    char* at = out.room(count * sizeof(Number));
+    for (std::size_t k = 0; k < count; ++k) at = put_number(at, Number{of(k)}, order);
     out.written(at);
   }
   void real(double value) { binary ? out.binary(value, order) : out.real(blank(), value); }
+  void all(const Point& point) {
+    all<double>(point.size(), [&](std::size_t k) { return point[k]; });
+  }
   void word(std::string_view text) {
     out.write(blank());
     out.write(text);

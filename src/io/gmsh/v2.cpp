@@ -209,7 +209,7 @@ void write_nodes_2(NumberWriter& sink, const WriteContext& output) {
   sink.text_line(mesh.vertex_count());
   write_rows(sink, mesh.vertex_count(), [&](RowWriter& to, Index v) {
     to.int32(output.node_id(v));
-    to.all<double>(mesh.points[v]);
+    to.all(mesh.points[v]);
     if (output.node_entities.empty()) return;
     const std::size_t at = 2 * static_cast<std::size_t>(v);
     to.int32(output.node_entities[at]);

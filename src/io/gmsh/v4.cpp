@@ -336,7 +336,7 @@ void write_nodes_4(NumberWriter& sink, const WriteContext& output) {
 
   // successive nodes of one entity make a block, which keeps the order of the mesh
   const auto write_point = [&](RowWriter& to, const EmptyBlock& block, Index v) {
-    to.all<double>(mesh.points[v]);
+    to.all(mesh.points[v]);
     const int given = block[2] == 1 ? parameters_4(output.layout, block[0]) : 0;
     for (int k = 0; k < given; ++k) to.real((*parameters)[4 * static_cast<std::size_t>(v) + 1 + k]);
   };
