@@ -119,6 +119,7 @@ def test_study_times_its_phases_and_plays_its_surface(command, pool, tmp_path):
         counts = page.run("return views.motion.motion.geometries.map((one) => one.index.count)")
         assert len(counts) == 13 and min(counts) > 100
         page.run("views.motion.go(12)")
+        page.settle()
         assert page.run("return views.motion.motion.mesh.geometry === views.motion.motion.geometries[12]")
         assert page.complaints() == []
     finally:
