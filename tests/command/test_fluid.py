@@ -139,7 +139,8 @@ def test_schema_describes_water():
     schema = schemas.read_schema(conftest.ROOT / "scenarios" / "scenario.schema.json")
     assert schemas.faults(POOL, schema) == []
     for change in ({"water": {}}, {"water": {**POOL["water"], "spacing": 0}}, {"water": {**POOL["water"], "depth": 1}},
-                   {"integrator": {**POOL["integrator"], "courant": 2}}, {"order": {"every": -1}}):
+                   {"integrator": {**POOL["integrator"], "courant": 2}}, {"order": {"every": -1}},
+                   {"mesh": "dragon"}, {"scale": {"height": 1}}):
         assert schemas.faults({**POOL, **change}, schema) != [], change
 
 
