@@ -5,6 +5,7 @@
 /// What reordering a mesh is worth, before it is done. Experimental: may change in any version below 1.0.
 
 #include <meshorder/export.hpp>
+#include <meshorder/mesh.hpp>
 #include <meshorder/options.hpp>
 #include <meshorder/order.hpp>
 #include <meshorder/quality.hpp>
@@ -146,9 +147,22 @@ struct PayoffOptions {
 ///       `order_mesh`, "predict" and "measure".
 [[nodiscard]] MESHORDER_API Advice advise(const MeshView& mesh, const PayoffOptions& options = {});
 
-/// Compares orders of a mesh: the one that it has, then `options.methods`. Parameters, exceptions and cost as
-/// of `advise`.
+/// Tells what other orders of a square matrix's rows and columns are worth to its product with a vector, the
+/// only kernel (see `Advice::is_matrix`). The pattern need not be symmetric. Methods that need points are not
+/// for a matrix. Exceptions and cost as of a mesh; InvalidArgument for a matrix without entries off the
+/// diagonal.
+[[nodiscard]] MESHORDER_API Advice advise(const GraphView& matrix, const PayoffOptions& options = {});
+
+/// The same of a mesh as its reader made it, which is a matrix if its file holds one.
+[[nodiscard]] MESHORDER_API Advice advise(const Mesh& mesh, const PayoffOptions& options = {});
+
+/// Compares orders of a mesh or matrix: the one that it has, then `options.methods`. Parameters, exceptions
+/// and cost as of `advise`.
 [[nodiscard]] MESHORDER_API std::vector<Candidate> compare(const MeshView& mesh,
+                                                           const PayoffOptions& options = {});
+[[nodiscard]] MESHORDER_API std::vector<Candidate> compare(const GraphView& matrix,
+                                                           const PayoffOptions& options = {});
+[[nodiscard]] MESHORDER_API std::vector<Candidate> compare(const Mesh& mesh,
                                                            const PayoffOptions& options = {});
 
 /// How `calibrate` measures.

@@ -3,6 +3,7 @@
 // Orders of meshes that are given as arrays, and meshes of files.
 #include "cells.hpp"
 #include "mesh/boundary.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "module.hpp"
 #include "options.hpp"
 #include "results.hpp"
@@ -49,7 +50,9 @@ nb::object milliseconds(const std::optional<KernelMilliseconds>& times) {
   if (!times) return nb::none();
   nb::dict result;
   for (const Kernel kernel : kKernels) {
-    result[text(to_string(kernel))] = (*times)[static_cast<std::size_t>(kernel)];
+    // a matrix has its product alone
+    if (const double time = (*times)[static_cast<std::size_t>(kernel)]; time > 0)
+      result[text(to_string(kernel))] = time;
   }
   return result;
 }
@@ -84,12 +87,12 @@ PayoffOptions payoff_options(const MethodPairs& methods, bool predict, bool meas
   return options;
 }
 
-nb::tuple advise_mesh(const MeshView& mesh, const PayoffOptions& options) {
+nb::tuple advise_mesh(const Mesh& mesh, const PayoffOptions& options) {
   const Advice advice = unlocked([&] { return advise(mesh, options); });
   nb::list candidates;
   for (const Candidate& candidate : advice.candidates) candidates.append(described(candidate));
   nb::dict kernels;
-  for (const Kernel kernel : kKernels) {
+  for (const Kernel kernel : advice.is_matrix ? std::span<const Kernel>(kKernels).first(1) : kKernels) {
     const KernelAdvice& best = advice.kernels[static_cast<std::size_t>(kernel)];
     kernels[text(to_string(kernel))] = nb::make_tuple(best.candidate, best.factor, best.runs_to_pay);
   }
@@ -97,7 +100,7 @@ nb::tuple advise_mesh(const MeshView& mesh, const PayoffOptions& options) {
                         advice.machine, advice.threads);
 }
 
-nb::list compare_mesh(const MeshView& mesh, const PayoffOptions& options) {
+nb::list compare_mesh(const Mesh& mesh, const PayoffOptions& options) {
   nb::list list;
   for (const Candidate& candidate : unlocked([&] { return compare(mesh, options); }))
     list.append(described(candidate));
@@ -114,13 +117,13 @@ nb::tuple calibrated(double seconds, bool keep, const nb::dict& options) {
 /// A method of Mesh that asks `question`, advise_mesh or compare_mesh, with Python's arguments as its
 /// options.
 template <class Answer>
-auto answering(Answer (*question)(const MeshView&, const PayoffOptions&)) {
+auto answering(Answer (*question)(const Mesh&, const PayoffOptions&)) {
   return [question](const Mesh& self, const MethodPairs& methods, bool predict, bool measure,
                     const std::string& kernels, double budget, const std::string& machine, bool all_threads,
                     const nb::dict& options) {
     const Options given_options(options);
-    return question(view(self), payoff_options(methods, predict, measure, kernels, budget, machine,
-                                               all_threads, given_options.order()));
+    return question(self, payoff_options(methods, predict, measure, kernels, budget, machine, all_threads,
+                                         given_options.order()));
   };
 }
 
@@ -307,6 +310,10 @@ void add_meshes(nb::module_& module) {
         return order_of_mesh(points, cells, vertex_count, {vertices, elements}, options);
       },
       nb::arg().none(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg());
+  module.def("matrix_mesh", [](const Array& offsets, const Array& columns) {
+    const GraphView matrix{.offsets = index_view(offsets), .neighbours = index_view(columns)};
+    return unlocked([&] { return matrix_mesh(matrix); });
+  });
   module.def("make_mesh", [](const GivenPoints& points, const GivenCells& cells) {
     const MeshView view = mesh_view(points, cells, 0);
     return unlocked([&] { return make_mesh(view); });

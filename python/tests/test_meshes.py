@@ -6,8 +6,11 @@ import pathlib
 
 import meshio
 import meshorder
+import networkx
 import numpy as np
 import pytest
+import scipy.io
+import scipy.sparse as sp
 from meshorder import InputError, InvalidArgument
 
 MESHES = pathlib.Path(__file__).parents[3] / "shared" / "meshes"
@@ -156,6 +159,34 @@ def test_comparison_and_advice(mesh):
     with pytest.raises(InvalidArgument, match="zen"):
         meshorder.compare(mesh, machine="zen9")
     assert str(advice) == advice.verdict and set(advice.kernels) == {"spmv", "element", "assembly", "springs"}
+
+
+def test_a_matrix_is_judged_by_its_own_product(tmp_path):
+    side = 60
+    steps = [sp.eye(side), sp.eye(side, k=1)]
+    matrix = (sp.kron(*steps) + sp.kron(*reversed(steps)) + sp.eye(side**2)).tocsr()
+    scrambled = np.random.default_rng(1).permutation(side**2)
+    matrix = matrix[scrambled][:, scrambled]
+    scipy.io.mmwrite(tmp_path / "a.mtx", matrix, symmetry="general")
+    given = [matrix, matrix.tocoo(), networkx.from_scipy_sparse_array(matrix + matrix.T), tmp_path / "a.mtx",
+             meshorder.read(tmp_path / "a.mtx")]
+    as_is, *_ = verdicts = [meshorder.advise(one, machine="zen3").as_is.milliseconds for one in given]
+    assert list(as_is) == ["spmv"] and as_is["spmv"] > 0
+    assert [one == as_is for one in verdicts] == [True, True, False, True, True]
+    advice = meshorder.advise(matrix, measure=True, budget=0)
+    assert list(advice.kernels) == ["spmv"] and "product" in advice.verdict and advice._repr_html_()
+    compared = meshorder.compare(matrix, ["rcm"], measure=True, predict=False, budget=0)
+    assert list(compared.rows()[1])[-1] == "spmv ms" and "assembly" not in repr(compared)
+    assert compared[1].spans.mean_span < compared[0].spans.mean_span and compared._repr_html_()
+    for refused, words in (
+        (sp.eye(5).tocsr(), "off the diagonal"),
+        (sp.csr_array((3, 4)), "square"),
+        ((matrix.indptr, matrix.indices), "cells"),
+    ):
+        with pytest.raises(InvalidArgument, match=words):
+            meshorder.advise(refused)
+    with pytest.raises(InvalidArgument, match="points"):
+        meshorder.compare(matrix, ["hilbert"])
 
 
 def test_calibration(mesh, tmp_path, monkeypatch):

@@ -1,13 +1,17 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/stored_matrix.hpp"
 
+#include "graph/examine.hpp"
 #include "graph/tidy_rows.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstdlib>
+#include <memory>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace meshorder {
@@ -44,6 +48,25 @@ double fill_of_blocks(const EntryPattern& pattern, Index b) {
 
 const StoredMatrix* stored_matrix(const Mesh& mesh) {
   return dynamic_cast<const StoredMatrix*>(mesh.format_metadata.get());
+}
+
+Mesh matrix_mesh(const GraphView& matrix) {
+  const GraphArrays arrays = graph_arrays(matrix);
+  refuse_faults(matrix, arrays, examine(arrays, false));
+  Mesh mesh;
+  mesh.points.resize(static_cast<std::size_t>(arrays.size()), {0, 0, 0});
+  mesh.cells.reserve(static_cast<Offset>(arrays.neighbours.size()),
+                     2 * static_cast<Offset>(arrays.neighbours.size()));
+  for (Index row = 0; row < arrays.size(); ++row) {
+    for (Offset k = arrays.offsets[row]; k < arrays.offsets[row + 1]; ++k) {
+      const std::array entry{row, arrays.neighbours[k]};
+      const bool is_diagonal = entry[0] == entry[1];
+      mesh.cells.push_back(is_diagonal ? Shape::vertex : Shape::line,
+                           std::span(entry).first(is_diagonal ? 1 : 2));
+    }
+  }
+  mesh.format_metadata = std::make_shared<StoredMatrix>();
+  return mesh;
 }
 
 bool has_places(const Mesh& mesh) {

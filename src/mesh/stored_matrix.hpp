@@ -4,8 +4,10 @@
 #include "graph/csr_graph.hpp"
 #include <meshorder/mesh.hpp>
 #include <meshorder/permutation.hpp>
+#include <meshorder/view.hpp>
 
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,11 +20,17 @@ struct StoredMatrix : FormatMetadata {
   bool is_half = false;            ///< each line stands for two entries, (i, j) and (j, i)
   std::string_view field = {};     ///< "real", as the file names it; empty for a graph
   std::string_view symmetry = {};  ///< "general", likewise
+
+  [[nodiscard]] std::vector<std::string> contents() const override { return {}; }
 };
 
 /// Returns what the mesh's reader says of the matrix or graph; null for other meshes. Valid as long as
 /// `mesh.format_metadata`.
 const StoredMatrix* stored_matrix(const Mesh& mesh);
+
+/// Returns the mesh that stands for a matrix, as its reader would make it: rows at the origin, entries in
+/// their order. Throws InvalidArgument, TooLarge as `check`; a pattern need not be symmetric. O(n + entries).
+Mesh matrix_mesh(const GraphView& matrix);
 
 /// Whether the points of a mesh differ: those of a matrix are all at the origin unless they were given apart.
 bool has_places(const Mesh& mesh);

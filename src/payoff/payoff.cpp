@@ -4,6 +4,8 @@
 #include "base/stopwatch.hpp"
 #include "kernels/simplices.hpp"
 #include "mesh/graphs.hpp"
+#include "mesh/stored_matrix.hpp"
+#include "ordering/method_named.hpp"
 #include "payoff/advice.hpp"
 #include "payoff/calibration_store.hpp"
 #include "payoff/kernel_bench.hpp"
@@ -13,6 +15,7 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace meshorder {
 inline namespace v0_3 {
@@ -20,14 +23,26 @@ namespace {
 
 /// Throws InvalidArgument unless the mesh has cells that the kernels take.
 void check_kernels_run(const Mesh& mesh) {
-  if (CellSimplices(mesh).size() == 0) {
-    throw InvalidArgument("advise: the mesh has no lines, surfaces or volumes, which the kernels work on");
+  if (CellSimplices(mesh).size() > 0) return;
+  throw InvalidArgument(
+      stored_matrix(mesh) != nullptr
+          ? "advise: the matrix has no entries off the diagonal"
+          : "advise: the mesh has no lines, surfaces or volumes, which the kernels work on");
+}
+
+/// Throws InvalidArgument for a method that goes by the coordinates that a matrix lacks.
+void check_places(const Mesh& mesh, const std::vector<MeshMethods>& methods) {
+  if (stored_matrix(mesh) == nullptr || has_places(mesh)) return;
+  for (const MeshMethods& method : methods) {
+    if (needs_points(vertex_methods(), method.vertices) || needs_points(element_methods(), method.elements))
+      throw InvalidArgument("advise: " + method.vertices + "/" + method.elements +
+                            " goes by points, and the matrix has none");
   }
 }
 
-}  // namespace
-
-Advice advise(const MeshView& mesh, const PayoffOptions& options) {
+/// Advises on the mesh that `make` returns.
+template <class Make>
+Advice advise_on(const PayoffOptions& options, const Make& make) {
   return in_call(options.order.run, [&] {
     if (!(options.budget_seconds >= 0)) {
       throw InvalidArgument("advise: a budget of " + std::to_string(options.budget_seconds) + " s");
@@ -42,12 +57,13 @@ Advice advise(const MeshView& mesh, const PayoffOptions& options) {
           "advise: what misses cost on all threads is not known; calibrate() measures it on this machine");
     }
     report("check");
-    const Mesh copy = make_mesh(mesh);
-    if (options.order.check != Check::none) check_mesh(copy);
-    check_kernels_run(copy);
+    const auto& mesh = make();
+    if (options.order.check != Check::none) check_mesh(mesh);
+    check_kernels_run(mesh);
+    check_places(mesh, options.methods);
     report("graph");
     const Stopwatch stopwatch;
-    const CsrGraph graph = vertex_graph(copy);
+    const CsrGraph graph = vertex_graph(mesh);
     AdviceOptions inside{.methods = options.methods,
                          .machine = machine,
                          .kernels = options.kernels,
@@ -56,17 +72,42 @@ Advice advise(const MeshView& mesh, const PayoffOptions& options) {
                          .graph_seconds = stopwatch.seconds(),
                          .predict = options.predict};
     if (options.measure) inside.measure_within = options.budget_seconds;
-    return advise(copy, graph, inside);
+    return advise(mesh, graph, inside);
   });
 }
 
-std::vector<Candidate> compare(const MeshView& mesh, const PayoffOptions& options) {
-  Advice advice = advise(mesh, options);
+std::vector<Candidate> all_of(Advice advice) {
   std::vector<Candidate> candidates;
   candidates.reserve(1 + advice.candidates.size());
   candidates.push_back(std::move(advice.as_is));
   for (Candidate& candidate : advice.candidates) candidates.push_back(std::move(candidate));
   return candidates;
+}
+
+}  // namespace
+
+Advice advise(const MeshView& mesh, const PayoffOptions& options) {
+  return advise_on(options, [&] { return make_mesh(mesh); });
+}
+
+Advice advise(const GraphView& matrix, const PayoffOptions& options) {
+  return advise_on(options, [&] { return matrix_mesh(matrix); });
+}
+
+Advice advise(const Mesh& mesh, const PayoffOptions& options) {
+  return advise_on(options, [&]() -> const Mesh& { return mesh; });
+}
+
+std::vector<Candidate> compare(const MeshView& mesh, const PayoffOptions& options) {
+  return all_of(advise(mesh, options));
+}
+
+std::vector<Candidate> compare(const GraphView& matrix, const PayoffOptions& options) {
+  return all_of(advise(matrix, options));
+}
+
+std::vector<Candidate> compare(const Mesh& mesh, const PayoffOptions& options) {
+  return all_of(advise(mesh, options));
 }
 
 CalibrationReport calibrate(const CalibrationOptions& options) {

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/procedural.hpp"
+#include "mesh/stored_matrix.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/mesh.hpp>
 #include <meshorder/payoff.hpp>
@@ -10,6 +11,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -59,6 +62,68 @@ TEST(PublicAdvise, TakesArraysOfItsCaller) {
   const Advice of_mesh = advise(view(mesh));
   EXPECT_EQ(of_arrays.as_is.costs.predicted, of_mesh.as_is.costs.predicted);
   EXPECT_EQ(of_arrays.as_is.spans, of_mesh.as_is.spans);
+}
+
+/// The entries of a lattice of side × side rows, each of which has the row after it and the one below, and a
+/// diagonal: a pattern that is not symmetric, in a scrambled order of rows.
+struct ScrambledMatrix {
+  explicit ScrambledMatrix(Index side) {
+    const Index n = side * side;
+    std::vector<Index> place(n);
+    std::iota(place.begin(), place.end(), Index{0});
+    std::ranges::shuffle(place, std::mt19937(1));
+    std::vector<std::vector<Index>> rows(n);
+    for (Index row = 0; row < n; ++row) {
+      for (const Index column : {row, row + 1, row + side})
+        if (column < n) rows[place[row]].push_back(place[column]);
+    }
+    for (const std::vector<Index>& row : rows) {
+      columns.insert(columns.end(), row.begin(), row.end());
+      starts.push_back(static_cast<Index>(columns.size()));
+    }
+  }
+  [[nodiscard]] GraphView view() const { return {.offsets = starts, .neighbours = columns}; }
+
+  std::vector<Index> starts{0};
+  std::vector<Index> columns;
+};
+
+TEST(PublicAdvise, JudgesAMatrixByItsOwnProductAlone) {
+  const ScrambledMatrix matrix(250);
+  const Advice advice = advise(matrix.view(), {.machine = "zen3"});
+  EXPECT_TRUE(advice.is_matrix);
+  const KernelMilliseconds& times = *advice.as_is.costs.predicted;
+  EXPECT_GT(times[0], 0);
+  EXPECT_THAT(std::vector(times.begin() + 1, times.end()), testing::Each(0));
+  EXPECT_GT(advice.kernels[0].factor, 1.5);
+  EXPECT_THAT(to_string(advice), HasSubstr("products"));
+  // the reference: the same entries as a reader of files has them
+  const Mesh mesh = matrix_mesh(matrix.view());
+  EXPECT_EQ(entry_pattern(mesh).entries(), static_cast<Offset>(matrix.columns.size()));
+  EXPECT_EQ(meshorder::advise(mesh, {.machine = "zen3"}).as_is.costs.predicted, advice.as_is.costs.predicted);
+  EXPECT_FALSE(meshorder::advise(view(mesh), {.machine = "zen3"}).is_matrix) << "lines alone are a mesh";
+}
+
+TEST(PublicCompare, MeasuresTheProductOfAMatrix) {
+  const ScrambledMatrix matrix(20);
+  const std::vector<Candidate> orders = compare(
+      matrix.view(), {.methods = {{"rcm", "auto"}}, .predict = false, .measure = true, .budget_seconds = 0});
+  ASSERT_EQ(orders.size(), 2U);
+  EXPECT_GT((*orders[1].costs.measured)[0], 0);
+  EXPECT_EQ((*orders[1].costs.measured)[1], 0);
+  EXPECT_LT(orders[1].spans.mean_span, orders[0].spans.mean_span);
+}
+
+TEST(PublicAdvise, RefusesFaultyMatrices) {
+  const std::vector<Index> starts{0, 1, 2};
+  const auto of = [&](std::vector<Index> columns) {
+    (void)advise(GraphView{.offsets = starts, .neighbours = columns});
+  };
+  EXPECT_THROW(of({0, 1}), InvalidArgument) << "the diagonal alone";
+  EXPECT_THROW(of({0, 2}), InvalidArgument);
+  EXPECT_THROW(of({1}), InvalidArgument);
+  EXPECT_THROW((void)advise(ScrambledMatrix(4).view(), {.methods = {{"hilbert", "auto"}}}), InvalidArgument);
+  EXPECT_THROW((void)advise(GraphView{}), InvalidArgument);
 }
 
 TEST(PublicAdvise, PredictsTheSameOnAnyNumberOfThreads) {

@@ -194,6 +194,12 @@ class Quality:
         return _plots.quality(self, axes)
 
 
+def is_graph(given: Any) -> bool:
+    """Returns whether an object is a SciPy matrix or a networkx graph."""
+    of_scipy = hasattr(given, "tocsr") and hasattr(given, "nnz")
+    return of_scipy or hasattr(given, "adjacency") and hasattr(given, "number_of_nodes")
+
+
 def graph_arrays(graph: Any, mirror: bool = False) -> tuple[NDArray[Any], NDArray[Any], Any]:
     """Returns the offsets and neighbours of a graph in one of the forms that `meshorder.order` takes.
 

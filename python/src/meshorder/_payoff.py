@@ -1,9 +1,10 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Predicts and measures how much faster four kernels of simulators run in other orders of a mesh."""
+"""Predicts and measures how much faster four kernels of simulators run in other orders of a mesh, or products of a matrix."""
 
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,8 +16,9 @@ from numpy.typing import NDArray
 from . import _core, _html, _plots
 from ._extras import load
 from ._files import mesh_of
-from ._graphs import Quality
+from ._graphs import Quality, graph_arrays, is_graph
 from ._options import prepared
+from .hosts import find_host
 
 #: names of the kernels: "spmv", "element", "assembly", "springs"
 KERNELS: tuple[str, ...] = _core.kernels
@@ -28,7 +30,7 @@ class Candidate:
 
     The kernels, which are the keys of ``predicted`` and ``measured``: "spmv" (a product of the stiffness matrix with a
     vector), "element" (elastic forces of the elements), "assembly" (of the stiffness matrix) and "springs" (forces
-    along the edges).
+    along the edges). Of a matrix "spmv" alone: the product with its own entries.
 
     Attributes:
         vertices: name of the method for the vertices; "original" for the order that the mesh has.
@@ -115,7 +117,7 @@ class Advice:
         return f"<Advice: {self.verdict}>"
 
     def _repr_html_(self) -> str:
-        return _html.advice(self, KERNELS)
+        return _html.advice(self, tuple(self.as_is.milliseconds))
 
 
 class Comparison(Sequence[Candidate]):
@@ -133,6 +135,10 @@ class Comparison(Sequence[Candidate]):
     def __getitem__(self, place: Any) -> Any:
         return self._candidates[place]
 
+    @property
+    def _kernels(self) -> tuple[str, ...]:
+        return tuple(self._candidates[0].milliseconds)
+
     def rows(self) -> list[dict[str, Any]]:
         """Returns a flat dict for each order: methods, mean span, seconds of the order, milliseconds of each kernel."""
         return [
@@ -141,7 +147,7 @@ class Comparison(Sequence[Candidate]):
                 "elements": candidate.elements,
                 "mean span": candidate.spans.mean_span,
                 "order seconds": candidate.order_seconds,
-                **{f"{kernel} ms": candidate.milliseconds[kernel] for kernel in KERNELS},
+                **{f"{kernel} ms": time for kernel, time in candidate.milliseconds.items()},
             }
             for candidate in self
         ]
@@ -155,15 +161,16 @@ class Comparison(Sequence[Candidate]):
         return load("pandas", "pandas").DataFrame(self.rows())
 
     def __repr__(self) -> str:
-        rows = [["vertices", "elements", "mean span", *(f"{kernel} ms" for kernel in KERNELS)]]
+        times = [f"{kernel} ms" for kernel in self._kernels]
+        rows = [["vertices", "elements", "mean span", *times]]
         for row in self.rows():
-            numbers = [f"{row['mean span']:,.1f}", *(f"{row[f'{kernel} ms']:.3g}" for kernel in KERNELS)]
+            numbers = [f"{row['mean span']:,.1f}", *(f"{row[time]:.3g}" for time in times)]
             rows.append([row["vertices"], row["elements"], *numbers])
         widths = [max(map(len, column)) for column in zip(*rows)]
         return "\n".join("  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows)
 
     def _repr_html_(self) -> str:
-        return _html.candidates(self._candidates, KERNELS)
+        return _html.candidates(self._candidates, self._kernels)
 
     def plot(self, axes: Any = None) -> Any:
         """Draws a bar for each kernel and order with matplotlib: the time relative to the time as the mesh is.
@@ -177,7 +184,17 @@ class Comparison(Sequence[Candidate]):
         Raises:
             ImportError: matplotlib is not installed; the extra ``plot`` brings it.
         """
-        return _plots.candidates(self._candidates, KERNELS, axes)
+        return _plots.candidates(self._candidates, self._kernels, axes)
+
+
+def _handle_of(given: Any) -> Any:
+    """Returns the mesh or matrix that `advise` and `compare` were given, as the library has it."""
+    is_path = isinstance(given, (str, os.PathLike))
+    host = None if is_path else find_host(given)
+    if is_graph(given) or host is not None and host.takes_weights:
+        offsets, columns, _ = graph_arrays(given)
+        return _core.matrix_mesh(offsets, columns)
+    return mesh_of(given)._handle
 
 
 def _pairs(methods: Any) -> list[tuple[str, str]]:
@@ -238,10 +255,11 @@ def advise(
     all_threads: bool = False,
     **options: Any,
 ) -> Advice:
-    """Tells how much faster simulators' kernels would run if a mesh were reordered. The mesh is not changed.
+    """Tells how much faster simulators' kernels would run if a mesh or matrix were reordered. It is not changed.
 
     Args:
-        mesh: the path of a file, or a mesh that `reorder` takes, with lines, surfaces or volumes.
+        mesh: the path of a file; a mesh that `reorder` takes, with lines, surfaces or volumes; or a matrix or graph that
+            `order` takes, apart from a pair of arrays: its product with a vector is the only kernel then, "spmv".
         measure: True runs the kernels on this machine; False predicts their times by reuse distances and a cost model.
         kernels: "plain": as most programs have them, one loop without tricks; "tuned": as the simulators of
             ``meshorder simulate`` have them, which prefetch, work on blocks, and run alike in all good orders. The latter
@@ -259,9 +277,9 @@ def advise(
         The verdict, the times as the mesh is and in other orders, and the best order for each kernel.
 
     Raises:
-        InvalidArgument: a mesh without lines, surfaces and volumes, an unknown machine or set of kernels, tuned kernels
-            that are not measured, a negative budget; times on
-            all threads of a machine that are not known.
+        InvalidArgument: a mesh without lines, surfaces and volumes, a matrix without entries off the diagonal, an unknown
+            machine or set of kernels, tuned kernels that are not measured or of a matrix, a negative budget; times on all
+            threads of a machine that are not known.
         InputError: the file cannot be read.
         Stopped: ``progress`` returned False.
 
@@ -271,7 +289,7 @@ def advise(
             print(meshorder.advise("dragon.msh", measure=True))
     """
     with prepared(options) as given:
-        made = mesh_of(mesh)._handle.advise([], not measure, measure, kernels, budget, machine, all_threads, given)
+        made = _handle_of(mesh).advise([], not measure, measure, kernels, budget, machine, all_threads, given)
     verdict, as_is, candidates, best_of, doubt, predicted_for, threads = made
     return Advice(
         verdict,
@@ -296,10 +314,11 @@ def compare(
     all_threads: bool = False,
     **options: Any,
 ) -> Comparison:
-    """Compares orders of a mesh by their spans and the times of four kernels of simulators. The mesh is not changed.
+    """Compares orders of a mesh or matrix by their spans and the times of four kernels of simulators. The mesh is not changed.
 
     Args:
-        mesh: the path of a file, or a mesh that `reorder` takes, with lines, surfaces or volumes.
+        mesh: the path of a file; a mesh that `reorder` takes, with lines, surfaces or volumes; or a matrix or graph that
+            `order` takes, apart from a pair of arrays: its product with a vector is the only kernel then, "spmv".
         methods: the name of a vertex method, or a list of names, to which the element method "auto" is added, or of pairs
             ``(vertex method, element method)``; None: what "auto" chooses for all kernels, and for springs where that
             differs.
@@ -325,7 +344,7 @@ def compare(
             meshorder.compare("dragon.msh", ["rcm", ("hilbert", "original")])
     """
     with prepared(options) as given:
-        made = mesh_of(mesh)._handle.compare(
+        made = _handle_of(mesh).compare(
             _pairs(methods), predict and kernels == "plain", measure, kernels, budget, machine, all_threads, given
         )
     return Comparison([Candidate._of(candidate) for candidate in made])
