@@ -7,6 +7,7 @@
 #include <meshorder/changing.hpp>
 #include <meshorder/error.hpp>
 #include <meshorder/fiedler.hpp>
+#include <meshorder/layouts.hpp>
 #include <meshorder/options.hpp>
 #include <meshorder/order.hpp>
 #include <meshorder/permutation.hpp>

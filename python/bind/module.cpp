@@ -16,6 +16,7 @@ NB_MODULE(_core, module) {
   add_graphs(module);
   add_meshes(module);
   add_changing(module);
+  add_layouts(module);
   add_methods(module);
   module.def("build_info", &meshorder::build_info);
   module.attr("version") = MESHORDER_VERSION_STRING;

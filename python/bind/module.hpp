@@ -20,6 +20,7 @@ void add_permutation(nanobind::module_& module);
 void add_graphs(nanobind::module_& module);
 void add_meshes(nanobind::module_& module);
 void add_changing(nanobind::module_& module);
+void add_layouts(nanobind::module_& module);
 void add_methods(nanobind::module_& module);
 
 }  // namespace meshorder::python

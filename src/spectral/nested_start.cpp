@@ -12,7 +12,7 @@ namespace meshorder {
 
 namespace {
 
-constexpr Index kFew = 300;                  // vertices on which a search takes a third of a millisecond
+constexpr Index kFewVertices = 300;          // vertices on which a search takes a third of a millisecond
 constexpr Index kSmallShare = 50;            // of such a share of the graph, it costs nothing beside the rest
 constexpr double kSmoothedHides = 1.0 / 16;  // of what plain coarsening would hide
 constexpr double kNearlyEqual = 0.9;         // of an eigenvalue that is no other one
@@ -55,7 +55,7 @@ StartBlock nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimi
     if (level == 0) break;
     const LobpcgResult found = lobpcg<kStartColumns>(hierarchy, level, coarse_search(limit), x);
     const bool is_small =
-        levels[level].laplacian.size() <= std::max(kFew, levels[0].laplacian.size() / kSmallShare);
+        levels[level].laplacian.size() <= std::max(kFewVertices, levels[0].laplacian.size() / kSmallShare);
     const double least = kNearlyEqual * found.eigenvalue;
     if (!hierarchy.may_hide(level, least * (is_small ? 1 : kSmoothedHides))) continue;
     LevelProblem problem(hierarchy, level);

@@ -1,0 +1,96 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// Layouts for graphics processors, where many threads work on elements at once. Put the mesh in order first:
+// a layout keeps the order of its cells and vertices, and is the better the nearer elements that share
+// vertices are.
+
+#include <meshorder/export.hpp>
+#include <meshorder/options.hpp>
+#include <meshorder/view.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+inline namespace v0_3 {
+
+/// Cells in patches of `size`, each for one block of threads: it loads the patch's vertices into shared
+/// memory, works on them by their local numbers, and adds up its results there, before it adds them to those
+/// of all.
+struct Patches {
+  int size = 0;                    ///< cells of each patch, but perhaps of the last one
+  int corners_per_cell = 0;        ///< k
+  std::vector<Index> cells = {};   ///< old number of each of the m cells: those of patch p from p · size on
+  std::vector<Offset> offsets{0};  ///< patches + 1: where the vertices of each patch begin
+  std::vector<Index> vertices = {};  ///< of each patch its vertices, ascending
+  /// m · k: corner a of `cells[i]` is the vertex local[i · k + a] of its patch.
+  std::vector<std::uint16_t> local = {};
+
+  /// Returns the number of patches.
+  [[nodiscard]] std::size_t count() const noexcept { return offsets.size() - 1; }
+  /// Returns the vertices of a patch.
+  [[nodiscard]] std::span<const Index> vertices_of(std::size_t patch) const {
+    return {vertices.data() + offsets[patch], vertices.data() + offsets[patch + 1]};
+  }
+};
+
+/// Cuts cells into patches of `size`, in their order. Within a patch they are dealt out to warps of 32
+/// threads, so that those that share vertices do not wait for each other when a warp adds to shared memory.
+///
+/// @param cells         cells with the same number of vertices k; edges are lines
+/// @param vertex_count  n
+/// @param size          cells of a patch, 2 … 65,535 / k
+/// @param run           threads
+/// @throws InvalidArgument for faulty cells, cells of several types, and other sizes
+/// @throws TooLarge for more than 2,147,483,647 vertices or cells
+/// @note O(m k + n) time, and 4 n bytes for each thread besides the result. The same on any number of
+/// threads.
+[[nodiscard]] MESHORDER_API Patches patches(const CellsView& cells, std::size_t vertex_count, int size = 256,
+                                            const Run& run = {});
+
+/// For each vertex the cells that have it: in place of adding to vertices, a first pass stores what each cell
+/// gives each corner, and a second one adds up for each vertex. No two threads write to one place.
+struct GatherLists {
+  std::vector<Offset> offsets{0};          ///< n + 1: where the entries of each vertex begin
+  std::vector<Index> cells = {};           ///< of each vertex its cells, ascending
+  std::vector<std::uint8_t> corners = {};  ///< which corner of the cell it is
+};
+
+/// Returns the gather lists of cells, which may be of several types, with at most 256 vertices each.
+///
+/// @throws InvalidArgument for faulty cells and for larger ones; TooLarge as `patches`
+/// @note O(Σ vertices of a cell + n). A cell that names a vertex twice is in its list twice.
+[[nodiscard]] MESHORDER_API GatherLists gather_lists(const CellsView& cells, std::size_t vertex_count,
+                                                     const Run& run = {});
+
+/// Cells by colour: no two of a colour share a vertex, so that threads may work on them at once.
+struct Colours {
+  std::vector<Index> starts{0};   ///< colours + 1: where the cells of each colour begin
+  std::vector<Index> cells = {};  ///< all cells, colour after colour, each in the order that they had
+
+  [[nodiscard]] std::size_t count() const noexcept { return starts.size() - 1; }
+};
+
+/// Colours cells, or edges as lines: in their order each gets the first of 256 colours that none at its
+/// vertices has. Where there is none, it gets a colour after all of theirs.
+///
+/// @throws as `gather_lists`, for faulty cells
+/// @note O(Σ vertices of a cell + n), on one thread. At least as many colours as cells at a vertex.
+[[nodiscard]] MESHORDER_API Colours colours(const CellsView& cells, std::size_t vertex_count,
+                                            const Run& run = {});
+
+/// Returns the vertices of linear triangles or tetrahedra with those of each cell sorted as far as its
+/// orientation allows: a triangle begins with its smallest vertex; a tetrahedron ascends, but for its last
+/// two vertices where that would turn it over. Threads of a warp then read and add at nearer places.
+///
+/// @return m · k vertices
+/// @throws InvalidArgument for faulty cells and for other types; TooLarge as `patches`
+/// @note O(m), on all threads.
+[[nodiscard]] MESHORDER_API std::vector<Index> sort_corners(const CellsView& cells, std::size_t vertex_count,
+                                                            const Run& run = {});
+
+}  // namespace v0_3
+}  // namespace meshorder

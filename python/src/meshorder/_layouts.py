@@ -1,0 +1,149 @@
+# Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+"""Layouts of cells for graphics processors, where many threads work at once. Put the mesh in order first."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._meshes import cell_arrays
+from ._options import whole
+
+
+class Patches(NamedTuple):
+    """Cells in patches, each for one block of threads, which keeps the patch's vertices in shared memory.
+
+    Attributes:
+        cells: the old number of each of the m cells: those of patch p are ``cells[p * size : (p + 1) * size]``.
+        offsets: the vertices of patch p are ``vertices[offsets[p] : offsets[p + 1]]``.
+        vertices: of each patch its vertices, ascending.
+        local: m × k numbers of 16 bits: corner a of ``cells[i]`` is vertex ``local[i, a]`` of its patch.
+        size: how many cells each patch has, but perhaps the last one.
+    """
+
+    cells: NDArray[np.int32]
+    offsets: NDArray[np.int64]
+    vertices: NDArray[np.int32]
+    local: NDArray[np.uint16]
+    size: int
+
+
+class GatherLists(NamedTuple):
+    """For each vertex v the cells that have it, from ``offsets[v]`` to ``offsets[v + 1]``.
+
+    Attributes:
+        offsets: n + 1 numbers.
+        cells: of each vertex its cells, ascending.
+        corners: which corner of the cell the vertex is.
+    """
+
+    offsets: NDArray[np.int64]
+    cells: NDArray[np.int32]
+    corners: NDArray[np.uint8]
+
+
+class Colours(NamedTuple):
+    """Cells by colour: no two of a colour share a vertex.
+
+    Attributes:
+        starts: the cells of colour c are ``cells[starts[c] : starts[c + 1]]``.
+        cells: all cells, colour after colour, each in the order that they had.
+    """
+
+    starts: NDArray[np.int32]
+    cells: NDArray[np.int32]
+
+
+def _given(cells: Any, vertices: int | None) -> tuple[Any, int]:
+    """Returns cells as the library takes them, and the number of vertices."""
+    arrays = cell_arrays(cells, 3)
+    if vertices is not None:
+        return arrays, whole(vertices, 2**31 - 1, "vertices")
+    named = [block for _, block in arrays] if isinstance(arrays, list) else [arrays[1]]
+    return arrays, max((int(block.max()) + 1 for block in named if block.size), default=0)
+
+
+def _rows(values: NDArray[Any], cells: int) -> NDArray[Any]:
+    """Returns values with a row for each cell."""
+    return values.reshape(cells, len(values) // max(cells, 1))
+
+
+def patches(cells: Any, size: int = 256, *, vertices: int | None = None) -> Patches:
+    """Cuts cells into patches, in their order.
+
+    A block of threads loads the vertices of its patch into shared memory, works on them by their local numbers, and adds up
+    there. Within a patch the cells are dealt out to warps of 32 threads, so that those that share vertices do not wait for
+    each other.
+
+    Args:
+        cells: cells of one type, in one of the forms that `order_mesh` takes; rows of two are edges.
+        size: cells of a patch, at least 2; the vertices of a patch must have numbers of 16 bits.
+        vertices: number of vertices n; None: as many as the cells name.
+
+    Raises:
+        InvalidArgument: faulty cells, cells of several types, another size.
+        TooLarge: 2³¹ or more cells.
+
+    Example:
+        What block p of threads has in shared memory, and the corners of its cells in it::
+
+            cut = meshorder.patches(tetrahedra)
+            shared = positions[cut.vertices[cut.offsets[p] : cut.offsets[p + 1]]]
+            corners = shared[cut.local[p * cut.size : (p + 1) * cut.size]]
+    """
+    arrays, count = _given(cells, vertices)
+    size = whole(size, 2**16, "size")
+    order, offsets, own, local = _core.patches(arrays, count, size)
+    return Patches(order, offsets, own, _rows(local, len(order)), size)
+
+
+def gather_lists(cells: Any, *, vertices: int | None = None) -> GatherLists:
+    """Lists for each vertex the cells that have it, so that each vertex can add up what its cells give without atomics.
+
+    Args:
+        cells: cells in one of the forms that `order_mesh` takes, with at most 256 vertices each; rows of two are edges.
+        vertices: number of vertices n; None: as many as the cells name.
+
+    Raises:
+        InvalidArgument: faulty cells.
+        TooLarge: 2³¹ or more cells.
+    """
+    return GatherLists(*_core.gather_lists(*_given(cells, vertices)))
+
+
+def colours(cells: Any, *, vertices: int | None = None) -> Colours:
+    """Colours cells, or edges, so that no two of a colour share a vertex and threads may work on them at once.
+
+    Args:
+        cells: cells in one of the forms that `order_mesh` takes; rows of two are edges.
+        vertices: number of vertices n; None: as many as the cells name.
+
+    Raises:
+        InvalidArgument: faulty cells.
+        TooLarge: 2³¹ or more cells.
+    """
+    return Colours(*_core.colours(*_given(cells, vertices)))
+
+
+def sort_corners(cells: Any, *, vertices: int | None = None) -> NDArray[np.int32]:
+    """Sorts the vertices of each triangle or tetrahedron as far as its orientation allows.
+
+    A triangle then begins with its smallest vertex; a tetrahedron ascends, but for its last two vertices where that would
+    turn it over.
+
+    Args:
+        cells: linear triangles or tetrahedra, in one of the forms that `order_mesh` takes.
+        vertices: number of vertices n; None: as many as the cells name.
+
+    Returns:
+        A row of vertices for each cell.
+
+    Raises:
+        InvalidArgument: faulty cells, cells of other types.
+        TooLarge: 2³¹ or more cells.
+    """
+    arrays, count = _given(cells, vertices)
+    return _rows(*_core.sort_corners(arrays, count))
