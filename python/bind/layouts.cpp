@@ -4,8 +4,12 @@
 #include "cells.hpp"
 #include "module.hpp"
 #include "options.hpp"
+#include <meshorder/error.hpp>
 #include <meshorder/layouts.hpp>
 
+#include <algorithm>
+#include <array>
+#include <string>
 #include <utility>
 
 namespace meshorder::python {
@@ -27,6 +31,17 @@ void add_layouts(nb::module_& module) {
     const MeshView mesh = mesh_view({}, cells, n);
     Colours found = unlocked([&] { return colours(mesh.cells, n); });
     return nb::make_tuple(given(std::move(found.starts)), given(std::move(found.cells)));
+  });
+  module.def("gpu_cost", [](const GivenCells& cells, std::size_t n, const std::string& layout) {
+    static constexpr std::array<std::pair<const char*, GpuLayout>, 3> kLayouts{
+        {{"packed", GpuLayout::packed}, {"apart", GpuLayout::apart}, {"padded", GpuLayout::padded}}};
+    const auto* const wanted = std::find_if(kLayouts.begin(), kLayouts.end(),
+                                            [&](const auto& known) { return layout == known.first; });
+    if (wanted == kLayouts.end())
+      throw InvalidArgument("layout: expected 'packed', 'apart' or 'padded', not '" + layout + "'");
+    const MeshView mesh = mesh_view({}, cells, n);
+    const GpuCost cost = unlocked([&] { return gpu_cost(mesh.cells, n, wanted->second); });
+    return nb::make_tuple(cost.requests, cost.sectors, cost.floor);
   });
   module.def("sort_corners", [](const GivenCells& cells, std::size_t n) {
     const MeshView mesh = mesh_view({}, cells, n);

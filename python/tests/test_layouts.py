@@ -68,6 +68,23 @@ def test_sorted_corners_keep_the_orientation(cells):
         np.testing.assert_allclose(np.linalg.det(moves), 1)
 
 
+@pytest.mark.parametrize("layout, record, additions, arrays", [("packed", 12, 3, 1), ("apart", 4, 1, 3), ("padded", 16, 1, 1)])
+def test_cost_is_that_of_its_definition(cells, layout, record, additions, arrays):
+    sectors = requests = 0
+    for begin in range(0, len(cells), 32):
+        for corner in cells[begin : begin + 32].T:
+            for k in range(additions):
+                addresses, threads = np.unique(record * corner.astype(int) + 4 * k, return_counts=True)
+                most = np.zeros(addresses.max() // 32 + 1, dtype=int)
+                np.maximum.at(most, addresses // 32, threads)
+                sectors += arrays * int(most.sum())
+                requests += arrays
+    cost = meshorder.gpu_cost(cells, layout)
+    assert (cost.sectors, cost.requests) == (sectors, requests) and cost.floor < cost.sectors
+    with pytest.raises(InvalidArgument, match="'packed', 'apart' or 'padded'"):
+        meshorder.gpu_cost(cells, "float3")
+
+
 def test_faults_are_named(cells):
     sizes: list[tuple[Any, str]] = [
         (0, "between 2"), (1, "between 2"), (65535, "between 2 and 16383"), (2.5, "whole number"), (-1, "size"),
@@ -77,7 +94,7 @@ def test_faults_are_named(cells):
             meshorder.patches(cells, size)
     with pytest.raises(InvalidArgument, match="another type"):
         meshorder.patches({"tetra": cells, "triangle": cells[:, :3]})
-    for layout in (meshorder.patches, meshorder.gather_lists, meshorder.colours, meshorder.sort_corners):
+    for layout in (meshorder.patches, meshorder.gather_lists, meshorder.colours, meshorder.sort_corners, meshorder.gpu_cost):
         with pytest.raises(InvalidArgument, match="vertex"):
             layout(cells, vertices=800)
         with pytest.raises(InvalidArgument):

@@ -17,6 +17,8 @@ inline namespace v0_3 {
 namespace {
 
 constexpr Index kWarp = 32;  ///< threads that run in step
+constexpr int kSectorBytes = 32;
+constexpr int kNumberBytes = 4;
 constexpr Index kCellsInChunk = 1 << 14;
 constexpr Index kFirstColours = 256;  ///< those of which each vertex knows which are taken
 
@@ -115,6 +117,65 @@ class PatchCutter {
   Patches& patches_;
   std::vector<std::uint16_t> local_of_;  ///< of each vertex; `kTaken` while the vertices of a patch are found
 };
+
+/// The additions that a warp makes for each vertex at once.
+struct Additions {
+  int record_bytes;  ///< from one vertex to the next
+  int count;         ///< additions, one after another in the record
+  int arrays;        ///< that they are made to
+};
+
+Additions additions_of(GpuLayout layout) {
+  switch (layout) {
+    case GpuLayout::packed:
+      return {3 * kNumberBytes, 3, 1};
+    case GpuLayout::apart:
+      return {kNumberBytes, 1, 3};
+    default:
+      return {4 * kNumberBytes, 1, 1};
+  }
+}
+
+/// Returns the sectors of one addition to ascending vertices: of each sector the most threads at one vertex.
+Offset sectors_of(std::span<const Index> ascending, int record_bytes, int first_byte) {
+  Offset sectors = 0;
+  Offset sector = -1;
+  Offset most = 0;
+  for (std::size_t i = 0; i < ascending.size();) {
+    std::size_t end = i;
+    while (end < ascending.size() && ascending[end] == ascending[i]) ++end;
+    const Offset at = (Offset{ascending[i]} * record_bytes + first_byte) / kSectorBytes;
+    if (at != sector) {
+      sectors += most;
+      sector = at;
+      most = 0;
+    }
+    most = std::max(most, static_cast<Offset>(end - i));
+    i = end;
+  }
+  return sectors + most;
+}
+
+/// Returns the cost of the cells begin … end − 1, a thread of a warp each.
+GpuCost cost_of_warp(const CellArrays& cells, int width, Index begin, Index end, const Additions& additions) {
+  std::array<Index, kWarp> vertices{};
+  const auto own = std::span(vertices).first(static_cast<std::size_t>(end - begin));
+  GpuCost cost;
+  for (int corner = 0; corner < width; ++corner) {
+    for (Index c = begin; c < end; ++c) own[c - begin] = cells.vertices[Offset{c} * width + corner];
+    std::ranges::sort(own);
+    for (int k = 0; k < additions.count; ++k)
+      cost.sectors += additions.arrays * sectors_of(own, additions.record_bytes, k * kNumberBytes);
+  }
+  const Offset bytes = Offset{end - begin} * additions.record_bytes;
+  cost.requests = Offset{width} * additions.count * additions.arrays;
+  cost.floor = cost.requests * ((bytes + kSectorBytes - 1) / kSectorBytes);
+  return cost;
+}
+
+GpuCost sum(const GpuCost& a, const GpuCost& b) {
+  return {a.requests + b.requests, a.sectors + b.sectors, a.floor + b.floor};
+}
 
 }  // namespace
 
@@ -233,6 +294,23 @@ std::vector<Index> sort_corners(const CellsView& cells, std::size_t vertex_count
       }
     });
     return sorted;
+  });
+}
+
+GpuCost gpu_cost(const CellsView& cells, std::size_t vertex_count, GpuLayout layout, const Run& run) {
+  return in_call(run, [&] {
+    const CellArrays arrays = cell_arrays(cells, vertex_count, Check::full);
+    const int width = uniform_width(arrays, "gpu_cost");
+    const Additions additions = additions_of(layout);
+    static_assert(kCellsInChunk % kWarp == 0);
+    std::vector<GpuCost> parts(static_cast<std::size_t>(chunk_count(arrays.size(), kCellsInChunk)));
+    for_each_chunk(arrays.size(), kCellsInChunk, [&](Index chunk, Index begin, Index end) {
+      for (Index warp = begin; warp < end; warp += kWarp) {
+        const Index last = std::min(end - warp, kWarp) + warp;
+        parts[chunk] = sum(parts[chunk], cost_of_warp(arrays, width, warp, last, additions));
+      }
+    });
+    return std::accumulate(parts.begin(), parts.end(), GpuCost(), sum);
   });
 }
 

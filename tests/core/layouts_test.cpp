@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numeric>
 #include <set>
 #include <span>
@@ -160,6 +161,57 @@ TEST(SortCorners, KeepsTheOrientation) {
               testing::ElementsAre(2, 7, 4, 1, 9, 3));
 }
 
+/// The definition of a layout's cost: for each warp, corner and addition the sectors, each as often as most
+/// threads add to one number of it.
+GpuCost cost_by_definition(const Mesh& mesh, int record_bytes, int additions, int arrays) {
+  GpuCost cost;
+  for (Index begin = 0; begin < mesh.cell_count(); begin += 32) {
+    for (int corner = 0; corner < 4; ++corner) {
+      for (int k = 0; k < additions; ++k) {
+        std::map<int, std::map<int, int>> threads;  // by sector and address
+        for (Index c = begin; c < std::min(begin + 32, mesh.cell_count()); ++c) {
+          const int address = record_bytes * mesh.cells[c][corner] + 4 * k;
+          ++threads[address / 32][address];
+        }
+        for (const auto& [sector, at] : threads) {
+          int most = 0;
+          for (const auto& [address, count] : at) most = std::max(most, count);
+          cost.sectors += Offset{most} * arrays;
+        }
+        cost.requests += arrays;
+      }
+    }
+  }
+  return cost;
+}
+
+TEST(GpuCost, CountsSectorsAndThreadsThatWait) {
+  const Mesh mesh = scrambled_grid();
+  const CellsView cells = view(mesh).cells;
+  for (const auto& [layout, expected] : {std::pair(GpuLayout::packed, cost_by_definition(mesh, 12, 3, 1)),
+                                         std::pair(GpuLayout::apart, cost_by_definition(mesh, 4, 1, 3)),
+                                         std::pair(GpuLayout::padded, cost_by_definition(mesh, 16, 1, 1))}) {
+    const GpuCost cost = gpu_cost(cells, mesh.points.size(), layout);
+    EXPECT_EQ(cost.sectors, expected.sectors);
+    EXPECT_EQ(cost.requests, expected.requests);
+    EXPECT_LT(cost.floor, cost.sectors);
+    for (const int threads : {1, 2, 7})
+      EXPECT_EQ(gpu_cost(cells, mesh.points.size(), layout, {.threads = threads}), cost);
+  }
+  EXPECT_EQ(gpu_cost({}, 4, GpuLayout::packed), GpuCost{});
+}
+
+TEST(GpuCost, OfSimpleWarpsIsKnown) {
+  std::vector<Index> apart(64);
+  std::iota(apart.begin(), apart.end(), Index{0});
+  const std::vector<Index> shared(64, 5);
+  const auto of_points = [](const std::vector<Index>& vertices) {
+    return gpu_cost(CellsView::uniform(Shape::vertex, 1, vertices), 64, GpuLayout::padded);
+  };
+  EXPECT_EQ(of_points(apart), (GpuCost{.requests = 2, .sectors = 32, .floor = 32}));
+  EXPECT_EQ(of_points(shared), (GpuCost{.requests = 2, .sectors = 64, .floor = 32})) << "all wait";
+}
+
 TEST(Layouts, AreRefusedWithTheFault) {
   const Mesh mesh = scrambled_grid();
   const CellsView cells = view(mesh).cells;
@@ -177,10 +229,12 @@ TEST(Layouts, AreRefusedWithTheFault) {
   const std::vector<Index> many(300, 0);
   EXPECT_THAT(refusal([&] { (void)gather_lists(CellsView::uniform(Shape::polygon, 300, many), 1); }),
               HasSubstr("300 vertices, more than 256"));
-  for (const auto& layout : {+[](const CellsView&c, std::size_t v) { (void)patches(c, v); },
-                             +[](const CellsView&c, std::size_t v) { (void)gather_lists(c, v); },
-                             +[](const CellsView&c, std::size_t v) { (void)colours(c, v); },
-                             +[](const CellsView&c, std::size_t v) { (void)sort_corners(c, v); }}) {
+  for (const auto& layout :
+       {+[](const CellsView&c, std::size_t v) { (void)patches(c, v); },
+        +[](const CellsView&c, std::size_t v) { (void)gather_lists(c, v); },
+        +[](const CellsView&c, std::size_t v) { (void)colours(c, v); },
+        +[](const CellsView&c, std::size_t v) { (void)sort_corners(c, v); },
+        +[](const CellsView&c, std::size_t v) { (void)gpu_cost(c, v, GpuLayout::padded); }}) {
     EXPECT_THAT(refusal([&] { layout(cells, n - 1); }), HasSubstr("vertex"));
     layout({}, 0);
     layout({}, 5);

