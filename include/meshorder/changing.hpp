@@ -67,8 +67,8 @@ struct Update {
 /// Keeps the order of a mesh, graph or set of particles fresh while it changes.
 ///
 /// Call `update` whenever connectivity or positions have changed, and move all arrays as its permutation
-/// says: their order is the last order, which is therefore not kept here. Most updates cost a pass over a
-/// sample, and nothing moves. A new order comes when neighbours are too far apart, and now and then to see
+/// says: the arrays then have the last order, so this object does not store it. Most updates cost a pass over
+/// a sample, and nothing moves. A new order comes when neighbours are too far apart, and now and then to see
 /// whether it would be better: at first after 10 updates, and twice as rarely whenever that was in vain.
 ///
 /// Elements: `order_elements` with `max` after every change of connectivity pays at once.

@@ -25,8 +25,8 @@ struct FiedlerComponent {
 
 /// The Fiedler vectors of all connected components of a graph.
 struct Fiedler {
-  /// n entries. In each component ‖x‖₂ = 1 and Σ x = 0; an isolated vertex has 0. The first vertex, by
-  /// number, whose entry reaches half of the largest magnitude is negative.
+  /// n entries. In each component ‖x‖₂ = 1 and Σ x = 0; an isolated vertex has 0. Sign: of the vertices with
+  /// at least half of the largest magnitude, the one with the smallest number has a negative entry.
   std::vector<double> values;
   std::vector<FiedlerComponent> components;  ///< largest first, ties by their smallest vertex
   std::vector<Index> component_of;           ///< n entries: position in `components`
@@ -46,8 +46,8 @@ struct Fiedler {
 ///                 default tolerance of 0.1 suffices for an order; take 1e-8 for a vector to be used as such
 /// @return vector and report for each component. A component that does not converge keeps its best vector,
 ///         with `converged` false: a status, not an error
-/// @throws InvalidArgument if `check` refuses the graph, or `start` has neither n nor no entries or one that
-///         is not finite
+/// @throws InvalidArgument if `check` refuses the graph, or the size of `start` is neither 0 nor n, or an
+/// entry of it is not finite
 /// @throws TooLarge for more than 2,147,483,647 vertices
 /// @throws Stopped if the progress callback returned false
 /// @note O((n + edges) · iterations), about six iterations on meshes; memory about 3.5 times the graph's. The

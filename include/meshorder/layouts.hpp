@@ -2,8 +2,8 @@
 #pragma once
 
 // Layouts for graphics processors, where many threads work on elements at once, and what their additions
-// cost. Put the mesh in order first: a layout keeps the order of its cells and vertices, and is the better
-// the nearer elements that share vertices are.
+// cost. Put the mesh in order first: a layout keeps the order of its cells and vertices, and is better if
+// elements that share vertices are near each other.
 
 #include <meshorder/export.hpp>
 #include <meshorder/options.hpp>
@@ -17,11 +17,11 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// Cells in patches of `size`, each for one block of threads: it loads the patch's vertices into shared
-/// memory, works on them by their local numbers, and adds up its results there, before it adds them to those
-/// of all.
+/// Cells in patches of `size`, one patch for each block of threads. The block loads the patch's vertices into
+/// shared memory, uses their local numbers, adds up its results there, and then adds the sums to the results
+/// in global memory.
 struct Patches {
-  int size = 0;                    ///< cells of each patch, but perhaps of the last one
+  int size = 0;                    ///< cells of each patch; the last may have fewer
   int corners_per_cell = 0;        ///< k
   std::vector<Index> cells = {};   ///< old number of each of the m cells: those of patch p from p · size on
   std::vector<Offset> offsets{0};  ///< patches + 1: where the vertices of each patch begin
@@ -37,14 +37,14 @@ struct Patches {
   }
 };
 
-/// Cuts cells into patches of `size`, in their order. Within a patch they are dealt out to warps of 32
-/// threads, so that those that share vertices do not wait for each other when a warp adds to shared memory.
+/// Cuts cells into patches of `size`, in their order. Within a patch, neighbouring cells are spread over the
+/// warps of 32 threads, so that few threads of a warp add to the same vertex in shared memory.
 ///
 /// @param cells         cells with the same number of vertices k; edges are lines
 /// @param vertex_count  n
 /// @param size          cells of a patch, 2 … 65,535 / k
 /// @param run           threads
-/// @throws InvalidArgument for faulty cells, cells of several types, and other sizes
+/// @throws InvalidArgument for faulty cells, cells of several types, and a size out of range
 /// @throws TooLarge for more than 2,147,483,647 vertices or cells
 /// @note O(m k + n) time, and 4 n bytes for each thread besides the result. The same on any number of
 /// threads.
@@ -74,17 +74,19 @@ struct Colours {
   [[nodiscard]] std::size_t count() const noexcept { return starts.size() - 1; }
 };
 
-/// Colours cells, or edges as lines: in their order each gets the first of 256 colours that none at its
-/// vertices has. Where there is none, it gets a colour after all of theirs.
+/// Colours cells, or edges as lines. Cells are taken in order. Each gets the first of 256 colours that no
+/// cell at its vertices has. If all 256 are taken, it gets the first colour after all colours at its
+/// vertices.
 ///
-/// @throws as `gather_lists`, for faulty cells
+/// @throws InvalidArgument for faulty cells; TooLarge as `patches`
 /// @note O(Σ vertices of a cell + n), on one thread. At least as many colours as cells at a vertex.
 [[nodiscard]] MESHORDER_API Colours colours(const CellsView& cells, std::size_t vertex_count,
                                             const Run& run = {});
 
 /// Returns the vertices of linear triangles or tetrahedra with those of each cell sorted as far as its
-/// orientation allows: a triangle begins with its smallest vertex; a tetrahedron ascends, but for its last
-/// two vertices where that would turn it over. Threads of a warp then read and add at nearer places.
+/// orientation allows: a triangle begins with its smallest vertex; the vertices of a tetrahedron ascend, and
+/// the last two are swapped if ascending order would reverse the orientation. Threads of a warp then read and
+/// add at nearer places.
 ///
 /// @return m · k vertices
 /// @throws InvalidArgument for faulty cells and for other types; TooLarge as `patches`
@@ -102,8 +104,8 @@ enum class GpuLayout {
 /// What the atomic additions of a pass over cells cost, a thread a cell.
 struct GpuCost {
   Offset requests = 0;  ///< additions, each of a warp of 32 threads at once
-  /// Sectors of 32 bytes that these add to, each as often as most threads of the warp add to one number of
-  /// it: these wait for each other.
+  /// Sectors of 32 bytes that these additions write. A sector counts t times if at most t threads of the warp
+  /// add to the same number in it, because these threads wait for each other.
   Offset sectors = 0;
   Offset floor = 0;  ///< `sectors` if the vertices of each warp were side by side, and no two the same
 

@@ -38,8 +38,8 @@ MESHORDER_API std::string_view to_string(Workload workload);
 /// @throws InvalidArgument for another name; the message lists the known ones
 MESHORDER_API Workload parse_workload(std::string_view name);
 
-/// How much of the input is checked before work begins. Offsets and numbers that leave their range make every
-/// level but `none` throw InvalidArgument.
+/// How much of the input is checked before work begins. At every level but `none`, offsets and numbers out of
+/// range throw InvalidArgument.
 enum class Check : std::uint8_t {
   /// Everything: sizes; ascending offsets; numbers in range; weights positive and finite; coordinates finite;
   /// pattern and weights symmetric. Symmetry is decided by a 64-bit hash sum over the entries, which misses a
@@ -60,8 +60,9 @@ enum class Symmetry : std::uint8_t {
 
 /// State of a running call.
 struct Progress {
-  /// What is done now: "check", "graph", "coarsen", "eigenvector", "improve", "sort", "move", or "metis",
-  /// which cannot be asked or stopped. These words are stable; more may come. Valid during the callback.
+  /// What is done now: "check", "graph", "coarsen", "eigenvector", "improve", "sort", "move", or "metis";
+  /// while METIS runs, no callback comes and the call cannot be stopped. These words are stable; more may
+  /// come. Valid during the callback.
   std::string_view stage;
   double fraction = -1;  ///< of the whole call that is done, 0 … 1, never decreasing; −1 where unknown
   double seconds = 0;    ///< since the call began

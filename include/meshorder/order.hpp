@@ -79,8 +79,8 @@ MESHORDER_API Order order_vertices(const GraphView& graph, std::string_view meth
 /// Orders the cells of a mesh. Nothing is changed.
 ///
 /// The elements, which are the cells of the highest dimension, go by the method; cells of lower dimension go
-/// by `lexmax` (under `original` they stay). Cells stay within their block, and each dimension keeps its
-/// places there.
+/// by `lexmax` (under `original` they stay). Cells stay within their block. In a block, a cell moves only to
+/// places that cells of its dimension had.
 ///
 /// @param cells     m cells of n vertices, any layout; see `CellsView`
 /// @param vertices  order of the n vertices, which most element orders follow
@@ -95,10 +95,11 @@ MESHORDER_API Order order_elements(const CellsView& cells, const Permutation& ve
                                    std::string_view method = "auto", const OrderOptions& options = {},
                                    const PointsView& points = {});
 
-/// Orders a list of edges by the places of their ends, the larger first, ties by number: `lexmax` for edges.
+/// Orders a list of edges by the larger place of their two ends, then by the smaller one, then by number:
+/// `lexmax` for edges.
 ///
-/// A loop over the edges then touches new vertices nearly in their order, whatever method ordered these:
-/// springs that go by the smaller end run up to 1.5 times slower in orders along curves.
+/// A loop over the edges then reaches new vertices nearly in their order, whatever method ordered the
+/// vertices: springs that go by the smaller end run up to 1.5 times slower in orders along curves.
 ///
 /// @param ends      2 m numbers in 0 … n − 1: the ends of one edge after another
 /// @param vertices  order of the n vertices
@@ -121,8 +122,8 @@ MESHORDER_API MeshOrder order_mesh(const MeshView& mesh, const MeshMethods& meth
                                    const OrderOptions& options = {});
 
 /// A clean undirected graph that owns its arrays: rows ascend, no loops, no repeats, every edge in the rows
-/// of both its ends. Converts to `GraphView` where it has a name: a view of a temporary would dangle and does
-/// not compile.
+/// of both its ends. A named graph converts to `GraphView`. A temporary one does not compile, because its
+/// view would dangle.
 class MESHORDER_API Graph {
  public:
   /// The graph without vertices.
@@ -172,7 +173,7 @@ class MESHORDER_API Graph {
   std::vector<double> weights_;
 };
 
-/// Builds the graph that joins any two vertices of a common element, or of a piece of it (docs/limits.md).
+/// Builds the graph that joins all vertices of each element, or of each piece of it (docs/limits.md).
 ///
 /// @param cells         the cells; elements are those of the highest dimension, others are ignored
 /// @param vertex_count  n; vertices that no element uses have no neighbours

@@ -35,8 +35,8 @@ enum class KernelSet : std::uint8_t {
   /// As most programs have them: one loop, no prefetching, no blocking. One unknown a vertex in the matrix,
   /// linear elements, edges by their smaller end.
   plain,
-  /// As the simulators of this project have them: elastic elements with 3×3 blocks in the matrix, which
-  /// prefetch, and take eight elements or edges at a time. They run alike in all good orders.
+  /// As the simulators of this project have them: elastic elements, with 3×3 blocks in the matrix. The loops
+  /// prefetch, and take eight elements or edges at a time. Their times are about equal in all good orders.
   tuned,
 };
 
@@ -80,9 +80,9 @@ struct Candidate {
 
 /// The best candidate for one kernel.
 struct KernelAdvice {
-  std::size_t candidate = 0;  ///< place in `Advice::candidates` of the one in which it runs fastest
+  std::size_t candidate = 0;  ///< place in `Advice::candidates` of the one in which the kernel is fastest
   double factor = 1;       ///< time as the mesh is / time in that candidate; 1 where there is nothing to gain
-  double runs_to_pay = 0;  ///< runs after which the order has paid for itself; 0 where nothing is gained
+  double runs_to_pay = 0;  ///< runs that save as much time as the order cost; 0 where nothing is gained
 };
 
 /// What reordering a mesh would be worth.
@@ -90,14 +90,14 @@ struct Advice {
   Candidate as_is = {};                    ///< the order that the mesh has
   std::vector<Candidate> candidates = {};  ///< the first is what `reorder` does without options
   std::array<KernelAdvice, kKernels.size()> kernels = {};
-  /// Why measured times are not to be trusted, a sentence: the machine was busy or throttled. Empty where
-  /// they are, and where nothing was measured.
+  /// Why the measured times cannot be trusted, a sentence: the machine was busy or throttled. Empty if they
+  /// can be trusted, or if nothing was measured.
   std::string doubt = {};
   /// What the predicted times are those of: "this machine, calibrated 2026-11-22", a machine's name, or "this
   /// machine's caches at the costs of zen3"; empty where nothing was predicted.
   std::string machine = {};
-  /// By kernel, the share by which two times of the same problem differ on that machine, below which no
-  /// difference counts; 0 where that is not known.
+  /// For each kernel, the share by which two timings of the same problem differ on that machine. A smaller
+  /// difference does not count. 0 if it is not known.
   std::array<double, kKernels.size()> floor = {};
   int threads = 1;                          ///< that shared each run
   KernelSet kernel_set = KernelSet::plain;  ///< whose times these are
@@ -106,8 +106,9 @@ struct Advice {
   bool is_matrix = false;
 };
 
-/// Returns the verdict in one English sentence: which kernel loses most as the mesh is, which order mends it
-/// and when that has paid for itself; or that there is nothing to gain.
+/// Returns the verdict in one English sentence: which kernel loses most in the present order, which order
+/// makes it faster, and after how many runs that order has saved its own cost; or that there is nothing to
+/// gain.
 [[nodiscard]] MESHORDER_API std::string to_string(const Advice& advice);
 
 /// Options of `advise` and `compare`.
@@ -115,42 +116,41 @@ struct PayoffOptions {
   /// The candidates; empty: what `auto` takes for all kernels, and for springs where that differs.
   std::vector<MeshMethods> methods = {};
   bool predict = true;  ///< gives the same times on every run
-  /// What to predict for: a machine whose costs ship with the library ("zen3"), or "this": this machine as
-  /// `calibrate` measured it, else its caches with the costs of "zen3". Empty: what the environment variable
-  /// MESHORDER_MACHINE says, else "this".
+  /// What to predict for: a machine whose costs ship with the library ("zen3"), or "this": the stored
+  /// calibration of this machine or, if there is none, its caches with the costs of "zen3". Empty: the value
+  /// of the environment variable MESHORDER_MACHINE, or "this" if it is not set.
   std::string machine = {};
   bool measure = false;                  ///< runs the kernels here
   KernelSet kernels = KernelSet::plain;  ///< predictions are of the plain ones alone
-  /// Judge the kernels as all threads share their runs, not as one runs them. To predict this needs a
-  /// calibration of this machine on as many threads; the costs that ship are those of one.
+  /// Judge the kernels on all threads, which share each run, not on one thread. Prediction then needs a
+  /// calibration of this machine on the same number of threads; the shipped costs are for one thread.
   bool all_threads = false;
-  /// Seconds after the call, ≥ 0: no round of measurements begins that would end later, but two are run.
+  /// Seconds after the call, ≥ 0: a round of measurements begins only if it would end before this, but at
+  /// least two rounds are run.
   double budget_seconds = 10;
   OrderOptions order = {};  ///< `groups` has n entries or none, `cell_groups` m or none
 };
 
-/// Tells what other orders of a mesh are worth. The mesh is not changed.
+/// Returns what other orders of a mesh gain. The mesh is not changed.
 ///
 /// @param mesh     n vertices with points, m cells with types, at least one of them a line, surface or volume
 /// @param options  see `PayoffOptions`
 /// @return the kernels' times as the mesh is and in every candidate, and the best candidate for each kernel.
 ///         Times that differ by less than 5 % (measured), 10 % (predicted) or 25 % (predicted products), or
 ///         less than `Advice::floor`, count as equal
-/// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for types and machines that
-/// are
-///         not known, where neither prediction nor measurement is asked for, where tuned kernels are to be
-///         predicted, and where the costs of all
-///         threads are asked for and not known
-/// @note Orders and, to predict, about a second for a million tetrahedra and candidate; to measure, the
-///       budget. Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex of a
+/// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for unknown types and
+/// machines; if neither `predict` nor `measure` is true; for `predict` with tuned kernels; and for `predict`
+/// with `all_threads` if those costs are not known
+/// @note Time: that of the orders; to predict, about a second for each candidate and million tetrahedra; to
+/// measure, the budget. Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex of a
 ///       tetrahedral mesh, and while it is measured 2.5 KB a vertex more. Stages of progress: those of
 ///       `order_mesh`, "predict" and "measure".
 [[nodiscard]] MESHORDER_API Advice advise(const MeshView& mesh, const PayoffOptions& options = {});
 
-/// Tells what other orders of a square matrix's rows and columns are worth to its product with a vector, the
-/// only kernel (see `Advice::is_matrix`). The pattern need not be symmetric. Methods that need points are not
-/// for a matrix. Exceptions and cost as of a mesh; InvalidArgument for a matrix without entries off the
-/// diagonal.
+/// Returns what other orders of a square matrix's rows and columns gain for its product with a vector, which
+/// is the only kernel (see `Advice::is_matrix`). The pattern need not be symmetric. Methods that need points
+/// are not for a matrix. Exceptions and cost as of a mesh; InvalidArgument for a matrix without entries off
+/// the diagonal.
 [[nodiscard]] MESHORDER_API Advice advise(const GraphView& matrix, const PayoffOptions& options = {});
 
 /// The same of a mesh as its reader made it, which is a matrix if its file holds one.
@@ -167,8 +167,9 @@ struct PayoffOptions {
 
 /// How `calibrate` measures.
 struct CalibrationOptions {
-  double seconds = 16;  ///< > 0: no measurement begins that would end later, but each is made once
-  bool keep = true;     ///< store it, so that `advise` predicts for this machine from now on
+  /// > 0: a measurement begins only if it would end before this, but each is made at least once.
+  double seconds = 16;
+  bool keep = true;  ///< store it, so that `advise` predicts for this machine from now on
   Run run = {};
 };
 
@@ -177,7 +178,8 @@ struct CalibrationReport {
   std::string machine = {};  ///< what `Advice::machine` calls it
   std::string json = {};     ///< all that was measured, see docs/json.md
   std::string file = {};     ///< where it is stored; empty if it is not kept
-  /// Why it is not to be trusted, a sentence: the machine was busy or throttled. Empty where it is.
+  /// Why the calibration cannot be trusted, a sentence: the machine was busy or throttled. Empty if it can be
+  /// trusted.
   std::string doubt = {};
 };
 
@@ -189,8 +191,8 @@ struct CalibrationReport {
 /// @param options  see `CalibrationOptions`
 /// @throws InvalidArgument for a time that is not above 0; Error with Code::io if it cannot be stored;
 /// Stopped
-/// @note Runs for `options.seconds` and some more where the machine is slow, in about 1 GB of memory. Other
-///       work on the machine spoils it. Stages of progress: "caches", "bandwidths", "lattices".
+/// @note Runs for `options.seconds`, or longer on a slow machine, in about 1 GB of memory. Other work on the
+/// machine makes the result wrong. Stages of progress: "caches", "bandwidths", "lattices".
 MESHORDER_API CalibrationReport calibrate(const CalibrationOptions& options = {});
 
 }  // namespace v0_3

@@ -21,10 +21,10 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// A bijection of 0 … n−1, stored in both directions, and the moves of arrays that it stands for.
+/// A bijection of 0 … n−1, stored in both directions, and the moves of arrays that it describes.
 ///
-/// `old_to_new()[i]` is the new place of what stood at place i. `new_to_old()[k]` is the old place of what
-/// stands at place k now. For SciPy, MATLAB and PETSc `new_to_old` is the index array: `moved =
+/// `old_to_new()[i]` is the new place of the item that was at place i. `new_to_old()[k]` is the old place of
+/// the item that is now at place k. For SciPy, MATLAB and PETSc `new_to_old` is the index array: `moved =
 /// array[new_to_old]`.
 ///
 /// @note Immutable but for assignment, so one object may be read by several threads. Memory: 8 n bytes.
@@ -114,9 +114,9 @@ class MESHORDER_API Permutation {
   /// @param values  n · width values, row after row
   /// @param width   values in a row
   /// @throws InvalidArgument if the size is not n · width
-  /// @note O(n · width) on one thread. Trivially copyable types follow the cycles of the permutation and need
-  ///       n / 8 bytes and one row of memory; others need a second array. `move` is faster where there is
-  ///       memory.
+  /// @note O(n · width) on one thread. Rows of trivially copyable types move along the cycles of the
+  /// permutation, with n / 8 bytes and one row of extra memory; other types need a second array. `move` is
+  /// faster if memory suffices.
   template <std::ranges::contiguous_range R>
   void move_in_place(R&& values, std::size_t width = 1) const;
 
@@ -134,8 +134,8 @@ class MESHORDER_API Permutation {
   void move_rows(const void* from, Offset from_stride, void* to, Offset to_stride, std::size_t row_bytes,
                  const Run& run = {}) const;
 
-  /// Replaces numbers of things by their new numbers, as a mesh's connectivity needs it after its vertices
-  /// moved: number v becomes base + old_to_new[v − base].
+  /// Replaces old numbers by new numbers, for example in a mesh's connectivity after its vertices have moved:
+  /// number v becomes base + old_to_new[v − base].
   ///
   /// @param numbers  any count, each in base … base + n − 1; may be a range of std::array
   /// @param base     0 or 1
@@ -149,7 +149,7 @@ class MESHORDER_API Permutation {
   /// Columns ascend in every row of B; repeated ones keep their order. The pattern of A may be asymmetric,
   /// unsorted and with a diagonal.
   ///
-  /// @param matrix   A: n rows; its weights are ignored, its base is that of B as well
+  /// @param matrix   A: n rows; its weights are ignored; B has the same base
   /// @param values   the same number of bytes for each entry of A, one after another; may be empty
   /// @param offsets  n + 1 offsets of B, written
   /// @param columns  as many columns of B as of A, written

@@ -13,12 +13,12 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// Numbers that describe how near the ends of edges stand in an order. The span of edge ij is |rank i − rank
-/// j|. All 0 without edges.
+/// Numbers that describe how near the two ends of each edge are in an order. The span of edge ij is |rank i −
+/// rank j|. All 0 without edges.
 struct Quality {
   Offset edges = 0;      ///< loops not counted, repeats once
   double mean_span = 0;  ///< ≥ 1; about n/3 for a random order
-  /// Mean of log₂ span: what stays near counts, where mean_span is ruled by what is far.
+  /// Mean of log₂ span: short spans count here, where long ones dominate mean_span.
   double mean_log2_span = 0;
   Index bandwidth = 0;  ///< the largest span: the half bandwidth of the matrix with this pattern
   Offset profile = 0;   ///< Σ over rows of the distance from the first neighbour before the diagonal to it

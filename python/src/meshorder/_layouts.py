@@ -21,7 +21,7 @@ class Patches(NamedTuple):
         offsets: the vertices of patch p are ``vertices[offsets[p] : offsets[p + 1]]``.
         vertices: of each patch its vertices, ascending.
         local: m × k numbers of 16 bits: corner a of ``cells[i]`` is vertex ``local[i, a]`` of its patch.
-        size: how many cells each patch has, but perhaps the last one.
+        size: how many cells each patch has; the last may have fewer.
     """
 
     cells: NDArray[np.int32]
@@ -62,7 +62,8 @@ class GpuCost(NamedTuple):
 
     Attributes:
         requests: additions, each of a warp of 32 threads at once.
-        sectors: sectors of 32 bytes that these add to, each as often as most threads of the warp add to one number of it.
+        sectors: sectors of 32 bytes that these additions write; one counts t times if at most t threads of the warp add to
+            the same number in it.
         floor: ``sectors`` if the vertices of each warp were side by side, and no two the same.
     """
 
@@ -89,16 +90,16 @@ def patches(cells: Any, size: int = 256, *, vertices: int | None = None) -> Patc
     """Cuts cells into patches, in their order.
 
     A block of threads loads the vertices of its patch into shared memory, works on them by their local numbers, and adds up
-    there. Within a patch the cells are dealt out to warps of 32 threads, so that those that share vertices do not wait for
-    each other.
+    there. Within a patch, neighbouring cells are spread over the warps of 32 threads, so that few threads of a warp add to
+    the same vertex.
 
     Args:
         cells: cells of one type, in one of the forms that `order_mesh` takes; rows of two are edges.
-        size: cells of a patch, at least 2; the vertices of a patch must have numbers of 16 bits.
+        size: cells of a patch, 2 … 65,535 / k for cells of k vertices.
         vertices: number of vertices n; None: as many as the cells name.
 
     Raises:
-        InvalidArgument: faulty cells, cells of several types, another size.
+        InvalidArgument: faulty cells, cells of several types, a size out of range.
         TooLarge: 2³¹ or more cells.
 
     Example:
@@ -145,8 +146,8 @@ def colours(cells: Any, *, vertices: int | None = None) -> Colours:
 def sort_corners(cells: Any, *, vertices: int | None = None) -> NDArray[np.int32]:
     """Sorts the vertices of each triangle or tetrahedron as far as its orientation allows.
 
-    A triangle then begins with its smallest vertex; a tetrahedron ascends, but for its last two vertices where that would
-    turn it over.
+    A triangle then begins with its smallest vertex. The vertices of a tetrahedron ascend; the last two are swapped if
+    ascending order would reverse the orientation.
 
     Args:
         cells: linear triangles or tetrahedra, in one of the forms that `order_mesh` takes.
@@ -164,14 +165,14 @@ def sort_corners(cells: Any, *, vertices: int | None = None) -> NDArray[np.int32
 
 
 def gpu_cost(cells: Any, layout: str = "padded", *, vertices: int | None = None) -> GpuCost:
-    """Counts what the atomic additions to the vertices of cells cost on a GPU; none is needed for that.
+    """Counts the cost of atomic additions to the vertices of cells on a GPU. The count needs no GPU.
 
     Of two orders of the same cells, the one with fewer sectors is faster there. An NVIDIA H100 counts the same within 1.2 %.
 
     Args:
         cells: cells of one type, in one of the forms that `order_mesh` takes; rows of two are edges.
-        layout: where the kernel keeps the numbers of 4 bytes that it adds to vertices: "packed" has three side by side, each
-            added by itself; "apart" has three arrays; "padded" has four side by side, added at once.
+        layout: where the kernel keeps the numbers of 4 bytes that it adds to vertices: "packed" has three side by side,
+            each added by itself; "apart" has three arrays; "padded" has four side by side, added at once.
         vertices: number of vertices n; None: as many as the cells name.
 
     Raises:
