@@ -32,9 +32,10 @@ struct Patches {
   /// Returns the number of patches.
   [[nodiscard]] std::size_t count() const noexcept { return offsets.size() - 1; }
   /// Returns the vertices of a patch.
-  [[nodiscard]] std::span<const Index> vertices_of(std::size_t patch) const {
+  [[nodiscard]] std::span<const Index> vertices_of(std::size_t patch) const& MESHORDER_LIFETIMEBOUND {
     return {vertices.data() + offsets[patch], vertices.data() + offsets[patch + 1]};
   }
+  [[nodiscard]] std::span<const Index> vertices_of(std::size_t patch) const&& = delete;
 };
 
 /// Cuts cells into patches of `size`, in their order. Within a patch, neighbouring cells are spread over the
@@ -42,12 +43,12 @@ struct Patches {
 ///
 /// @param cells         cells with the same number of vertices k; edges are lines
 /// @param vertex_count  n
-/// @param size          cells of a patch, 2 … 65,535 / k
+/// @param size          cells of a patch, 2 … 65,535 / k; multiples of 32 fill all warps
 /// @param run           threads
 /// @throws InvalidArgument for faulty cells, cells of several types, and a size out of range
 /// @throws TooLarge for more than 2,147,483,647 vertices or cells
-/// @note O(m k + n) time, and 4 n bytes for each thread besides the result. The same on any number of
-/// threads.
+/// @note O(m k log(size · k) + n · threads) time, and 2 n bytes for each thread besides the result, of which
+///       the vertices are there twice for a while. The same on any number of threads.
 [[nodiscard]] MESHORDER_API Patches patches(const CellsView& cells, std::size_t vertex_count, int size = 256,
                                             const Run& run = {});
 
@@ -79,7 +80,9 @@ struct Colours {
 /// vertices.
 ///
 /// @throws InvalidArgument for faulty cells; TooLarge as `patches`
-/// @note O(Σ vertices of a cell + n), on one thread. At least as many colours as cells at a vertex.
+/// @note O(Σ vertices of a cell + n) on one thread, and 40 n bytes besides the result. At least as many
+/// colours
+///       as cells at a vertex.
 [[nodiscard]] MESHORDER_API Colours colours(const CellsView& cells, std::size_t vertex_count,
                                             const Run& run = {});
 
@@ -104,8 +107,8 @@ enum class GpuLayout {
 /// What the atomic additions of a pass over cells cost, a thread a cell.
 struct GpuCost {
   Offset requests = 0;  ///< additions, each of a warp of 32 threads at once
-  /// Sectors of 32 bytes that these additions write. A sector counts t times if at most t threads of the warp
-  /// add to the same number in it, because these threads wait for each other.
+  /// Sectors of 32 bytes that these additions write. A sector counts t times, where t is the
+  /// largest number of threads of the warp that add to one number in it: these wait for each other.
   Offset sectors = 0;
   Offset floor = 0;  ///< `sectors` if the vertices of each warp were side by side, and no two the same
 

@@ -150,7 +150,7 @@ struct PayoffOptions {
 /// Returns what other orders of a square matrix's rows and columns gain for its product with a vector, which
 /// is the only kernel (see `Advice::is_matrix`). The pattern need not be symmetric. Methods that need points
 /// are not for a matrix. Exceptions and cost as of a mesh; InvalidArgument for a matrix without entries off
-/// the diagonal.
+/// the diagonal and for tuned kernels; TooLarge for more than 2,147,483,647 entries.
 [[nodiscard]] MESHORDER_API Advice advise(const GraphView& matrix, const PayoffOptions& options = {});
 
 /// The same of a mesh as its reader made it, which is a matrix if its file holds one.

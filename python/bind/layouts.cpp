@@ -4,12 +4,8 @@
 #include "cells.hpp"
 #include "module.hpp"
 #include "options.hpp"
-#include <meshorder/error.hpp>
 #include <meshorder/layouts.hpp>
 
-#include <algorithm>
-#include <array>
-#include <string>
 #include <utility>
 
 namespace meshorder::python {
@@ -32,20 +28,14 @@ void add_layouts(nb::module_& module) {
     Colours found = unlocked([&] { return colours(mesh.cells, n); });
     return nb::make_tuple(given(std::move(found.starts)), given(std::move(found.cells)));
   });
-  module.def("gpu_cost", [](const GivenCells& cells, std::size_t n, const std::string& layout) {
-    static constexpr std::array<std::pair<const char*, GpuLayout>, 3> kLayouts{
-        {{"packed", GpuLayout::packed}, {"apart", GpuLayout::apart}, {"padded", GpuLayout::padded}}};
-    const auto* const wanted = std::find_if(kLayouts.begin(), kLayouts.end(),
-                                            [&](const auto& known) { return layout == known.first; });
-    if (wanted == kLayouts.end())
-      throw InvalidArgument("layout: expected 'packed', 'apart' or 'padded', not '" + layout + "'");
+  module.def("gpu_cost", [](const GivenCells& cells, std::size_t n, int layout) {
     const MeshView mesh = mesh_view({}, cells, n);
-    const GpuCost cost = unlocked([&] { return gpu_cost(mesh.cells, n, wanted->second); });
+    const GpuCost cost = unlocked([&] { return gpu_cost(mesh.cells, n, static_cast<GpuLayout>(layout)); });
     return nb::make_tuple(cost.requests, cost.sectors, cost.floor);
   });
   module.def("sort_corners", [](const GivenCells& cells, std::size_t n) {
     const MeshView mesh = mesh_view({}, cells, n);
-    return nb::make_tuple(given(unlocked([&] { return sort_corners(mesh.cells, n); })), mesh.cells.size());
+    return given(unlocked([&] { return sort_corners(mesh.cells, n); }));
   });
 }
 

@@ -101,6 +101,11 @@ def test_faults_are_named(cells):
             layout(cells - 1)
         with pytest.raises(InvalidArgument, match="integers"):
             layout(cells.astype(float))
+    with pytest.raises(meshorder.TooLarge):
+        meshorder.colours(np.array([[0, 2**64 - 1]], dtype=np.uint64))
+    with pytest.raises(InvalidArgument, match="not None"):
+        meshorder.gpu_cost(cells, layout=None)  # type: ignore[arg-type]
+    assert meshorder.patches(cells[:0]).local.shape == meshorder.sort_corners(cells[:0]).shape == (0, 4)
     for of_none in (meshorder.patches(cells[:0]).local, meshorder.gather_lists(cells[:0]).cells,
                     meshorder.colours(cells[:0]).cells, meshorder.sort_corners(cells[:0])):
         assert len(of_none) == 0

@@ -40,13 +40,17 @@ int uniform_width(const CellArrays& cells, const char* caller) {
   return static_cast<int>(width);
 }
 
-/// Calls `work(cell)` for the cells begin … end − 1, dealt out: thread l of each warp takes a run of adjacent
-/// ones, of which warp w has the w-th.
+/// Calls `work(cell)` for the cells begin … end − 1, dealt out: each thread of the warps takes a run of adjacent
+/// ones, of which warp w has the w-th. The last warp may have fewer threads.
 template <class Work>
 void deal_out(Index begin, Index end, const Work& work) {
   const Index warps = chunk_count(end - begin, kWarp);
+  const Index in_last = end - begin - (warps - 1) * kWarp;
   for (Index warp = 0; warp < warps; ++warp) {
-    for (Index cell = begin + warp; cell < end; cell += warps) work(cell);
+    const Index threads = warp + 1 < warps ? kWarp : in_last;
+    // threads that the last warp lacks have runs that are shorter by one
+    for (Index thread = 0; thread < threads; ++thread)
+      work(begin + thread * warps - std::max(thread - in_last, 0) + warp);
   }
 }
 
@@ -156,25 +160,31 @@ Offset sectors_of(std::span<const Index> ascending, int record_bytes, int first_
   return sectors + most;
 }
 
-/// Returns the cost of the cells begin … end − 1, a thread of a warp each.
-GpuCost cost_of_warp(const CellArrays& cells, int width, Index begin, Index end, const Additions& additions) {
+/// Returns the sectors of the cells begin … end − 1, a thread of a warp each.
+Offset sectors_of_warp(const CellArrays& cells, int width, Offset begin, Offset end,
+                       const Additions& additions) {
   std::array<Index, kWarp> vertices{};
   const auto own = std::span(vertices).first(static_cast<std::size_t>(end - begin));
-  GpuCost cost;
+  Offset sectors = 0;
   for (int corner = 0; corner < width; ++corner) {
-    for (Index c = begin; c < end; ++c) own[c - begin] = cells.vertices[Offset{c} * width + corner];
+    for (Offset c = begin; c < end; ++c) own[c - begin] = cells.vertices[c * width + corner];
     std::ranges::sort(own);
     for (int k = 0; k < additions.count; ++k)
-      cost.sectors += additions.arrays * sectors_of(own, additions.record_bytes, k * kNumberBytes);
+      sectors += additions.arrays * sectors_of(own, additions.record_bytes, k * kNumberBytes);
   }
-  const Offset bytes = Offset{end - begin} * additions.record_bytes;
-  cost.requests = Offset{width} * additions.count * additions.arrays;
-  cost.floor = cost.requests * ((bytes + kSectorBytes - 1) / kSectorBytes);
-  return cost;
+  return sectors;
 }
 
-GpuCost sum(const GpuCost& a, const GpuCost& b) {
-  return {a.requests + b.requests, a.sectors + b.sectors, a.floor + b.floor};
+/// Returns the sectors of a warp for one corner whose threads add to vertices side by side.
+Offset floor_of_warp(Index threads, const Additions& additions) {
+  std::array<Index, kWarp> vertices{};
+  std::iota(vertices.begin(), vertices.end(), Index{0});
+  Offset sectors = 0;
+  for (int k = 0; k < additions.count; ++k) {
+    sectors += additions.arrays * sectors_of(std::span(vertices).first(static_cast<std::size_t>(threads)),
+                                             additions.record_bytes, k * kNumberBytes);
+  }
+  return sectors;
 }
 
 }  // namespace
@@ -184,6 +194,10 @@ Patches patches(const CellsView& cells, std::size_t vertex_count, int size, cons
     const CellArrays arrays = cell_arrays(cells, vertex_count, Check::full);
     const int width = uniform_width(arrays, "patches");
     const int most = std::numeric_limits<std::uint16_t>::max() / std::max(width, 1);
+    if (most < 2) {
+      throw InvalidArgument("patches: cells of " + std::to_string(width) +
+                            " vertices are too large to be two in a patch");
+    }
     if (size < 2 || size > most) {
       throw InvalidArgument("patches: " + std::to_string(size) + " cells each; between 2 and " +
                             std::to_string(most) + " have local numbers of 16 bits");
@@ -252,7 +266,8 @@ Colours colours(const CellsView& cells, std::size_t vertex_count, const Run& run
       const Index colour = all.first_free();
       for (const Index v : vertices_of(arrays, c)) at[v].take(colour);
       colour_of[c] = colour;
-      if (static_cast<std::size_t>(colour) + 2 > result.starts.size()) result.starts.resize(colour + 2);
+      const std::size_t needed = static_cast<std::size_t>(colour) + 2;
+      if (needed > result.starts.size()) result.starts.resize(needed);
       ++result.starts[colour + 1];
     }
     std::partial_sum(result.starts.begin(), result.starts.end(), result.starts.begin());
@@ -303,14 +318,18 @@ GpuCost gpu_cost(const CellsView& cells, std::size_t vertex_count, GpuLayout lay
     const int width = uniform_width(arrays, "gpu_cost");
     const Additions additions = additions_of(layout);
     static_assert(kCellsInChunk % kWarp == 0);
-    std::vector<GpuCost> parts(static_cast<std::size_t>(chunk_count(arrays.size(), kCellsInChunk)));
-    for_each_chunk(arrays.size(), kCellsInChunk, [&](Index chunk, Index begin, Index end) {
-      for (Index warp = begin; warp < end; warp += kWarp) {
-        const Index last = std::min(end - warp, kWarp) + warp;
-        parts[chunk] = sum(parts[chunk], cost_of_warp(arrays, width, warp, last, additions));
-      }
+    const Offset sectors = sum_over_chunks<Offset>(arrays.size(), kCellsInChunk, [&](Index begin, Index end) {
+      Offset part = 0;
+      for (Offset warp = begin; warp < end; warp += kWarp)
+        part += sectors_of_warp(arrays, width, warp, std::min<Offset>(warp + kWarp, end), additions);
+      return part;
     });
-    return std::accumulate(parts.begin(), parts.end(), GpuCost(), sum);
+    const Offset additions_of_warp = Offset{width} * additions.count * additions.arrays;
+    const Offset whole_warps = arrays.size() / kWarp;
+    return GpuCost{.requests = additions_of_warp * chunk_count(arrays.size(), kWarp),
+                   .sectors = sectors,
+                   .floor = width * (whole_warps * floor_of_warp(kWarp, additions) +
+                                     floor_of_warp(arrays.size() % kWarp, additions))};
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include "graph/examine.hpp"
 #include "graph/tidy_rows.hpp"
+#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +13,7 @@
 #include <memory>
 #include <numeric>
 #include <span>
+#include <string>
 #include <utility>
 
 namespace meshorder {
@@ -51,8 +53,13 @@ const StoredMatrix* stored_matrix(const Mesh& mesh) {
 }
 
 Mesh matrix_mesh(const GraphView& matrix) {
-  const GraphArrays arrays = graph_arrays(matrix);
-  refuse_faults(matrix, arrays, examine(arrays, false));
+  const GraphView pattern{.offsets = matrix.offsets, .neighbours = matrix.neighbours, .base = matrix.base};
+  const GraphArrays arrays = graph_arrays(pattern);
+  if (arrays.neighbours.size() > static_cast<std::size_t>(kMaxIndex)) {
+    throw TooLarge("matrix: " + std::to_string(arrays.neighbours.size()) +
+                   " entries; at most 2,147,483,647 are possible");
+  }
+  refuse_faults(pattern, arrays, examine(arrays, false));
   Mesh mesh;
   mesh.points.resize(static_cast<std::size_t>(arrays.size()), {0, 0, 0});
   mesh.cells.reserve(static_cast<Offset>(arrays.neighbours.size()),

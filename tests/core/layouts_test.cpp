@@ -22,7 +22,7 @@ using test::refusal;
 using testing::HasSubstr;
 
 Mesh scrambled_grid() {
-  Mesh mesh = make_grid({.size = 9});
+  Mesh mesh = make_grid({.size = 15});
   (void)reorder(mesh, {.methods = {"scrambled", "hilbert"}});
   return mesh;
 }
@@ -71,6 +71,25 @@ TEST(Patches, DealCellsOutToWarps) {
   for (Index lane = 0; lane < 32; ++lane) EXPECT_EQ(first[lane], 8 * lane);
   EXPECT_EQ(first[32], 1);
   EXPECT_EQ(first[33], 9);
+}
+
+TEST(Patches, FillAllWarpsButTheLast) {
+  const Mesh mesh = scrambled_grid();
+  const Patches cut = patches(view(mesh).cells, mesh.points.size(), 100);
+  for (const Index first : {0, 32, 64}) {
+    for (Index i = first + 1; i < first + 32; ++i) EXPECT_GE(cut.cells[i], cut.cells[i - 1] + 3) << i;
+  }
+}
+
+TEST(Patches, HaveLocalNumbersOfSixteenBits) {
+  std::vector<Index> vertices(3 * 21845);
+  std::iota(vertices.begin(), vertices.end(), Index{0});
+  const Patches cut = patches(CellsView::uniform(Shape::triangle, 3, vertices), vertices.size(), 21845);
+  EXPECT_EQ(cut.count(), 1U);
+  EXPECT_EQ(cut.vertices, vertices);
+  EXPECT_EQ(*std::ranges::max_element(cut.local), 65534);
+  for (std::size_t i = 0; i < cut.local.size(); ++i)
+    ASSERT_EQ(cut.local[i], static_cast<std::uint16_t>(3 * cut.cells[i / 3] + i % 3));
 }
 
 TEST(GatherLists, NameEachCornerOfEachCellOnce) {
@@ -201,6 +220,21 @@ TEST(GpuCost, CountsSectorsAndThreadsThatWait) {
   EXPECT_EQ(gpu_cost({}, 4, GpuLayout::packed), GpuCost{});
 }
 
+TEST(GpuCost, IsNotBelowItsFloor) {
+  std::vector<Index> vertices(100);
+  std::iota(vertices.begin(), vertices.end(), Index{0});
+  for (const GpuLayout layout : {GpuLayout::packed, GpuLayout::apart, GpuLayout::padded}) {
+    for (std::size_t n = 1; n <= vertices.size(); ++n) {
+      const IndexView some(vertices.data(), n);
+      const GpuCost cost = gpu_cost(CellsView::uniform(Shape::vertex, 1, some), 100, layout);
+      EXPECT_GE(cost.sectors, cost.floor) << n;
+      if (n <= 32) {
+        EXPECT_EQ(cost.sectors, cost.floor) << n;
+      }
+    }
+  }
+}
+
 TEST(GpuCost, OfSimpleWarpsIsKnown) {
   std::vector<Index> apart(64);
   std::iota(apart.begin(), apart.end(), Index{0});
@@ -226,6 +260,9 @@ TEST(Layouts, AreRefusedWithTheFault) {
   const std::array<Index, 4> edges{0, 1, 1, 2};
   EXPECT_THAT(refusal([&] { (void)sort_corners(CellsView::uniform(Shape::line, 2, edges), 3); }),
               HasSubstr("neither triangles nor tetrahedra"));
+  const std::vector<Index> wide(40000, 0);
+  EXPECT_THAT(refusal([&] { (void)patches(CellsView::uniform(Shape::polygon, 40000, wide), 1); }),
+              HasSubstr("too large to be two in a patch"));
   const std::vector<Index> many(300, 0);
   EXPECT_THAT(refusal([&] { (void)gather_lists(CellsView::uniform(Shape::polygon, 300, many), 1); }),
               HasSubstr("300 vertices, more than 256"));

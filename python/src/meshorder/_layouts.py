@@ -9,8 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from ._errors import InvalidArgument
 from ._meshes import cell_arrays
 from ._options import whole
+
+
+_LAYOUTS = ("packed", "apart", "padded")
 
 
 class Patches(NamedTuple):
@@ -62,8 +66,8 @@ class GpuCost(NamedTuple):
 
     Attributes:
         requests: additions, each of a warp of 32 threads at once.
-        sectors: sectors of 32 bytes that these additions write; one counts t times if at most t threads of the warp add to
-            the same number in it.
+        sectors: sectors of 32 bytes that these additions write; one counts t times, where t is the largest number of threads
+            of the warp that add to one number in it.
         floor: ``sectors`` if the vertices of each warp were side by side, and no two the same.
     """
 
@@ -78,12 +82,15 @@ def _given(cells: Any, vertices: int | None) -> tuple[Any, int]:
     if vertices is not None:
         return arrays, whole(vertices, 2**31 - 1, "vertices")
     named = [block for _, block in arrays] if isinstance(arrays, list) else [arrays[1]]
-    return arrays, max((int(block.max()) + 1 for block in named if block.size), default=0)
+    most = max((int(block.max()) + 1 for block in named if block.size), default=0)
+    return arrays, min(most, 2**63)  # more than the library takes, which says so
 
 
-def _rows(values: NDArray[Any], cells: int) -> NDArray[Any]:
-    """Returns values with a row for each cell."""
-    return values.reshape(cells, len(values) // max(cells, 1))
+def _rows(values: NDArray[Any], cells: Any) -> NDArray[Any]:
+    """Returns values with a row for each of the cells, which `_given` returned."""
+    if isinstance(cells, list):
+        return values.reshape(-1, cells[0][1].shape[1]) if cells else values.reshape(0, 0)
+    return values.reshape(len(cells[0]) - 1, -1) if values.size else values.reshape(0, 0)
 
 
 def patches(cells: Any, size: int = 256, *, vertices: int | None = None) -> Patches:
@@ -95,7 +102,7 @@ def patches(cells: Any, size: int = 256, *, vertices: int | None = None) -> Patc
 
     Args:
         cells: cells of one type, in one of the forms that `order_mesh` takes; rows of two are edges.
-        size: cells of a patch, 2 … 65,535 / k for cells of k vertices.
+        size: cells of a patch, 2 … 65,535 / k for cells of k vertices; multiples of 32 fill all warps.
         vertices: number of vertices n; None: as many as the cells name.
 
     Raises:
@@ -112,7 +119,7 @@ def patches(cells: Any, size: int = 256, *, vertices: int | None = None) -> Patc
     arrays, count = _given(cells, vertices)
     size = whole(size, 2**16, "size")
     order, offsets, own, local = _core.patches(arrays, count, size)
-    return Patches(order, offsets, own, _rows(local, len(order)), size)
+    return Patches(order, offsets, own, _rows(local, arrays), size)
 
 
 def gather_lists(cells: Any, *, vertices: int | None = None) -> GatherLists:
@@ -150,7 +157,7 @@ def sort_corners(cells: Any, *, vertices: int | None = None) -> NDArray[np.int32
     ascending order would reverse the orientation.
 
     Args:
-        cells: linear triangles or tetrahedra, in one of the forms that `order_mesh` takes.
+        cells: linear triangles or tetrahedra, in one of the forms that `order_mesh` takes; rows of four are tetrahedra.
         vertices: number of vertices n; None: as many as the cells name.
 
     Returns:
@@ -161,7 +168,7 @@ def sort_corners(cells: Any, *, vertices: int | None = None) -> NDArray[np.int32
         TooLarge: 2³¹ or more cells.
     """
     arrays, count = _given(cells, vertices)
-    return _rows(*_core.sort_corners(arrays, count))
+    return _rows(_core.sort_corners(arrays, count), arrays)
 
 
 def gpu_cost(cells: Any, layout: str = "padded", *, vertices: int | None = None) -> GpuCost:
@@ -185,4 +192,6 @@ def gpu_cost(cells: Any, layout: str = "padded", *, vertices: int | None = None)
         >>> meshorder.gpu_cost(edges).sectors, meshorder.gpu_cost(edges * [1, 0]).sectors
         (32, 48)
     """
-    return GpuCost(*_core.gpu_cost(*_given(cells, vertices), layout))
+    if layout not in _LAYOUTS:
+        raise InvalidArgument(f"layout: expected 'packed', 'apart' or 'padded', not {layout!r}")
+    return GpuCost(*_core.gpu_cost(*_given(cells, vertices), _LAYOUTS.index(layout)))

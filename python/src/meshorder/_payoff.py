@@ -194,7 +194,7 @@ def _handle_of(given: Any) -> Any:
     if is_graph(given) or host is not None and host.takes_weights:
         offsets, columns, _ = graph_arrays(given)
         return _core.matrix_mesh(offsets, columns)
-    return mesh_of(given)._handle
+    return (mesh_of(given) if host is None else host.mesh())._handle
 
 
 def _pairs(methods: Any) -> list[tuple[str, str]]:
@@ -258,8 +258,8 @@ def advise(
     """Tells how much faster simulators' kernels would run if a mesh or matrix were reordered. It is not changed.
 
     Args:
-        mesh: the path of a file; a mesh that `reorder` takes, with lines, surfaces or volumes; or a matrix or graph that
-            `order` takes, apart from a pair of arrays: its product with a vector is the only kernel then, "spmv".
+        mesh: the path of a file; a mesh that `reorder` takes, with lines, surfaces or volumes; or a matrix or graph of
+            SciPy, networkx or PyTorch: its product with a vector is the only kernel then, "spmv".
         measure: True runs the kernels on this machine; False predicts their times by reuse distances and a cost model.
         kernels: "plain": as most programs have them, one loop without tricks; "tuned": as the simulators of
             ``meshorder simulate`` have them, which prefetch, work on blocks, and run alike in all good orders. The latter
@@ -271,7 +271,7 @@ def advise(
             else "this".
         all_threads: True judges the kernels as all threads (those of the option ``threads``) share each run, False as
             one thread runs them. To predict the former needs a calibration of this machine on as many threads.
-        **options: see `Options`.
+        **options: see `Options`; ``symmetric`` has no effect.
 
     Returns:
         The verdict, the times as the mesh is and in other orders, and the best order for each kernel.
@@ -317,8 +317,8 @@ def compare(
     """Compares orders of a mesh or matrix by their spans and the times of four kernels of simulators. The mesh is not changed.
 
     Args:
-        mesh: the path of a file; a mesh that `reorder` takes, with lines, surfaces or volumes; or a matrix or graph that
-            `order` takes, apart from a pair of arrays: its product with a vector is the only kernel then, "spmv".
+        mesh: the path of a file; a mesh that `reorder` takes, with lines, surfaces or volumes; or a matrix or graph of
+            SciPy, networkx or PyTorch: its product with a vector is the only kernel then, "spmv".
         methods: the name of a vertex method, or a list of names, to which the element method "auto" is added, or of pairs
             ``(vertex method, element method)``; None: what "auto" chooses for all kernels, and for springs where that
             differs.
@@ -328,7 +328,7 @@ def compare(
         predict: True predicts the times by reuse distances and a cost model.
         machine: what to predict for, as for `advise`.
         all_threads: whether all threads share each run, as for `advise`.
-        **options: see `Options`.
+        **options: see `Options`; ``symmetric`` has no effect.
 
     Returns:
         The order that the mesh has, then one for each method.
