@@ -40,8 +40,8 @@ int uniform_width(const CellArrays& cells, const char* caller) {
   return static_cast<int>(width);
 }
 
-/// Calls `work(cell)` for the cells begin … end − 1, dealt out: each thread of the warps takes a run of adjacent
-/// ones, of which warp w has the w-th. The last warp may have fewer threads.
+/// Calls `work(cell)` for the cells begin … end − 1, dealt out: each thread of the warps takes a run of
+/// adjacent ones, of which warp w has the w-th. The last warp may have fewer threads.
 template <class Work>
 void deal_out(Index begin, Index end, const Work& work) {
   const Index warps = chunk_count(end - begin, kWarp);
@@ -318,7 +318,7 @@ GpuCost gpu_cost(const CellsView& cells, std::size_t vertex_count, GpuLayout lay
     const int width = uniform_width(arrays, "gpu_cost");
     const Additions additions = additions_of(layout);
     static_assert(kCellsInChunk % kWarp == 0);
-    const Offset sectors = sum_over_chunks<Offset>(arrays.size(), kCellsInChunk, [&](Index begin, Index end) {
+    const auto sectors = sum_over_chunks<Offset>(arrays.size(), kCellsInChunk, [&](Index begin, Index end) {
       Offset part = 0;
       for (Offset warp = begin; warp < end; warp += kWarp)
         part += sectors_of_warp(arrays, width, warp, std::min<Offset>(warp + kWarp, end), additions);
