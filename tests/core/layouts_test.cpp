@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/index.hpp"
 #include "mesh/procedural.hpp"
 #include "support/refusal.hpp"
 #include <meshorder/layouts.hpp>
