@@ -4,8 +4,8 @@
     python gpu_counts.py MESH FOLDER
 
 MESH is the mesh that was measured, in its file's order; FOLDER has `ncu_order.txt`, a line for each launch (mesh, order and
-kernel, with tabs between), and `ncu_MESH.csv`, what Nsight Compute counted in them. Orders are named vertices/elements, and are made anew here;
-random ones are left out. Prints a table and the largest deviation.
+kernel, with tabs between), and `ncu_MESH.csv`, what Nsight Compute counted in them. Orders are named vertices/elements, and are
+made anew here; random ones are left out. Prints a table and the largest deviation.
 """
 
 import csv

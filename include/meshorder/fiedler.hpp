@@ -47,7 +47,7 @@ struct Fiedler {
 /// @return vector and report for each component. A component that does not converge keeps its best vector,
 ///         with `converged` false: a status, not an error
 /// @throws InvalidArgument if `check` refuses the graph, or the size of `start` is neither 0 nor n, or an
-/// entry of it is not finite
+///         entry of it is not finite
 /// @throws TooLarge for more than 2,147,483,647 vertices
 /// @throws Stopped if the progress callback returned false
 /// @note O((n + edges) · iterations), about six iterations on meshes; memory about 3.5 times the graph's. The

@@ -63,7 +63,8 @@ struct GatherLists {
 /// Returns the gather lists of cells, which may be of several types, with at most 256 vertices each.
 ///
 /// @throws InvalidArgument for faulty cells and for larger ones; TooLarge as `patches`
-/// @note O(Σ vertices of a cell + n). A cell that names a vertex twice is in its list twice.
+/// @note O(Σ vertices of a cell + n) on all threads; of large cells the square of their vertices. A cell that
+///       names a vertex twice is in its list twice.
 [[nodiscard]] MESHORDER_API GatherLists gather_lists(const CellsView& cells, std::size_t vertex_count,
                                                      const Run& run = {});
 
@@ -80,9 +81,8 @@ struct Colours {
 /// vertices.
 ///
 /// @throws InvalidArgument for faulty cells; TooLarge as `patches`
-/// @note O(Σ vertices of a cell + n) on one thread, and 40 n bytes besides the result. At least as many
-/// colours
-///       as cells at a vertex.
+/// @note O(Σ vertices of a cell + n) on one thread, and 40 n bytes besides the result. There are at least as
+///       many colours as cells at a vertex.
 [[nodiscard]] MESHORDER_API Colours colours(const CellsView& cells, std::size_t vertex_count,
                                             const Run& run = {});
 
@@ -107,8 +107,8 @@ enum class GpuLayout {
 /// What the atomic additions of a pass over cells cost, a thread a cell.
 struct GpuCost {
   Offset requests = 0;  ///< additions, each of a warp of 32 threads at once
-  /// Sectors of 32 bytes that these additions write. A sector counts t times, where t is the
-  /// largest number of threads of the warp that add to one number in it: these wait for each other.
+  /// Sectors of 32 bytes that these additions write. A sector counts t times, where t is the largest number
+  /// of threads of the warp that add to one number in it: these wait for each other.
   Offset sectors = 0;
   Offset floor = 0;  ///< `sectors` if the vertices of each warp were side by side, and no two the same
 

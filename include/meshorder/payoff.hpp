@@ -139,11 +139,11 @@ struct PayoffOptions {
 ///         Times that differ by less than 5 % (measured), 10 % (predicted) or 25 % (predicted products), or
 ///         less than `Advice::floor`, count as equal
 /// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for unknown types and
-/// machines; if neither `predict` nor `measure` is true; for `predict` with tuned kernels; and for `predict`
-/// with `all_threads` if those costs are not known
+///         machines; if neither `predict` nor `measure` is true; for `predict` with tuned kernels; and for
+///         `predict` with `all_threads` if those costs are not known
 /// @note Time: that of the orders; to predict, about a second for each candidate and million tetrahedra; to
-/// measure, the budget. Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex of a
-///       tetrahedral mesh, and while it is measured 2.5 KB a vertex more. Stages of progress: those of
+///       measure, the budget. Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex
+///       of a tetrahedral mesh, and while it is measured 2.5 KB a vertex more. Stages of progress: those of
 ///       `order_mesh`, "predict" and "measure".
 [[nodiscard]] MESHORDER_API Advice advise(const MeshView& mesh, const PayoffOptions& options = {});
 

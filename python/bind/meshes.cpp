@@ -6,6 +6,7 @@
 #include "mesh/stored_matrix.hpp"
 #include "module.hpp"
 #include "options.hpp"
+#include "payoff/kernel_bench.hpp"
 #include "results.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
@@ -46,18 +47,16 @@ nb::tuple order_of_mesh(const GivenPoints& points, const GivenCells& cells, std:
   return described(unlocked([&] { return order_mesh(mesh, methods, given_options.order()); }));
 }
 
-nb::object milliseconds(const std::optional<KernelMilliseconds>& times) {
+nb::object milliseconds(std::span<const Kernel> kernels, const std::optional<KernelMilliseconds>& times) {
   if (!times) return nb::none();
   nb::dict result;
-  for (const Kernel kernel : kKernels) {
-    // a matrix has its product alone
-    if (const double time = (*times)[static_cast<std::size_t>(kernel)]; time > 0)
-      result[text(to_string(kernel))] = time;
+  for (const Kernel kernel : kernels) {
+    result[text(to_string(kernel))] = (*times)[static_cast<std::size_t>(kernel)];
   }
   return result;
 }
 
-nb::dict described(const Candidate& candidate) {
+nb::dict described(const Candidate& candidate, std::span<const Kernel> kernels) {
   nb::dict result;
   result["vertices"] = candidate.vertices.name;
   result["elements"] = candidate.elements.name;
@@ -65,8 +64,8 @@ nb::dict described(const Candidate& candidate) {
   result["workload"] = std::string(to_string(candidate.workload));
   result["spans"] = described(candidate.spans);
   result["pattern"] = described(candidate.pattern);
-  result["predicted"] = milliseconds(candidate.costs.predicted);
-  result["measured"] = milliseconds(candidate.costs.measured);
+  result["predicted"] = milliseconds(kernels, candidate.costs.predicted);
+  result["measured"] = milliseconds(kernels, candidate.costs.measured);
   result["order_seconds"] = candidate.order_seconds;
   return result;
 }
@@ -89,21 +88,22 @@ PayoffOptions payoff_options(const MethodPairs& methods, bool predict, bool meas
 
 nb::tuple advise_mesh(const Mesh& mesh, const PayoffOptions& options) {
   const Advice advice = unlocked([&] { return advise(mesh, options); });
+  const std::span<const Kernel> kernels = kernels_of(mesh);
   nb::list candidates;
-  for (const Candidate& candidate : advice.candidates) candidates.append(described(candidate));
-  nb::dict kernels;
-  for (const Kernel kernel : advice.is_matrix ? std::span<const Kernel>(kKernels).first(1) : kKernels) {
+  for (const Candidate& candidate : advice.candidates) candidates.append(described(candidate, kernels));
+  nb::dict best_of;
+  for (const Kernel kernel : kernels) {
     const KernelAdvice& best = advice.kernels[static_cast<std::size_t>(kernel)];
-    kernels[text(to_string(kernel))] = nb::make_tuple(best.candidate, best.factor, best.runs_to_pay);
+    best_of[text(to_string(kernel))] = nb::make_tuple(best.candidate, best.factor, best.runs_to_pay);
   }
-  return nb::make_tuple(to_string(advice), described(advice.as_is), candidates, kernels, advice.doubt,
-                        advice.machine, advice.threads);
+  return nb::make_tuple(to_string(advice), described(advice.as_is, kernels), candidates, best_of,
+                        advice.doubt, advice.machine, advice.threads);
 }
 
 nb::list compare_mesh(const Mesh& mesh, const PayoffOptions& options) {
   nb::list list;
   for (const Candidate& candidate : unlocked([&] { return compare(mesh, options); }))
-    list.append(described(candidate));
+    list.append(described(candidate, kernels_of(mesh)));
   return list;
 }
 
@@ -299,9 +299,6 @@ void add_meshes(nb::module_& module) {
   module.def("calibrate", &calibrated);
   module.attr("shapes") = nb::tuple(shapes);
   module.attr("dimensions") = nb::tuple(dimensions);
-  nb::list kernels;
-  for (const Kernel kernel : kKernels) kernels.append(text(to_string(kernel)));
-  module.attr("kernels") = nb::tuple(kernels);
   add_mesh_class(module);
   module.def(
       "order_mesh",

@@ -109,6 +109,14 @@ TEST(GatherLists, NameEachCornerOfEachCellOnce) {
   }
 }
 
+TEST(GatherLists, NameAVertexThatACellHasTwiceTwice) {
+  const std::array<Index, 6> triangles{1, 0, 1, 2, 1, 1};
+  const GatherLists lists = gather_lists(CellsView::uniform(Shape::triangle, 3, triangles), 3);
+  EXPECT_THAT(lists.offsets, testing::ElementsAre(0, 1, 5, 6));
+  EXPECT_THAT(lists.cells, testing::ElementsAre(0, 0, 0, 1, 1, 1));
+  EXPECT_THAT(lists.corners, testing::ElementsAre(1, 0, 2, 1, 2, 0));
+}
+
 void expect_proper(const Colours& colours, const Cells& cells) {
   std::vector<Index> seen = colours.cells;
   std::ranges::sort(seen);

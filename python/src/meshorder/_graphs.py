@@ -194,10 +194,17 @@ class Quality:
         return _plots.quality(self, axes)
 
 
+def _is_of_scipy(given: Any) -> bool:
+    return hasattr(given, "tocsr") and hasattr(given, "nnz")
+
+
+def _is_of_networkx(given: Any) -> bool:
+    return hasattr(given, "adjacency") and hasattr(given, "number_of_nodes")
+
+
 def is_graph(given: Any) -> bool:
     """Returns whether an object is a SciPy matrix or a networkx graph."""
-    of_scipy = hasattr(given, "tocsr") and hasattr(given, "nnz")
-    return of_scipy or hasattr(given, "adjacency") and hasattr(given, "number_of_nodes")
+    return _is_of_scipy(given) or _is_of_networkx(given)
 
 
 def graph_arrays(graph: Any, mirror: bool = False) -> tuple[NDArray[Any], NDArray[Any], Any]:
@@ -213,12 +220,12 @@ def graph_arrays(graph: Any, mirror: bool = False) -> tuple[NDArray[Any], NDArra
     Raises:
         InvalidArgument: none of these forms, a matrix that is not square, arrays of other types than integers.
     """
-    if hasattr(graph, "tocsr") and hasattr(graph, "nnz"):
+    if _is_of_scipy(graph):
         matrix = graph.tocsr()
         if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
             raise InvalidArgument(f"graph: expected a square matrix, not one of shape {matrix.shape}")
         return integers(matrix.indptr, "indptr"), integers(matrix.indices, "indices"), slice(None)
-    if hasattr(graph, "adjacency") and hasattr(graph, "number_of_nodes"):
+    if _is_of_networkx(graph):
         return *networkx_arrays(graph), slice(None)
     if isinstance(graph, (tuple, list)) and len(graph) == 2:
         return integers(graph[0], "indptr"), integers(graph[1], "indices"), slice(None)

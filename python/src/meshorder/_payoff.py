@@ -20,9 +20,6 @@ from ._graphs import Quality, graph_arrays, is_graph
 from ._options import prepared
 from .hosts import find_host
 
-#: names of the kernels: "spmv", "element", "assembly", "springs"
-KERNELS: tuple[str, ...] = _core.kernels
-
 
 @dataclass(frozen=True)
 class Candidate:
