@@ -63,8 +63,7 @@ struct GatherLists {
 /// Returns the gather lists of cells, which may be of several types, with at most 256 vertices each.
 ///
 /// @throws InvalidArgument for faulty cells and for larger ones; TooLarge as `patches`
-/// @note O(Σ vertices of a cell + n) on all threads; of large cells the square of their vertices. A cell that
-///       names a vertex twice is in its list twice.
+/// @note O(Σ vertices of a cell + n) on one thread. A cell that names a vertex twice is in its list twice.
 [[nodiscard]] MESHORDER_API GatherLists gather_lists(const CellsView& cells, std::size_t vertex_count,
                                                      const Run& run = {});
 
