@@ -38,10 +38,17 @@ packages_for_mpi=(
   openmpi-bin          "starts them"
   libptscotch-dev      "cuts meshes into parts for them"
 )
+# for fuzz/run, and for ./test
+packages_to_fuzz=(
+  clang-14             "compiler with coverage and sanitizers"
+  libclang-rt-14-dev   "libFuzzer and the sanitizers' libraries"
+  llvm-14              "names of functions in what the sanitizers report"
+)
 # shellcheck disable=SC2034  # for ./test
 packages_to_test=(
   "${packages_to_run[@]}"
   "${packages_for_mpi[@]}"
+  "${packages_to_fuzz[@]}"
   libgtest-dev         "unit tests"
   libvtk9-dev          "an independent reader and writer of .vtu and .vtk files"
   libgmock-dev         "matchers of the unit tests"
@@ -78,12 +85,6 @@ packages_to_test=(
   fonts-dejavu-core    "letters for the browser"
   clang-format         "checks the layout of the sources"
   clang-tidy           "looks for mistakes in the sources"
-)
-# shellcheck disable=SC2034  # for fuzz/run
-packages_to_fuzz=(
-  clang-14             "compiler with coverage and sanitizers"
-  libclang-rt-14-dev   "libFuzzer and the sanitizers' libraries"
-  llvm-14              "names of functions in what the sanitizers report"
 )
 # ./test does the same without them, in more time
 # shellcheck disable=SC2034  # for ./test

@@ -75,7 +75,7 @@ TEST(VertexGraph, OfManyVerticesThatLieAnywhereJoinsThePairsOfACommonElement) {
   std::vector<Edge> edges;
   for (Index e = 0; e < elements.size(); ++e) {
     for (const Index a : elements[e]) {
-      for (const Index b : elements[e]) edges.emplace_back(a, b);
+      for (const Index b : elements[e]) edges.push_back({a, b});
     }
   }
   const CsrGraph graph = joined_vertices(elements);

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <ranges>
+#include <numeric>
 #include <vector>
 
 namespace meshorder {
@@ -65,8 +65,10 @@ TEST(RowChunks, GoOverEveryRowOnceBothWays) {
     for (Index v = begin; v < end; ++v) pieces[v] += end - begin <= kRowsOfPiece ? 1 : 9;
   });
   EXPECT_EQ(pieces, std::vector<int>(50000, 1));
-  EXPECT_TRUE(std::ranges::equal(rising, std::views::iota(7, 30000)));
-  EXPECT_TRUE(std::ranges::equal(falling, std::views::iota(7, 30000) | std::views::reverse));
+  std::vector<Index> ascending(30000 - 7);
+  std::iota(ascending.begin(), ascending.end(), 7);
+  EXPECT_EQ(rising, ascending);
+  EXPECT_TRUE(std::equal(falling.begin(), falling.end(), ascending.rbegin(), ascending.rend()));
   EXPECT_EQ(forwards, std::vector<int>(50000, 1));
   EXPECT_EQ(backwards, forwards);
   EXPECT_EQ(each, forwards);

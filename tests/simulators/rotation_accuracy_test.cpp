@@ -16,7 +16,7 @@ namespace {
 using Matrix3l = Eigen::Matrix<long double, 3, 3>;
 using Vector3l = Eigen::Matrix<long double, 3, 1>;
 
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef MESHORDER_IS_SANITIZED
 constexpr std::size_t kBatches = 8;
 #else
 constexpr std::size_t kBatches = 64;

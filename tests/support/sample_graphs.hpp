@@ -11,7 +11,7 @@
 namespace meshorder::test {
 
 /// Whether a sanitizer watches this build, which makes everything about ten times slower.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef MESHORDER_IS_SANITIZED
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;
