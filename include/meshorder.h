@@ -81,7 +81,7 @@ typedef struct mo_options {
   const char* method;         /**< vertex method; null: "auto" */
   const char* element_method; /**< element method; null: "auto" */
   const char* workload; /**< what "auto" chooses for: "all" (null), "element", "spmv", "assembly", "springs",
-                             "bandwidth", "fill" */
+                             "bandwidth", "fill", "gpu" */
   uint64_t seed;        /**< default 0 */
   double tolerance;     /**< of Fiedler vectors, relative to lambda2, > 0; default 0.1 */
   double time_limit;    /**< seconds, then the best so far; default infinity */

@@ -10,6 +10,7 @@
 #include "metrics/edge_span.hpp"
 #include "ordering/judgement.hpp"
 #include "ordering/method_named.hpp"
+#include "payoff/advice.hpp"
 #include "progress.hpp"
 #include "wording.hpp"
 #include <meshorder/error.hpp>
@@ -207,7 +208,7 @@ struct OrderedMesh {
 
 /// Returns whether a method looks at the centres of cells.
 bool needs_centres(const std::string& method, Workload workload) {
-  if (method == "auto") return workload != Workload::bandwidth && workload != Workload::fill;
+  if (method == "auto") return is_told_by_kernels(workload);  // the other orders go by the graph alone
   return needs_points(vertex_methods(), method);
 }
 

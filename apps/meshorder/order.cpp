@@ -49,7 +49,7 @@ void check_race(const OrderArguments& arguments) {
   const char* const option = arguments.measure ? "--measure" : "--predict";
   const ReorderOptions& options = arguments.reordering;
   const Workload use = options.order.workload;
-  if (use == Workload::bandwidth || use == Workload::fill) {
+  if (!is_told_by_kernels(use)) {
     throw InvalidArgument(fmt::format("{} goes by the times of kernels, which tell nothing of --for {}",
                                       option, to_string(use)));
   }

@@ -22,15 +22,16 @@ enum class Workload : std::uint8_t {
   springs,    ///< a force along every edge
   bandwidth,  ///< the bandwidth of the matrix, for banded and skyline solvers
   fill,       ///< few non-zeros in the factors of the matrix, for sparse direct solvers
+  gpu,        ///< graphics processors: products, a thread a row, and atomic additions, a thread an element
 };
 
 /// All values of `Workload`.
 inline constexpr std::array kWorkloads{Workload::all,      Workload::element, Workload::spmv,
                                        Workload::assembly, Workload::springs, Workload::bandwidth,
-                                       Workload::fill};
+                                       Workload::fill,     Workload::gpu};
 
-/// Returns "all", "element", "spmv", "assembly", "springs", "bandwidth" or "fill". Valid for the life of the
-/// program.
+/// Returns "all", "element", "spmv", "assembly", "springs", "bandwidth", "fill" or "gpu". Valid for the life
+/// of the program.
 MESHORDER_API std::string_view to_string(Workload workload);
 
 /// Returns the workload of that name.

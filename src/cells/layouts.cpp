@@ -2,6 +2,7 @@
 #include "base/arena.hpp"
 #include "base/parallel.hpp"
 #include "cells/cell_arrays.hpp"
+#include "cells/warp_sectors.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/layouts.hpp>
 
@@ -16,9 +17,6 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace {
 
-constexpr Index kWarp = 32;  ///< threads that run in step
-constexpr int kSectorBytes = 32;
-constexpr int kNumberBytes = 4;
 constexpr Index kCellsInChunk = 1 << 14;
 constexpr Index kFirstColours = 256;  ///< those of which each vertex knows which are taken
 
@@ -116,71 +114,6 @@ class PatchCutter {
   Patches& patches_;
   std::vector<std::uint16_t> local_of_;  ///< of each vertex; `kTaken` while the vertices of a patch are found
 };
-
-/// The additions that a warp makes for each vertex at once.
-struct Additions {
-  int record_bytes;  ///< from one vertex to the next
-  int count;         ///< additions, one after another in the record
-  int arrays;        ///< that they are made to
-};
-
-Additions additions_of(GpuLayout layout) {
-  switch (layout) {
-    case GpuLayout::packed:
-      return {3 * kNumberBytes, 3, 1};
-    case GpuLayout::apart:
-      return {kNumberBytes, 1, 3};
-    default:
-      return {4 * kNumberBytes, 1, 1};
-  }
-}
-
-/// Returns the sectors of one addition to ascending vertices: of each sector the most threads at one vertex.
-Offset sectors_of(std::span<const Index> ascending, int record_bytes, int first_byte) {
-  Offset sectors = 0;
-  Offset sector = -1;
-  Offset most = 0;
-  for (std::size_t i = 0; i < ascending.size();) {
-    std::size_t end = i;
-    while (end < ascending.size() && ascending[end] == ascending[i]) ++end;
-    const Offset at = (Offset{ascending[i]} * record_bytes + first_byte) / kSectorBytes;
-    if (at != sector) {
-      sectors += most;
-      sector = at;
-      most = 0;
-    }
-    most = std::max(most, static_cast<Offset>(end - i));
-    i = end;
-  }
-  return sectors + most;
-}
-
-/// Returns the sectors of the cells begin … end − 1, a thread of a warp each.
-Offset sectors_of_warp(const CellArrays& cells, int width, Offset begin, Offset end,
-                       const Additions& additions) {
-  std::array<Index, kWarp> vertices{};
-  const auto own = std::span(vertices).first(static_cast<std::size_t>(end - begin));
-  Offset sectors = 0;
-  for (int corner = 0; corner < width; ++corner) {
-    for (Offset c = begin; c < end; ++c) own[c - begin] = cells.vertices[c * width + corner];
-    std::ranges::sort(own);
-    for (int k = 0; k < additions.count; ++k)
-      sectors += additions.arrays * sectors_of(own, additions.record_bytes, k * kNumberBytes);
-  }
-  return sectors;
-}
-
-/// Returns the sectors of a warp for one corner whose threads add to vertices side by side.
-Offset floor_of_warp(Index threads, const Additions& additions) {
-  std::array<Index, kWarp> vertices{};
-  std::iota(vertices.begin(), vertices.end(), Index{0});
-  Offset sectors = 0;
-  for (int k = 0; k < additions.count; ++k) {
-    sectors += additions.arrays * sectors_of(std::span(vertices).first(static_cast<std::size_t>(threads)),
-                                             additions.record_bytes, k * kNumberBytes);
-  }
-  return sectors;
-}
 
 }  // namespace
 
@@ -313,20 +246,9 @@ GpuCost gpu_cost(const CellsView& cells, std::size_t vertex_count, GpuLayout lay
   return in_call(run, [&] {
     const CellArrays arrays = cell_arrays(cells, vertex_count, Check::full);
     const int width = uniform_width(arrays, "gpu_cost");
-    const Additions additions = additions_of(layout);
-    static_assert(kCellsInChunk % kWarp == 0);
-    const auto sectors = sum_over_chunks<Offset>(arrays.size(), kCellsInChunk, [&](Index begin, Index end) {
-      Offset part = 0;
-      for (Offset warp = begin; warp < end; warp += kWarp)
-        part += sectors_of_warp(arrays, width, warp, std::min<Offset>(warp + kWarp, end), additions);
-      return part;
-    });
-    const Offset additions_of_warp = Offset{width} * additions.count * additions.arrays;
-    const Offset whole_warps = arrays.size() / kWarp;
-    return GpuCost{.requests = additions_of_warp * chunk_count(arrays.size(), kWarp),
-                   .sectors = sectors,
-                   .floor = width * (whole_warps * floor_of_warp(kWarp, additions) +
-                                     floor_of_warp(arrays.size() % kWarp, additions))};
+    GpuCost cost = requests_and_floor(arrays.size(), width, layout);
+    cost.sectors = sectors_of_additions({.elements = arrays.incidence()}, layout);
+    return cost;
   });
 }
 

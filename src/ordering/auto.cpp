@@ -34,10 +34,11 @@ constexpr std::array kForBandwidth{Workload::bandwidth};
 #ifdef MESHORDER_HAS_METIS
 constexpr std::array kForFill{Workload::fill};
 #endif
+constexpr std::array kForGpu{Workload::gpu};
 constexpr std::array kForElements{Workload::element, Workload::assembly};
 
-// Evidence: plain kernels, as users write them, on one thread of 2-core Zen 4 and Zen 3 machines; the tables
-// are in docs/auto.md.
+// Evidence: plain kernels, as users write them, on one thread of 2-core Zen 4 and Zen 3 machines, and kernels
+// in CUDA on an H100; the tables are in docs/auto.md and docs/gpu.md.
 constexpr std::array kVertexRules{
     Rule{.workloads = kForBandwidth,
          .method = "rcm",
@@ -47,6 +48,9 @@ constexpr std::array kVertexRules{
          .method = "metis-nd",
          .reason = "nested dissection is made to keep the factors of a direct solver sparse"},
 #endif
+    Rule{.workloads = kForGpu,
+         .method = "rcm",
+         .reason = "on a graphics processor about as fast as the best orders measured, and cheap"},
     Rule{.kind = Kind::lattice,
          .method = "bfs",
          .reason = "on lattices no order measured is faster, and it is cheap"},
@@ -123,7 +127,11 @@ MethodChoice choose_vertex_method(const VertexInput& input, Workload workload) {
   return {std::string(rule->method), std::string(rule->reason)};
 }
 
-MethodChoice choose_element_method(const ElementInput& /*input*/, Workload /*workload*/) {
+MethodChoice choose_element_method(const ElementInput& /*input*/, Workload workload) {
+  if (workload == Workload::gpu) {
+    return {"lexmax",
+            "one sort by the new numbers of their vertices: the threads of a warp add near each other"};
+  }
   return {"lexmax",
           "one sort by the new numbers of their vertices, and no order measured computes faster on it"};
 }
@@ -145,9 +153,11 @@ Order auto_vertices(const VertexInput& input, const OrderOptions& options) {
 Order auto_elements(const ElementInput& input, const OrderOptions& options) {
   MethodChoice choice = choose_element_method(input, options.workload);
   Order result = order_incidence(choice.name, input, options);
-  if (std::string reason =
-          reason_to_keep_elements(input.elements, {}, result.permutation.new_to_old(), choice.name);
-      !reason.empty()) {
+  const std::span<const Index> new_to_old = result.permutation.new_to_old();
+  std::string reason = options.workload == Workload::gpu
+                           ? reason_to_keep_on_gpu(input.elements, input.vertices, new_to_old, choice.name)
+                           : reason_to_keep_elements(input.elements, {}, new_to_old, choice.name);
+  if (!reason.empty()) {
     choice = {"original", std::move(reason)};
     result.permutation = Permutation::identity(input.elements.size());
   }

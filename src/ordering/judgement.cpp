@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "ordering/judgement.hpp"
 
+#include "cells/warp_sectors.hpp"
 #include "metrics/edge_span.hpp"
 #include "metrics/factor_entries.hpp"
 #include "metrics/first_touches.hpp"
@@ -18,6 +19,9 @@ constexpr double kGain = 0.98;            // of the old figure, at most, to be w
 constexpr double kTolerated = 1.05;       // of the old figure
 constexpr Index kBeyondCaches = 100'000;  // vertices: on smaller meshes all good orders are within 3 %
 constexpr double kNotable = 0.1;          // of the lines, 2 to 4 % of the time of a product
+constexpr double kGainOnGpu =
+    0.9;  // of the old sectors, at most: repeats of a kernel differ by a few per cent
+constexpr Index kWarpsToLookAt = 4096;  // of each 32 threads; counts of more differ by less than 1 %
 
 std::string with_digits(double number, int digits) {
   std::array<char, 32> text{};
@@ -33,6 +37,9 @@ std::string sentence(const std::string& what, const std::string& old_figure, std
   return std::string(method) + " is no better: " + what + " is " + old_figure + " as it is and " +
          new_figure + " by " + std::string(method);
 }
+
+/// Returns which warps of `threads` threads to look at: every warp of few, every stride-th of many.
+Index stride_of_warps(Index threads) { return std::max<Index>(1, threads / kWarp / kWarpsToLookAt); }
 
 /// Whether a workload reads vectors along the rows or edges of the graph.
 bool sweeps_over_rows(Workload workload) {
@@ -62,6 +69,14 @@ std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string
     if (after < before) return {};
     return sentence("the bandwidth", std::to_string(before), method, std::to_string(after));
   }
+  if (workload == Workload::gpu) {
+    const Index stride = stride_of_warps(graph.size());
+    const Offset before = sectors_of_product(graph, as_is, stride);
+    const Offset after = sectors_of_product(graph, order, stride);
+    if (static_cast<double>(after) <= kGainOnGpu * static_cast<double>(before)) return {};
+    return sentence("the number of sectors that a product reads on a graphics processor",
+                    std::to_string(before * stride), method, std::to_string(after * stride));
+  }
   const bool is_large = graph.size() >= kBeyondCaches;
   const double old_jumps = is_large ? sampled_jump_share(graph, as_is) : 0;
   const double new_jumps = is_large ? sampled_jump_share(graph, order) : 0;
@@ -90,6 +105,26 @@ std::string reason_to_keep_elements(IncidenceRef elements, std::span<const Index
   return sentence("the mean number of vertices that " + std::to_string(kElementsAtOnce[telling]) +
                       " consecutive elements use",
                   with_one_digit(before[telling]), method, with_one_digit(after[telling]));
+}
+
+std::string reason_to_keep_on_gpu(IncidenceRef elements, const Permutation& vertices,
+                                  std::span<const Index> order, std::string_view method) {
+  constexpr std::array kLayouts{GpuLayout::packed, GpuLayout::apart, GpuLayout::padded};
+  const Index stride = stride_of_warps(elements.size());
+  const ElementOrder as_is{.elements = elements, .vertex_old_to_new = vertices.old_to_new()};
+  const ElementOrder moved{
+      .elements = elements, .new_to_old = order, .vertex_old_to_new = vertices.old_to_new()};
+  double before = 0;  // logarithms
+  double after = 0;
+  for (const GpuLayout layout : kLayouts) {
+    before += std::log(std::max<Offset>(1, sectors_of_additions(as_is, layout, stride) * stride));
+    after += std::log(std::max<Offset>(1, sectors_of_additions(moved, layout, stride) * stride));
+  }
+  before = std::exp(before / kLayouts.size());
+  after = std::exp(after / kLayouts.size());
+  if (after <= kGainOnGpu * before) return {};
+  return sentence("the number of sectors that atomic additions write on a graphics processor",
+                  with_digits(before, 0), method, with_digits(after, 0));
 }
 
 }  // namespace meshorder

@@ -21,7 +21,7 @@ struct EnumNames<Workload> {
       std::pair{Workload::all, "all"},         std::pair{Workload::element, "element"},
       std::pair{Workload::spmv, "spmv"},       std::pair{Workload::assembly, "assembly"},
       std::pair{Workload::springs, "springs"}, std::pair{Workload::bandwidth, "bandwidth"},
-      std::pair{Workload::fill, "fill"},
+      std::pair{Workload::fill, "fill"},       std::pair{Workload::gpu, "gpu"},
   };
 };
 

@@ -100,6 +100,11 @@ std::optional<double> certain_gain(const Advice& advice);
 /// or none.
 std::size_t kernel_of(Workload workload);
 
+/// Whether times of kernels tell what is best for a workload.
+inline bool is_told_by_kernels(Workload workload) {
+  return workload == Workload::all || kernel_of(workload) < kKernels.size();
+}
+
 /// Returns the workload, or `all` for one that no kernel of the advice tells.
 Workload told_by_kernels(const Advice& advice, Workload workload);
 

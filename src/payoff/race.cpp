@@ -59,7 +59,7 @@ MeshMethods Race::methods() const {
 
 Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options) {
   const Workload workload = options.ordering.workload;
-  if (workload == Workload::bandwidth || workload == Workload::fill) {
+  if (!is_told_by_kernels(workload)) {
     throw InvalidArgument(fmt::format("race: no kernel tells what is best for {}", to_string(workload)));
   }
   Race result;

@@ -67,6 +67,31 @@ def test_bandwidth_never_grows(command, lattice, tmp_path):
     assert result["vertices"]["kept"]
 
 
+def sectors_of_additions(path):
+    """What a GPU's atomic additions of four numbers of 4 bytes write: of each sector of two vertices, in a warp of 32
+    threads, as often as most threads add to one vertex."""
+    cells = meshio.read(path).cells[0].data
+    total = 0
+    for begin in range(0, len(cells), 32):
+        for corner in cells[begin:begin + 32].T:
+            vertices, threads = numpy.unique(corner, return_counts=True)
+            most = {}
+            for vertex, count in zip(vertices, threads):
+                most[vertex // 2] = max(most.get(vertex // 2, 0), count)
+            total += sum(most.values())
+    return total
+
+
+def test_for_a_gpu_additions_cost_less_or_nothing_moves(command, lattice, tmp_path):
+    result = command.json("order", "rows.vtu", "-o", "out.vtu", "--for", "gpu")
+    assert result["vertices"]["kept"] and result["cells"]["kept"]
+    assert "on a graphics processor" in result["cells"]["because"]
+    result = command.json("order", "random.vtu", "-o", "out.vtu", "--for", "gpu")
+    assert (result["vertices"]["method"], result["cells"]["method"]) == ("rcm", "lexmax")
+    assert sectors_of_additions(tmp_path / "out.vtu") < 0.7 * sectors_of_additions(tmp_path / "random.vtu")
+    assert "nothing of --for gpu" in command.fails("order", "random.vtu", "-o", "b.vtu", "--for", "gpu", "--measure")
+
+
 def test_fill_is_judged_by_the_entries_of_the_factor(command, tmp_path):
     # a strip of triangles: its band is its factor
     points = [[0.5 * k, k % 2, 0] for k in range(400)]

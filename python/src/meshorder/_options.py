@@ -22,8 +22,8 @@ class Options(TypedDict, total=False):
 
     Attributes:
         workload: what the method "auto" chooses for: "element", "spmv", "assembly" or "springs", the four kernels;
-            "all" of them, weighted equally (default); "bandwidth", for banded solvers; or "fill", for sparse direct
-            solvers. Other methods ignore it.
+            "all" of them, weighted equally (default); "bandwidth", for banded solvers; "fill", for sparse direct solvers;
+            or "gpu", for graphics processors. Other methods ignore it.
         seed: integer ≥ 0, default 0, for the method "scrambled", METIS's methods and random start vectors.
         tolerance: > 0: the eigensolver iterates until ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖. The default, 0.1, suffices for
             orders; that of `fiedler` is 1e-8.

@@ -1,0 +1,99 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "cells/warp_sectors.hpp"
+
+#include "mesh/procedural.hpp"
+#include "support/sample_graphs.hpp"
+#include "support/sample_meshes.hpp"
+#include <meshorder/mesh.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+/// For each warp of 32 rows and each step the sectors of 8 numbers that its threads read: a thread reads the
+/// neighbours of its row in ascending order.
+Offset product_by_definition(const CsrGraph& graph, const Permutation& order) {
+  std::map<std::pair<Index, std::size_t>, std::set<Index>> sectors;  // by warp and step
+  for (Index row = 0; row < graph.size(); ++row) {
+    std::set<Index> columns;
+    for (const Index u : graph[order.new_to_old()[row]]) columns.insert(order.old_to_new()[u]);
+    std::size_t step = 0;
+    for (const Index column : columns) sectors[{row / 32, step++}].insert(column / 8);
+  }
+  Offset sum = 0;
+  for (const auto& [warp_and_step, touched] : sectors) sum += static_cast<Offset>(touched.size());
+  return sum;
+}
+
+TEST(WarpSectors, OfAProductAreThoseThatThreadsReadAtOnce) {
+  for (const CsrGraph& graph : {test::random_connected(1000, 3000, 1), test::grid(9, 11), test::star(70)}) {
+    for (const Permutation& order : {Permutation::identity(graph.size()), test::shuffled(graph.size(), 5)}) {
+      EXPECT_EQ(sectors_of_product(graph, order), product_by_definition(graph, order));
+    }
+  }
+  EXPECT_EQ(sectors_of_product(CsrGraph(), Permutation::identity(0)), 0);
+}
+
+TEST(WarpSectors, AreThoseOfEveryWarpThatIsLookedAt) {
+  // a path has the same in each warp but the first, whose vertex 0 has no smaller neighbour
+  const CsrGraph path = test::path(3200);
+  const Permutation as_is = Permutation::identity(3200);
+  const Offset all = sectors_of_product(path, as_is);
+  EXPECT_NEAR(static_cast<double>(10 * sectors_of_product(path, as_is, 10)), static_cast<double>(all), 20);
+}
+
+/// The geometric mean over all layouts of what the cells' additions cost.
+double cost_of(const Mesh& mesh) {
+  double sum = 0;
+  for (const GpuLayout layout : {GpuLayout::packed, GpuLayout::apart, GpuLayout::padded})
+    sum += std::log(gpu_cost(view(mesh).cells, mesh.points.size(), layout).sectors);
+  return std::exp(sum / 3);
+}
+
+TEST(ForGpu, AdditionsCostATenthLessOrElementsStay) {
+  for (const std::string method : {"original", "scrambled", "hilbert", "rcm"}) {
+    for (const std::string elements : {"original", "scrambled", "lexmax"}) {
+      SCOPED_TRACE(method + " " + elements);
+      Mesh mesh = make_grid({.size = 9});
+      (void)reorder(mesh, {.methods = {method, elements}});
+      const double before = cost_of(mesh);
+      ReorderOptions options;
+      options.order.workload = Workload::gpu;
+      const MeshOrder result = reorder(mesh, options);
+      EXPECT_THAT(result.vertices.method.name, testing::AnyOf("rcm", "original"));
+      const bool stays = result.cells.method.name == "original" && result.vertices.method.name == "original";
+      if (stays) {
+        EXPECT_EQ(cost_of(mesh), before);
+      } else {
+        EXPECT_LT(cost_of(mesh), 0.95 * before);
+      }
+      if (method == "scrambled" || elements == "scrambled") {
+        EXPECT_LT(cost_of(mesh), 0.6 * before);
+      }
+    }
+  }
+}
+
+TEST(ForGpu, ALatticeStaysAsItsGeneratorNumbersIt) {
+  Mesh mesh = make_grid({.size = 9});
+  ReorderOptions options;
+  options.order.workload = Workload::gpu;
+  const MeshOrder result = reorder(mesh, options);
+  EXPECT_TRUE(result.vertices.permutation.is_identity()) << result.vertices.method.reason;
+  EXPECT_TRUE(result.cells.permutation.is_identity()) << result.cells.method.reason;
+  EXPECT_THAT(result.cells.method.reason, testing::HasSubstr("atomic additions"));
+}
+
+}  // namespace
+}  // namespace meshorder
