@@ -87,7 +87,7 @@ HWY_INLINE void pass_tetrahedra(const LocalPass<typename Lanes::Number>& pass) {
       for (int k = 0; k < 9; ++k) q[k / 3][k % 3] = Lanes::load(duals + k * kBatchOf + lane);
       add_gradients<Lanes>(rest + lane, vertices + lane, pass.positions, q);
       Value z[3][3];
-      Law(softness + lane).step(q, z);
+      Law(softness == nullptr ? nullptr : softness + lane).step(q, z);
 
       Value changes = Lanes::set(0.0);
       Value squares = Lanes::set(0.0);
