@@ -33,10 +33,13 @@ function(meshorder_computes target)
   endif()
 endfunction()
 
-# meshorder_simd_sources(<source>…): sources that Highway compiles once for each instruction set. In a unity build they are
-# compiled alone; with sanitizers clang would take minutes to optimise one of them.
+# meshorder_simd_sources(<source>…): sources that Highway compiles once for each instruction set, in a unity build alone
 function(meshorder_simd_sources)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
+# meshorder_not_optimised(<source>…): sources that clang takes minutes to optimise with sanitizers
+function(meshorder_not_optimised)
   if(sanitizers)
     set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -O0)
   endif()
