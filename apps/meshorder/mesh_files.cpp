@@ -57,14 +57,6 @@ MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t by
   return result;
 }
 
-std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, Notes& notes) {
-  OutputSet outputs;
-  std::vector<std::string> written = write_ordered(ordered, files, outputs, notes);
-  outputs.commit();
-  notes.insert(notes.end(), outputs.notes().begin(), outputs.notes().end());
-  return written;
-}
-
 std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
                                        Notes& notes) {
   if (!files.output.empty())

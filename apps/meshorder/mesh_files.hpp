@@ -56,11 +56,8 @@ void check_can_write(const MeshFiles& files);
 /// @param bytes_of_entry  as of `limit_joins`
 MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
-/// Writes a mesh that is in its new order, with its maps, whose permutations are known by now; returns the
-/// paths of the maps. All files take their places together, or none does.
-std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, Notes& notes);
-
-/// The same as files of a set, which takes the places. An empty output is not written.
+/// Writes a mesh that is in its new order, with its maps, whose permutations are known by now, as files of a
+/// set, whose `commit` puts all in place. Returns the paths of the maps. An empty output is not written.
 std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
                                        Notes& notes);
 

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "confinement.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
 #include "io/format_choice.hpp"
+#include "io/stream/output_set.hpp"
 #include "machines.hpp"
 #include "matrix_points.hpp"
 #include "mesh/graphs.hpp"
@@ -16,6 +16,7 @@
 #include "ordering/judgement.hpp"
 #include "payoff/race.hpp"
 #include "progress.hpp"
+#include "stage_times.hpp"
 #include "verdict.hpp"
 #include "wording.hpp"
 #include <meshorder/io.hpp>
@@ -42,6 +43,7 @@ struct OrderArguments : Common, MeshFiles {
   bool predict = false;
   std::string machine;
   bool all_threads = false;
+  bool timings = false;
 };
 
 /// Throws InvalidArgument unless the arguments leave a race anything to decide.
@@ -155,39 +157,41 @@ void run(const OrderArguments& arguments) {
 
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.4);
-  const Stopwatch reading;
+  StageTimes times;
   Notes notes;
   const std::uint64_t bytes_of_race = arguments.measure ? 3 * kBytesToMeasure : kBytesToPredict;
   MeshToOrder job = read_to_order(arguments, notes, in_race ? bytes_of_race : kBytesToOrder);
   Mesh& mesh = job.mesh;
   options.format = output_format_of(arguments.output, mesh.format).key();
   require_points(mesh, arguments.input, options.methods.vertices, options.methods.elements);
-  const double read_seconds = reading.seconds();
+  times.end("read");
+  times.set_bytes("read", bytes_on_disk(arguments.input));
 
   // a race on all threads has no other costs to choose by
   if (arguments.predict || (arguments.measure && arguments.all_threads)) {
     machine = calibrated(*std::move(machine), arguments.all_threads, progress, console.quiet(), notes);
   }
   progress.stage("ordering", 0.4, 0.7);
-  const Stopwatch ordering;
+  if (in_race) times.end("calibrate");
   std::optional<Grouping> groups;
   if (!options.group_by.empty()) groups = grouping_by(mesh, options.group_by);
-  std::optional<CsrGraph> graph;
+  std::optional<CsrGraph> graph = vertex_graph(mesh);
+  times.end("graph");
   std::optional<Race> raced;
   if (in_race) {
-    const Stopwatch stopwatch;
-    graph = vertex_graph(mesh);
     raced = race(mesh, *graph,
                  {.ordering = options.order,
-                  .graph_seconds = stopwatch.seconds(),
+                  .graph_seconds = times.seconds("graph"),
                   .machine = *std::move(machine),
                   .timer = arguments.measure ? time_orders : OrderTimer{}});
     options.methods = raced->methods();
     if (!raced->advice.doubt.empty()) notes.push_back(raced->advice.doubt);
+    times.end("race");
   }
   MeshOrder order = reorder(mesh, options, graph);
   if (raced) give_reasons(*raced, order);
-  const double order_seconds = ordering.seconds();
+  times.end("move");
+  times.split_last("order", order.vertices.seconds + order.cells.seconds);
   job.maps.vertices = order.vertices.permutation;
   job.maps.cells = order.cells.permutation;
   const EdgeSpan before = edge_span(*graph, Permutation::identity(mesh.vertex_count()));
@@ -198,11 +202,16 @@ void run(const OrderArguments& arguments) {
   }
   note_convergence(order.vertices.fiedler, "the vertices", notes);
   note_convergence(order.cells.fiedler, "the elements", notes);
+  times.end("spans");
 
   progress.stage("writing " + arguments.output, 0.7, 1);
-  const Stopwatch writing;
-  const std::vector<std::string> map_files = write_ordered(job, arguments, notes);
-  const double write_seconds = writing.seconds();
+  OutputSet outputs;
+  const std::vector<std::string> map_files = write_ordered(job, arguments, outputs, notes);
+  times.end("write");
+  outputs.commit();
+  notes.insert(notes.end(), outputs.notes().begin(), outputs.notes().end());
+  times.end("sync");
+  for (const char* const stage : {"write", "sync"}) times.set_bytes(stage, bytes_on_disk(arguments.output));
 
   progress.finish();
   console.warn_of(notes);
@@ -213,19 +222,24 @@ void run(const OrderArguments& arguments) {
   }
   console.print("{:<10} {}", "wrote", arguments.output);
   for (const std::string& file : map_files) console.print("{:<10} {}", "", file);
-  nlohmann::ordered_json result{
-      {"input", arguments.input},
-      {"output", arguments.output},
-      {"vertices", half_json(mesh.vertex_count(), order.vertices)},
-      {"cells", half_json(mesh.cell_count(), order.cells)},
-      {"for", to_string(options.order.workload)},
-      {"race", raced ? to_json(raced->advice) : nullptr},
-      {"group_by", groups ? to_json(*groups) : nullptr},
-      {"edge_span", {{"before", to_json(before)}, {"after", to_json(after)}}},
-      {"fiedler", to_json(order.vertices.fiedler)},
-      {"element_fiedler", to_json(order.cells.fiedler)},
-      {"maps", map_files},
-      {"seconds", {{"read", read_seconds}, {"order", order_seconds}, {"write", write_seconds}}}};
+  if (arguments.timings) times.print(console);
+  nlohmann::ordered_json result{{"input", arguments.input},
+                                {"output", arguments.output},
+                                {"vertices", half_json(mesh.vertex_count(), order.vertices)},
+                                {"cells", half_json(mesh.cell_count(), order.cells)},
+                                {"for", to_string(options.order.workload)},
+                                {"race", raced ? to_json(raced->advice) : nullptr},
+                                {"group_by", groups ? to_json(*groups) : nullptr},
+                                {"edge_span", {{"before", to_json(before)}, {"after", to_json(after)}}},
+                                {"fiedler", to_json(order.vertices.fiedler)},
+                                {"element_fiedler", to_json(order.cells.fiedler)},
+                                {"maps", map_files},
+                                {"seconds",
+                                 {{"read", times.seconds("read")},
+                                  {"order", times.seconds("graph") + times.seconds("race") +
+                                                times.seconds("order") + times.seconds("move")},
+                                  {"write", times.seconds("write") + times.seconds("sync")}}},
+                                {"timings", times.to_json()}};
   console.print_json(result);
 }
 
@@ -281,6 +295,9 @@ void add_order(CLI::App& subcommand) {
   add_moving_options(subcommand, *arguments, arguments->ids);
   add_ordering_options(subcommand, arguments->reordering.order);
   add_reading_options(subcommand);
+  subcommand.add_flag(
+      "--timings", arguments->timings,
+      "Print what each stage takes: reading, the graph, the orders, moving, writing, and the disk");
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

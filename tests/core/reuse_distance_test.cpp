@@ -2,6 +2,7 @@
 #include "metrics/reuse_distance.hpp"
 
 #include "base/random.hpp"
+#include "support/sample_graphs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -125,7 +126,7 @@ std::vector<Index> count_up(Index lines, int times) {
 TEST(ReuseDistance, IsThePlaceInTheStack) {
   // few lines for long streams: slots run out hundreds of times; many lines: counts have several levels
   for (const auto& [lines, length] :
-       {std::pair(1, 50), {2, 500}, {40, 20000}, {1000, 30000}, {20000, 90000}}) {
+       {std::pair(1, 50), {2, 500}, {40, 20000}, {1000, 30000}, {20000, test::kSanitized ? 30000 : 90000}}) {
     SCOPED_TRACE(lines);
     const std::vector<Index> stream = wandering(lines, length, 7);
     const ReuseDistance reuse = measured(stream, lines);
@@ -151,7 +152,8 @@ TEST(ReuseDistance, WhenRepeatedIsThatOfEveryLaterRun) {
 }
 
 TEST(ReuseDistance, JumpsWhereNoStreamLeads) {
-  for (const auto& [lines, length] : {std::pair(600, 3000), {5000, 40000}, {20000, 60000}}) {
+  for (const auto& [lines, length] :
+       {std::pair(600, 3000), {5000, 40000}, {20000, test::kSanitized ? 25000 : 60000}}) {
     SCOPED_TRACE(lines);
     const std::vector<Index> stream = wandering(lines, length, 11);
     EXPECT_EQ(measured(stream, lines).reuse().jumps, jumps_by_stack(stream));

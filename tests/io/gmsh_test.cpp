@@ -194,6 +194,37 @@ TEST(Gmsh, ReadsAllOfVersion1) {
   EXPECT_THAT(written(read_text(std::string(kGmsh1) + singular)), HasSubstr(singular));
 }
 
+TEST(Gmsh, ReadsManyElementsAsOneAfterAnother) {
+  // as a file of version 1, whose elements are read one after another; runs, turns and broken lines
+  constexpr int kNodes = 50;
+  constexpr int kElements = 9000;
+  std::string nodes = fmt::format("{}\n", kNodes);
+  for (int v = 1; v <= kNodes; ++v) nodes += fmt::format("{} {} 0.5 {}\n", 3 * v, v, -v);
+  std::string old_elements = fmt::format("{}\n", kElements);
+  std::string elements = old_elements;
+  for (int e = 1; e <= kElements; ++e) {
+    const bool is_triangle = e < 1500 || (e > 4000 && e < 4100 && e % 2 == 0) || e > 8500;
+    std::string corners;
+    for (int k = 0; k < (is_triangle ? 3 : 4); ++k)
+      corners += fmt::format("{}{}", e % 1000 == 7 ? "\n" : " ", 3 * ((e + 11 * k) % kNodes + 1));
+    const int type = is_triangle ? 2 : 4;
+    old_elements += fmt::format("{} {} {} {} {}{}\n", e, type, e % 5, e % 3, is_triangle ? 3 : 4, corners);
+    elements += fmt::format("{} {} 2 {}{} {}{}\n", e, type, e % 700 == 9 ? "+" : "", e % 5, e % 3, corners);
+  }
+  const Mesh expected = read_text("$NOD\n" + nodes + "$ENDNOD\n$ELM\n" + old_elements + "$ENDELM\n");
+  const std::string head =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + nodes + "$EndNodes\n$Elements\n";
+  const Mesh found = read_text(head + elements + "$EndElements\n");
+  EXPECT_EQ(found.points, expected.points);
+  EXPECT_EQ(found.vertex_ids, expected.vertex_ids);
+  EXPECT_EQ(found.cells, expected.cells);
+  EXPECT_EQ(values<std::int32_t>(found, "label", Association::cells),
+            values<std::int32_t>(expected, "label", Association::cells));
+  const TemporaryFolder folder;
+  const std::string broken = head + with(elements, "\n8999 2 2", "\n8999 2 -2");
+  EXPECT_THAT(read_error(folder.file("mesh.msh", broken)), HasSubstr(":9091: the number of tags is -2"));
+}
+
 TEST(Gmsh, EndsANameAtItsSecondQuoteAndKeepsTheRest) {
   const std::string content =
       replaced(std::string(kGmsh41), "\"rock\"", "\"rock\" lower_dimensional_block \"x\"");

@@ -2,6 +2,7 @@
 #include "lab/contact/solve/dual_contact_solver.hpp"
 #include "mesh/procedural.hpp"
 #include "simulators/contact_problem.hpp"
+#include "support/sample_graphs.hpp"
 #include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -262,7 +264,7 @@ TEST(ContactSolution, GivesTheSameBitsForAnyNumberOfThreads) {
   problem.add_plane({0, 1, 0}, 0.0, 0.05, 0, 0.2);
   test::add_random_contacts(problem, 40, true, 2);
   const Solved<double> expected(problem, {.max_iterations = 60});
-  for (const std::size_t threads : {1, 2, 3, 5}) {
+  for (const std::size_t threads : test::kSanitized ? std::vector{1, 3} : std::vector{1, 2, 3, 5}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     const Solved<double> run(problem, {.max_iterations = 60});
     EXPECT_EQ(run.x, expected.x);

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/gmsh/gmsh.hpp"
+#include "io/stream/regular_records.hpp"
 
 #include <fmt/format.h>
 
@@ -30,11 +31,15 @@ struct Element {
   Index tag_count;
 };
 
-/// Fails for tags that are numbers of elements: parents and domains of cut elements, after the partitions.
+/// Returns whether there are tags that are numbers of elements: parents and domains of cut elements, after
+/// the partitions.
+bool has_element_tags(double version, std::span<const std::int32_t> tags) {
+  return tags.size() >
+         (version < 2.15 || tags.size() < 4 ? 3 : 3 + static_cast<std::size_t>(std::max(0, tags[2])));
+}
+
 void refuse_element_tags(const NumberReader& source, double version, std::span<const std::int32_t> tags) {
-  const std::size_t plain =
-      version < 2.15 || tags.size() < 4 ? 3 : 3 + static_cast<std::size_t>(std::max(0, tags[2]));
-  if (tags.size() > plain) {
+  if (has_element_tags(version, tags)) {
     source.fail("an element has more tags than its partitions explain",
                 "elements cut from a parent cannot be reordered; save the mesh without them");
   }
@@ -61,6 +66,82 @@ void read_element_body(ReadContext& reading, const Element& element, Tags& tags,
   }
   add_cell(reading.mesh, *element.type, nodes);
 }
+
+/// Reads elements of a text that are like the last one, of its type and with as many tags, each on a line of
+/// its own, on all threads. Returns how many; they are added to `tags`, `ids` and the mesh.
+Index read_alike(ReadContext& reading, const Element& last, Index most, Tags& tags,
+                 std::vector<std::int64_t>& ids) {
+  const auto tag_count = static_cast<std::size_t>(last.tag_count);
+  const auto node_count = static_cast<std::size_t>(last.type->nodes);
+  const std::size_t first = ids.size();
+  const std::size_t first_tag = tags.values.size();
+  ids.resize(first + static_cast<std::size_t>(most));
+  tags.values.resize(first_tag + static_cast<std::size_t>(most) * tag_count);
+  std::vector<Index> nodes(static_cast<std::size_t>(most) * node_count);
+  const auto tags_of = [&](Index e) {
+    return std::span(tags.values).subspan(first_tag + static_cast<std::size_t>(e) * tag_count, tag_count);
+  };
+  const auto nodes_of = [&](Index e) {
+    return std::span(nodes).subspan(static_cast<std::size_t>(e) * node_count, node_count);
+  };
+  const Index read = read_regular_records(reading.source.scanner, most, [&](Scanner& in, Index e) {
+    std::int32_t id = 0;
+    std::int32_t type = 0;
+    std::int32_t own_tags = 0;
+    if (!in.take_number(id) || !in.take_number(type) || type != last.type->number ||
+        !in.take_number(own_tags) || own_tags != last.tag_count)
+      return false;
+    ids[first + static_cast<std::size_t>(e)] = id;
+    for (std::int32_t& tag : tags_of(e)) {
+      if (!in.take_number(tag)) return false;
+    }
+    if (has_element_tags(reading.metadata.version, tags_of(e))) return false;
+    for (Index& place : nodes_of(e)) {
+      std::int32_t node = 0;
+      if (!in.take_number(node)) return false;
+      place = reading.nodes.find(node);
+      if (place < 0) return false;
+    }
+    return true;
+  });
+  ids.resize(first + static_cast<std::size_t>(read));
+  tags.values.resize(first_tag + static_cast<std::size_t>(read) * tag_count);
+  for (Index e = 0; e < read; ++e) {
+    tags.offsets.push_back(tags.offsets.back() + last.tag_count);
+    add_cell(reading.mesh, *last.type, nodes_of(e));
+  }
+  return read;
+}
+
+/// Tries to read elements that are like the last one: after each time that they were more at once, and after
+/// one in vain only when more have been read one after another, so that mixed elements cost little.
+class Alikes {
+ public:
+  /// Takes the next elements as `read_alike`, or none.
+  Index read(ReadContext& reading, const Element& last, Index left, Tags& tags,
+             std::vector<std::int64_t>& ids) {
+    if (pause_ > 0) {
+      --pause_;
+      return 0;
+    }
+    // each number takes two bytes at least, so that a wrong count cannot cause a huge allocation
+    const std::int64_t numbers = 3 + last.tag_count + last.type->nodes;
+    const std::int64_t room = reading.source.scanner.bytes_left() / (2 * numbers);
+    const auto most = static_cast<Index>(std::min<std::int64_t>(std::min(left, at_once_), room));
+    const Index found = read_alike(reading, last, most, tags, ids);
+    at_once_ = found == most ? std::min(4 * at_once_, kMost) : kFewest;
+    in_vain_ = found > 0 ? 0 : std::min(2 * in_vain_ + 1, kMost);
+    pause_ = in_vain_;
+    return found;
+  }
+
+ private:
+  static constexpr Index kFewest = 1 << 10;
+  static constexpr Index kMost = 1 << 20;
+  Index at_once_ = kFewest;
+  Index in_vain_ = 0;
+  Index pause_ = 0;
+};
 
 Index read_tag_count(NumberReader& source) {
   return source.checked_count(source.int32("the number of tags"), "the number of tags",
@@ -143,10 +224,20 @@ void read_nodes_2(ReadContext& reading, std::string_view section) {
   std::vector<std::int64_t> ids(count);
   std::vector<std::int32_t> entities;
   std::vector<double> parameters;
-  reading.mesh.points.resize(count);
-  for (Index v = 0; v < count; ++v) {
+  std::vector<Point>& points = reading.mesh.points;
+  points.resize(count);
+  Index regular = 0;
+  if (!source.binary && !parametric) {
+    regular = read_regular_records(source.scanner, count, [&](Scanner& in, Index v) {
+      std::int32_t id = 0;
+      if (!in.take_number(id)) return false;
+      ids[v] = id;
+      return std::ranges::all_of(points[v], [&](double& x) { return in.take_finite(x); });
+    });
+  }
+  for (Index v = regular; v < count; ++v) {
     ids[v] = source.int32("the number of a node");
-    for (double& x : reading.mesh.points[v]) x = source.finite("a coordinate");
+    for (double& x : points[v]) x = source.finite("a coordinate");
     if (!parametric) continue;
     const std::int32_t dimension = source.int32("the dimension of a node's entity");
     entities.insert(entities.end(), {dimension, source.int32("the tag of a node's entity")});
@@ -173,6 +264,7 @@ void read_elements_2(ReadContext& reading, std::string_view section) {
   std::vector<std::int32_t> types;
   std::vector<Index> nodes;
   Tags tags;
+  Alikes alikes;
   ids.reserve(count);
   types.reserve(count);
   while (index_size(ids) < count) {
@@ -195,6 +287,9 @@ void read_elements_2(ReadContext& reading, std::string_view section) {
       ids.push_back(element.id);
       types.push_back(element.type->number);
     }
+    if (source.binary || reading.metadata.is_version_1()) continue;
+    const Index alike = alikes.read(reading, element, count - index_size(ids), tags, ids);
+    types.insert(types.end(), static_cast<std::size_t>(alike), element.type->number);
   }
   expect_end(reading, section);
   reading.elements = number_ids(source, ids, "element");

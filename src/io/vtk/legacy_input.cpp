@@ -4,6 +4,7 @@
 #include "base/large_pages.hpp"
 #include "base/text.hpp"
 #include "io/stream/byte_order.hpp"
+#include "io/stream/regular_numbers.hpp"
 #include "io/vtk/vtk.hpp"
 #include "mesh/values.hpp"
 
@@ -130,12 +131,34 @@ Number LegacyInput::number(const std::string& what) {
   }
 }
 
+/// Reads numbers of a text as far as they are regular, and finite where they must be. Returns how many.
+template <class Number>
+std::size_t LegacyInput::regular_numbers(std::span<Number> values) {
+  if constexpr (std::is_floating_point_v<Number>) {
+    if (finite_only) {
+      Scanner at = scanner;
+      const std::size_t read = read_regular_numbers(at, values);
+      const auto read_values = values.first(read);
+      if (std::all_of(read_values.begin(), read_values.end(),
+                      [](Number value) { return std::isfinite(value); })) {
+        scanner.move_to(at);
+        return read;
+      }
+      return 0;
+    }
+  }
+  return read_regular_numbers(scanner, values);
+}
+
 template <class Number, class Stored>
 void LegacyInput::numbers(std::vector<Number>& values, std::int64_t count, const std::string& what) {
   check_room(count, sizeof(Stored), what);
   resize_large(values, static_cast<std::size_t>(count));
   if (!binary) {
-    for (Number& value : values) value = static_cast<Number>(number<Stored>(what));
+    std::size_t regular = 0;
+    if constexpr (std::is_same_v<Number, Stored>) regular = regular_numbers<Number>(values);
+    for (std::size_t i = regular; i < values.size(); ++i)
+      values[i] = static_cast<Number>(number<Stored>(what));
     return;
   }
   if (count == 0) return;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,6 +53,8 @@ class LegacyInput : public NumberReader {
   void numbers(std::vector<Number>& values, std::int64_t count, const std::string& what);
   void bits(std::vector<std::uint8_t>& values, std::int64_t count, const std::string& what);
   void texts(std::vector<std::string>& values, std::int64_t count, const std::string& what);
+  template <class Number>
+  std::size_t regular_numbers(std::span<Number> values);
   std::int64_t text_length(const std::string& what);
   void information(std::int64_t keys, const DataArray& array, std::optional<Association> association);
   ArrayFacts& facts_of(std::optional<Association> association, const std::string& name);

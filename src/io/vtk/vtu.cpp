@@ -5,6 +5,7 @@
 //
 // VTK's own writer (9.1) is not used: it writes names with & or < as they are, which is not XML, crashes on
 // pedigree ids that are strings, and does not notice a full disk when it closes a file.
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/base64.hpp"
@@ -254,33 +255,36 @@ class VtuWriter {
     return std::visit([](const auto& numbers) { return std::uint64_t{numbers.size_bytes()}; }, array.numbers);
   }
 
-  /// Calls `take` with the bytes of an array, in the byte order of the file, block by block.
-  template <class Take>
-  void for_blocks(const Array& array, const Take& take) const {
-    std::visit(
+  static std::uint64_t block_count(const Array& array) {
+    return (byte_count(array) + VtuCompressor::kBlock - 1) / VtuCompressor::kBlock;
+  }
+
+  /// Returns the bytes of a block of an array, in the byte order of the file; `room` holds them where memory
+  /// has another one.
+  std::span<const char> block_of(const Array& array, std::uint64_t block, std::vector<char>& room) const {
+    return std::visit(
         [&](const auto& numbers) {
           using Number = typename std::decay_t<decltype(numbers)>::value_type;
           constexpr std::size_t kAtOnce = VtuCompressor::kBlock / sizeof(Number);
-          std::vector<char> swapped;
-          for (std::size_t begin = 0; begin < numbers.size(); begin += kAtOnce) {
-            const auto part = numbers.subspan(begin, std::min(kAtOnce, numbers.size() - begin));
-            const auto* bytes = reinterpret_cast<const char*>(part.data());
-            if (encoding_.order != std::endian::native && sizeof(Number) > 1) {
-              swapped.resize(part.size_bytes());
-              char* at = swapped.data();
-              for (const Number number : part) at = put_number(at, number, encoding_.order);
-              bytes = swapped.data();
-            }
-            take(std::span<const char>(bytes, part.size_bytes()));
-          }
+          const std::size_t begin = block * kAtOnce;
+          const auto part = numbers.subspan(begin, std::min(kAtOnce, numbers.size() - begin));
+          if (encoding_.order == std::endian::native || sizeof(Number) == 1)
+            return std::span<const char>(reinterpret_cast<const char*>(part.data()), part.size_bytes());
+          room.resize(part.size_bytes());
+          char* at = room.data();
+          for (const Number number : part) at = put_number(at, number, encoding_.order);
+          return std::span<const char>(room);
         },
         array.numbers);
   }
 
   [[nodiscard]] std::vector<std::string> compressed(const Array& array) const {
-    std::vector<std::string> blocks;
+    std::vector<std::string> blocks(block_count(array));
     const VtuCompressor compressor(encoding_.compressor);
-    for_blocks(array, [&](std::span<const char> block) { blocks.push_back(compressor.compress(block)); });
+    parallel_loop(blocks.size(), [&](std::size_t b) {
+      std::vector<char> room;
+      blocks[b] = compressor.compress(block_of(array, b, room));
+    });
     return blocks;
   }
 
@@ -315,7 +319,8 @@ class VtuWriter {
     } else {
       write_coded([&](const auto& put) {
         put(words({byte_count(array)}));
-        for_blocks(array, put);
+        std::vector<char> room;
+        for (std::uint64_t b = 0; b < block_count(array); ++b) put(block_of(array, b, room));
       });
     }
   }

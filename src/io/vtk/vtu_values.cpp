@@ -2,10 +2,12 @@
 //
 // Arrays of .vtu files: text, base64 and raw bytes, plain or in compressed blocks.
 #include "base/large_pages.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/stream/base64.hpp"
 #include "io/stream/byte_order.hpp"
 #include "io/stream/read_limits.hpp"
+#include "io/stream/regular_numbers.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include "io/vtk/vtu_document.hpp"
@@ -17,7 +19,9 @@
 #include <charconv>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <type_traits>
+#include <utility>
 
 namespace meshorder::vtk {
 
@@ -164,6 +168,17 @@ void VtuDocument::locate_blocks(const VtuElement& array, std::string_view data, 
   }
 }
 
+namespace {
+
+/// Returns for each number the sum of those before it.
+std::vector<std::uint64_t> sums_before(const std::vector<std::uint64_t>& numbers) {
+  std::vector<std::uint64_t> sums(numbers.size());
+  std::exclusive_scan(numbers.begin(), numbers.end(), sums.begin(), std::uint64_t{0});
+  return sums;
+}
+
+}  // namespace
+
 /// Copies the uncompressed bytes to `target`.
 void VtuDocument::copy(const VtuElement& array, const Stored& stored, char* target) const {
   if (stored.compressed.empty()) {
@@ -171,21 +186,28 @@ void VtuDocument::copy(const VtuElement& array, const Stored& stored, char* targ
     return;
   }
   const VtuCompressor compressor(encoding_.compressor);
-  const char* from = stored.bytes.data();
-  for (std::size_t b = 0; b < stored.compressed.size(); ++b) {
-    const std::size_t size = stored.uncompressed[b];
-    if (!compressor.uncompress({from, stored.compressed[b]}, {target, size}))
-      throw error(array, fmt::format("block {} cannot be uncompressed", b), "the array is damaged");
-    from += stored.compressed[b];
-    target += size;
-  }
+  const std::vector<std::uint64_t> from = sums_before(stored.compressed);
+  const std::vector<std::uint64_t> to = sums_before(stored.uncompressed);
+  std::vector<std::uint8_t> is_sound(from.size(), 0);
+  parallel_loop(from.size(), [&](std::size_t b) {
+    is_sound[b] = compressor.uncompress({stored.bytes.data() + from[b], stored.compressed[b]},
+                                        {target + to[b], stored.uncompressed[b]})
+                      ? 1
+                      : 0;
+  });
+  const auto damaged = std::find(is_sound.begin(), is_sound.end(), 0) - is_sound.begin();
+  if (std::cmp_less(damaged, is_sound.size()))
+    throw error(array, fmt::format("block {} cannot be uncompressed", damaged), "the array is damaged");
 }
 
 template <class Number>
 std::vector<Number> VtuDocument::words(const VtuElement& array, std::int64_t count) const {
   std::string_view text = array.text;
   std::vector<Number> result;
-  reserve_large(result, std::min<std::size_t>(static_cast<std::size_t>(count), text.size() / 2 + 1));
+  resize_large(result, std::min<std::size_t>(static_cast<std::size_t>(count), text.size() / 2 + 1));
+  const RegularNumbers regular = read_regular_numbers<Number>(text, result);
+  result.resize(regular.count);
+  text.remove_prefix(regular.bytes);
   while (true) {
     std::string_view word = next_word(text, kXmlBlanks);
     if (word.empty()) break;
@@ -290,12 +312,7 @@ Values VtuDocument::no_values(const VtuElement& array) const {
 }
 
 std::int64_t VtuDocument::value_count(const VtuElement& array) const {
-  if (mode(array) == VtuEncoding::Mode::ascii) {
-    std::int64_t count = 0;
-    std::string_view text = array.text;
-    while (!next_word(text, kXmlBlanks).empty()) ++count;
-    return count;
-  }
+  if (mode(array) == VtuEncoding::Mode::ascii) return static_cast<std::int64_t>(count_words(array.text));
   const std::uint64_t size = locate(array).size;
   return std::visit(
       [&](const auto& list) {

@@ -1,0 +1,52 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/stopwatch.hpp"
+#include "console.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshorder::command {
+
+/// What a command spends its wall-clock time on, stage by stage.
+class StageTimes {
+ public:
+  /// Adds the time since the last call, or since the object was made, as a stage of that name.
+  void end(std::string stage);
+
+  /// Moves `seconds` of the last stage to a stage of that name before it.
+  void split_last(std::string stage, double seconds);
+
+  /// Says how many bytes a stage read or wrote.
+  void set_bytes(const std::string& stage, std::uint64_t bytes);
+
+  /// Returns the time of a stage; 0 if there was none.
+  [[nodiscard]] double seconds(const std::string& stage) const;
+
+  /// Prints a line for each stage: its name, time and bytes per second.
+  void print(const Console& console) const;
+
+  /// Returns [{"stage", "seconds", "bytes"}, …]; bytes are null where a stage has none.
+  [[nodiscard]] nlohmann::ordered_json to_json() const;
+
+ private:
+  struct Stage {
+    std::string name;
+    double seconds = 0;
+    std::optional<std::uint64_t> bytes = {};
+  };
+  Stopwatch since_start_;
+  double ended_ = 0;  ///< the end of the last stage, in seconds since the start
+  std::vector<Stage> stages_;
+};
+
+/// Returns the bytes of a mesh on disk, with the further files of TetGen and XDMF beside it; 0 if it is not
+/// there.
+std::uint64_t bytes_on_disk(const std::string& mesh);
+
+}  // namespace meshorder::command

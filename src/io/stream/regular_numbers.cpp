@@ -1,0 +1,174 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/stream/regular_numbers.hpp"
+
+#include "base/parallel.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <system_error>
+#include <type_traits>
+#include <vector>
+
+namespace meshorder {
+namespace {
+
+constexpr std::size_t kMostParts = 64;
+constexpr std::size_t kNumberBytes = 24;  // of text that is looked at for each number that is left, at first
+
+bool is_separator(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
+
+/// Returns how many words begin in a text, the byte before which is a separator. Eight bytes at a time: the
+/// highest bit of each says whether it is above the space.
+std::size_t words_in(std::string_view text) {
+  constexpr std::uint64_t kOnes = 0x0101010101010101U;
+  constexpr std::uint64_t kHighest = kOnes * 0x80U;
+  std::size_t words = 0;
+  std::uint64_t before = 0;  // whether the byte before is of a word, as its lowest byte's highest bit
+  std::size_t at = 0;
+  if constexpr (std::endian::native == std::endian::little) {
+    for (; at + 8 <= text.size(); at += 8) {
+      std::uint64_t bytes = 0;
+      std::memcpy(&bytes, text.data() + at, sizeof(bytes));
+      const std::uint64_t of_words = (bytes | ((bytes & ~kHighest) + kOnes * 0x5FU)) & kHighest;
+      const std::uint64_t starts = (of_words & ~(of_words << 8U | before)) >> 7U;
+      words += starts * kOnes >> 56U;  // their sum
+      before = of_words >> 56U;
+    }
+  }
+  for (; at < text.size(); ++at) {
+    const bool of_word = static_cast<unsigned char>(text[at]) > ' ';
+    words += of_word && before == 0 ? 1U : 0U;
+    before = of_word ? 1 : 0;
+  }
+  return words;
+}
+
+/// Reads a number at `at` if all of its word is one; returns its end, or null.
+template <class Number>
+const char* read_number(const char* at, const char* end, Number& value) {
+  if constexpr (std::is_integral_v<Number>) {
+    if (end - at > 8) {
+      const Digits digits = leading_digits(at);
+      if (digits.count > 0 && digits.count < 8 && digits.count <= std::numeric_limits<Number>::digits10 &&
+          is_separator(at[digits.count])) {
+        value = static_cast<Number>(digits.number);
+        return at + digits.count;
+      }
+    }
+  }
+  const auto [after, code] = std::from_chars(at, end, value);
+  return code == std::errc{} && (after == end || is_separator(*after)) ? after : nullptr;
+}
+
+/// Divides the text from `begin` to `end` into parts that end after a separator, and at the end of the text.
+std::vector<std::string_view> divided_at_blanks(std::string_view text, std::size_t begin, std::size_t end,
+                                                std::size_t part_bytes) {
+  std::vector<std::string_view> parts;
+  while (parts.size() < kMostParts && begin < end) {
+    std::size_t stop = std::min(begin + part_bytes, text.size());
+    while (stop < text.size() && !is_separator(text[stop - 1])) ++stop;
+    parts.push_back(text.substr(begin, stop - begin));
+    begin = stop;
+  }
+  return parts;
+}
+
+/// Returns the number of each part's first word, and of all words.
+std::vector<std::size_t> first_words(const std::vector<std::string_view>& parts) {
+  std::vector<std::size_t> first(parts.size() + 1, 0);
+  for_each_chunk(index_size(parts), 1,
+                 [&](Index k, Index, Index) { first[static_cast<std::size_t>(k) + 1] = words_in(parts[k]); });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  return first;
+}
+
+}  // namespace
+
+std::size_t count_words(std::string_view text) {
+  constexpr std::size_t kPartBytes = std::size_t{1} << 22;
+  std::size_t words = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::vector<std::string_view> parts = divided_at_blanks(text, begin, text.size(), kPartBytes);
+    for (const std::string_view part : parts) begin += part.size();
+    words += first_words(parts).back();
+  }
+  return words;
+}
+
+template <class Number>
+RegularNumbers read_regular_numbers(std::string_view text, std::span<Number> values, std::size_t part_bytes) {
+  RegularNumbers read;
+  while (read.count < values.size()) {
+    const std::size_t before = read.count;
+    const std::size_t left = values.size() - before;
+    const std::size_t end =
+        left < (text.size() - read.bytes) / kNumberBytes ? read.bytes + left * kNumberBytes : text.size();
+    const std::vector<std::string_view> parts = divided_at_blanks(text, read.bytes, end, part_bytes);
+    const std::vector<std::size_t> first = first_words(parts);
+    if (parts.empty()) break;
+    std::vector<RegularNumbers> of_part(parts.size());
+    std::vector<std::uint8_t> is_regular(parts.size(), 0);
+    for_each_chunk(index_size(parts), 1, [&](Index k, Index, Index) {
+      RegularNumbers& own = of_part[static_cast<std::size_t>(k)];
+      const std::string_view part = parts[k];
+      const char* const end_of_part = part.data() + part.size();
+      const char* at = part.data();
+      std::int64_t lines = 0;
+      const auto skip_separators = [&] {
+        for (; at < end_of_part && is_separator(*at); ++at) {
+          lines += *at == '\n' ? 1 : 0;
+          if (*at == '\r') own.has_returns = true;
+        }
+      };
+      const std::size_t begin = std::min(first[k], left);
+      for (const std::size_t count = std::min(first[k + 1], left) - begin; own.count < count; ++own.count) {
+        skip_separators();
+        const char* const after = read_number(at, end_of_part, values[before + begin + own.count]);
+        if (after == nullptr) return;
+        at = after;
+        own.bytes = static_cast<std::size_t>(at - part.data());
+        own.lines = lines;
+      }
+      skip_separators();  // there may be bytes that are neither separators nor words
+      if (at < end_of_part) return;
+      is_regular[k] = 1;
+      own.bytes = part.size();
+      own.lines = lines;
+    });
+    for (std::size_t k = 0; k < parts.size() && read.count < values.size(); ++k) {
+      read.count += of_part[k].count;
+      read.bytes += of_part[k].bytes;
+      read.lines += of_part[k].lines;
+      read.has_returns = read.has_returns || of_part[k].has_returns;
+      if (is_regular[k] == 0) return read;
+    }
+  }
+  return read;
+}
+
+template RegularNumbers read_regular_numbers<double>(std::string_view, std::span<double>, std::size_t);
+template RegularNumbers read_regular_numbers<float>(std::string_view, std::span<float>, std::size_t);
+template RegularNumbers read_regular_numbers<std::int8_t>(std::string_view, std::span<std::int8_t>,
+                                                          std::size_t);
+template RegularNumbers read_regular_numbers<std::uint8_t>(std::string_view, std::span<std::uint8_t>,
+                                                           std::size_t);
+template RegularNumbers read_regular_numbers<std::int16_t>(std::string_view, std::span<std::int16_t>,
+                                                           std::size_t);
+template RegularNumbers read_regular_numbers<std::uint16_t>(std::string_view, std::span<std::uint16_t>,
+                                                            std::size_t);
+template RegularNumbers read_regular_numbers<std::int32_t>(std::string_view, std::span<std::int32_t>,
+                                                           std::size_t);
+template RegularNumbers read_regular_numbers<std::uint32_t>(std::string_view, std::span<std::uint32_t>,
+                                                            std::size_t);
+template RegularNumbers read_regular_numbers<std::int64_t>(std::string_view, std::span<std::int64_t>,
+                                                           std::size_t);
+template RegularNumbers read_regular_numbers<std::uint64_t>(std::string_view, std::span<std::uint64_t>,
+                                                            std::size_t);
+
+}  // namespace meshorder

@@ -1,0 +1,51 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/stream/scanner.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace meshorder {
+
+/// How far numbers of a text were read.
+struct RegularNumbers {
+  std::size_t count = 0;     ///< of the numbers
+  std::size_t bytes = 0;     ///< of the text up to the end of the last one, or that of the blanks after it
+  std::int64_t lines = 0;    ///< line feeds in these bytes
+  bool has_returns = false;  ///< carriage returns may be among them, which end lines, too
+};
+
+/// Reads numbers from the beginning of a text on all threads, as far as they are regular: in the form and
+/// range of `std::from_chars`, and separated by blanks, tabs and line ends alone. The caller reads the others
+/// one after another, as it would all of them, so errors and results are the same.
+///
+/// The text is divided at blanks and line ends into parts. The words of the parts are counted, so that each
+/// part knows its first number.
+///
+/// @param values      receives the numbers, at most so many; what is beyond those read may be overwritten
+/// @param part_bytes  of a part, at least, > 0
+/// @note O(bytes of the numbers); a few numbers for each part.
+template <class Number>
+RegularNumbers read_regular_numbers(std::string_view text, std::span<Number> values,
+                                    std::size_t part_bytes = std::size_t{1} << 20);
+
+/// The same from where a scanner without comments is, which moves after the last number. Returns their count.
+template <class Number>
+std::size_t read_regular_numbers(Scanner& in, std::span<Number> values) {
+  const RegularNumbers read =
+      read_regular_numbers(in.all().substr(static_cast<std::size_t>(in.byte())), values);
+  const std::int64_t end = in.byte() + static_cast<std::int64_t>(read.bytes);
+  if (read.has_returns)
+    in.seek(end);
+  else
+    in.move_to(in.at(end, in.line() + read.lines));
+  return read.count;
+}
+
+/// Returns how many words a text has, on all threads. Bytes up to the space separate them.
+std::size_t count_words(std::string_view text);
+
+}  // namespace meshorder
