@@ -25,7 +25,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -110,10 +109,13 @@ void note_no_better(const Mesh& mesh, const ReorderOptions& options, const Permu
   if (method == "auto" || method == "original" || method == "scrambled" || !options.group_by.empty()) return;
   const CellSelection elements = CellSelection::elements(cell_arrays(mesh));
   const Permutation as_written = Permutation::identity(elements.size());
-  std::vector<Index> as_it_was(as_written.new_to_old().begin(), as_written.new_to_old().end());
-  std::sort(as_it_was.begin(), as_it_was.end(), [&](Index a, Index b) {
-    return cells.new_to_old()[elements.cell(a)] < cells.new_to_old()[elements.cell(b)];
-  });
+  std::vector<Index> element_of(static_cast<std::size_t>(cells.size()), -1);  // of each cell
+  for (Index e = 0; e < elements.size(); ++e) element_of[elements.cell(e)] = e;
+  std::vector<Index> as_it_was;
+  as_it_was.reserve(static_cast<std::size_t>(elements.size()));
+  for (const Index cell : cells.old_to_new()) {
+    if (element_of[cell] >= 0) as_it_was.push_back(element_of[cell]);
+  }
   const std::string reason =
       reason_to_keep_elements(elements.incidence(), as_it_was, as_written.new_to_old(), method);
   if (!reason.empty()) notes.push_back(reason + "; --elements original keeps the order");
@@ -194,8 +196,8 @@ void run(const OrderArguments& arguments) {
   times.split_last("order", order.vertices.seconds + order.cells.seconds);
   job.maps.vertices = order.vertices.permutation;
   job.maps.cells = order.cells.permutation;
-  const EdgeSpan before = edge_span(*graph, Permutation::identity(mesh.vertex_count()));
-  const EdgeSpan after = edge_span(*graph, job.maps.vertices);
+  const EdgeSpan before = quick_edge_span(*graph, Permutation::identity(mesh.vertex_count()));
+  const EdgeSpan after = quick_edge_span(*graph, job.maps.vertices);
   if (!raced) {
     note_no_better(*graph, options, job.maps.vertices, notes);
     note_no_better(mesh, options, job.maps.cells, notes);

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/traversal.hpp"
 
+#include "base/parallel.hpp"
 #include "base/run_scope.hpp"
 #include "graph/row_access.hpp"
 
@@ -76,40 +77,10 @@ std::vector<std::vector<Index>> connected_components(GraphRef graph) {
   return components;
 }
 
-// The searches below write down each neighbour and keep it if it is new, without a branch: whether a vertex
-// has been found before is what a processor cannot predict.
+namespace {
 
-BreadthFirst breadth_first(GraphRef graph, Index start, std::vector<Index>& marks, Index mark) {
-  BreadthFirst search;
-  std::vector<Index>& order = search.order;
-  order.push_back(start);
-  marks[start] = mark;
-  Index found = 1;
-  Index level_begin = 0;
-  while (level_begin < found) {
-    search.level_start.push_back(level_begin);
-    const Index level_end = found;
-    for (Index k = level_begin; k < level_end; ++k) {
-      poll_in_loop(k);
-      prefetch_row(graph, std::span(order).first(std::size_t(found)), k);
-      const std::span<const Index> row = graph[order[k]];
-      if (const std::size_t most = std::size_t(found) + row.size(); most > order.size()) {
-        order.resize(std::max(most, 2 * order.size()));
-      }
-      for (const Index u : row) {
-        order[found] = u;
-        found += marks[u] != mark ? 1 : 0;
-        marks[u] = mark;
-      }
-    }
-    level_begin = level_end;
-  }
-  search.level_start.push_back(found);
-  order.resize(found);
-  return search;
-}
-
-BreadthFirstCopy breadth_first_copy(GraphRef graph) {
+/// Reads each row once, and copies it as it searches.
+BreadthFirstCopy copy_in_one_pass(GraphRef graph) {
   const Index n = graph.size();
   BreadthFirstCopy copy;
   copy.offsets.reserve(std::size_t(n) + 1);
@@ -147,26 +118,80 @@ BreadthFirstCopy breadth_first_copy(GraphRef graph) {
     copy.components.push_back(component);
   }
   copy.old_numbers.resize(n);
+  return copy;
+}
+
+/// Searches first, then copies the rows.
+BreadthFirstCopy copy_on_threads(GraphRef graph) {
+  const auto n = static_cast<std::size_t>(graph.size());
+  BreadthFirstCopy copy;
+  copy.old_numbers.resize(n + 1);
+  LevelSearch search(graph);
+  Index found = 0;
+  for (Index v = 0; v < graph.size(); ++v) {
+    poll_in_loop(v);
+    if (search.has_found(v)) continue;
+    const Index end = found + search.run(v, std::span(copy.old_numbers).subspan(found));
+    copy.components.push_back({.first = found,
+                               .end = end,
+                               .last_level = found + search.level_start()[search.depth()],
+                               .depth = search.depth()});
+    found = end;
+  }
+  copy.old_numbers.resize(n);
+  std::vector<Index> number(n);
+  copy.offsets.resize(n + 1);
+  constexpr Index kRowsAtOnce = 4096;
+  for_each_chunk(graph.size(), kRowsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      number[copy.old_numbers[k]] = k;
+      copy.offsets[k + 1] = graph.degree(copy.old_numbers[k]);
+    }
+  });
+  std::partial_sum(copy.offsets.begin(), copy.offsets.end(), copy.offsets.begin());
+  copy.neighbours.resize(graph.neighbours.size());
+  for_each_chunk(graph.size(), kRowsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) {
+      prefetch_row(graph, copy.old_numbers, k);
+      Offset place = copy.offsets[k];
+      for (const Index u : graph[copy.old_numbers[k]]) copy.neighbours[place++] = number[u];
+    }
+  });
+  return copy;
+}
+
+}  // namespace
+
+BreadthFirstCopy breadth_first_copy(GraphRef graph) {
+  constexpr Index kSmall = 1 << 15;
+  // two threads take as long for the rows that they read again as they save
+  const bool is_shared = thread_count() > 2 && graph.size() >= kSmall;
+  BreadthFirstCopy copy = is_shared ? copy_on_threads(graph) : copy_in_one_pass(graph);
   std::stable_sort(copy.components.begin(), copy.components.end(),
                    [](const auto& a, const auto& b) { return a.end - a.first > b.end - b.first; });
   return copy;
 }
 
-Index pseudo_peripheral_vertex(const BreadthFirstCopy& copy, const BreadthFirstCopy::Component& component,
-                               std::vector<Index>& marks) {
-  const GraphRef graph = copy.graph();
-  Index start = component.first;
+std::vector<Index> search_from_rim(const BreadthFirstCopy& copy, const BreadthFirstCopy::Component& component,
+                                   LevelSearch& search) {
+  const Index size = component.end - component.first;
+  std::vector<Index> order = index_range(component.first, size);  // of the copy's own search
+  std::vector<Index> next(static_cast<std::size_t>(size) + 1);
   Index depth = component.depth;
-  std::vector<Index> last_level = index_range(component.last_level, component.end - component.last_level);
-  for (Index mark = 0;; ++mark) {
+  std::span<const Index> last_level = std::span(order).subspan(component.last_level - component.first);
+  while (true) {
     const Index candidate = *std::ranges::min_element(
-        last_level, {}, [&](Index v) { return std::pair(graph.degree(v), copy.old_numbers[v]); });
-    const BreadthFirst search = breadth_first(graph, candidate, marks, mark);
-    if (search.depth() <= depth) return start;
-    start = candidate;
+        last_level, {}, [&](Index v) { return std::pair(copy.graph().degree(v), copy.old_numbers[v]); });
+    search.forget(component.first, component.end);
+    search.run(candidate, next);
+    if (search.depth() <= depth) break;
     depth = search.depth();
-    last_level.assign(search.order.begin() + search.level_start[depth], search.order.end());
+    order.resize(next.size());
+    order.swap(next);
+    last_level = std::span(order).subspan(search.level_start()[depth], size - search.level_start()[depth]);
   }
+  order.resize(static_cast<std::size_t>(size));
+  return order;
 }
 
 }  // namespace meshorder

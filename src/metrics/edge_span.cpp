@@ -124,6 +124,14 @@ SpanSize span_size(GraphRef graph, const Permutation& order) {
   });
 }
 
+EdgeSpan quick_edge_span(GraphRef graph, const Permutation& order) {
+  if (graph.neighbours.empty()) return {};
+  const SpanSize size = span_size(graph, order);
+  return {.mean = static_cast<double>(size.sum) / static_cast<double>(graph.edge_count()),
+          .max = static_cast<Index>(size.max),
+          .mean_log2 = sampled_edge_span(graph, order.old_to_new()).mean_log2};
+}
+
 Offset profile(GraphRef graph, const Permutation& order) {
   Offset sum = 0;
   for (Index v = 0; v < graph.size(); ++v) {

@@ -60,6 +60,10 @@ struct SpanSize {
 /// Adds up the spans of all edges, on all threads; polls. O(n + edges).
 SpanSize span_size(GraphRef graph, const Permutation& order);
 
+/// As `edge_span`, on all threads, but `mean_log2` is that of `sampled_edge_span`. Does not depend on the
+/// number of threads. O(n + edges).
+EdgeSpan quick_edge_span(GraphRef graph, const Permutation& order);
+
 /// Σ over vertices of the distance to the first neighbour before them in the order: the size of the envelope
 /// of a matrix with this pattern (diagonal not counted). O(n + edges).
 Offset profile(GraphRef graph, const Permutation& order);

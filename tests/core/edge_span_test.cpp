@@ -74,6 +74,18 @@ TEST(SampledEdgeSpan, OfAFewVerticesIsExact) {
   EXPECT_EQ(sampled_edge_span(CsrGraph{}, {}), EdgeSpan{});
 }
 
+TEST(QuickEdgeSpan, HasTheExactMeanAndMaximumAndALogarithmNearby) {
+  const CsrGraph graph = test::grid(81, 81, 81);
+  for (const Permutation& order : {Permutation::identity(graph.size()), test::shuffled(graph.size(), 1)}) {
+    const EdgeSpan exact = edge_span(graph, order);
+    const EdgeSpan found = quick_edge_span(graph, order);
+    EXPECT_DOUBLE_EQ(found.mean, exact.mean);
+    EXPECT_EQ(found.max, exact.max);
+    EXPECT_NEAR(found.mean_log2, exact.mean_log2, 0.05);
+  }
+  EXPECT_EQ(quick_edge_span(CsrGraph{}, Permutation::identity(0)), EdgeSpan{});
+}
+
 TEST(SampledEdgeSpan, OfManyVerticesIsNearAndTheSameOnAnyNumberOfThreads) {
   // 64 divides the steps of the sample, 81 does not
   for (const Index side : {64, 81}) {

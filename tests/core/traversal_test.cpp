@@ -4,8 +4,12 @@
 #include "support/sample_graphs.hpp"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <span>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -28,28 +32,100 @@ std::vector<Index> distances(const CsrGraph& graph, Index start) {
   return result;
 }
 
-TEST(BreadthFirst, LevelsAreTheDistances) {
+/// The vertices of a component in the order of a search that goes through one vertex after the other.
+std::vector<Index> searched(const CsrGraph& graph, Index start, LevelSearch::Arrange arrange) {
+  std::vector<Index> order{start};
+  std::vector<bool> found(graph.size(), false);
+  found[start] = true;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::size_t first = order.size();
+    for (const Index u : graph[order[k]]) {
+      if (!found[u]) order.push_back(u);
+      found[u] = true;
+    }
+    if (arrange != nullptr) arrange(graph, std::span(order).subspan(first));
+  }
+  return order;
+}
+
+/// The vertices that a search finds, and leaves nothing behind them.
+std::vector<Index> found_by(LevelSearch& search, Index start, Index size,
+                            LevelSearch::Arrange arrange = nullptr) {
+  std::vector<Index> places(size + 1);
+  places.resize(search.run(start, places, arrange));
+  return places;
+}
+
+TEST(LevelSearch, LevelsAreTheDistances) {
   const CsrGraph graph = test::disjoint_union({test::random_connected(200, 60, 1), test::path(5)});
   for (const Index start : {0, 57, 199, 202}) {
-    std::vector<Index> marks(graph.size(), -1);
-    const BreadthFirst search = breadth_first(graph, start, marks, 3);
+    LevelSearch search(graph);
+    const std::vector<Index> order = found_by(search, start, graph.size());
     const std::vector<Index> expected = distances(graph, start);
-    EXPECT_EQ(search.order.front(), start);
-    EXPECT_EQ(index_size(search.order), graph.size() - std::count(expected.begin(), expected.end(), -1));
+    EXPECT_EQ(order, searched(graph, start, nullptr));
+    EXPECT_EQ(index_size(order), graph.size() - std::count(expected.begin(), expected.end(), -1));
     for (Index level = 0; level <= search.depth(); ++level) {
-      for (Index k = search.level_start[level]; k < search.level_start[level + 1]; ++k) {
-        EXPECT_EQ(expected[search.order[k]], level);
-      }
+      for (Index k = search.level_start()[level]; k < search.level_start()[level + 1]; ++k)
+        EXPECT_EQ(expected[order[k]], level);
     }
-    for (Index v = 0; v < graph.size(); ++v) EXPECT_EQ(marks[v], expected[v] >= 0 ? 3 : -1);
+    for (Index v = 0; v < graph.size(); ++v) EXPECT_EQ(search.has_found(v), expected[v] >= 0);
   }
 }
 
-TEST(BreadthFirst, SearchesShareMarks) {
-  const CsrGraph graph = test::grid(6, 5);
-  std::vector<Index> marks(graph.size(), -1);
-  for (Index mark = 0; mark < 4; ++mark) {
-    EXPECT_EQ(index_size(breadth_first(graph, mark, marks, mark).order), graph.size());
+TEST(LevelSearch, FindsAgainWhatItHasForgotten) {
+  const CsrGraph graph = test::disjoint_union({test::grid(6, 5), test::path(4)});
+  LevelSearch search(graph);
+  EXPECT_EQ(found_by(search, 32, 4), searched(graph, 32, nullptr));
+  for (const Index start : {0, 7, 29}) {
+    EXPECT_EQ(found_by(search, start, 30), searched(graph, start, nullptr));
+    search.forget(0, 30);
+  }
+  EXPECT_TRUE(search.has_found(30));
+}
+
+TEST(LevelSearch, IsThatOfOneThreadOnAnyNumber) {
+  const LevelSearch::Arrange backwards = [](GraphRef, std::span<Index> found) {
+    std::ranges::reverse(found);
+  };
+  // levels of tens of thousands of vertices, whose neighbours lie in many chunks
+  for (const CsrGraph& graph :
+       {test::random_connected(60000, 200000, 3), test::grid(80, 80, 8),
+        test::disjoint_union({test::path(3), test::random_connected(20000, 50000, 4)})}) {
+    for (const LevelSearch::Arrange arrange : {LevelSearch::Arrange(nullptr), backwards}) {
+      const std::vector<Index> expected = searched(graph, graph.size() - 5, arrange);
+      for (const std::size_t threads : {1, 2, 3, 7}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        tbb::task_arena arena(static_cast<int>(threads));
+        LevelSearch search(graph);
+        EXPECT_EQ(arena.execute([&] { return found_by(search, graph.size() - 5, graph.size(), arrange); }),
+                  expected)
+            << threads << " threads";
+      }
+    }
+  }
+}
+
+TEST(BreadthFirstCopy, IsTheSameOnAnyNumberOfThreads) {
+  const CsrGraph graph = test::disjoint_union(
+      {test::path(7), test::random_connected(40000, 90000, 5), CsrGraph{{0, 0}, {}}, test::grid(50, 50, 4)});
+  const BreadthFirstCopy expected = [&] {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+    return breadth_first_copy(graph);
+  }();
+  for (const std::size_t threads : {2, 3, 8}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    tbb::task_arena arena(static_cast<int>(threads));
+    const BreadthFirstCopy copy = arena.execute([&] { return breadth_first_copy(graph); });
+    EXPECT_EQ(copy.old_numbers, expected.old_numbers);
+    EXPECT_EQ(copy.offsets, expected.offsets);
+    EXPECT_EQ(copy.neighbours, expected.neighbours);
+    ASSERT_EQ(copy.components.size(), expected.components.size());
+    for (std::size_t c = 0; c < copy.components.size(); ++c) {
+      EXPECT_EQ(copy.components[c].first, expected.components[c].first);
+      EXPECT_EQ(copy.components[c].end, expected.components[c].end);
+      EXPECT_EQ(copy.components[c].last_level, expected.components[c].last_level);
+      EXPECT_EQ(copy.components[c].depth, expected.components[c].depth);
+    }
   }
 }
 
@@ -63,12 +139,11 @@ TEST(BreadthFirstCopy, IsTheSameGraphInTheOrderOfASearch) {
   const BreadthFirstCopy copy = breadth_first_copy(graph);
   std::vector<std::vector<Index>> components;
   for (const auto& [first, end, last_level, depth] : copy.components) {
-    std::vector<Index> marks(graph.size(), -1);
     const std::vector<Index> members(copy.old_numbers.begin() + first, copy.old_numbers.begin() + end);
-    const BreadthFirst search = breadth_first(graph, members.front(), marks, 0);
-    EXPECT_EQ(search.order, members);
+    LevelSearch search(graph);
+    EXPECT_EQ(found_by(search, members.front(), graph.size()), members);
     EXPECT_EQ(depth, search.depth());
-    EXPECT_EQ(last_level - first, search.level_start[depth]);
+    EXPECT_EQ(last_level - first, search.level_start()[depth]);
     components.push_back(members);
     std::sort(components.back().begin(), components.back().end());
   }
@@ -84,8 +159,10 @@ TEST(BreadthFirstCopy, IsTheSameGraphInTheOrderOfASearch) {
 /// What is found from the vertex of the name 0 of a connected graph, in which names decide ties.
 Index found_from_zero(const CsrGraph& graph, const std::vector<Index>& names) {
   const BreadthFirstCopy copy = breadth_first_copy(renumbered(graph, names));
-  std::vector<Index> marks(graph.size(), -1);
-  const Index name = copy.old_numbers[pseudo_peripheral_vertex(copy, copy.components.front(), marks)];
+  LevelSearch search(copy.graph());
+  const std::vector<Index> order = search_from_rim(copy, copy.components.front(), search);
+  EXPECT_EQ(order, searched({copy.offsets, copy.neighbours}, order.front(), nullptr));
+  const Index name = copy.old_numbers[order.front()];
   return static_cast<Index>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
@@ -96,7 +173,7 @@ std::vector<Index> with_zero_at(Index start, Index size) {
   return names;
 }
 
-TEST(PseudoPeripheralVertex, IsAnEndOfAPathAndACornerOfAGrid) {
+TEST(SearchFromTheRim, IsAnEndOfAPathAndACornerOfAGrid) {
   EXPECT_EQ(found_from_zero(test::path(1000), with_zero_at(400, 1000)), 999);
   // of two ends the one of the smaller name
   EXPECT_EQ(found_from_zero(test::path(7), {1, 2, 3, 0, 4, 5, 6}), 0);
@@ -106,7 +183,7 @@ TEST(PseudoPeripheralVertex, IsAnEndOfAPathAndACornerOfAGrid) {
   EXPECT_EQ(found_from_zero(test::path(1), {0}), 0);
 }
 
-TEST(PseudoPeripheralVertex, SeesAtLeastAsFarAsItsStart) {
+TEST(SearchFromTheRim, SeesAtLeastAsFarAsItsStart) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const CsrGraph graph = test::random_connected(150, 20, seed);
     const Index start = 75;
@@ -118,12 +195,12 @@ TEST(PseudoPeripheralVertex, SeesAtLeastAsFarAsItsStart) {
 }
 
 // with work that grows with the whole graph this would take minutes
-TEST(PseudoPeripheralVertex, LooksAtItsComponentOnly) {
+TEST(SearchFromTheRim, LooksAtItsComponentOnly) {
   const Index n = 200000;
   const BreadthFirstCopy isolated = breadth_first_copy(graph_from_edges(n, {}));
-  std::vector<Index> marks(n, -1);
+  LevelSearch search(isolated.graph());
   for (Index v = 0; v < n; ++v)
-    ASSERT_EQ(pseudo_peripheral_vertex(isolated, isolated.components[v], marks), v);
+    ASSERT_EQ(search_from_rim(isolated, isolated.components[v], search), std::vector<Index>{v});
 }
 
 }  // namespace

@@ -1,0 +1,59 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "graph/csr_graph.hpp"
+
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace meshorder {
+
+/// Breadth-first searches of one graph, level after level. Large levels are shared by all threads; the order
+/// is the same as on one: by the place of the first vertex that finds each, and as that one's row lists them.
+///
+/// On several threads each vertex of a level offers itself to its neighbours, the smallest place wins, and
+/// those who lost leave out what they had found.
+class LevelSearch {
+ public:
+  /// Sorts what one vertex has found, in place.
+  using Arrange = void (*)(GraphRef graph, std::span<Index> found);
+
+  explicit LevelSearch(GraphRef graph)
+      : graph_(graph), found_by_(static_cast<std::size_t>(graph.size()), kNobody) {}
+
+  /// Finds the component of a vertex that was not found before. O(component).
+  ///
+  /// @param places   receives its vertices in their order; one longer than the component, at least
+  /// @param arrange  none: the order of the rows stays
+  /// @return how many vertices there are
+  Index run(Index start, std::span<Index> places, Arrange arrange = nullptr);
+
+  /// Where each level of the last search begins in its places, and the number of places.
+  [[nodiscard]] std::span<const Index> level_start() const noexcept { return level_start_; }
+  /// How many levels come after the first.
+  [[nodiscard]] Index depth() const noexcept { return index_size(level_start_) - 2; }
+
+  [[nodiscard]] bool has_found(Index v) const { return found_by_[v] != kNobody; }
+  /// Makes the vertices first … end − 1, which are whole components, to be found again.
+  void forget(Index first, Index end);
+
+ private:
+  static constexpr Index kNobody = std::numeric_limits<Index>::max();
+
+  /// A vertex, and the place of one that finds it.
+  struct Finding {
+    Index vertex;
+    Index by;
+  };
+
+  Index find_next_level(std::span<Index> places, Index begin, Index end, Arrange arrange);
+  Index find_next_level_together(std::span<Index> places, Index begin, Index end, Arrange arrange);
+
+  GraphRef graph_;
+  std::vector<Index> found_by_;  ///< the place of the vertex that found each
+  std::vector<Index> level_start_;
+  std::vector<std::vector<Finding>> findings_;  ///< of each chunk of a level
+};
+
+}  // namespace meshorder
