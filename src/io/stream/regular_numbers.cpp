@@ -88,6 +88,73 @@ std::vector<std::size_t> first_words(const std::vector<std::string_view>& parts)
   return first;
 }
 
+/// What was read of a part.
+struct PartRead {
+  RegularNumbers numbers;
+  bool is_regular = false;  ///< all words are numbers, and nothing else is there
+};
+
+/// Reads that many numbers, and to the end of the part.
+template <class Number>
+PartRead read_part(std::string_view part, std::span<Number> values) {
+  PartRead result;
+  RegularNumbers& read = result.numbers;
+  const char* const end = part.data() + part.size();
+  const char* at = part.data();
+  std::int64_t lines = 0;
+  const auto skip_separators = [&] {
+    for (; at < end && is_separator(*at); ++at) {
+      lines += *at == '\n' ? 1 : 0;
+      if (*at == '\r') read.has_returns = true;
+    }
+  };
+  for (; read.count < values.size(); ++read.count) {
+    skip_separators();
+    const char* const after = read_number(at, end, values[read.count]);
+    if (after == nullptr) return result;
+    at = after;
+    read.bytes = static_cast<std::size_t>(at - part.data());
+    read.lines = lines;
+  }
+  skip_separators();  // there may be bytes that are neither separators nor words
+  if (at < end) return result;
+  read.bytes = part.size();
+  read.lines = lines;
+  result.is_regular = true;
+  return result;
+}
+
+/// Reads `count` numbers of a text by `read_one(part, first, count)`, which reads some of them into their
+/// places.
+RegularNumbers read_parts(
+    std::string_view text, std::size_t count, std::size_t part_bytes,
+    const std::function<PartRead(std::string_view part, std::size_t first, std::size_t count)>& read_one) {
+  RegularNumbers read;
+  while (read.count < count) {
+    const std::size_t before = read.count;
+    const std::size_t left = count - before;
+    const std::size_t end =
+        left < (text.size() - read.bytes) / kNumberBytes ? read.bytes + left * kNumberBytes : text.size();
+    const std::vector<std::string_view> parts = divided_at_blanks(text, read.bytes, end, part_bytes);
+    if (parts.empty()) break;
+    const std::vector<std::size_t> first = first_words(parts);
+    std::vector<PartRead> of_part(parts.size());
+    for_each_chunk(index_size(parts), 1, [&](Index k, Index, Index) {
+      const std::size_t begin = std::min(first[k], left);
+      of_part[k] = read_one(parts[k], before + begin, std::min(first[k + 1], left) - begin);
+    });
+    for (std::size_t k = 0; k < parts.size() && read.count < count; ++k) {
+      const RegularNumbers& own = of_part[k].numbers;
+      read.count += own.count;
+      read.bytes += own.bytes;
+      read.lines += own.lines;
+      read.has_returns = read.has_returns || own.has_returns;
+      if (!of_part[k].is_regular) return read;
+    }
+  }
+  return read;
+}
+
 }  // namespace
 
 std::size_t count_words(std::string_view text) {
@@ -102,73 +169,17 @@ std::size_t count_words(std::string_view text) {
 }
 
 template <class Number>
-RegularNumbers read_regular_numbers(std::string_view text, std::span<Number> values, std::size_t part_bytes) {
-  RegularNumbers read;
-  while (read.count < values.size()) {
-    const std::size_t before = read.count;
-    const std::size_t left = values.size() - before;
-    const std::size_t end =
-        left < (text.size() - read.bytes) / kNumberBytes ? read.bytes + left * kNumberBytes : text.size();
-    const std::vector<std::string_view> parts = divided_at_blanks(text, read.bytes, end, part_bytes);
-    const std::vector<std::size_t> first = first_words(parts);
-    if (parts.empty()) break;
-    std::vector<RegularNumbers> of_part(parts.size());
-    std::vector<std::uint8_t> is_regular(parts.size(), 0);
-    for_each_chunk(index_size(parts), 1, [&](Index k, Index, Index) {
-      RegularNumbers& own = of_part[static_cast<std::size_t>(k)];
-      const std::string_view part = parts[k];
-      const char* const end_of_part = part.data() + part.size();
-      const char* at = part.data();
-      std::int64_t lines = 0;
-      const auto skip_separators = [&] {
-        for (; at < end_of_part && is_separator(*at); ++at) {
-          lines += *at == '\n' ? 1 : 0;
-          if (*at == '\r') own.has_returns = true;
-        }
-      };
-      const std::size_t begin = std::min(first[k], left);
-      for (const std::size_t count = std::min(first[k + 1], left) - begin; own.count < count; ++own.count) {
-        skip_separators();
-        const char* const after = read_number(at, end_of_part, values[before + begin + own.count]);
-        if (after == nullptr) return;
-        at = after;
-        own.bytes = static_cast<std::size_t>(at - part.data());
-        own.lines = lines;
-      }
-      skip_separators();  // there may be bytes that are neither separators nor words
-      if (at < end_of_part) return;
-      is_regular[k] = 1;
-      own.bytes = part.size();
-      own.lines = lines;
-    });
-    for (std::size_t k = 0; k < parts.size() && read.count < values.size(); ++k) {
-      read.count += of_part[k].count;
-      read.bytes += of_part[k].bytes;
-      read.lines += of_part[k].lines;
-      read.has_returns = read.has_returns || of_part[k].has_returns;
-      if (is_regular[k] == 0) return read;
-    }
-  }
-  return read;
+RegularNumbers read_numbers_of_type(std::string_view text, std::span<Number> values, std::size_t part_bytes) {
+  return read_parts(text, values.size(), part_bytes,
+                    [&](std::string_view part, std::size_t first, std::size_t count) {
+                      return read_part(part, values.subspan(first, count));
+                    });
 }
 
-template RegularNumbers read_regular_numbers<double>(std::string_view, std::span<double>, std::size_t);
-template RegularNumbers read_regular_numbers<float>(std::string_view, std::span<float>, std::size_t);
-template RegularNumbers read_regular_numbers<std::int8_t>(std::string_view, std::span<std::int8_t>,
-                                                          std::size_t);
-template RegularNumbers read_regular_numbers<std::uint8_t>(std::string_view, std::span<std::uint8_t>,
-                                                           std::size_t);
-template RegularNumbers read_regular_numbers<std::int16_t>(std::string_view, std::span<std::int16_t>,
-                                                           std::size_t);
-template RegularNumbers read_regular_numbers<std::uint16_t>(std::string_view, std::span<std::uint16_t>,
-                                                            std::size_t);
-template RegularNumbers read_regular_numbers<std::int32_t>(std::string_view, std::span<std::int32_t>,
-                                                           std::size_t);
-template RegularNumbers read_regular_numbers<std::uint32_t>(std::string_view, std::span<std::uint32_t>,
-                                                            std::size_t);
-template RegularNumbers read_regular_numbers<std::int64_t>(std::string_view, std::span<std::int64_t>,
-                                                           std::size_t);
-template RegularNumbers read_regular_numbers<std::uint64_t>(std::string_view, std::span<std::uint64_t>,
-                                                            std::size_t);
+template RegularNumbers read_numbers_of_type(std::string_view, std::span<double>, std::size_t);
+template RegularNumbers read_numbers_of_type(std::string_view, std::span<float>, std::size_t);
+template RegularNumbers read_numbers_of_type(std::string_view, std::span<std::uint8_t>, std::size_t);
+template RegularNumbers read_numbers_of_type(std::string_view, std::span<std::int32_t>, std::size_t);
+template RegularNumbers read_numbers_of_type(std::string_view, std::span<std::int64_t>, std::size_t);
 
 }  // namespace meshorder

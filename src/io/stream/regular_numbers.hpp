@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <type_traits>
 
 namespace meshorder {
 
@@ -18,6 +19,10 @@ struct RegularNumbers {
   bool has_returns = false;  ///< carriage returns may be among them, which end lines, too
 };
 
+/// As `read_regular_numbers`, for double, float, uint8, int32 and int64.
+template <class Number>
+RegularNumbers read_numbers_of_type(std::string_view text, std::span<Number> values, std::size_t part_bytes);
+
 /// Reads numbers from the beginning of a text on all threads, as far as they are regular: in the form and
 /// range of `std::from_chars`, and separated by blanks, tabs and line ends alone. The caller reads the others
 /// one after another, as it would all of them, so errors and results are the same.
@@ -28,9 +33,16 @@ struct RegularNumbers {
 /// @param values      receives the numbers, at most so many; what is beyond those read may be overwritten
 /// @param part_bytes  of a part, at least, > 0
 /// @note O(bytes of the numbers); a few numbers for each part.
+///       Of the types that files seldom have, none are read.
 template <class Number>
 RegularNumbers read_regular_numbers(std::string_view text, std::span<Number> values,
-                                    std::size_t part_bytes = std::size_t{1} << 20);
+                                    std::size_t part_bytes = std::size_t{1} << 20) {
+  if constexpr (std::is_floating_point_v<Number> || std::is_same_v<Number, std::uint8_t> ||
+                (std::is_signed_v<Number> && sizeof(Number) >= sizeof(std::int32_t)))
+    return read_numbers_of_type(text, values, part_bytes);
+  else
+    return {};
+}
 
 /// The same from where a scanner without comments is, which moves after the last number. Returns their count.
 template <class Number>
