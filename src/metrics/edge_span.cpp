@@ -125,7 +125,8 @@ SpanSize span_size(GraphRef graph, const Permutation& order) {
 }
 
 EdgeSpan quick_edge_span(GraphRef graph, const Permutation& order) {
-  if (graph.neighbours.empty()) return {};
+  const bool is_sampled = VertexSample(graph.size()).size() < graph.size();
+  if (!is_sampled || graph.neighbours.empty()) return edge_span(graph, order);
   const SpanSize size = span_size(graph, order);
   return {.mean = static_cast<double>(size.sum) / static_cast<double>(graph.edge_count()),
           .max = static_cast<Index>(size.max),

@@ -60,8 +60,8 @@ struct SpanSize {
 /// Adds up the spans of all edges, on all threads; polls. O(n + edges).
 SpanSize span_size(GraphRef graph, const Permutation& order);
 
-/// As `edge_span`, on all threads, but `mean_log2` is that of `sampled_edge_span`. Does not depend on the
-/// number of threads. O(n + edges).
+/// As `edge_span`, but of 262,144 vertices and more on all threads, and `mean_log2` is that of
+/// `sampled_edge_span`. Does not depend on the number of threads. O(n + edges).
 EdgeSpan quick_edge_span(GraphRef graph, const Permutation& order);
 
 /// Σ over vertices of the distance to the first neighbour before them in the order: the size of the envelope

@@ -71,7 +71,7 @@ std::vector<std::string_view> divided_at_blanks(std::string_view text, std::size
                                                 std::size_t part_bytes) {
   std::vector<std::string_view> parts;
   while (parts.size() < kMostParts && begin < end) {
-    std::size_t stop = std::min(begin + part_bytes, text.size());
+    std::size_t stop = std::min(begin + part_bytes, end);
     while (stop < text.size() && !is_separator(text[stop - 1])) ++stop;
     parts.push_back(text.substr(begin, stop - begin));
     begin = stop;
