@@ -33,14 +33,6 @@ function(meshorder_computes target)
   endif()
 endfunction()
 
-# meshorder_not_aligned(<target>): for what does not compute, without the space that GCC leaves before functions and loops, 3 %
-# of the code
-function(meshorder_not_aligned target)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    target_compile_options(${target} PRIVATE -fno-align-functions -fno-align-jumps -fno-align-loops -fno-align-labels)
-  endif()
-endfunction()
-
 # meshorder_simd_sources(<source>…): sources that Highway compiles once for each instruction set, in a unity build alone
 function(meshorder_simd_sources)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
