@@ -30,7 +30,7 @@ from .hosts.meshio import GROUPED, Blocks, to_meshio
 #: subcommands that take a mesh, and the place of the mesh among their arguments that are no options
 _MESH_PLACE = {"order": 0, "apply": 1, "info": 0, "compare": 0}
 #: options without a value; all others have one
-_FLAGS = {"--json", "--quiet", "-q", "--inverse", "--measure", "--predict", "--strict", "--all-threads", "--trust",
+_FLAGS = {"--json", "--quiet", "-q", "--inverse", "--measure", "--predict", "--strict", "--timings", "--all-threads", "--trust",
           "--details"}
 _BAD_INPUT = 2
 
