@@ -85,7 +85,7 @@ TEST(ProjectiveContact, ABodyBouncesLowerAndLowerAndComesToRest) {
   const MotionState end = simulator.state();
   for (std::size_t v = 0; v < points.size(); ++v)
     rising += 0.5 * simulator.masses()[v] * end.velocities[v][1] * end.velocities[v][1];
-  EXPECT_LT(rising, (test::kSanitized ? 1e-4 : 1e-5) * fallen);            // a coarse box rocks for longer
+  EXPECT_LT(rising, (test::kSanitized ? 1e-3 : 1e-5) * fallen);            // a coarse box rocks for longer
   EXPECT_NEAR(rest.potential, weight * kSide / 2, 0.02 * weight * kSide);  // flat on a face
 }
 
