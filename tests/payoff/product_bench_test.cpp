@@ -267,17 +267,6 @@ TEST(Race, OfAMatrixLeavesItsEntriesWhereTheyAre) {
   for (const Candidate& candidate : result.advice.candidates) EXPECT_EQ(candidate.elements.name, "original");
 }
 
-TEST(Race, OfAMatrixWithoutCoordinatesHasNoOrderByThem) {
-  Mesh mesh = scrambled_band(5000);
-  (void)reorder(mesh, {});  // which hilbert would leave as it is, as all points are in one place
-  RaceOptions options;
-  options.machine = choose_machine("zen3");
-  options.timer = {};
-  const Race result = race(mesh, vertex_graph(mesh), options);
-  for (const Candidate& candidate : result.advice.candidates)
-    EXPECT_NE(candidate.vertices.name, "hilbert-fronts");
-}
-
 TEST(Reorder, LeavesTheEntriesOfAMatrixWhereTheyAre) {
   Mesh mesh = scrambled_band(300);
   Mesh other = mesh;
