@@ -129,7 +129,7 @@ EdgeSpan quick_edge_span(GraphRef graph, const Permutation& order) {
   if (!is_sampled || graph.neighbours.empty()) return edge_span(graph, order);
   const SpanSize size = span_size(graph, order);
   return {.mean = static_cast<double>(size.sum) / static_cast<double>(graph.edge_count()),
-          .max = static_cast<Index>(size.max),
+          .max = size.max,
           .mean_log2 = sampled_edge_span(graph, order.old_to_new()).mean_log2};
 }
 

@@ -27,8 +27,8 @@ void sort_by_degree(GraphRef graph, std::span<Index> vertices) {
 }
 
 /// Orders the components of a graph one after the other by `place(search, component, found, places)`, which
-/// fills `places`, but for the last one, with the vertices of a component. `found` are the same as a search
-/// from a vertex at the rim finds them.
+/// fills `places`, but for the last one, with the vertices of a component. `found` has them in the order of a
+/// search from a vertex at the rim.
 template <class Place>
 Order by_components(GraphRef graph, const Place& place) {
   const BreadthFirstCopy copy = breadth_first_copy(graph);

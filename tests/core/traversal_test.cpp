@@ -48,7 +48,7 @@ std::vector<Index> searched(const CsrGraph& graph, Index start, LevelSearch::Arr
   return order;
 }
 
-/// The vertices that a search finds, and leaves nothing behind them.
+/// The vertices that a search finds, in its order.
 std::vector<Index> found_by(LevelSearch& search, Index start, Index size,
                             LevelSearch::Arrange arrange = nullptr) {
   std::vector<Index> places(size + 1);

@@ -37,9 +37,7 @@ ProjectiveOptions with_floor(const Point& normal = {0, 1, 0}, double friction = 
 
 /// A box that stands on one edge or corner, `height` above the origin.
 test::ProjectiveAtRest tilted_box(double about_z, double about_x, double height) {
-  const int cubes = test::kSanitized ? 2 : 4;
-  test::ProjectiveAtRest result =
-      projective_box({cubes, cubes, cubes}, {kSide, kSide, kSide}, LocalModel::neo_hookean);
+  test::ProjectiveAtRest result = projective_box({4, 4, 4}, {kSide, kSide, kSide}, LocalModel::neo_hookean);
   double lowest = 1e9;
   for (Point& p : result.points) {
     p = {std::cos(about_z) * p[0] - std::sin(about_z) * p[1],
@@ -85,7 +83,7 @@ TEST(ProjectiveContact, ABodyBouncesLowerAndLowerAndComesToRest) {
   const MotionState end = simulator.state();
   for (std::size_t v = 0; v < points.size(); ++v)
     rising += 0.5 * simulator.masses()[v] * end.velocities[v][1] * end.velocities[v][1];
-  EXPECT_LT(rising, (test::kSanitized ? 1e-3 : 1e-5) * fallen);            // a coarse box rocks for longer
+  EXPECT_LT(rising, 1e-5 * fallen);
   EXPECT_NEAR(rest.potential, weight * kSide / 2, 0.02 * weight * kSide);  // flat on a face
 }
 
