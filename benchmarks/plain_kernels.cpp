@@ -5,8 +5,9 @@
 // vertices from a file, which has the old place of each new one. A mesh that does not exist is made if it is
 // named grid-N: a lattice in random order.
 //
-// All orders share one memory, which each fills before its turn, so that none has luckier pages. Prints lower
-// quartiles of the thread's processor time, ms.
+// All orders share one memory, which each fills before its turn, so that none has luckier pages. Each round
+// has another sequence of them. Prints the thread's least processor time, ms: what disturbs a run makes it
+// longer.
 #include "io/npy.hpp"
 #include "kernels/plain.hpp"
 #include "measuring.hpp"
@@ -26,6 +27,8 @@
 #include <ctime>
 #include <filesystem>
 #include <functional>
+#include <numeric>
+#include <random>
 #include <span>
 #include <string>
 #include <utility>
@@ -200,11 +203,6 @@ void put(Workspace& w, const Ordered& order) {
   w.sums.assign(kFeatures * n, 0.0F);
 }
 
-double lower_quartile(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 4];
-}
-
 mo::Mesh mesh_named(const std::string& name) {
   if (std::filesystem::exists(name) || !name.starts_with("grid-")) return mo::read_mesh(name);
   mo::Mesh mesh = mo::make_grid({.size = std::atoi(name.c_str() + 5)});
@@ -227,9 +225,12 @@ int main(int argc, char** argv) {
   std::vector<std::vector<std::vector<double>>> times(orders.size(),
                                                       std::vector<std::vector<double>>(all.size()));
   Workspace w;
+  std::vector<std::size_t> turns(orders.size());
+  std::iota(turns.begin(), turns.end(), std::size_t{0});
+  std::mt19937 random(1);
   for (int round = 0; round < rounds; ++round) {
-    for (std::size_t turn = 0; turn < orders.size(); ++turn) {
-      const std::size_t o = (turn + static_cast<std::size_t>(round)) % orders.size();
+    std::shuffle(turns.begin(), turns.end(), random);
+    for (const std::size_t o : turns) {
       put(w, orders[o]);
       for (std::size_t k = 0; k < all.size(); ++k) {
         all[k].run(w);
@@ -248,7 +249,8 @@ int main(int argc, char** argv) {
   fmt::print("\n");
   for (std::size_t o = 0; o < orders.size(); ++o) {
     fmt::print("{:<16}{:>7.3f}{:>8.0f}", orders[o].name, orders[o].jumps, orders[o].span);
-    for (const auto& samples : times[o]) fmt::print("{:>10.3f}", lower_quartile(samples));
+    for (const auto& samples : times[o])
+      fmt::print("{:>10.3f}", *std::min_element(samples.begin(), samples.end()));
     fmt::print("\n");
   }
 }

@@ -1,6 +1,6 @@
 # What `cmake --install` puts where. Install components: library (shared C++ library), c (shared C library), development
 # (headers, archives, CMake and pkg-config files, examples), mpi (shared library for many ranks, if it was built), petsc
-# (plugin for PETSc, if it was built), command (program, manual, completions, documents) and licence. All paths are relative to the prefix, so that an installed tree can be moved.
+# (plugin for PETSc, if it was built), command (program, manual, completions, documents), lab (meshorder-lab and its manual) and licence. All paths are relative to the prefix, so that an installed tree can be moved.
 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -150,6 +150,11 @@ if(TARGET meshorder)
   if(TARGET meshorder-mpi)
     install(TARGETS meshorder-mpi RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)
   endif()
+  set(lab "")
+  if(TARGET meshorder-lab)
+    install(TARGETS meshorder-lab RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT lab)
+    set(lab meshorder-lab)  # the command hands it questions for help
+  endif()
   find_package(Python3 3.9 COMPONENTS Interpreter)
   if(CMAKE_CROSSCOMPILING OR NOT Python3_Interpreter_FOUND)
     message(STATUS "No manual pages and completions: they are made by running the command and Python")
@@ -159,11 +164,15 @@ if(TARGET meshorder)
       OUTPUT ${pages}/made
       COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/command_pages.py $<TARGET_FILE:meshorder> ${pages}
       COMMAND ${CMAKE_COMMAND} -E touch ${pages}/made
-      DEPENDS meshorder ${PROJECT_SOURCE_DIR}/scripts/command_pages.py
+      DEPENDS meshorder ${lab} ${PROJECT_SOURCE_DIR}/scripts/command_pages.py
       COMMENT "Writing manual pages and completions"
       VERBATIM)
     add_custom_target(meshorder_pages ALL DEPENDS ${pages}/made)
-    install(DIRECTORY ${pages}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT command)
+    set(of_lab REGEX "meshorder-(simulate|reproduce|report|models)")
+    install(DIRECTORY ${pages}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT command ${of_lab} EXCLUDE)
+    if(TARGET meshorder-lab)
+      install(DIRECTORY ${pages}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT lab FILES_MATCHING ${of_lab})
+    endif()
     install(FILES ${pages}/completions/meshorder DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
             COMPONENT command)
     install(FILES ${pages}/completions/_meshorder DESTINATION ${MESHORDER_ZSH_FOLDER} COMPONENT command)

@@ -15,6 +15,9 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # each package has its own, the first 
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL library c development command)
+if(TARGET meshorder-lab)
+  list(APPEND CPACK_COMPONENTS_ALL lab)
+endif()
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -61,8 +64,7 @@ for C++ and C, the files for CMake and pkg-config, and examples.")
 
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME meshorder)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS gnuplot-nox)
-set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS tetgen)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS meshorder-lab)
 set(CPACK_DEBIAN_COMMAND_DESCRIPTION
     "reorders simulation meshes so that physics runs faster
 meshorder reorders the vertices and elements of a simulation mesh, with all
@@ -70,6 +72,18 @@ data in its file, so that neighbours in the mesh are neighbours in memory. It
 reads and writes TetGen, Vega, Gmsh, Medit, SU2, Abaqus, Nastran, I-deas,
 Exodus, XDMF, VTKHDF, CGNS, MED, VTK, OFF, OBJ, PLY and STL files, predicts and
 measures what an order is worth, and compares orders.")
+
+set(CPACK_DEBIAN_LAB_PACKAGE_NAME meshorder-lab)
+set(CPACK_DEBIAN_LAB_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_LAB_PACKAGE_DEPENDS "meshorder (= ${debian_version})")
+set(CPACK_DEBIAN_LAB_PACKAGE_RECOMMENDS gnuplot-nox)
+set(CPACK_DEBIAN_LAB_PACKAGE_SUGGESTS tetgen)
+set(CPACK_DEBIAN_LAB_DESCRIPTION
+    "simulators and studies of orders of meshes
+meshorder reorders the vertices and elements of simulation meshes so that
+physics on them runs faster. This package has its subcommands simulate,
+reproduce, report and models: elastic bodies and water in several orders,
+the study of these orders, and pages for the browser.")
 
 # what Debian wants in the folder of each package; not part of `cmake --install`
 string(TIMESTAMP debian_date "%a, %d %b %Y %H:%M:%S +0000" UTC)
@@ -91,7 +105,7 @@ if(TARGET meshorder)
   if(MESHORDER_THREE_JS)
     set(three --three ${MESHORDER_THREE_JS})
   endif()
-  meshorder_sbom(${generated}/meshorder.cdx.json TARGETS meshorder ARGUMENTS ${three})
+  meshorder_sbom(${generated}/meshorder.cdx.json TARGETS meshorder ${lab} ARGUMENTS ${three})
 endif()
 if(TARGET meshorder_sbom)
   install(FILES ${generated}/meshorder.cdx.json DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_COMMAND_PACKAGE_NAME}

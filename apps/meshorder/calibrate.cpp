@@ -167,8 +167,8 @@ void add_calibrate(CLI::App& subcommand) {
       "Measure this machine, so that `info` predicts times for it: a thread's share of the caches,\n"
       "latencies, bandwidths, and what misses cost each kernel on one thread and on all. The result is\n"
       "kept for this processor and this build in $MESHORDER_CACHE, else in $XDG_CACHE_HOME/meshorder,\n"
-      "else in ~/.cache/meshorder. The first `info` calibrates by itself, in 40 to 60 s, unless --machine\n"
-      "or $MESHORDER_MACHINE names another machine.");
+      "else in ~/.cache/meshorder. `info --predict` does so by itself the first time, in 40 to 60 s, unless\n"
+      "--machine or $MESHORDER_MACHINE names another machine.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder calibrate\n"

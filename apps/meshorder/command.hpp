@@ -51,12 +51,6 @@ void add_try(CLI::App& subcommand);
 void add_openfoam(CLI::App& subcommand);
 void add_calibrate(CLI::App& subcommand);
 void add_methods(CLI::App& subcommand);
-// of the laboratory; without it they are refused
-void add_models(CLI::App& subcommand);
-void add_simulate(CLI::App& subcommand);
-void add_reproduce(CLI::App& subcommand);
-void add_serve_steps(CLI::App& subcommand);
-void add_report(CLI::App& subcommand);
 
 /// Takes the words after `--` off the arguments of `try`: they are the program that it runs, and no options
 /// of this one.

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "hand_over.hpp"
 
+#include "lab_commands.hpp"
 #include "launcher.hpp"
 #include "standard_streams.hpp"
 
@@ -10,52 +11,94 @@
 #include <array>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <string>
 #include <string_view>
 
 namespace meshorder::command {
 namespace {
 
+constexpr int kBadInput = 2;
+constexpr const char* kMpi = "meshorder-mpi";
+constexpr const char* kLab = "meshorder-lab";
+
 constexpr std::array<std::string_view, 6> kOptionsOfParts{"--parts",     "--pieces",  "--ghosts",
                                                           "--partition", "--balance", "--interface"};
 
-/// Returns the first option of `order` that only `meshorder-mpi` has; empty if there is none.
-std::string_view option_of_parts(char** arguments) {
-  if (arguments[0] == nullptr || arguments[1] == nullptr || std::string_view(arguments[1]) != "order")
-    return {};
-  for (char** argument = arguments + 2; *argument != nullptr; ++argument) {
+/// Returns the word that names the subcommand, and null if there is none or an option before it asks for
+/// something else.
+char** subcommand(char** arguments) {
+  if (*arguments == nullptr) return nullptr;
+  for (char** argument = arguments + 1; *argument != nullptr; ++argument) {
     const std::string_view word = *argument;
+    if (word == "--plugin") {
+      if (*++argument == nullptr) return nullptr;
+    } else if (word.starts_with("-") && !word.starts_with("--plugin=")) {
+      return nullptr;
+    } else if (word != "help" && !word.starts_with("-")) {
+      return argument;
+    }
+  }
+  return nullptr;
+}
+
+/// Returns the first of these arguments that only `order` of `meshorder-mpi` has; empty if there is none.
+std::string_view option_of_parts(char** arguments) {
+  for (; *arguments != nullptr; ++arguments) {
+    const std::string_view word = *arguments;
     const std::string_view name = word.substr(0, word.find('='));
     if (std::find(kOptionsOfParts.begin(), kOptionsOfParts.end(), name) != kOptionsOfParts.end()) return name;
   }
   return {};
 }
 
-std::string program_beside_this_one() {
+bool is_of_lab(std::string_view word) {
+  return std::any_of(kLabCommands.begin(), kLabCommands.end(),
+                     [&](const LabCommand& command) { return command.name == word; });
+}
+
+std::filesystem::path beside_this_program(const char* name) {
   std::error_code none;
-  return std::filesystem::read_symlink("/proc/self/exe", none).replace_filename("meshorder-mpi").string();
+  return std::filesystem::read_symlink("/proc/self/exe", none).replace_filename(name);
+}
+
+/// Executes the program, or reports why it is needed.
+int execute(const char* program, char** arguments, const std::string& need) {
+  ::execv(beside_this_program(program).c_str(), arguments);
+  return is_first_process() ? report_failure(need, kBadInput) : kBadInput;
+}
+
+int execute_mpi(char** arguments, const std::string& who, const std::string& remedy = "") {
+  return execute(
+      kMpi, arguments,
+      who + " needs meshorder-mpi beside it, which a build with -DMESHORDER_MPI=ON makes" + remedy);
 }
 
 }  // namespace
 
-std::optional<int> hand_over_to_mpi(char** arguments) noexcept {
-  constexpr int kBadInput = 2;
+std::optional<int> hand_over(char** arguments) noexcept {
   try {
-    const bool is_launched = is_one_of_several();
-    const std::string option(option_of_parts(arguments));
-    if (!is_launched && option.empty()) return std::nullopt;
-    ::execv(program_beside_this_one().c_str(), arguments);
-    if (is_first_process()) {
-      const std::string needs = "needs meshorder-mpi beside it, which a build with -DMESHORDER_MPI=ON makes";
-      report_failure(is_launched
-                         ? "started by mpirun, it " + needs + "; without mpirun it runs as one process"
-                         : option + " " + needs,
-                     kBadInput);
-    }
-    return kBadInput;
+    if (is_one_of_several())
+      return execute_mpi(arguments, "started by mpirun, it", "; without mpirun it runs as one process");
+    char** const word = subcommand(arguments);
+    if (word == nullptr) return std::nullopt;
+    if (is_of_lab(*word))
+      return execute(kLab, arguments,
+                     std::string(*word) + " is in the full build only, which ./run makes from the sources: " +
+                         "it needs meshorder-lab beside this program");
+    const std::string_view option = *word == std::string_view("order") ? option_of_parts(word) : "";
+    if (option.empty()) return std::nullopt;
+    return execute_mpi(arguments, std::string(option));
+  } catch (const std::bad_alloc&) {
+    return report_failure("out of memory", 1);
   } catch (const std::exception& error) {
     return report_failure(error.what(), 1);
   }
+}
+
+bool has_lab() {
+  std::error_code none;
+  return std::filesystem::exists(beside_this_program(kLab), none);
 }
 
 }  // namespace meshorder::command

@@ -5,13 +5,16 @@
 
 namespace meshorder::command {
 
-/// Where this process is one of several that `mpirun` or `srun` started together, or `order` is given an
-/// option of parts, executes `meshorder-mpi` from beside this program with the same arguments, and does not
-/// return.
+/// Executes another program from beside this one with the same arguments, and does not return, where that
+/// program does the work: `meshorder-mpi` if `mpirun` or `srun` started several of this process together, or
+/// if `order` is given an option of parts; `meshorder-lab` for a subcommand of the laboratory.
 ///
 /// @param arguments  as of `main`
-/// @return exit status where there is no such program, which the first process has said; nothing where this
-///         program does the work
-std::optional<int> hand_over_to_mpi(char** arguments) noexcept;
+/// @return exit status if there is no such program, which the first process has said; nothing if this program
+///         does the work
+std::optional<int> hand_over(char** arguments) noexcept;
+
+/// Returns whether `meshorder-lab` is beside this program.
+bool has_lab();
 
 }  // namespace meshorder::command

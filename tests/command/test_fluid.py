@@ -148,6 +148,7 @@ def test_says_which_program_is_missing_or_foreign(tmp_path, pool):
     alone = tmp_path / "bin" / "meshorder"
     alone.parent.mkdir()
     shutil.copy(conftest.MESHORDER, alone)
+    shutil.copy(f"{conftest.MESHORDER}-lab", alone.parent)
 
     def error(**environment):
         done = subprocess.run([alone, "simulate", tmp_path / pool()], capture_output=True, text=True, check=False,

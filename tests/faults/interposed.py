@@ -14,6 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # what is predicted is the same on every machine, and none is measured first
 os.environ["MESHORDER_MACHINE"] = "zen3"
 MESHORDER = os.environ.get("MESHORDER", str(ROOT / "build" / "bin" / "meshorder"))
+LAB = ("simulate", "reproduce", "report", "models")  # which the command hands over to meshorder-lab
 INTERPOSER = pathlib.Path(MESHORDER).resolve().parents[1] / "lib" / "libmeshorder_faults.so"
 
 KINDS = ("allocation", "open", "read", "write", "sync", "close", "rename", "thread")
@@ -36,6 +37,10 @@ FOREIGN = ("libhdf5", "libcgns", "libnetcdf", "libtbb")
 
 # what the C library says when it finds its heap damaged
 DAMAGED_HEAP = re.compile(r"corrupted|double free|invalid (pointer|size|next size|chunk)")
+
+
+def program_of(arguments):
+    return f"{MESHORDER}-lab" if arguments[0] in LAB else MESHORDER
 
 
 @dataclasses.dataclass
@@ -84,7 +89,7 @@ def run(arguments, folder, fault=None, log=None, **options):
     environment = {**os.environ, "LD_PRELOAD": str(INTERPOSER), "FAULTS_COUNTERS": str(counters), "FAULTS_LOG": str(stack),
                    **(fault.environment() if fault else {})}
     try:
-        done = subprocess.run([MESHORDER, *map(str, arguments)], cwd=folder, env=environment, capture_output=True,
+        done = subprocess.run([program_of(arguments), *map(str, arguments)], cwd=folder, env=environment, capture_output=True,
                               stdin=subprocess.DEVNULL, timeout=SECONDS, check=False, **options)
         status, stdout, stderr = done.returncode, done.stdout.decode(), done.stderr.decode()
     except subprocess.TimeoutExpired:

@@ -8,6 +8,7 @@
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,6 +18,9 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <string>
+#include <string_view>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -707,6 +711,72 @@ TEST(Abaqus, RefusesBrokenFiles) {
        {"binary", std::string("*NODE\n1\0", 8), "is no text"}});
   const Mesh sparse = read_deck(with(std::string(kDeck), "2, 20, 2", "2, 999999999999, 2"));
   EXPECT_EQ(set_of(sparse, "even").members.size(), 3U) << "in time proportional to the elements";
+}
+
+/// A deck that is long enough for its lines to be read on all threads: tetrahedra along a helix.
+std::string long_deck() {
+  constexpr int kNodes = 6000;
+  std::string nodes = "*NODE, NSET=all\n";
+  std::string elements = "*ELEMENT, TYPE=C3D4, ELSET=body\n";
+  for (int k = 1; k <= kNodes; ++k) {
+    nodes += fmt::format("{}, {}, {}, {}\n", k, std::cos(0.1 * k), std::sin(0.1 * k), 1e-3 * k);
+    if (k > 3) elements += fmt::format("{0}, {1}, {2}, {3}, {0}\n", k, k - 3, k - 2, k - 1);
+  }
+  return nodes + elements + "*NSET, NSET=some\n1, 5000\n*STEP\n*END STEP\n";
+}
+
+TEST(Abaqus, ReadsLongDecksOnAllThreadsAsLineByLine) {
+  struct Case {
+    const char* name;
+    const char* old;
+    const char* fresh;
+    bool is_broken = false;
+  };
+  constexpr std::array kCases{
+      Case{"as it is", "*STEP", "*STEP"},
+      Case{"a comment between", "\n4500, ", "\n** half way\n4500, "},
+      Case{"a blank line", "\n4500, ", "\n\n \t\n4500, "},
+      Case{"another number", "\n4500, ", "\n7000, 1, 2, 3\n4500, "},
+      Case{"a real number of Fortran", "\n4500, ", "\n7000, 1.D0, 2, 3\n4500, "},
+      Case{"two coordinates", "\n4500, ", "\n7000, 1, 2\n4500, "},
+      Case{"more than coordinates", "\n4500, ", "\n7000, 1, 2, 3, 4, 5\n4500, "},
+      Case{"an element on two lines", "\n4501, 4498, ", "\n4501, 4498,\n "},
+      Case{"a comma at the end", "\n4501, 4498, 4499, 4500, 4501", "\n4501, 4498, 4499, 4500, 4501,"},
+      Case{"numbers after the nodes", "\n4501, 4498, 4499, 4500, 4501", "\n4501, 4498, 4499, 4500, 4501, 7"},
+      Case{"a node that comes later", "*NSET, NSET=some", "*NODE\n6001, 0, 0, 0\n*NSET, NSET=some"},
+      Case{"a cut line", "\n4501, 4498, 4499, 4500, 4501", "\n4501, 4498, 4499", true},
+      Case{"a node twice", "\n4500, ", "\n4499, ", true},
+      Case{"an element twice", "\n4501, 4498, 4499,", "\n4500, 4498, 4499,", true},
+      Case{"a word", "\n4500, ", "\n4500, one, ", true},
+      Case{"no such node", "\n4501, 4498, ", "\n4501, 9999, ", true},
+      Case{"a huge number", "\n4501, 4498, ", "\n4501, 44444444444, ", true},
+  };
+  for (const Case& test : kCases) {
+    std::string text = with(long_deck(), test.old, test.fresh);
+    if (std::string_view(test.name).ends_with("later")) text = with(text, "\n4501, 4498, ", "\n4501, 6001, ");
+    for (const std::string_view end : {"\n", "\r\n"}) {
+      SCOPED_TRACE(fmt::format("{}, {} bytes a line's end", test.name, end.size()));
+      if (end == "\r\n") {
+        std::string pairs;
+        for (const char c : text) pairs.append(c == '\n' ? end : std::string_view(&c, 1));
+        text = pairs;
+      }
+      // with a form feed, lines are read one by one
+      const auto read = [](const std::string& deck) -> std::pair<Mesh, std::string> {
+        const TemporaryFolder folder;
+        try {
+          return {read_mesh(folder.file("m.inp", deck)), ""};
+        } catch (const Error& error) {
+          return {Mesh(), std::string(error.what()).substr(std::string(error.what()).find("m.inp"))};
+        }
+      };
+      const auto [expected, expected_fault] = read(text + "** \f");
+      const auto [actual, fault] = read(text);
+      EXPECT_EQ(fault, expected_fault);
+      EXPECT_EQ(fault.empty(), !test.is_broken) << fault;
+      test::expect_same(actual, expected);
+    }
+  }
 }
 
 TEST(Abaqus, NoticesATruncatedMesh) {

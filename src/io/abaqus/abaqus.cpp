@@ -49,24 +49,29 @@ class PlainWriter {
     return cell_ids_ ? mesh_.cell_ids[c] : c + std::int64_t{1};
   }
 
+  [[nodiscard]] ElementKind kind_of_cell(Index c) const {
+    return {mesh_.cells.shapes[c], static_cast<int>(mesh_.cells[c].size())};
+  }
+
   void write_nodes() {
     out_.text("*NODE\n");
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-      out_.node(vertex_number(v), mesh_.points[v], mesh_.dimension);
-    }
+    out_.nodes(mesh_.points, mesh_.dimension,
+               [&](DeckOutput::Row& row, Index v) { row.number = vertex_number(v); });
   }
 
   void write_elements() {
-    ElementKind last{Shape::polygon, 0};
-    std::vector<std::int64_t> nodes;
-    for (Index c = 0; c < mesh_.cell_count(); ++c) {
-      const auto cell = mesh_.cells[c];
-      const ElementKind kind{mesh_.cells.shapes[c], static_cast<int>(cell.size())};
-      if (kind != last) file_.print("*ELEMENT, TYPE={}\n", type_of(kind, mesh_.dimension == 2));
-      last = kind;
-      nodes.resize(cell.size());
-      for (std::size_t k = 0; k < cell.size(); ++k) nodes[node_place(kind, k)] = vertex_number(cell[k]);
-      out_.element(cell_number(c), nodes);
+    for (Index first = 0; first < mesh_.cell_count();) {
+      const ElementKind kind = kind_of_cell(first);
+      Index end = first + 1;
+      while (end < mesh_.cell_count() && kind_of_cell(end) == kind) ++end;
+      file_.print("*ELEMENT, TYPE={}\n", type_of(kind, mesh_.dimension == 2));
+      out_.elements(end - first, [&](DeckOutput::Row& row, Index i) {
+        const auto cell = mesh_.cells[first + i];
+        row.number = cell_number(first + i);
+        row.nodes.resize(cell.size());
+        for (std::size_t k = 0; k < cell.size(); ++k) row.nodes[node_place(kind, k)] = vertex_number(cell[k]);
+      });
+      first = end;
     }
   }
 

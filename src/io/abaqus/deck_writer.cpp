@@ -107,7 +107,13 @@ class DeckWriter {
     std::vector<Index> places(static_cast<std::size_t>(section.count));
     std::iota(places.begin(), places.end(), section.first);
     for (Index& place : places) place = numbers.place(place);
-    std::sort(places.begin(), places.end());
+    if (places.empty()) return places;
+    const auto [least, greatest] = std::minmax_element(places.begin(), places.end());
+    if (const Index first = *least; *greatest - first == section.count - 1) {  // no gaps
+      std::iota(places.begin(), places.end(), first);
+    } else {
+      std::sort(places.begin(), places.end());
+    }
     return places;
   }
 
@@ -125,9 +131,13 @@ class DeckWriter {
         sets_of_cards_.emplace_back(set, &section);
       }
     }
-    for (Index v = section.first; v < section.first + section.count; ++v) {
-      out_.node(nodes_.at(v), mesh_.points[v], mesh_.dimension, text_at(more_of_nodes_, v));
-    }
+    const std::span points(mesh_.points);
+    out_.nodes(
+        points.subspan(static_cast<std::size_t>(section.first), static_cast<std::size_t>(section.count)),
+        mesh_.dimension, [&](DeckOutput::Row& row, Index i) {
+          row.number = nodes_.at(section.first + i);
+          row.more = text_at(more_of_nodes_, section.first + i);
+        });
   }
 
   [[nodiscard]] bool has_its_nodes(const Section& section) const {
@@ -159,12 +169,16 @@ class DeckWriter {
 
   void write_elements(const Section& section) {
     out_.text(section.text);
-    std::vector<std::int64_t> nodes(static_cast<std::size_t>(section.kind.nodes));
-    for (const Index c : places_of(section, elements_)) {
+    const std::vector<Index> places = places_of(section, elements_);
+    out_.elements(section.count, [&](DeckOutput::Row& row, Index i) {
+      const Index c = places[static_cast<std::size_t>(i)];
       const auto cell = mesh_.cells[c];
-      for (std::size_t k = 0; k < cell.size(); ++k) nodes[node_place(section.kind, k)] = nodes_.at(cell[k]);
-      out_.element(elements_.at(c), nodes, text_at(more_of_elements_, c));
-    }
+      row.number = elements_.at(c);
+      row.nodes.resize(cell.size());
+      for (std::size_t k = 0; k < cell.size(); ++k)
+        row.nodes[node_place(section.kind, k)] = nodes_.at(cell[k]);
+      row.more = text_at(more_of_elements_, c);
+    });
   }
 
   [[nodiscard]] const FileNumbers& numbers_of(Association association) const {

@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "io/abaqus/cards.hpp"
 #include "io/names.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/unique_names.hpp"
 #include "io/unsupported.hpp"
 
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cctype>
 #include <charconv>
 #include <set>
@@ -83,59 +85,73 @@ std::string name_for(const std::string& given, std::set<std::string>& taken, Nam
 
 std::string short_real(double value) { return std::string(RealText(value).text); }
 
-void DeckOutput::add(std::string_view before, std::int64_t number) {
-  const fmt::format_int digits(number);
-  line_.append(before).append(digits.data(), digits.size());
-}
-
-void DeckOutput::add_coordinate(double value) {
-  const RealText real(value);
-  if (real.is_rounded) ++rounded_;
-  line_.append(", ").append(real.text);
-}
-
-void DeckOutput::write_line() {
+void DeckOutput::begin_line() {
   if (within_line_) out_.write(line_end_);
   within_line_ = false;
-  out_.write(line_ += line_end_);
-  line_.clear();
 }
 
-void DeckOutput::node(std::int64_t number, const Point& point, int dimension, std::string_view more) {
-  add("", number);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k) add_coordinate(point[k]);
-  line_ += more;
-  write_line();
-}
-
-void DeckOutput::element(std::int64_t number, const std::vector<std::int64_t>& nodes, std::string_view more) {
-  add("", number);
-  std::size_t on_line = 1;
-  for (const std::int64_t node : nodes) {
-    if (on_line == kPerLine) {
-      line_ += ',';
-      write_line();
-      on_line = 0;
+void DeckOutput::nodes(std::span<const Point> points, int dimension, const Rows& rows) {
+  if (points.empty()) return;
+  begin_line();
+  std::atomic<std::int64_t> rounded = 0;
+  write_row_ranges(out_, index_size(points), [&](Text& text, Index begin, Index end) {
+    std::int64_t rounded_here = 0;
+    Row row;
+    for (Index i = begin; i < end; ++i) {
+      rows(row, i);
+      text.integer("", row.number);
+      for (int k = 0; k < dimension; ++k) {
+        const RealText real(points[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)]);
+        if (real.is_rounded) ++rounded_here;
+        text.write(", ");
+        text.write(real.text);
+      }
+      text.write(row.more);
+      text.write(line_end_);
     }
-    add(on_line == 0 ? "" : ", ", node);
-    ++on_line;
-  }
-  line_ += more;
-  write_line();
+    rounded += rounded_here;
+  });
+  rounded_ += rounded;
+}
+
+void DeckOutput::elements(Index count, const Rows& rows) {
+  if (count == 0) return;
+  begin_line();
+  write_row_ranges(out_, count, [&](Text& text, Index begin, Index end) {
+    Row row;
+    for (Index i = begin; i < end; ++i) {
+      rows(row, i);
+      text.integer("", row.number);
+      std::size_t on_line = 1;
+      for (const std::int64_t node : row.nodes) {
+        if (on_line == kPerLine) {
+          text.write(",");
+          text.write(line_end_);
+          on_line = 0;
+        }
+        text.integer(on_line == 0 ? "" : ", ", node);
+        ++on_line;
+      }
+      text.write(row.more);
+      text.write(line_end_);
+    }
+  });
 }
 
 void DeckOutput::list(const std::vector<std::int64_t>& numbers) {
+  if (numbers.empty()) return;
+  begin_line();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    add(i % kPerLine == 0 ? "" : ", ", numbers[i]);
-    if (i % kPerLine == kPerLine - 1 || i + 1 == numbers.size()) write_line();
+    out_.integer(i % kPerLine == 0 ? "" : ", ", numbers[i]);
+    if (i % kPerLine == kPerLine - 1 || i + 1 == numbers.size()) out_.write(line_end_);
   }
 }
 
 void DeckOutput::set(Association association, std::string_view name,
                      const std::vector<std::int64_t>& members) {
   const std::string_view keyword = association == Association::vertices ? "NSET" : "ELSET";
-  line_ = fmt::format("*{}, {}={}", keyword, keyword, name);
-  write_line();
+  begin_line();
+  out_.print("*{}, {}={}{}", keyword, keyword, name, line_end_);
   list(members);
 }
 

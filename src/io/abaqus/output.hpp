@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,10 +26,19 @@ class DeckOutput {
     if (!text.empty()) within_line_ = text.back() != '\n' && text.back() != '\r';
   }
 
-  /// Writes the line of a node with `dimension` coordinates, and then `more`.
-  void node(std::int64_t number, const Point& point, int dimension, std::string_view more = {});
-  /// Writes an element and the numbers of its nodes, 16 numbers on a line, and then `more`.
-  void element(std::int64_t number, const std::vector<std::int64_t>& nodes, std::string_view more = {});
+  /// What a line of a node or an element has: its number and, for elements, those of the nodes; then `more`.
+  struct Row {
+    std::int64_t number = 0;
+    std::vector<std::int64_t> nodes;
+    std::string_view more;
+  };
+  /// Fills in row i. Called on all threads; the row may have the nodes of one before.
+  using Rows = std::function<void(Row& row, Index i)>;
+
+  /// Writes the lines of nodes with `dimension` coordinates.
+  void nodes(std::span<const Point> points, int dimension, const Rows& rows);
+  /// Writes `count` elements, 16 numbers on a line.
+  void elements(Index count, const Rows& rows);
   /// Writes numbers, 16 on a line.
   void list(const std::vector<std::int64_t>& numbers);
   /// Writes a set as *NSET or *ELSET.
@@ -38,14 +48,11 @@ class DeckOutput {
   void note_rounded(Notes& notes) const;
 
  private:
-  void add(std::string_view before, std::int64_t number);
-  void add_coordinate(double value);
-  /// Ends the line that was added to, and writes it.
-  void write_line();
+  /// Ends a line that was left without an end.
+  void begin_line();
 
   OutputFile& out_;
   std::string line_end_;
-  std::string line_;  // so far
   bool within_line_ = false;
   std::int64_t rounded_ = 0;
 };

@@ -8,6 +8,7 @@
 #include "io/abaqus/sets.hpp"
 #include "io/deck/lines.hpp"
 #include "io/deck/numbers.hpp"
+#include "io/stream/digits.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -17,8 +18,10 @@
 #include <charconv>
 #include <cmath>
 #include <set>
+#include <span>
 #include <string>
 #include <system_error>
+#include <type_traits>
 #include <unordered_set>
 #include <utility>
 
@@ -26,6 +29,7 @@ namespace meshorder::abaqus {
 namespace {
 
 constexpr std::size_t kMostNodes = 20;
+constexpr std::size_t kNumbersOnLine = 16;
 constexpr std::size_t kShownTypes = 3;
 
 bool is_comment(std::string_view line) { return line.starts_with("**"); }
@@ -43,12 +47,30 @@ template <class T>
 bool take_plain(std::string_view& line, T& value) {
   std::string_view rest = line;
   skip_blanks(rest);
+  if constexpr (std::is_integral_v<T>) {
+    if (rest.size() >= sizeof(std::uint64_t)) {
+      const Digits digits = leading_digits(rest.data());
+      if (digits.count > 0 && digits.count < 8 && rest[static_cast<std::size_t>(digits.count)] == ',') {
+        value = static_cast<T>(digits.number);
+        line = rest.substr(static_cast<std::size_t>(digits.count) + 1);
+        return true;
+      }
+    }
+  }
   const auto [after, code] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
   if (code != std::errc{}) return false;
   rest.remove_prefix(static_cast<std::size_t>(after - rest.data()));
   skip_blanks(rest);
   if (!rest.empty() && rest.front() != ',') return false;
   line = rest.substr(rest.empty() ? 0 : 1);
+  return true;
+}
+
+/// The same of the number of a node or element.
+bool take_plain_number(std::string_view& line, Index& number) {
+  std::int64_t value = 0;
+  if (!take_plain(line, value) || value < 1 || value > kMaxIndex) return false;
+  number = static_cast<Index>(value);
   return true;
 }
 
@@ -67,6 +89,20 @@ struct UnknownNode {
   Index number;
   std::int64_t line;
   std::int32_t file;
+};
+
+/// A line of a node.
+struct NodeLine {
+  std::int64_t line = 0;
+  Index number = 0;
+  int coordinates = 0;
+  Point point{0, 0, 0};
+};
+
+/// A line of an element.
+struct ElementLine {
+  std::int64_t line = 0;
+  Index number = 0;
 };
 
 class DeckReader {
@@ -251,6 +287,7 @@ class DeckReader {
     std::string_view line;
     while (peek_data(line, comments)) {
       deck_->sections[place].text += std::exchange(comments, {});
+      if (read_regular_nodes()) continue;
       read_node(line);
       (void)lines_.take();
     }
@@ -260,11 +297,39 @@ class DeckReader {
     end_data(std::move(comments));
   }
 
+  /// Adds the number of a node or element that a line of the present file has.
+  void add_number(IdMap& numbers, Index number, std::int64_t line, std::string_view what) {
+    if (!numbers.add(number)) {
+      lines_.fail(line, fmt::format("{} {} is given twice", what, number), "numbers must differ");
+    }
+  }
+
+  /// Reads nodes on all threads, as far as their lines are regular. Returns whether it read any.
+  bool read_regular_nodes() {
+    const Index most = lines_.lines_to_take();
+    if (most == 0) return false;
+    node_lines_.resize(static_cast<std::size_t>(most));
+    const Index count = lines_.take_regular(most, [&](std::string_view line, std::int64_t at, Index k) {
+      NodeLine& node = node_lines_[static_cast<std::size_t>(k)];
+      node = {.line = at};
+      if (!take_plain_number(line, node.number)) return false;
+      for (; node.coordinates < 3 && !line.empty(); ++node.coordinates) {
+        double& x = node.point[static_cast<std::size_t>(node.coordinates)];
+        if (!take_plain(line, x) || !std::isfinite(x)) return false;
+      }
+      return line.find_first_not_of(" \t,") == std::string_view::npos;
+    });
+    for (const NodeLine& node : std::span(node_lines_).first(static_cast<std::size_t>(count))) {
+      add_number(deck_->nodes, node.number, node.line, "node");
+      if (node.coordinates == 3) has_third_coordinate_ = true;
+      mesh_.points.push_back(node.point);
+    }
+    return count > 0;
+  }
+
   void read_node(std::string_view line) {
     const Index number = take_number(line, "the number of a node");
-    if (!deck_->nodes.add(number)) {
-      lines_.at().fail(fmt::format("node {} is given twice", number), "numbers must differ");
-    }
+    add_number(deck_->nodes, number, lines_.at().line(), "node");
     Point point{0, 0, 0};
     for (std::size_t k = 0; k < 3 && !line.empty(); ++k) {
       if (k == 2) has_third_coordinate_ = true;
@@ -294,6 +359,7 @@ class DeckReader {
     std::string_view line;
     while (peek_data(line, comments)) {
       deck_->sections[place].text += std::exchange(comments, {});
+      if (read_regular_elements(*kind)) continue;
       read_element(*kind, type, line, deck_->sections[place].text);
     }
     Section& section = deck_->sections[place];
@@ -304,12 +370,42 @@ class DeckReader {
     end_data(std::move(comments));
   }
 
+  /// Reads elements on all threads, as far as each has one line, and nodes that are known. Returns whether it
+  /// read any.
+  bool read_regular_elements(ElementKind kind) {
+    const auto nodes = static_cast<std::size_t>(kind.nodes);
+    const Index most = nodes < kNumbersOnLine ? lines_.lines_to_take() : 0;
+    if (most == 0) return false;
+    element_lines_.resize(static_cast<std::size_t>(most));
+    element_nodes_.resize(nodes * static_cast<std::size_t>(most));
+    const auto cell_of = [&](Index k) {
+      return std::span(element_nodes_).subspan(nodes * static_cast<std::size_t>(k), nodes);
+    };
+    const Index count = lines_.take_regular(most, [&](std::string_view line, std::int64_t at, Index k) {
+      ElementLine& element = element_lines_[static_cast<std::size_t>(k)];
+      element.line = at;
+      if (!take_plain_number(line, element.number)) return false;
+      for (std::size_t given = 0; given < nodes; ++given) {
+        Index node = 0;
+        if (!take_plain_number(line, node)) return false;
+        const Index vertex = deck_->nodes.find(node);
+        if (vertex < 0) return false;
+        cell_of(k)[node_place(kind, given)] = vertex;
+      }
+      return line.find_first_not_of(" \t,") == std::string_view::npos;
+    });
+    for (Index k = 0; k < count; ++k) {
+      const ElementLine& element = element_lines_[static_cast<std::size_t>(k)];
+      add_number(deck_->elements, element.number, element.line, "element");
+      mesh_.cells.push_back(kind.shape, cell_of(k));
+    }
+    return count > 0;
+  }
+
   /// Reads an element, which goes on in the next lines until it has all nodes, and takes its lines.
   void read_element(ElementKind kind, const std::string& type, std::string_view line, std::string& comments) {
     const Index number = take_number(line, "the number of an element");
-    if (!deck_->elements.add(number)) {
-      lines_.at().fail(fmt::format("element {} is given twice", number), "numbers must differ");
-    }
+    add_number(deck_->elements, number, lines_.at().line(), "element");
     const auto nodes = static_cast<std::size_t>(kind.nodes);
     std::array<Index, kMostNodes> cell{};
     const Offset first = mesh_.cells.offsets.back();
@@ -505,6 +601,9 @@ class DeckReader {
   SetReader sets_;
   std::vector<std::int64_t> lines_of_sections_;
   std::vector<UnknownNode> unknown_nodes_;
+  std::vector<NodeLine> node_lines_;                 // of regular lines
+  std::vector<ElementLine> element_lines_;           // likewise
+  std::vector<Index> element_nodes_;                 // of each of these
   std::vector<std::string> files_;                   // of unknown_nodes_
   std::unordered_set<std::int64_t> other_elements_;  // that are no cells
   std::vector<std::string> other_types_;             // the first of these, for a message

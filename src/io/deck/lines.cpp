@@ -2,6 +2,7 @@
 #include "io/deck/lines.hpp"
 
 #include "io/stream/read_limits.hpp"
+#include "io/stream/regular_records.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -13,13 +14,20 @@ namespace {
 
 constexpr std::size_t kMostFiles = 10000;
 constexpr std::size_t kMostNested = 16;
+constexpr std::size_t kLineBytes = 64;  // of a line that may be regular, for how far to look
 
 bool is_space(char c) { return c == ' ' || c == '\t'; }
 
 }  // namespace
 
+DeckLines::OpenFile::OpenFile(const FilePath& file)
+    : path(file),
+      scanner(std::make_unique<Scanner>(file)),
+      has_other_blanks(scanner->all().find('\f') != std::string_view::npos ||
+                       scanner->all().find('\v') != std::string_view::npos) {}
+
 DeckLines::DeckLines(const FilePath& path) : main_(path) {
-  files_.push_back({path, std::make_unique<Scanner>(path)});
+  files_.emplace_back(path);
   const std::string_view text = at().all();
   const std::size_t end = text.find_first_of("\r\n");
   const bool is_pair = end != std::string_view::npos && text.substr(end, 2) == "\r\n";
@@ -49,6 +57,43 @@ std::string_view DeckLines::take() {
   return last_line_;
 }
 
+Index DeckLines::lines_to_take() {
+  constexpr std::size_t kFewBytes = std::size_t{1} << 17;
+  OpenFile& file = files_.back();
+  const std::int64_t byte = file.scanner->byte();
+  if (byte < file.next_try || file.has_other_blanks) return 0;
+  const std::string_view ahead = rest().substr(0, kLineBytes * static_cast<std::size_t>(file.lines_at_once));
+  const std::size_t bytes = std::min(ahead.size(), ahead.find('*'));
+  if (bytes < kFewBytes) {
+    file.next_try = byte + static_cast<std::int64_t>(bytes);
+    return 0;
+  }
+  return static_cast<Index>(bytes / kLineBytes);
+}
+
+Index DeckLines::take_regular(Index most,
+                              const std::function<bool(std::string_view, std::int64_t, Index)>& parse) {
+  constexpr std::size_t kPartBytes = std::size_t{1} << 20;
+  OpenFile& file = files_.back();
+  const auto read = [&](Scanner& at, Index k) {
+    // a line of a text in which none ends in CR alone
+    const std::string_view rest = at.all().substr(static_cast<std::size_t>(at.byte()));
+    std::string_view line = rest.substr(0, rest.find('\n'));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (!parse(line, at.line(), k)) return false;
+    at.move_on(line.size());
+    return true;
+  };
+  const Index taken = read_regular_records(*file.scanner, most, read, kPartBytes);
+  if (taken < most) {
+    file.next_try = file.scanner->byte() + static_cast<std::int64_t>(kPartBytes);
+    file.lines_at_once = std::max(file.lines_at_once / 2, static_cast<Index>(kPartBytes / kLineBytes));
+  } else {
+    file.lines_at_once = std::min(2 * file.lines_at_once, kMostLines);
+  }
+  return taken;
+}
+
 void DeckLines::fail(std::int64_t line, const std::string& what, const std::string& remedy) const {
   throw InputError(Location{files_.back().scanner->file(), line, -1}, what, remedy);
 }
@@ -66,7 +111,7 @@ void DeckLines::include(const std::string& name, std::int64_t line) {
   if (included_.size() == kMostFiles) fail(line, "more than 10000 files are included", "join them");
   if (files_.size() > kMostNested) fail(line, "files are included more than 16 deep", "join some of them");
   included_.push_back(name);
-  if (!path.is_empty()) files_.push_back({path, std::make_unique<Scanner>(path)});
+  if (!path.is_empty()) files_.emplace_back(path);
 }
 
 }  // namespace meshorder

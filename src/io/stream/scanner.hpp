@@ -50,6 +50,8 @@ class Scanner {
   [[nodiscard]] char comment() const noexcept { return comment_; }
   /// Moves to that byte. O(bytes moved).
   void seek(std::int64_t byte);
+  /// Moves on by so many bytes of this line. O(1).
+  void move_on(std::size_t bytes) { position_ += bytes; }
 
   /// Throws an Error at the current line.
   [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;

@@ -3,6 +3,7 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "interruption.hpp"
+#include "lab.hpp"
 #include "lab/fluid/triangulation.hpp"
 #include "lab/report/page/study_page.hpp"
 #include "lab/report/tables/paper_tables.hpp"
@@ -103,9 +104,6 @@ void run(const ReproduceArguments& arguments) {
 }  // namespace
 
 void add_reproduce(CLI::App& subcommand) {
-  subcommand.description(
-      "Repeat the paper's study on this machine: six scenarios and a fluid, in the paper's five\n"
-      "orders and in that of `meshorder order`; writes tables and a page.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder reproduce --quick -o results   a few steps of each scenario: some minutes\n"

@@ -4,6 +4,7 @@
 #include "console.hpp"
 #include "io/format.hpp"
 #include "io/stream/output_file.hpp"
+#include "lab.hpp"
 #include "lab/report/comparison/comparison_page.hpp"
 #include "lab/report/page/study_page.hpp"
 #include "lab/study/folder.hpp"
@@ -314,9 +315,6 @@ void run(const ReportArguments& arguments) {
 }  // namespace
 
 void add_report(CLI::App& subcommand) {
-  subcommand.description(
-      "Write a page for the browser: meshes, coloured by their order; spans, caches, kernels, tables.\n"
-      "The page is one file and needs no network.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder report dragon.veg -o dragon.html   your mesh as it is and in other orders, and what\n"

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
+#include "lab.hpp"
 #include "lab/study/stepper.hpp"
 
 #include <CLI/CLI.hpp>

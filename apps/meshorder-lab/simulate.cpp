@@ -5,6 +5,7 @@
 #include "console.hpp"
 #include "interruption.hpp"
 #include "io/stream/output_file.hpp"
+#include "lab.hpp"
 #include "lab/models/catalogue.hpp"
 #include "lab/scenario/checkpoint.hpp"
 #include "lab/scenario/frames.hpp"
@@ -307,8 +308,6 @@ void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {
 }  // namespace
 
 void add_simulate(CLI::App& subcommand) {
-  subcommand.description(
-      "Simulate an elastic body or water as a scenario describes, in a given order, and time it.");
   subcommand.footer(
       "Example:\n"
       "  meshorder simulate falling --order fiedler --vtk frames\n"

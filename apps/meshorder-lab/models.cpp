@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
 #include "console.hpp"
+#include "lab.hpp"
 #include "lab/models/catalogue.hpp"
 #include "progress.hpp"
 
@@ -95,8 +96,6 @@ void make(const MakeArguments& arguments) {
 }  // namespace
 
 void add_models(CLI::App& subcommand) {
-  subcommand.description(
-      "Make meshes to try things on: the paper's bodies, and grids, balls and tori of any size.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder models\n"

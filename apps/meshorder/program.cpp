@@ -1,0 +1,124 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "program.hpp"
+
+#include "command.hpp"
+#include "freed_memory.hpp"
+#include "help_format.hpp"
+#include "interruption.hpp"
+#ifdef MESHORDER_HAS_HDF5
+#include "io/hdf5/process_end.hpp"
+#endif
+#include "io/stream/scratch.hpp"
+#include "standard_streams.hpp"
+#include "usage.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/registry.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace meshorder::command {
+namespace {
+
+constexpr int kBadInput = 2;
+constexpr int kOwnFailure = 1;
+
+/// Gives the parser what all programs have.
+void describe(const Program& program, CLI::App& app, std::vector<std::string>& arguments) {
+  app.name("meshorder");
+  app.set_version_flag("-V,--version", MESHORDER_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();  // subcommands take --plugin, too
+  app.add_option_function<std::vector<std::string>>(
+         "--plugin",
+         [](const std::vector<std::string>& files) {
+           for (const std::string& file : files) load_methods(file);
+         },
+         "Shared library with methods of your own (see examples/own_method.cpp); may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->trigger_on_parse();
+  app.formatter(help_format());
+  program.describe(app, arguments);
+  refuse_empty_values(app);
+}
+
+/// Runs what the arguments ask for; returns the exit status.
+int run(const Program& program, std::vector<std::string> arguments) {
+  CLI::App app;
+  const bool has_none = arguments.empty();
+  describe(program, app, arguments);
+  if (has_none) {
+    write_stderr(app.help());
+    return kBadInput;
+  }
+  if (const auto fault = option_without_value(arguments)) return report_failure(*fault, kBadInput);
+  arguments = with_words_as_options(std::move(arguments));
+  std::reverse(arguments.begin(), arguments.end());  // as the parser takes them
+  try {
+    app.parse(std::move(arguments));
+  } catch (const CLI::Success& asked_for_help) {
+    if (const auto fault = unknown_command(app)) return report_failure(*fault, kBadInput);
+    std::ostringstream text;
+    app.exit(asked_for_help, text);
+    write_stdout(text.str());
+  } catch (const CLI::ParseError& error) {
+    return report_failure(usage_fault(app, error), kBadInput);
+  }
+  flush_stdout();
+  return 0;
+}
+
+/// Runs the program; returns the exit status.
+int run_and_report(const Program& program, int argc, char** argv) {
+  try {
+    return run(program, {argv + std::min(argc, 1), argv + argc});
+  } catch (const CommandError& error) {
+    return report_failure(error.what(), error.status);
+  } catch (const Error& error) {
+    return report_failure(error.what(), error.code() == Code::internal ? kOwnFailure : kBadInput);
+  } catch (const std::bad_alloc&) {
+    return report_failure("out of memory", kOwnFailure);
+  } catch (const std::exception& error) {
+    return report_failure(error.what(), kOwnFailure);
+  } catch (...) {
+    return report_failure("an unknown failure", kOwnFailure);
+  }
+}
+
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): read at the end of the process
+bool has_run = false;
+
+/// At the end of the process: libhdf5 ends it by itself where it has no memory.
+extern "C" void tell_if_a_library_ended_it() {
+  if (has_run) return;
+  remove_unfinished_outputs();
+  std::_Exit(report_failure("a library has ended the process; is there enough memory?", kOwnFailure));
+}
+
+}  // namespace
+
+int run_program(const Program& program, int argc, char** argv) noexcept {
+  keep_freed_memory();
+  occupy_closed_streams();
+  clean_up_at_signals();
+  (void)std::atexit(tell_if_a_library_ended_it);
+#ifdef MESHORDER_HAS_HDF5
+  hdf5::close_nothing_at_exit();
+#endif
+  std::optional<int> status;
+  if (program.hand_over != nullptr) status = program.hand_over(argv);
+  if (!status) status = run_and_report(program, argc, argv);
+  has_run = true;
+  return *status;
+}
+
+}  // namespace meshorder::command

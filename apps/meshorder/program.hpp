@@ -1,0 +1,28 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
+class App;
+}  // namespace CLI
+
+namespace meshorder::command {
+
+/// What is special of a program with subcommands.
+struct Program {
+  /// Gives the parser its options and subcommands. May take away arguments that are not for the parser.
+  void (*describe)(CLI::App& app, std::vector<std::string>& arguments);
+  /// Returns the exit status if another program was to do the work, and does not exist. Default: none.
+  std::optional<int> (*hand_over)(char** arguments) noexcept = nullptr;
+};
+
+/// Is the `main` of `program`: prepares the process, parses the arguments, runs the subcommand and prints
+/// what went wrong.
+///
+/// @return exit status: 0, 2 for bad input, 1 for a failure of the program
+int run_program(const Program& program, int argc, char** argv) noexcept;
+
+}  // namespace meshorder::command
