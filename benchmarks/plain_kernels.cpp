@@ -6,8 +6,9 @@
 // named grid-N: a lattice in random order.
 //
 // All orders share one memory, which each fills before its turn, so that none has luckier pages. Each round
-// has another sequence of them. Prints the thread's least processor time, ms: what disturbs a run makes it
-// longer.
+// has another sequence of them. A kernel runs by turns in the order and, in a memory of its own, in the first
+// one: on a shared machine a time alone would say more about the minute than about the order. Prints medians
+// of these ratios times the median in the first order, ms of the thread's processor time.
 #include "io/npy.hpp"
 #include "kernels/plain.hpp"
 #include "measuring.hpp"
@@ -203,6 +204,14 @@ void put(Workspace& w, const Ordered& order) {
   w.sums.assign(kFeatures * n, 0.0F);
 }
 
+/// Runs the kernel twice; returns what the second run takes.
+double milliseconds(const Kernel& kernel, Workspace& w) {
+  kernel.run(w);
+  const double begin = seconds();
+  kernel.run(w);
+  return 1e3 * (seconds() - begin);
+}
+
 mo::Mesh mesh_named(const std::string& name) {
   if (std::filesystem::exists(name) || !name.starts_with("grid-")) return mo::read_mesh(name);
   mo::Mesh mesh = mo::make_grid({.size = std::atoi(name.c_str() + 5)});
@@ -222,9 +231,12 @@ int main(int argc, char** argv) {
   for (const std::string& method : methods) orders.push_back(in_order_of(mesh, method));
 
   const std::vector<Kernel> all = kernels();
-  std::vector<std::vector<std::vector<double>>> times(orders.size(),
-                                                      std::vector<std::vector<double>>(all.size()));
   Workspace w;
+  Workspace reference;
+  put(reference, orders.front());
+  std::vector<std::vector<std::vector<double>>> ratios(orders.size(),
+                                                       std::vector<std::vector<double>>(all.size()));
+  std::vector<std::vector<double>> in_first(all.size());
   std::vector<std::size_t> turns(orders.size());
   std::iota(turns.begin(), turns.end(), std::size_t{0});
   std::mt19937 random(1);
@@ -233,11 +245,10 @@ int main(int argc, char** argv) {
     for (const std::size_t o : turns) {
       put(w, orders[o]);
       for (std::size_t k = 0; k < all.size(); ++k) {
-        all[k].run(w);
         for (int again = 0; again < 2; ++again) {
-          const double begin = seconds();
-          all[k].run(w);
-          times[o][k].push_back(1e3 * (seconds() - begin));
+          const double first = milliseconds(all[k], reference);
+          ratios[o][k].push_back(milliseconds(all[k], w) / first);
+          in_first[k].push_back(first);
         }
       }
     }
@@ -249,8 +260,8 @@ int main(int argc, char** argv) {
   fmt::print("\n");
   for (std::size_t o = 0; o < orders.size(); ++o) {
     fmt::print("{:<16}{:>7.3f}{:>8.0f}", orders[o].name, orders[o].jumps, orders[o].span);
-    for (const auto& samples : times[o])
-      fmt::print("{:>10.3f}", *std::min_element(samples.begin(), samples.end()));
+    for (std::size_t k = 0; k < all.size(); ++k)
+      fmt::print("{:>10.3f}", median(ratios[o][k]) * median(in_first[k]));
     fmt::print("\n");
   }
 }

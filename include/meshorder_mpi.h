@@ -56,7 +56,7 @@ MO_API void mo_mpi_options_init(mo_mpi_options* options, size_t struct_size);
 
 /**
  * Orders the vertices of every rank among themselves: each stays with its owner. The ends of a rank's order
- * turn towards the ranks before and behind it.
+ * turn towards the ranks before and after it.
  *
  * Elements may be on several ranks (ghost layers); all that a rank has are ordered.
  *

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/communicator.hpp"
+#include "distributed/comm/communicator.hpp"
 #include "freed_memory.hpp"
 #include "help_format.hpp"
 #include "interruption.hpp"

@@ -2,7 +2,7 @@
 #include "nemesis_outputs.hpp"
 
 #include "base/text.hpp"
-#include "distributed/nemesis.hpp"
+#include "distributed/files/nemesis.hpp"
 #include "io/all_formats.hpp"
 #include "io/format.hpp"
 #include "io/stream/system_fault.hpp"

@@ -4,11 +4,11 @@
 #include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "console.hpp"
-#include "distributed/exodus_slices.hpp"
-#include "distributed/file_slices.hpp"
-#include "distributed/mesh_slice.hpp"
-#include "distributed/order.hpp"
-#include "distributed/xdmf_head.hpp"
+#include "distributed/files/exodus_slices.hpp"
+#include "distributed/files/file_slices.hpp"
+#include "distributed/files/xdmf_head.hpp"
+#include "distributed/order/mesh_slice.hpp"
+#include "distributed/order/order.hpp"
 #include "mesh/reorder.hpp"
 #include "order_outputs.hpp"
 #include "report.hpp"
@@ -245,7 +245,7 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
       .add_option(
           "--interface", arguments->interface_place,
           "Where a part has the vertices that share an element with those of other parts: `mixed` with\n"
-          "the others, in the method's order, or `last`, behind them, so that a program can work on\n"
+          "the others, in the method's order, or `last`, after them, so that a program can work on\n"
           "the others while it waits for these")
       ->check(CLI::IsMember({"mixed", "last"}))
       ->capture_default_str();

@@ -2,9 +2,9 @@
 #include "order_outputs.hpp"
 
 #include "base/text.hpp"
-#include "distributed/moved_grid.hpp"
-#include "distributed/moved_part.hpp"
-#include "distributed/nemesis.hpp"
+#include "distributed/files/moved_grid.hpp"
+#include "distributed/files/moved_part.hpp"
+#include "distributed/files/nemesis.hpp"
 #include "io/format.hpp"
 #include "io/kept_cells.hpp"
 #include "io/stream/output_file.hpp"
@@ -23,7 +23,7 @@ namespace {
 using distributed::Communicator;
 using distributed::GridRows;
 
-/// Adds notes that are not there yet: what a format holds in another way, two writers tell alike.
+/// Adds notes that are not there yet: what a format holds in another way, two writers report alike.
 void add_new(const Notes& found, Notes& notes) {
   std::copy_if(found.begin(), found.end(), std::back_inserter(notes), [&](const std::string& note) {
     return std::find(notes.begin(), notes.end(), note) == notes.end();

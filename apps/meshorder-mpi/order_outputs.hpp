@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "distributed/communicator.hpp"
-#include "distributed/exodus_slices.hpp"
-#include "distributed/file_slices.hpp"
-#include "distributed/grid_rows.hpp"
-#include "distributed/nemesis.hpp"
-#include "distributed/order.hpp"
-#include "distributed/pieces.hpp"
+#include "distributed/comm/communicator.hpp"
+#include "distributed/files/exodus_slices.hpp"
+#include "distributed/files/file_slices.hpp"
+#include "distributed/files/grid_rows.hpp"
+#include "distributed/files/nemesis.hpp"
+#include "distributed/files/pieces.hpp"
+#include "distributed/order/order.hpp"
 #include "io/stream/output_set.hpp"
 #include "mesh_files.hpp"
 #include "nemesis_outputs.hpp"
@@ -24,7 +24,7 @@ struct OrderFiles : MeshFiles {
   std::string pieces;  ///< folder, a .vtkhdf file, or a name of Exodus II; empty: none are written
   int ghosts = 1;      ///< layers of ghost cells in pieces, 0 or 1
 
-  /// Returns the files with an output that tells the format, also where there are pieces only.
+  /// Returns the files with an output that gives the format, also where there are pieces only.
   [[nodiscard]] MeshFiles with_output() const;
   /// Returns whether the pieces are the partitions of one file.
   [[nodiscard]] bool has_pieces_in_one_file() const;
@@ -75,7 +75,7 @@ class OrderOutputs {
            : files_.has_pieces_in_one_file() ? files_.pieces
                                              : "";
   }
-  /// Returns what there is to tell of the pieces.
+  /// Returns what is reported of the pieces.
   [[nodiscard]] const distributed::PiecesReport& pieces() const noexcept { return pieces_report_; }
 
  private:

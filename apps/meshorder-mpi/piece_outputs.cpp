@@ -31,7 +31,7 @@ bool is_name_of_piece(std::string_view file, std::string_view name) {
          file.find_first_not_of("0123456789", 1) == std::string_view::npos;
 }
 
-/// Returns the files that a .pvtu file names, as they stand in it; none where it is not there.
+/// Returns the files that a .pvtu file names, as they are in it; none where it is not there.
 std::set<std::string> named_by(const fs::path& index) {
   constexpr std::string_view kAttribute = "Source=\"";
   constexpr std::size_t kMost = std::size_t{1} << 28;

@@ -48,7 +48,7 @@ void print_report(const Console& console, const DistributedOptions& options, con
       "{:<10} {} {}, {} on the interfaces{}", "vertices", options.vertices,
       report.partitioner == distributed::Partitioner::order ? "of the whole mesh" : "in each part",
       with_commas(std::accumulate(report.interfaces.begin(), report.interfaces.end(), GlobalIndex{0})),
-      options.interface_place == distributed::InterfacePlace::last ? ", behind the others" : "");
+      options.interface_place == distributed::InterfacePlace::last ? ", after the others" : "");
   console.print("{:<10} lexmax", "elements");
   console.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}", "edge span",
                 report.before.mean, report.after.mean, with_commas(report.before.max),

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "console.hpp"
-#include "distributed/order.hpp"
+#include "distributed/order/order.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -11,10 +11,10 @@
 
 namespace meshorder::command {
 
-/// Returns the most memory that this process has had so far, in bytes; 0 where the system does not tell.
+/// Returns the most memory that this process has had so far, in bytes; 0 where the system does not say.
 std::int64_t peak_memory();
 
-/// Prints what there is to tell of an order, besides the files.
+/// Prints what is reported of an order, besides the files.
 void print_report(const Console& console, const distributed::DistributedOptions& options,
                   const distributed::DistributedReport& report, const std::vector<std::int64_t>& peaks);
 

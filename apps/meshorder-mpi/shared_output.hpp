@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "distributed/communicator.hpp"
+#include "distributed/comm/communicator.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/output_set.hpp"
 

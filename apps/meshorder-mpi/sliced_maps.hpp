@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "distributed/communicator.hpp"
-#include "distributed/layout.hpp"
-#include "distributed/mesh_slice.hpp"
+#include "distributed/comm/communicator.hpp"
+#include "distributed/comm/layout.hpp"
+#include "distributed/order/mesh_slice.hpp"
 #include "io/stream/output_set.hpp"
 #include "maps.hpp"
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "whole_mesh.hpp"
 
-#include "distributed/parts.hpp"
+#include "distributed/order/parts.hpp"
 #include "io/format.hpp"
 #include "io/format_choice.hpp"
 #include "mesh/graphs.hpp"

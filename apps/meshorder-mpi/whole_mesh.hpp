@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "distributed/communicator.hpp"
-#include "distributed/order.hpp"
+#include "distributed/comm/communicator.hpp"
+#include "distributed/order/order.hpp"
 #include "mesh_files.hpp"
 #include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
@@ -17,7 +17,7 @@ struct WholeMesh : MeshToOrder {
 
 /// Reads a mesh at the root, whose memory it takes. Every rank has to call it.
 ///
-/// @param files  with an output, which tells the format
+/// @param files  with an output, which gives the format
 /// @throws SharedError for a faulty file, cells that the output must hold and cannot, and ids likewise
 [[nodiscard]] WholeMesh read_at_root(const distributed::Communicator& communicator, const MeshFiles& files,
                                      Ids ids, Notes& notes);

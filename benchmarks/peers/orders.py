@@ -56,7 +56,7 @@ def main():
         files = {order: folder / f"{order}.npy" for order in seconds}
         files["auto-again"] = files["auto"]
         files |= dict(more.split("=", 1) for more in arguments.more)
-        methods = ",".join(["original", *(f"{order}=@{file}" for order, file in files.items())])
+        methods = ",".join([*(f"{order}=@{file}" for order, file in files.items()), "original"])
         done = subprocess.run([programs / "plain_kernels", arguments.mesh, methods, str(arguments.rounds)], check=True,
                               capture_output=True, text=True)
     first, head, *rows = done.stdout.splitlines()

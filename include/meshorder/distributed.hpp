@@ -35,7 +35,7 @@ struct RankOptions {
   std::uint64_t seed = 0;
   std::int32_t parts = 0;    ///< of `order_parts`; 0: one for each rank
   std::int32_t threads = 1;  ///< of this rank
-  /// Whether vertices that share an element with those of other ranks or parts come behind the others.
+  /// Whether vertices that share an element with those of other ranks or parts come after the others.
   bool interface_last = false;
 };
 
@@ -92,7 +92,7 @@ inline void throw_unless_ok(mo_status status) {
 }  // namespace detail
 
 /// Orders the vertices of every rank among themselves: each stays with its owner. The ends of a rank's order
-/// turn towards the ranks before and behind it. Every rank has to call it.
+/// turn towards the ranks before and after it. Every rank has to call it.
 ///
 /// @param communicator  of the ranks that share the mesh
 /// @param mesh          of this rank. Elements may be on several ranks (ghost layers); each rank orders all

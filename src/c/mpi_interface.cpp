@@ -2,8 +2,8 @@
 // The C interface for many ranks: it copies the caller's arrays, checks them on all ranks, and turns
 // exceptions into statuses.
 #include "base/status.hpp"
-#include "distributed/communicator.hpp"
-#include "distributed/owned_order.hpp"
+#include "distributed/comm/communicator.hpp"
+#include "distributed/order/owned_order.hpp"
 #include <meshorder/error.hpp>
 
 #include <meshorder_mpi.h>

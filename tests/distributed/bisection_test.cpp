@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/bisection.hpp"
+#include "distributed/order/bisection.hpp"
 
 #include "slices.hpp"
 

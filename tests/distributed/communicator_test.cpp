@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/communicator.hpp"
+#include "distributed/comm/communicator.hpp"
 
-#include "distributed/halo.hpp"
-#include "distributed/rows.hpp"
+#include "distributed/comm/halo.hpp"
+#include "distributed/comm/rows.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/exodus_slices.hpp"
+#include "distributed/files/exodus_slices.hpp"
 
-#include "distributed/moved_grid.hpp"
-#include "distributed/moved_part.hpp"
-#include "distributed/pieces.hpp"
+#include "distributed/files/moved_grid.hpp"
+#include "distributed/files/moved_part.hpp"
+#include "distributed/files/pieces.hpp"
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"
 #include "ordering/order_cells.hpp"

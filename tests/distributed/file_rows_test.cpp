@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/file_rows.hpp"
+#include "distributed/files/file_rows.hpp"
 
 #include "io/vtk/vtu_compressor.hpp"
 

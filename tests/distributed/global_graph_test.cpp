@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/global_graph.hpp"
+#include "distributed/order/global_graph.hpp"
 
-#include "distributed/curve.hpp"
-#include "distributed/mesh_slice.hpp"
+#include "distributed/order/curve.hpp"
+#include "distributed/order/mesh_slice.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "slices.hpp"

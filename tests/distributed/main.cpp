@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/communicator.hpp"
+#include "distributed/comm/communicator.hpp"
 
 #include <gtest/gtest.h>
 

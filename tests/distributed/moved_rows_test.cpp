@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/moved_rows.hpp"
+#include "distributed/comm/moved_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/nemesis.hpp"
+#include "distributed/files/nemesis.hpp"
 
 #include "base/index.hpp"
-#include "distributed/mesh_parts.hpp"
-#include "distributed/part_borders.hpp"
+#include "distributed/files/mesh_parts.hpp"
+#include "distributed/files/part_borders.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>

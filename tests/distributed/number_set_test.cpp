@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/number_set.hpp"
+#include "distributed/comm/number_set.hpp"
 
 #include "base/random.hpp"
 

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/order.hpp"
+#include "distributed/order/order.hpp"
 
 #include "mesh/procedural.hpp"
 #include "metrics/edge_span.hpp"

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/partition.hpp"
+#include "distributed/order/partition.hpp"
 
-#include "distributed/balance.hpp"
-#include "distributed/curve.hpp"
-#include "distributed/quotient.hpp"
+#include "distributed/order/balance.hpp"
+#include "distributed/order/curve.hpp"
+#include "distributed/order/quotient.hpp"
 #include "mesh/procedural.hpp"
 #include "slices.hpp"
 

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/piece_contents.hpp"
+#include "distributed/files/piece_contents.hpp"
 
-#include "distributed/halo.hpp"
-#include "distributed/parts.hpp"
+#include "distributed/comm/halo.hpp"
+#include "distributed/order/parts.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

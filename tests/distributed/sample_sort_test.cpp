@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/sample_sort.hpp"
+#include "distributed/comm/sample_sort.hpp"
 
 #include "base/random.hpp"
 

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/shared_file.hpp"
+#include "distributed/files/shared_file.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/shared_hierarchy.hpp"
+#include "distributed/order/shared_hierarchy.hpp"
 
 #include <gtest/gtest.h>
 

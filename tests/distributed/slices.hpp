@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "distributed/global_graph.hpp"
-#include "distributed/mesh_slice.hpp"
-#include "distributed/order.hpp"
+#include "distributed/order/global_graph.hpp"
+#include "distributed/order/mesh_slice.hpp"
+#include "distributed/order/order.hpp"
 #include "graph/csr_graph.hpp"
 #include "mesh/graphs.hpp"
 #include "ordering/order_cells.hpp"

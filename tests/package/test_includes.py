@@ -111,6 +111,15 @@ def test_plugins_include_public_headers_and_their_solver_s():
     assert {path.name for path in (ROOT / "plugins").iterdir() if path.is_dir()} == set(HOSTS)
 
 
+def test_folders_of_distributed_include_those_before_them():
+    order = ["comm", "order", "files"]
+    wrong = [f"{path.relative_to(ROOT)}: {header}" for number, name in enumerate(order)
+             for path in files(f"src/distributed/{name}") for kind, header in includes(path)
+             if kind == '"' and header.startswith("distributed/") and header.split("/")[1] not in order[:number + 1]]
+    assert not wrong
+    assert {path.name for path in (ROOT / "src/distributed").iterdir()} == set(order)
+
+
 @pytest.mark.parametrize("folder, above", [("src", ("lab/", "apps/", "tests/")), ("lab", ("apps/", "tests/"))])
 def test_nothing_below_includes_what_stands_above(folder, above):
     def target(path, header):

@@ -1,0 +1,133 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/comm/communicator.hpp"
+#include "distributed/comm/layout.hpp"
+#include "distributed/comm/number_set.hpp"
+
+#include <cstddef>
+#include <iterator>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// Entries of other ranks that this rank has to know. Made once, asked for as many values of each as are
+/// wanted.
+class Halo {
+ public:
+  /// Every rank has to call it. O(numbers + ranks).
+  ///
+  /// @param layout   who owns what
+  /// @param numbers  of the entries to know, in any order; own ones and repeats are allowed
+  /// @throws as `Communicator::exchange`
+  Halo(const Communicator& communicator, const Layout& layout, std::span<const GlobalIndex> numbers);
+
+  /// Returns the numbers that were asked for, ascending, each once.
+  [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return wanted_.numbers(); }
+  /// Returns the numbers of this rank that others or itself asked for, some perhaps several times.
+  [[nodiscard]] const std::vector<GlobalIndex>& asked_of_this_rank() const noexcept { return asked_.values; }
+  /// Returns the place of a number among those that were asked for. O(1) or O(log numbers), as `NumberSet`.
+  [[nodiscard]] std::size_t position(GlobalIndex number) const { return wanted_.position(number); }
+
+  /// Returns the owners' values of the numbers, one for each. Every rank has to call it.
+  ///
+  /// @param own  a value for each number that this rank owns
+  /// @throws as `Communicator::exchange`
+  template <class T>
+  [[nodiscard]] std::vector<T> fetch(std::span<const T> own) const {
+    Parcels<T> answers;
+    communicator_.together([&] {
+      answers.starts = asked_.starts;
+      answers.values.reserve(asked_.values.size());
+      for (const GlobalIndex number : asked_.values)
+        answers.values.push_back(own[static_cast<std::size_t>(number - first_)]);
+    });
+    return communicator_.exchange(answers).values;
+  }
+  template <class T>
+  [[nodiscard]] std::vector<T> fetch(const std::vector<T>& own) const {
+    return fetch(std::span<const T>(own));
+  }
+
+  /// Returns the owners' rows of the numbers, `width` bytes for each. Every rank has to call it. O(bytes).
+  ///
+  /// @param own  a row for each number that this rank owns
+  /// @throws as `Communicator::exchange`
+  [[nodiscard]] std::vector<std::byte> fetch_rows(std::span<const std::byte> own, Offset width) const;
+
+ private:
+  const Communicator& communicator_;
+  GlobalIndex first_;  ///< number of this rank
+  NumberSet wanted_;
+  Parcels<GlobalIndex> asked_;  ///< by the rank that asks
+};
+
+/// A value of each vertex that a rank owns, and of those that a halo adds.
+template <class T>
+class HaloValues {
+ public:
+  /// Every rank has to call it. Throws as `Communicator::exchange`.
+  ///
+  /// @param halo   outlives this object
+  /// @param first  number of the first own value
+  HaloValues(const Halo& halo, GlobalIndex first, std::vector<T> own)
+      : halo_(halo), first_(first), own_(std::move(own)), others_(halo.fetch(own_)) {}
+
+  /// Returns the k-th own value.
+  [[nodiscard]] const T& own(Offset k) const { return own_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] const std::vector<T>& own() const noexcept { return own_; }
+  /// Returns the value of a number that is the rank's own or the halo's. O(1), or as `Halo::position`.
+  [[nodiscard]] const T& operator[](GlobalIndex number) const {
+    const GlobalIndex k = number - first_;
+    if (k >= 0 && k < std::ssize(own_)) return own(k);
+    return others_[halo_.position(number)];
+  }
+
+ private:
+  const Halo& halo_;
+  GlobalIndex first_;
+  std::vector<T> own_;
+  std::vector<T> others_;
+};
+
+/// Hands values to the owners of numbers. Every rank has to call it. O(numbers · log numbers).
+///
+/// @param numbers  in any order, each on one rank at most
+/// @param values   one for each
+/// @param missing  value of what nobody has a number of
+/// @return the values of what this rank owns
+/// @throws as `Communicator::exchange`
+template <class T>
+[[nodiscard]] std::vector<T> delivered(const Communicator& communicator, const Layout& layout,
+                                       std::span<const GlobalIndex> numbers, std::span<const T> values,
+                                       const T& missing) {
+  struct Letter {
+    GlobalIndex number;
+    T value;
+  };
+  Parcels<Letter> letters;
+  communicator.together([&] {
+    letters.starts.assign(static_cast<std::size_t>(layout.ranks()) + 1, 0);
+    for (const GlobalIndex number : numbers)
+      ++letters.starts[static_cast<std::size_t>(layout.owner(number)) + 1];
+    for (std::size_t r = 1; r < letters.starts.size(); ++r) letters.starts[r] += letters.starts[r - 1];
+    letters.values.resize(numbers.size());
+    std::vector<Offset> next(letters.starts.begin(), letters.starts.end() - 1);
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      const auto place = next[static_cast<std::size_t>(layout.owner(numbers[k]))]++;
+      letters.values[static_cast<std::size_t>(place)] = {numbers[k], values[k]};
+    }
+  });
+  const Parcels<Letter> received = communicator.exchange(letters);
+  return communicator.together([&] {
+    std::vector<T> own(static_cast<std::size_t>(layout.size(communicator.rank())), missing);
+    const GlobalIndex first = layout.begin(communicator.rank());
+    for (const Letter& letter : received.values)
+      own[static_cast<std::size_t>(letter.number - first)] = letter.value;
+    return own;
+  });
+}
+
+}  // namespace meshorder::distributed

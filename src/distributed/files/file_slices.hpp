@@ -1,0 +1,111 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/comm/communicator.hpp"
+#include "distributed/comm/layout.hpp"
+#include "distributed/comm/moved_rows.hpp"
+#include "distributed/files/file_head.hpp"
+#include "distributed/files/grid_rows.hpp"
+#include "distributed/files/shared_file.hpp"
+#include "distributed/order/mesh_slice.hpp"
+#include "distributed/order/order.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// A new file, which exists and is empty.
+struct SliceFile {
+  std::string path;  ///< while it is unfinished
+  std::string name;  ///< when it is in its place, and in messages
+  std::string data;  ///< path of the HDF5 file that belongs to an .xdmf file, while it is unfinished
+};
+
+/// A .vtu file of one piece, the arrays of which are in its appended data, raw or in compressed blocks, or
+/// a .vtkhdf file of one partition or an .xdmf file of one mesh of one cell type whose datasets are neither
+/// chunked nor compressed, read and written by all ranks at once: each its share of every array, one array
+/// after another. The new file is the old one with the rows of its arrays in their new places; whatever else
+/// it has is copied byte by byte, but for the offsets of arrays after compressed ones. An .xdmf file and its
+/// HDF5 file are those that the serial writer makes. libhdf5 tells rank 0 where the datasets are; no rank
+/// else needs it.
+///
+/// Formats: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, and
+/// "VTKHDF File Format".
+class FileSlices {
+ public:
+  /// Looks at a file; every rank has to call it. Returns nothing for a file that is no such one: of several
+  /// pieces or partitions, with text, base64, chunks, the other order of bytes, or compression that this
+  /// build lacks. O(size of its XML + blocks) at the root.
+  ///
+  /// @throws SharedError for a file of that kind that is damaged: XML, counts that differ, bytes beyond its
+  ///         end, blocks that cannot hold what they are said to
+  [[nodiscard]] static std::optional<FileSlices> open(const Communicator& communicator,
+                                                      const std::string& path);
+
+  /// Returns whether all cells have their nodes in the order in which a Mesh has them, so that the checksums
+  /// of both are the same. Every rank has to call it. O(cells).
+  ///
+  /// @throws SharedError where a rank cannot read
+  [[nodiscard]] bool has_nodes_as_a_mesh(const Communicator& communicator) const;
+
+  /// Reads this rank's points and cells. Every rank has to call it. O(size of the slice).
+  ///
+  /// @throws SharedError for coordinates that are not finite, unknown types, cells without vertices, with too
+  ///         few, or with such that do not exist, and for blocks that are damaged
+  [[nodiscard]] MeshSlice read(const Communicator& communicator) const;
+
+  /// Returns the mesh in its new order, this object's as long as it lives. Every rank has to call it. Reads
+  /// the cells once more, and each array when its rows are asked for. O(size of the slice).
+  ///
+  /// @throws SharedError where a rank cannot read
+  [[nodiscard]] GridRows in_new_order(const Communicator& communicator, const DistributedOrder& order) const;
+
+  /// Writes the mesh in its new order over a file that exists, and is empty. Every rank has to call it. Reads
+  /// the arrays once more, one after another. O(size of the slice), memory for the cells or the largest array
+  /// of a rank three times.
+  ///
+  /// @return the new place of each cell of the slice
+  /// @throws SharedError where a rank cannot read or write
+  [[nodiscard]] std::vector<GlobalIndex> write(const Communicator& communicator, const SliceFile& file,
+                                               const DistributedOrder& order) const;
+
+  /// Returns the path of the HDF5 file that belongs to a new .xdmf file of this mesh; empty for files of
+  /// other kinds. Every rank has to call it.
+  [[nodiscard]] std::string new_data(const Communicator& communicator, const std::string& name) const;
+
+  /// Looks at a file that this object wrote. Every rank has to call it.
+  ///
+  /// @throws SharedError as `open`
+  [[nodiscard]] FileSlices written(const Communicator& communicator, const SliceFile& file) const;
+
+ private:
+  [[nodiscard]] const FileArray& array(FileArray::Role role) const;
+  [[nodiscard]] MeshSlice empty_slice(const Communicator& communicator) const;
+  [[nodiscard]] std::vector<std::byte> rows(const Communicator& communicator, const SharedFile& file,
+                                            const FileArray& array, GlobalIndex begin, GlobalIndex end) const;
+  void read_points(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
+  [[nodiscard]] std::vector<int> types(const Communicator& communicator, const SharedFile& file,
+                                       const Layout& cells) const;
+  void read_shapes(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
+  void read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
+  /// Reads the first entry of this rank's cells and where, from there on, they begin and end.
+  [[nodiscard]] Offset read_offsets(const Communicator& communicator, const SharedFile& file,
+                                    MeshSlice& slice) const;
+  /// Returns the rows of an array that are in this rank's places.
+  [[nodiscard]] std::vector<std::byte> moved_rows(const Communicator& communicator, const SharedFile& file,
+                                                  const FileArray& array, const RowMover& vertices,
+                                                  const RowMover& cells) const;
+  /// As `write`, for .xdmf files.
+  [[nodiscard]] std::vector<GlobalIndex> write_xdmf(const Communicator& communicator, const SliceFile& file,
+                                                    const DistributedOrder& order) const;
+  [[nodiscard]] Rows moved_cells(const Communicator& communicator, const SharedFile& file, MeshSlice slice,
+                                 const RowMover& mover, const std::vector<GlobalIndex>& new_vertices) const;
+
+  std::string path_;  ///< of the file that has the arrays
+  FileHead head_;     ///< blocks and XML at the root only
+};
+
+}  // namespace meshorder::distributed

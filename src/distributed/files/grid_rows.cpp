@@ -1,0 +1,156 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/files/grid_rows.hpp"
+
+#include "distributed/files/mold.hpp"
+#include "io/vtk/vtk.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace meshorder::distributed {
+namespace {
+
+template <class Number>
+std::vector<std::byte> bytes_of_span(std::span<const Number> numbers) {
+  const auto bytes = std::as_bytes(numbers);
+  return {bytes.begin(), bytes.end()};
+}
+
+/// The first row of an array.
+DataArray first_row(const DataArray& array) {
+  DataArray row{array.name, array.association, array.components, {}, {}, array.component_names};
+  row.values = std::visit(
+      [&](const auto& values) {
+        using Numbers = std::decay_t<decltype(values)>;
+        return Values(Numbers(values.begin(), values.begin() + array.components));
+      },
+      array.values);
+  return row;
+}
+
+/// The mesh as VTK holds it.
+class WholeGrid {
+ public:
+  WholeGrid(const Mesh& mesh, Notes& notes)
+      : context_(mesh, notes, vtk::NamePlace::xml), cells_(context_.cells()) {
+    // the order of the file that `xml` makes
+    for (const Association association : {Association::vertices, Association::cells}) {
+      for (const DataArray* const array : context_.arrays) {
+        if (array->association == association) arrays_.push_back(array);
+      }
+    }
+    for (const DataArray* const array : arrays_) {
+      if (const auto* const texts = std::get_if<std::vector<std::string>>(&array->values)) {
+        for (const std::string& text : *texts) places_.emplace(text.substr(0, text.find('\0')), 0);
+      }
+    }
+    std::int32_t place = 0;
+    for (auto& [text, number] : places_) number = place++;
+  }
+
+  /// A file of one point and one cell with the first row of each array.
+  [[nodiscard]] std::string xml() const {
+    std::vector<DataArray> rows;
+    for (const DataArray* const array : arrays_) rows.push_back(first_row(*array));
+    vtk::Metadata metadata = context_.metadata;
+    metadata.float_points = context_.points_are_floats();
+    return mold_of(std::move(rows), std::move(metadata),
+                   std::any_of(context_.types.begin(), context_.types.end(), vtk::is_higher_order_hexahedron),
+                   context_.notes);
+  }
+
+  [[nodiscard]] std::vector<std::string> texts() const {
+    std::vector<std::string> result;
+    for (const auto& [text, place] : places_) result.push_back(text);
+    return result;
+  }
+
+  /// The bytes of the k-th array of the file.
+  [[nodiscard]] std::vector<std::byte> bytes(std::size_t k) const {
+    if (k < arrays_.size()) {
+      return std::visit([&](const auto& values) { return bytes_of_values(values); }, arrays_[k]->values);
+    }
+    if (k > arrays_.size())
+      return bytes_of_span(std::span(context_.types));  // after points and two of cells
+    const std::vector<Point>& points = context_.mesh.points;
+    const std::span<const double> numbers(points.front().data(), 3 * points.size());
+    if (!context_.points_are_floats()) return bytes_of_span(numbers);
+    const std::vector<float> floats(numbers.begin(), numbers.end());
+    return bytes_of_span(std::span<const float>(floats));
+  }
+
+  /// Whether the k-th array of the file is one of points.
+  [[nodiscard]] bool is_on_vertices(std::size_t k) const {
+    return k < arrays_.size() ? arrays_[k]->association == Association::vertices : k == arrays_.size();
+  }
+
+  [[nodiscard]] const Cells& cells() const noexcept { return cells_; }
+
+ private:
+  template <class Number>
+  [[nodiscard]] std::vector<std::byte> bytes_of_values(const std::vector<Number>& values) const {
+    if constexpr (std::is_same_v<Number, std::string>) {
+      std::vector<std::int32_t> places;
+      places.reserve(values.size());
+      for (const std::string& text : values) places.push_back(places_.at(text.substr(0, text.find('\0'))));
+      return bytes_of_span(std::span<const std::int32_t>(places));
+    } else {
+      return bytes_of_span(std::span<const Number>(values));
+    }
+  }
+
+  vtk::WriteContext context_;
+  const Cells& cells_;
+  std::vector<const DataArray*> arrays_;
+  std::map<std::string, std::int32_t> places_;  ///< of texts
+};
+
+}  // namespace
+
+GridRows scattered_grid(const Communicator& communicator, const Mesh& mesh, Notes& notes) {
+  GridRows grid;
+  const auto whole = communicator.together([&] {
+    std::shared_ptr<WholeGrid> result;
+    if (!communicator.is_root()) return result;
+    result = std::make_shared<WholeGrid>(mesh, notes);
+    grid.xml = result->xml();
+    grid.fields = fields_of(grid.xml);
+    grid.texts = result->texts();
+    return result;
+  });
+  const std::vector<GlobalIndex> counts = communicator.broadcast(
+      whole ? std::vector<GlobalIndex>{mesh.vertex_count(), mesh.cell_count()} : std::vector<GlobalIndex>{});
+  grid.vertices = Layout::even(counts[0], communicator.size());
+  grid.cells = Layout::even(counts[1], communicator.size());
+
+  Rows rows;
+  std::vector<Dispatch> dispatches;
+  communicator.at_root([&] {
+    const Cells& cells = whole->cells();
+    rows.offsets = cells.offsets;
+    rows.entries.assign(cells.vertices.begin(), cells.vertices.end());
+    for (Offset c = 0; c < rows.size(); ++c) dispatches.push_back({grid.cells.owner(c), c});
+  });
+  grid.cell_vertices = send_rows(communicator, rows, dispatches);
+  grid.rows = [&communicator, whole, vertices = grid.vertices, cells = grid.cells](std::size_t k) {
+    std::vector<std::byte> bytes;
+    std::vector<Offset> starts(static_cast<std::size_t>(communicator.size()) + 1, 0);
+    communicator.at_root([&] {
+      bytes = whole->bytes(k);
+      const Layout& layout = whole->is_on_vertices(k) ? vertices : cells;
+      const Offset width = std::ssize(bytes) / layout.size();
+      for (int rank = 0; rank < communicator.size(); ++rank)
+        starts[static_cast<std::size_t>(rank) + 1] = layout.end(rank) * width;
+    });
+    return communicator.exchange(std::span<const std::byte>(bytes), starts).values;
+  };
+  return grid;
+}
+
+}  // namespace meshorder::distributed

@@ -1,0 +1,77 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/comm/communicator.hpp"
+#include "distributed/comm/layout.hpp"
+#include "distributed/files/mesh_share.hpp"
+#include "graph/incidence.hpp"
+#include <meshorder/mesh.hpp>
+
+#include <span>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// Which cells and vertices the parts of a mesh have, without ghost cells: a cell is in the part of its last
+/// vertex, a vertex in each part whose cells use it; one that no cell uses is in its own. A rank knows its
+/// own parts, and which others share their vertices; others have no cells here. Vertices and cells are
+/// numbered as in what the rank has of the mesh.
+class MeshParts {
+ public:
+  /// Every rank has to call it. O(entries · log parts).
+  ///
+  /// @param mesh         what this rank has of the mesh, as in `MeshShare`
+  /// @param numbers      of its vertices and cells
+  /// @param part_starts  as of `part_of`
+  /// @throws as `Communicator::exchange`
+  MeshParts(const Communicator& communicator, const Mesh& mesh, const ShareNumbers& numbers,
+            const std::vector<GlobalIndex>& part_starts);
+
+  [[nodiscard]] Index size() const noexcept { return cells_.size(); }
+  /// Returns the cells of a part, ascending.
+  [[nodiscard]] std::span<const Index> cells(Index part) const { return cells_[part]; }
+  /// Returns the vertices of a part: the own ones, ascending, then those of other parts, ascending, by which
+  /// those of a part follow each other.
+  [[nodiscard]] std::span<const Index> vertices(Index part) const { return vertices_[part]; }
+  /// Returns the parts that have a vertex, on any rank, ascending.
+  [[nodiscard]] std::span<const Index> parts_with(Index vertex) const { return parts_of_vertices_[vertex]; }
+  /// Returns the part that has a cell.
+  [[nodiscard]] Index part_with(Index cell) const { return part_of_cells_[static_cast<std::size_t>(cell)]; }
+
+ private:
+  void find_own(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts);
+  void find_sharing_parts(const Communicator& communicator, const ShareNumbers& numbers);
+
+  std::vector<Index> part_of_cells_;
+  Incidence cells_;              ///< of each part
+  Incidence vertices_;           ///< of each part
+  Incidence parts_of_vertices_;  ///< of each vertex
+};
+
+/// Cuts the parts out of a mesh, with the arrays, sets and ids of their cells and vertices.
+class PartCutter {
+ public:
+  /// Both outlive this object. O(rows of arrays on some vertices or cells + members of sets).
+  PartCutter(const Mesh& mesh, const MeshParts& parts);
+
+  /// Returns a part: its vertices and cells in the order of `MeshParts`, without `cell_blocks`, and the same
+  /// metadata. Sets without members there are kept, arrays on some
+  /// vertices or cells without rows are not. O(size of the part).
+  [[nodiscard]] Mesh cut(Index part);
+
+ private:
+  void cut_cells(Index part, Mesh& piece) const;
+  void cut_data(Index part, Mesh& piece) const;
+  void cut_sets(Index part, Mesh& piece) const;
+  /// Returns the new places of vertices or cells of the part, in their order.
+  [[nodiscard]] std::vector<Index> placed(Association association, std::span<const Index> numbers) const;
+
+  const Mesh& mesh_;
+  const MeshParts& parts_;
+  std::vector<Incidence> rows_;       ///< of each part, by array; of arrays with a row for everything none
+  std::vector<Incidence> members_;    ///< of each part, by set: places in the list
+  std::vector<Index> vertex_places_;  ///< in the part that is cut; of what is not there of another part
+  std::vector<Index> cell_places_;
+};
+
+}  // namespace meshorder::distributed

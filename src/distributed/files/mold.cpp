@@ -1,0 +1,44 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/files/mold.hpp"
+
+#include "distributed/files/text_store.hpp"
+#include "io/vtk/vtu_document.hpp"
+#include "io/vtu.hpp"
+
+#include <bit>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+namespace meshorder::distributed {
+
+std::string mold_of(std::vector<DataArray> arrays, vtk::Metadata metadata, bool in_order_of_vtk_9,
+                    Notes& notes) {
+  Mesh mold;
+  mold.points.resize(1);
+  mold.cells.push_back(Shape::vertex, std::vector<Index>{0});
+  mold.data = std::move(arrays);
+  metadata.vtu = VtuEncoding{.mode = VtuEncoding::Mode::base64,
+                             .compressor = VtuEncoding::Compressor::none,
+                             .order = std::endian::native,
+                             .wide_headers = true};
+  mold.format_metadata = std::make_shared<vtk::Metadata>(std::move(metadata));
+  TextStore store;
+  vtk::write_vtu(mold, FilePath("mold.vtu", store), notes);
+  std::string text = store.text();
+  if (in_order_of_vtk_9) {
+    // as the writer does where there are such cells
+    constexpr std::string_view kVersion = "version=\"1.0\"";
+    text.replace(text.find(kVersion, text.find("<VTKFile")), kVersion.size(), "version=\"2.2\"");
+  }
+  return text;
+}
+
+std::string fields_of(const std::string& mold) {
+  TextStore store(mold);
+  const vtk::VtuDocument file(FilePath("mold.vtu", store));
+  const vtk::VtuElement* const fields = file.root().child("UnstructuredGrid")->child("FieldData");
+  return fields == nullptr ? "" : file.source(*fields);
+}
+
+}  // namespace meshorder::distributed

@@ -1,0 +1,190 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/files/moved_grid.hpp"
+
+#include "distributed/comm/halo.hpp"
+#include "distributed/comm/number_types.hpp"
+#include "distributed/files/mold.hpp"
+#include "io/vtk/vtk.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+#include <variant>
+
+namespace meshorder::distributed {
+namespace {
+
+// number types, as the alternatives of Values
+constexpr std::size_t kMemberMark = 3;  // of members of a set, a byte
+constexpr std::size_t kNumber = 6;
+constexpr std::size_t kWideNumber = 8;
+
+}  // namespace
+
+MovedGrid::MovedGrid(const Communicator& communicator, MovedPart& moved)
+    : communicator_(communicator), moved_(moved) {
+  for (std::size_t s = 0; s < moved.part().mesh.sets.size(); ++s) set_ranks_.push_back(ranks_in_set(s));
+  list_arrays();
+  types_ = communicator.together([&] { return vtk::cell_types(moved.part().mesh); });
+}
+
+/// Returns the place, from 1 on, that each member of the part has among all members of a set; nothing if the
+/// members of the whole set ascend in the new order.
+std::vector<std::int32_t> MovedGrid::ranks_in_set(std::size_t set) const {
+  constexpr GlobalIndex kNone = -1;
+  const MeshPart::SetRows& rows = moved_.part().sets[set];
+  const EntitySet& members = moved_.part().mesh.sets[set];
+  const Layout list = Layout::even(rows.size, communicator_.size());
+  const std::vector<GlobalIndex> entries(rows.entries.begin(), rows.entries.end());
+  std::vector<GlobalIndex> places;
+  places.reserve(members.members.size());
+  for (const Index member : members.members)
+    places.push_back(moved_.new_places(members.association)[static_cast<std::size_t>(member)]);
+  std::vector<GlobalIndex> listed = delivered<GlobalIndex>(communicator_, list, entries, places, kNone);
+
+  struct PlacesInList {
+    GlobalIndex members = 0;
+    GlobalIndex first = kNone;
+    GlobalIndex last = kNone;
+    bool ascends = true;
+  };
+  PlacesInList own;
+  for (GlobalIndex& place : listed) {
+    if (place == kNone) continue;  // named before
+    if (own.members++ == 0) own.first = place;
+    own.ascends = own.ascends && place > own.last;
+    own.last = place;
+  }
+  GlobalIndex before = 0;
+  GlobalIndex last = kNone;
+  bool ascends = true;
+  const std::vector<PlacesInList> all = communicator_.gathered(own);
+  for (int rank = 0; rank < communicator_.size(); ++rank) {
+    const PlacesInList& found = all[static_cast<std::size_t>(rank)];
+    if (rank < communicator_.rank()) before += found.members;
+    ascends = ascends && found.ascends && (found.members == 0 || found.first > last);
+    if (found.members > 0) last = found.last;
+  }
+  if (ascends) return {};
+  for (GlobalIndex& place : listed) {
+    if (place != kNone) place = ++before;
+  }
+  const Halo halo(communicator_, list, entries);
+  const std::vector<GlobalIndex> found = halo.fetch(listed);
+  std::vector<std::int32_t> ranks;
+  ranks.reserve(entries.size());
+  for (const GlobalIndex entry : entries)
+    ranks.push_back(static_cast<std::int32_t>(found[halo.position(entry)]));
+  return ranks;
+}
+
+/// Lists the arrays as a .vtu file has them.
+void MovedGrid::list_arrays() {
+  using Source = Array::Source;
+  const Mesh& mesh = moved_.part().mesh;
+  for (const Association association : {Association::vertices, Association::cells}) {
+    for (std::size_t k = 0; k < mesh.data.size(); ++k) {
+      if (mesh.data[k].association == association)
+        arrays_.push_back(
+            {Source::data, k, association, mesh.data[k].values.index(), mesh.data[k].components});
+    }
+    for (std::size_t s = 0; s < mesh.sets.size(); ++s) {
+      if (mesh.sets[s].association != association) continue;
+      const bool has_ranks = communicator_.sum(set_ranks_[s].empty() ? 0 : 1) > 0;
+      arrays_.push_back({Source::set, s, association, has_ranks ? kNumber : kMemberMark, 1});
+    }
+    if (const std::vector<std::int64_t>* const numbers = moved_.ids(association)) {
+      const bool fit = std::all_of(numbers->begin(), numbers->end(),
+                                   [](std::int64_t number) { return std::in_range<std::int32_t>(number); });
+      arrays_.push_back(
+          {Source::ids, 0, association, communicator_.sum(fit ? 0 : 1) == 0 ? kNumber : kWideNumber, 1});
+    }
+  }
+}
+
+/// Returns what the vertices or cells of the part are in a set.
+std::vector<std::byte> MovedGrid::marks_of_set(const Array& array) const {
+  const std::vector<std::int32_t>& ranks = set_ranks_[array.number];
+  const std::vector<Index>& members = moved_.part().mesh.sets[array.number].members;
+  const GlobalIndex count = moved_.layout(array.association).size(communicator_.rank());
+  std::vector<std::int32_t> marks(static_cast<std::size_t>(count), 0);
+  for (std::size_t k = 0; k < members.size(); ++k)
+    marks[static_cast<std::size_t>(members[k])] = ranks.empty() ? 1 : ranks[k];
+  return bytes_of(marks, array.type);
+}
+
+std::vector<std::byte> MovedGrid::rows_of_array(std::size_t k) const {
+  if (k > arrays_.size())  // after points and two of cells
+    return moved_.moved(Association::cells, std::as_bytes(std::span(types_)), 1);
+  if (k == arrays_.size()) {
+    return moved_.moved(Association::vertices, std::as_bytes(std::span(moved_.part().mesh.points)),
+                        sizeof(Point));
+  }
+  const Array& array = arrays_[k];
+  if (array.source == Array::Source::data) return moved_.moved_array(array.number);
+  if (array.source == Array::Source::ids) return moved_.moved_ids(array.association, array.type);
+  const std::vector<std::byte> own = communicator_.together([&] { return marks_of_set(array); });
+  return moved_.moved(array.association, own, size_of_type(array.type));
+}
+
+/// Returns a file of one point and one cell that has all arrays, under the names that they get there.
+std::string MovedGrid::xml(Notes& notes) const {
+  Mesh sketch;
+  sketch.points.resize(1);
+  sketch.cells.push_back(Shape::vertex, std::array<Index, 1>{0});
+  sketch.format_metadata = moved_.part().mesh.format_metadata;
+  for (std::size_t k = 0; k < moved_.part().mesh.data.size(); ++k) {
+    const DataArray& array = moved_.part().mesh.data[k];
+    DataArray& row = sketch.data.emplace_back(DataArray{array.name,
+                                                        array.association,
+                                                        array.components,
+                                                        vtk::values_of_type(array.values.index()),
+                                                        {},
+                                                        array.component_names});
+    std::visit([&](auto& values) { values.resize(static_cast<std::size_t>(array.components)); }, row.values);
+    if (moved_.part().arrays[k].is_partial) row.indices = {0};
+  }
+  for (const EntitySet& set : moved_.part().mesh.sets) sketch.sets.push_back({set.name, set.association, {}});
+  if (moved_.ids(Association::vertices) != nullptr) sketch.vertex_ids = {0};
+  if (moved_.ids(Association::cells) != nullptr) sketch.cell_ids = {0};
+
+  vtk::WriteContext context(sketch, notes, vtk::NamePlace::xml);
+  std::vector<DataArray> rows;
+  for (const Association association : {Association::vertices, Association::cells}) {
+    for (const DataArray* const array : context.arrays) {
+      if (array->association != association) continue;
+      const Array& form = arrays_[rows.size()];
+      DataArray& row = rows.emplace_back(DataArray{array->name,
+                                                   association,
+                                                   form.components,
+                                                   vtk::values_of_type(form.type),
+                                                   {},
+                                                   array->component_names});
+      std::visit([&](auto& values) { values.resize(static_cast<std::size_t>(form.components)); }, row.values);
+    }
+  }
+  return mold_of(std::move(rows), context.metadata, false, notes);
+}
+
+GridRows MovedGrid::rows(Notes& notes) {
+  GridRows grid;
+  grid.vertices = moved_.layout(Association::vertices);
+  grid.cells = moved_.layout(Association::cells);
+  grid.rows = [this](std::size_t k) { return rows_of_array(k); };
+  communicator_.at_root([&] {
+    grid.xml = xml(notes);
+    grid.fields = fields_of(grid.xml);
+  });
+  grid.cell_vertices = moved_.moved_cells(communicator_.together([&] {
+    Mesh bare;
+    bare.cells = moved_.take_cells();
+    Notes ignored;
+    vtk::WriteContext context(bare, ignored, vtk::NamePlace::xml);
+    const Cells& cells = context.cells();
+    return Rows{cells.offsets, {cells.vertices.begin(), cells.vertices.end()}};
+  }));
+  return grid;
+}
+
+}  // namespace meshorder::distributed

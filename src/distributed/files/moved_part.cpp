@@ -1,0 +1,234 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/files/moved_part.hpp"
+
+#include "distributed/comm/halo.hpp"
+#include "distributed/comm/number_types.hpp"
+#include "distributed/files/mold.hpp"
+#include "distributed/order/cell_places.hpp"
+#include "distributed/order/number_order.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace meshorder::distributed {
+namespace {
+
+// number types, as the alternatives of Values
+constexpr std::size_t kReal = 0;
+constexpr std::size_t kNarrow = 6;
+constexpr std::size_t kWide = 8;
+
+/// How an array is held.
+struct ArrayForm {
+  std::size_t type = 0;
+  Index components = 0;
+};
+
+/// Returns the type that an array has whose rows on two ranks have these: readers make 32-bit integers of
+/// labels and numbers where all that they read fit.
+std::size_t common_type(std::size_t a, std::size_t b) {
+  if (a == b) return a;
+  const bool are_integers = (a == kNarrow || a == kWide) && (b == kNarrow || b == kWide);
+  return are_integers ? kWide : kReal;
+}
+
+/// Returns what is there where an array has no value.
+template <class Number>
+Number nothing() {
+  if constexpr (std::is_floating_point_v<Number>) return std::numeric_limits<Number>::quiet_NaN();
+  return Number{};
+}
+
+/// Gives an array a type, and rows of so many components, at least as many as they have.
+void give_form(DataArray& array, const ArrayForm& form) {
+  if (array.values.index() == form.type && array.components == form.components) return;
+  Values result = vtk::values_of_type(form.type);
+  std::visit(
+      [&](const auto& old, auto& values) {
+        using Old = typename std::decay_t<decltype(old)>::value_type;
+        using Number = typename std::decay_t<decltype(values)>::value_type;
+        if constexpr (std::is_arithmetic_v<Number> && std::is_arithmetic_v<Old>) {
+          const auto width = static_cast<std::size_t>(array.components);
+          const auto new_width = static_cast<std::size_t>(form.components);
+          const std::size_t rows = width == 0 ? 0 : old.size() / width;
+          values.assign(rows * new_width, nothing<Number>());
+          for (std::size_t k = 0; k < rows * width; ++k)
+            values[k / width * new_width + k % width] = static_cast<Number>(old[k]);
+        }
+      },
+      array.values, result);
+  array.values = std::move(result);
+  array.components = form.components;
+}
+
+/// Returns the bytes of an array, of one on some of the vertices or cells with rows of nothing for the
+/// others.
+///
+/// @param count  of the vertices or cells
+std::vector<std::byte> bytes_of_rows(const DataArray& array, bool is_partial, std::size_t count) {
+  return std::visit(
+      [&](const auto& values) {
+        using Number = typename std::decay_t<decltype(values)>::value_type;
+        std::vector<std::byte> result;
+        if constexpr (std::is_arithmetic_v<Number>) {
+          const auto bytes_of_all = [&](const std::vector<Number>& rows) {
+            const auto bytes = std::as_bytes(std::span(rows));
+            result.assign(bytes.begin(), bytes.end());
+          };
+          if (!is_partial) {
+            bytes_of_all(values);
+          } else {
+            const auto width = static_cast<std::size_t>(array.components);
+            std::vector<Number> rows(count * width, nothing<Number>());
+            for (std::size_t row = 0; row < array.indices.size(); ++row) {
+              std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row * width), width,
+                          rows.begin() + static_cast<std::ptrdiff_t>(array.indices[row]) * array.components);
+            }
+            bytes_of_all(rows);
+          }
+        }
+        return result;
+      },
+      array.values);
+}
+
+}  // namespace
+
+MovedPart::MovedPart(const Communicator& communicator, MeshPart part, const DistributedOrder& order,
+                     std::vector<GlobalIndex> block_ends, Notes& notes)
+    : communicator_(communicator), part_(std::move(part)), block_ends_(std::move(block_ends)) {
+  const auto layout = [&](MeshRange own) {
+    return Layout::of_sizes(communicator.gathered(GlobalIndex{own.size()}));
+  };
+  vertices_.layout = layout(part_.ranges.vertices);
+  cells_.layout = layout(part_.ranges.cells);
+  note_repeated(notes);
+  unify_arrays();
+  vertices_.places = order.new_vertices;
+  cells_.places = places_of_cells(order.cells);
+  for (Entities* const all : {&vertices_, &cells_})
+    all->mover.emplace(communicator, all->layout, all->places);
+  settle_ids(vertices_, part_.mesh.vertex_ids, part_.vertex_ids, notes);
+  settle_ids(cells_, part_.mesh.cell_ids, part_.cell_ids, notes);
+}
+
+const std::vector<std::int64_t>* MovedPart::ids(Association association) const {
+  if (!entities(association).has_ids) return nullptr;
+  return association == Association::vertices ? &part_.mesh.vertex_ids : &part_.mesh.cell_ids;
+}
+
+/// Returns the new place of each cell of the part, where all cells are to be in the order of a list, of which
+/// this rank has its share.
+std::vector<GlobalIndex> MovedPart::places_of_cells(const std::vector<GlobalIndex>& in_order) const {
+  if (!block_ends_.empty()) return places_by_block(communicator_, cells_.layout, block_ends_, in_order);
+  MeshSlice slice;
+  slice.cells = cells_.layout;
+  slice.shapes = communicator_.together([&] { return part_.mesh.cells.shapes; });
+  return places_by_dimension(communicator_, slice, in_order);
+}
+
+void MovedPart::note_repeated(Notes& notes) const {
+  for (const MeshPart::List& list : part_.lists) {
+    const GlobalIndex kept = communicator_.sum(GlobalIndex{list.kept});
+    if (kept < list.size && communicator_.is_root())
+      notes.push_back(note_of_repeated(list.set, static_cast<std::size_t>(list.size - kept)));
+  }
+}
+
+/// Gives each array the type and the components that it has on any rank.
+void MovedPart::unify_arrays() {
+  for (DataArray& array : part_.mesh.data) {
+    ArrayForm common{array.values.index(), 0};
+    for (const ArrayForm& form : communicator_.gathered(ArrayForm{array.values.index(), array.components}))
+      common = {common_type(common.type, form.type), std::max(common.components, form.components)};
+    communicator_.together([&] { give_form(array, common); });
+  }
+}
+
+/// Finds out whether there are ids besides the places, and where they go: the vertices, and the cells of each
+/// dimension or block, get them ascending. An order that moves nothing leaves them where they are.
+void MovedPart::settle_ids(Entities& owner, std::vector<std::int64_t>& ids, const std::string& name,
+                           Notes& notes) {
+  if (name.empty() || are_places(communicator_, owner.layout, ids)) return ids.clear();
+  const NumberOrder order = order_of_numbers(communicator_, owner.layout, ids);
+  if (order.twice) {
+    if (communicator_.is_root()) notes.push_back(note_of_number_twice(name, *order.twice));
+    return ids.clear();
+  }
+  owner.has_ids = true;
+  GlobalIndex next = owner.layout.begin(communicator_.rank());
+  const bool stay = std::all_of(owner.places.begin(), owner.places.end(),
+                                [&](GlobalIndex place) { return place == next++; });
+  if (communicator_.sum(stay ? 0 : 1) == 0) return;
+  owner.ids_mover.emplace(communicator_, owner.layout, places_of_ids(owner, order.sorted));
+}
+
+/// Returns where the id of each vertex or cell of the part goes.
+std::vector<GlobalIndex> MovedPart::places_of_ids(const Entities& owner,
+                                                  const std::vector<GlobalIndex>& sorted) const {
+  if (&owner == &cells_) return places_of_cells(sorted);
+  const GlobalIndex first =
+      Layout::of_sizes(communicator_.gathered(std::ssize(sorted))).begin(communicator_.rank());
+  const std::vector<GlobalIndex> places = communicator_.together([&] {
+    std::vector<GlobalIndex> result(sorted.size());
+    std::iota(result.begin(), result.end(), first);
+    return result;
+  });
+  return delivered<GlobalIndex>(communicator_, owner.layout, sorted, places, GlobalIndex{-1});
+}
+
+std::vector<std::byte> MovedPart::moved(Association association, std::span<const std::byte> rows,
+                                        Offset width) const {
+  return entities(association).mover->moved(rows, width);
+}
+
+std::vector<std::byte> MovedPart::moved_array(std::size_t k) const {
+  const DataArray& array = part_.mesh.data[k];
+  const GlobalIndex count = layout(array.association).size(communicator_.rank());
+  const std::vector<std::byte> rows = communicator_.together(
+      [&] { return bytes_of_rows(array, part_.arrays[k].is_partial, static_cast<std::size_t>(count)); });
+  return moved(array.association, rows, size_of_type(array.values.index()) * array.components);
+}
+
+std::vector<std::byte> MovedPart::moved_ids(Association association, std::size_t type) const {
+  const Entities& owner = entities(association);
+  std::vector<std::byte> own = communicator_.together([&] { return bytes_of(*ids(association), type); });
+  return owner.ids_mover ? owner.ids_mover->moved(own, size_of_type(type)) : own;
+}
+
+Rows MovedPart::moved_cells(Rows cells) const {
+  {
+    const Halo halo(communicator_, vertices_.layout, cells.entries);
+    const std::vector<GlobalIndex> new_numbers = halo.fetch(vertices_.places);
+    for (GlobalIndex& vertex : cells.entries) vertex = new_numbers[halo.position(vertex)];
+  }
+  return cells_.mover->moved(std::move(cells));
+}
+
+MeshSlice MovedPart::slice() const {
+  MeshSlice slice;
+  slice.vertices = vertices_.layout;
+  slice.cells = cells_.layout;
+  const std::vector<std::byte> points =
+      vertices_.mover->moved(std::as_bytes(std::span(part_.mesh.points)), sizeof(Point));
+  const std::vector<std::byte> shapes =
+      cells_.mover->moved(std::as_bytes(std::span(part_.mesh.cells.shapes)), sizeof(Shape));
+  slice.cell_vertices = moved_cells(communicator_.together([&] {
+    const Cells& cells = part_.mesh.cells;
+    return Rows{cells.offsets, {cells.vertices.begin(), cells.vertices.end()}};
+  }));
+  communicator_.together([&] {
+    slice.points.resize(points.size() / sizeof(Point));
+    slice.shapes.resize(shapes.size() / sizeof(Shape));
+    std::copy(points.begin(), points.end(), std::as_writable_bytes(std::span(slice.points)).begin());
+    std::copy(shapes.begin(), shapes.end(), std::as_writable_bytes(std::span(slice.shapes)).begin());
+  });
+  return slice;
+}
+
+}  // namespace meshorder::distributed

@@ -1,0 +1,69 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/comm/communicator.hpp"
+#include "distributed/comm/layout.hpp"
+#include "distributed/files/mesh_share.hpp"
+#include "distributed/files/moved_part.hpp"
+#include <meshorder/io.hpp>
+#include <meshorder/mesh.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// Writes the parts of a mesh that one rank has as files of Nemesis: Exodus II, with the numbers in the whole
+/// mesh, and what each part shares with which others. A mesh that did not come from an Exodus II file, or is
+/// not in the order of one, is written to memory as such a file first, and read from there. O(size of the
+/// mesh · log).
+///
+/// Format: Hennigan, Shadid, "NEMESIS I: A Set of Functions for Describing Unstructured Finite-Element Data
+/// on Parallel Computers" (Sandia, 1998), and the names of dimensions and variables in exodusII_int.h of
+/// SEACAS, https://sandialabs.github.io/seacas-docs/.
+///
+/// @param mesh         in its new order; Exodus II holds its cells
+/// @param part_starts  as of `part_of`
+/// @param paths        of files that exist, one for each part
+/// @param names        of the files in messages
+/// @param notes        receives what Exodus II holds in another way
+/// @return how many vertices the pieces have more than the mesh, as several have the same
+/// @throws InputError where a file cannot be written; Unavailable in a build without netCDF
+GlobalIndex write_nemesis_pieces(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts,
+                                 const std::vector<std::string>& paths, const std::vector<std::string>& names,
+                                 Notes& notes);
+
+/// What a rank has of a mesh of an Exodus II file whose pieces all ranks write.
+struct NemesisShare {
+  MeshShare share;
+  std::vector<GlobalIndex> block_ends;   ///< as of `places_by_block`
+  std::vector<std::int64_t> set_counts;  ///< members and distribution factors of the sets of the whole mesh
+};
+
+/// Returns the share of this rank. Every rank has to call it. O(size of the part + size of the share · log).
+///
+/// @param moved       in its new order by blocks
+/// @param block_ends  of the file
+/// @throws as `Communicator::exchange`
+[[nodiscard]] NemesisShare nemesis_share(const Communicator& communicator, const MovedPart& moved,
+                                         const std::vector<GlobalIndex>& block_ends,
+                                         const std::vector<GlobalIndex>& part_starts);
+
+/// Writes the parts as the function above, each rank its own. Every rank has to call it. O(size of the share
+/// · log).
+///
+/// @throws SharedError where a file cannot be written
+GlobalIndex write_nemesis_pieces(const Communicator& communicator, const NemesisShare& share,
+                                 const std::vector<GlobalIndex>& part_starts,
+                                 const std::vector<std::string>& paths,
+                                 const std::vector<std::string>& names);
+
+/// Returns the name of the file of a part: "mesh.e.16.03".
+[[nodiscard]] std::string nemesis_name(const std::string& name, Index parts, Index part);
+
+/// Returns whether a file is a piece that `write_nemesis_pieces` wrote; false in a build without netCDF.
+[[nodiscard]] bool is_own_nemesis_piece(const std::filesystem::path& path);
+
+}  // namespace meshorder::distributed

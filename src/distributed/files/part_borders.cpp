@@ -1,0 +1,133 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/files/part_borders.hpp"
+
+#include "cells/facets.hpp"
+#include "distributed/files/piece_contents.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <numeric>
+#include <span>
+#include <tuple>
+
+namespace meshorder::distributed {
+namespace {
+
+/// A facet that more than one part may have, on its way to the rank that answers for its largest corner.
+struct Candidate {
+  std::array<GlobalIndex, 4> corners;  ///< descending; −1 after the last
+  GlobalIndex cell;
+  Index part;  ///< of the cell
+  int facet;
+
+  [[nodiscard]] auto key() const { return std::tie(corners, cell, facet); }
+};
+
+/// A facet at another part, on its way to the rank of its cell.
+struct Match {
+  GlobalIndex cell;
+  Index part;  ///< of the cell
+  Index other;
+  int facet;
+};
+
+/// Returns whether another part has all of these vertices.
+bool is_shared(const MeshParts& parts, std::span<const Index> cell, const std::vector<int>& positions) {
+  const auto first = parts.parts_with(cell[positions.front()]);
+  if (first.size() < 2) return false;
+  const auto has_all = [&](Index part) {
+    return std::all_of(positions.begin(), positions.end(), [&](int position) {
+      const auto with = parts.parts_with(cell[position]);
+      return std::binary_search(with.begin(), with.end(), part);
+    });
+  };
+  return std::count_if(first.begin(), first.end(), has_all) > 1;
+}
+
+/// Returns the facets of this rank's cells that more than one part may have.
+std::vector<Candidate> candidates(const Mesh& mesh, const ShareNumbers& numbers, const MeshParts& parts) {
+  std::vector<Candidate> found;
+  FacetsOfTypes facets_of;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const auto cell = mesh.cells[c];
+    const auto& facets = facets_of(mesh.cells.shapes[c], mesh.cells.vertex_count(c));
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      if (facets[f].size() < 2 || !is_shared(parts, cell, facets[f])) continue;
+      Candidate candidate{
+          {}, numbers.cells[static_cast<std::size_t>(c)], parts.part_with(c), static_cast<int>(f)};
+      const std::array<Index, 4> corners = sorted_corners(cell, facets[f]);
+      std::transform(corners.begin(), corners.end(), candidate.corners.begin(), [&](Index corner) {
+        return corner < 0 ? GlobalIndex{-1} : numbers.vertices[static_cast<std::size_t>(corner)];
+      });
+      found.push_back(candidate);
+    }
+  }
+  return found;
+}
+
+/// Calls `take(a, b)` for the facets with the same corners, in pairs of different parts.
+template <class Take>
+void for_pairs(std::vector<Candidate>& facets, const Take& take) {
+  std::sort(facets.begin(), facets.end(),
+            [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); });
+  for (std::size_t begin = 0, end = 0; begin < facets.size(); begin = end) {
+    while (end < facets.size() && facets[end].corners == facets[begin].corners) ++end;
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t k = i + 1; k < end; ++k) {
+        if (facets[i].part != facets[k].part) take(facets[i], facets[k]);
+      }
+    }
+  }
+}
+
+/// Sends values to ranks, and returns those that arrive: by the rank that sent them, then in their order
+/// there.
+template <class T, class RankOf>
+std::vector<T> sent_to_ranks(const Communicator& communicator, std::vector<T> values, const RankOf& rank_of) {
+  Parcels<T> parcels;
+  communicator.together([&] {
+    std::stable_sort(values.begin(), values.end(),
+                     [&](const T& a, const T& b) { return rank_of(a) < rank_of(b); });
+    parcels.starts.assign(static_cast<std::size_t>(communicator.size()) + 1, 0);
+    for (const T& value : values) ++parcels.starts[static_cast<std::size_t>(rank_of(value)) + 1];
+    std::partial_sum(parcels.starts.begin(), parcels.starts.end(), parcels.starts.begin());
+    parcels.values = std::move(values);
+  });
+  return communicator.exchange(parcels).values;
+}
+
+}  // namespace
+
+std::vector<std::vector<BorderFacet>> facets_between(const Communicator& communicator, const Mesh& mesh,
+                                                     const ShareNumbers& numbers, const MeshParts& parts) {
+  std::vector<Candidate> asked =
+      sent_to_ranks(communicator, communicator.together([&] { return candidates(mesh, numbers, parts); }),
+                    [&](const Candidate& facet) { return numbers.layout.owner(facet.corners[0]); });
+  const Layout ranks = ranks_of_parts(parts.size(), communicator.size());
+  const std::vector<Match> own = sent_to_ranks(communicator, communicator.together([&] {
+    std::vector<Match> matches;
+    for_pairs(asked, [&](const Candidate& a, const Candidate& b) {
+      // both in one step, so that the two parts have their facets in one order
+      matches.push_back({a.cell, a.part, b.part, a.facet});
+      matches.push_back({b.cell, b.part, a.part, b.facet});
+    });
+    return matches;
+  }),
+                                               [&](const Match& match) { return ranks.owner(match.part); });
+  return communicator.together([&] {
+    std::vector<std::vector<BorderFacet>> result(static_cast<std::size_t>(parts.size()));
+    for (const Match& match : own) {
+      const auto cell = std::lower_bound(numbers.cells.begin(), numbers.cells.end(), match.cell);
+      result[static_cast<std::size_t>(match.part)].push_back(
+          {match.other, static_cast<Index>(cell - numbers.cells.begin()), match.facet});
+    }
+    for (std::vector<BorderFacet>& of_part : result) {
+      std::stable_sort(of_part.begin(), of_part.end(),
+                       [](const BorderFacet& a, const BorderFacet& b) { return a.part < b.part; });
+    }
+    return result;
+  });
+}
+
+}  // namespace meshorder::distributed

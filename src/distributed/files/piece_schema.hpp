@@ -1,0 +1,96 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/comm/layout.hpp"
+#include "distributed/comm/rows.hpp"
+#include "io/vtk/vtk.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace meshorder::vtk {
+struct VtuElement;
+}
+
+namespace meshorder::distributed {
+
+/// An array of the pieces.
+struct PieceArray {
+  enum class Section : std::uint8_t { points_data, cells_data, points, cells };
+  enum class Source : std::uint8_t {
+    rows,          ///< of the mesh
+    texts,         ///< of the mesh
+    global_ids,    ///< new numbers among those of the whole mesh, from 0 on
+    ghost_type,    ///< VTK's: 1 for what other parts own
+    part,          ///< that owns it
+    connectivity,  ///< places of the vertices of the cells
+    offsets,       ///< ends of the cells among these
+  };
+  Section section;
+  Source source;
+  std::string name;
+  std::size_t number;      ///< of rows and texts: place among the arrays of the mesh's file
+  std::uint8_t type;       ///< number type, as the alternatives of Values
+  Offset row;              ///< bytes of a row; of texts, of one of their places
+  std::string attributes;  ///< in XML, beginning with a blank, without what says where the values are
+  std::string inside;      ///< elements of XML in it
+
+  [[nodiscard]] bool is_on_vertices() const {
+    return section == Section::points_data || section == Section::points;
+  }
+};
+
+/// What all pieces of a mesh have in common, made from the XML of its file.
+class PieceSchema {
+ public:
+  /// @param xml     of a .vtu file of one piece, as in `GridRows`
+  /// @param fields  its <FieldData>
+  /// @param ghosts  layers of ghost cells
+  PieceSchema(const std::string& xml, std::string fields, int ghosts);
+
+  /// Returns the arrays in the order in which a piece has them.
+  [[nodiscard]] const std::vector<PieceArray>& arrays() const noexcept { return arrays_; }
+  /// Returns the bytes of the word before an array, which is its size: 4 or 8.
+  [[nodiscard]] Offset word() const noexcept { return word_; }
+  /// Returns the roles of arrays that the pieces have.
+  [[nodiscard]] const std::vector<vtk::ArrayRole>& roles() const noexcept { return roles_; }
+  /// Returns whether the nodes of higher-order hexahedra are in the order of VTK 9.
+  [[nodiscard]] bool has_order_of_vtk_9() const noexcept { return has_order_of_vtk_9_; }
+  /// Returns "on points 'part'" and so on: arrays of the mesh that the pieces lack, as they have others of
+  /// these names.
+  [[nodiscard]] const std::vector<std::string>& replaced() const noexcept { return replaced_; }
+
+  /// Returns the XML of a piece up to its appended data.
+  ///
+  /// @param sizes  bytes of each array
+  [[nodiscard]] std::string head(GlobalIndex vertices, GlobalIndex cells,
+                                 const std::vector<Offset>& sizes) const;
+  /// Returns a .vtu file of the fields, without a piece.
+  [[nodiscard]] std::string fields_alone() const;
+  /// Returns the file that names the pieces.
+  [[nodiscard]] std::string index(const std::vector<std::string>& files) const;
+
+  static constexpr std::string_view kEnd = "\n  </AppendedData>\n</VTKFile>\n";
+
+ private:
+  void add_roles(const vtk::VtuElement& section, PieceArray::Section kind);
+  [[nodiscard]] std::string opening(const char* type) const;
+  /// Writes the elements of a section's arrays.
+  template <class Write>
+  void write_section(PieceArray::Section section, const Write& write) const;
+
+  std::string version_;
+  std::string fields_;
+  std::string points_data_;  ///< attributes
+  std::string cells_data_;
+  std::vector<PieceArray> arrays_;
+  std::vector<std::string> replaced_;
+  std::vector<vtk::ArrayRole> roles_;
+  bool has_order_of_vtk_9_ = false;
+  Offset word_ = 8;
+  int ghosts_;
+};
+
+}  // namespace meshorder::distributed

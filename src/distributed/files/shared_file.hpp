@@ -1,0 +1,65 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/comm/communicator.hpp"
+#include <meshorder/error.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace meshorder::distributed {
+
+/// A file that all ranks read or write at the same time, each its own bytes, by MPI-IO. All functions have to
+/// be called by every rank.
+class SharedFile {
+ public:
+  enum class Use : std::uint8_t { read, write };
+
+  /// Opens a file that exists. Messages have `name`.
+  ///
+  /// @throws SharedError where a rank cannot open it
+  SharedFile(const Communicator& communicator, const std::string& path, std::string name, Use use);
+  ~SharedFile();
+  SharedFile(const SharedFile&) = delete;
+  SharedFile(SharedFile&&) = delete;
+  SharedFile& operator=(const SharedFile&) = delete;
+  SharedFile& operator=(SharedFile&&) = delete;
+
+  /// Fills `bytes`, of any size on each rank, from byte `at` of the file on. O(bytes).
+  ///
+  /// @throws SharedError where a rank gets fewer
+  void read(Offset at, std::span<std::byte> bytes) const;
+
+  /// Writes `bytes`, of any size on each rank, from byte `at` of the file on. O(bytes).
+  ///
+  /// @throws SharedError where a rank cannot, as on a full disk
+  void write(Offset at, std::span<const std::byte> bytes) const;
+
+  /// Writes what is buffered and closes the file.
+  ///
+  /// @throws SharedError where a rank cannot
+  void close();
+
+ private:
+  /// What messages say of a call that fails, and of one that moves fewer bytes.
+  struct Words {
+    std::string_view fault;
+    std::string_view too_short;  ///< before the byte where it should have ended
+    std::string_view remedy;
+  };
+
+  [[nodiscard]] InputError cannot_be_opened(const std::string& reason) const;
+
+  /// Moves the rank's own bytes by a function of MPI, chunk by chunk.
+  template <class Byte, class Call>
+  void transfer(Offset at, std::span<Byte> bytes, const Call& call, const Words& words) const;
+
+  const Communicator& communicator_;
+  std::string name_;
+  MPI_File handle_ = MPI_FILE_NULL;
+};
+
+}  // namespace meshorder::distributed

@@ -1,0 +1,90 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/order/global_graph.hpp"
+
+#include "distributed/comm/number_set.hpp"
+#include "graph/incidence.hpp"
+#include <meshorder/error.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace meshorder::distributed {
+namespace {
+
+/// A dispatch of each element to each rank that owns one of its vertices.
+std::vector<Dispatch> to_owners(const Layout& layout, const Rows& elements) {
+  std::vector<Dispatch> dispatches;
+  std::vector<int> owners;
+  for (Offset e = 0; e < elements.size(); ++e) {
+    owners.clear();
+    for (const GlobalIndex vertex : elements[e]) owners.push_back(layout.owner(vertex));
+    std::sort(owners.begin(), owners.end());
+    owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
+    for (const int owner : owners) dispatches.push_back({owner, e});
+  }
+  return dispatches;
+}
+
+/// The elements with their vertices numbered by their places in `numbers`.
+Incidence renumbered(const Rows& elements, const NumberSet& numbers) {
+  Incidence result;
+  result.vertex_count = index_size(numbers.numbers());
+  result.offsets = elements.offsets;
+  result.vertices.reserve(elements.entries.size());
+  for (const GlobalIndex vertex : elements.entries)
+    result.vertices.push_back(static_cast<Index>(numbers.position(vertex)));
+  return result;
+}
+
+/// The rows of a rank's own vertices, of a graph whose k-th vertex is `numbers[k]`. Vertices that are not
+/// among these have no neighbours.
+Rows own_rows(const CsrGraph& graph, const std::vector<GlobalIndex>& numbers, const Layout& layout,
+              int rank) {
+  const auto place_of = [&](GlobalIndex number) {
+    return static_cast<Index>(std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin());
+  };
+  Index place = place_of(layout.begin(rank));
+  const Offset entries = graph.offsets[place_of(layout.end(rank))] - graph.offsets[place];
+  Rows rows;
+  rows.offsets.reserve(static_cast<std::size_t>(layout.size(rank)) + 1);
+  rows.entries.reserve(static_cast<std::size_t>(entries));
+  for (GlobalIndex vertex = layout.begin(rank); vertex < layout.end(rank); ++vertex) {
+    if (place < graph.size() && numbers[place] == vertex) {
+      for (const Index neighbour : graph[place]) rows.entries.push_back(numbers[neighbour]);
+      ++place;
+    }
+    rows.end_row();
+  }
+  return rows;
+}
+
+}  // namespace
+
+GlobalGraph global_graph(const Communicator& communicator, const Layout& layout, Rows elements) {
+  std::vector<Dispatch> dispatches = communicator.together([&] { return to_owners(layout, elements); });
+  Rows received = send_rows(communicator, std::move(elements), std::move(dispatches));
+  return communicator.together([&] {
+    // numbers of the rank's own, which rise with those among all ranks: the serial graph's rows then do, too
+    const NumberSet set(received.entries);
+    const std::vector<GlobalIndex>& numbers = set.numbers();
+    if (numbers.size() > static_cast<std::size_t>(kMaxIndex)) {
+      throw TooLarge("more than 2,147,483,647 vertices on a rank; start more ranks");
+    }
+    Incidence incidence = renumbered(received, set);
+    received = {};
+    const CsrGraph local = joined_vertices(incidence);
+    incidence = {};
+    return GlobalGraph{layout, own_rows(local, numbers, layout, communicator.rank())};
+  });
+}
+
+std::vector<GlobalIndex> ghosts(const GlobalGraph& graph, int rank) {
+  std::vector<GlobalIndex> others;
+  for (const GlobalIndex vertex : graph.rows.entries) {
+    if (vertex < graph.layout.begin(rank) || vertex >= graph.layout.end(rank)) others.push_back(vertex);
+  }
+  return NumberSet(others).numbers();
+}
+
+}  // namespace meshorder::distributed

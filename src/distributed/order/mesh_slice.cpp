@@ -1,0 +1,66 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/order/mesh_slice.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+namespace meshorder::distributed {
+namespace {
+
+/// Sends each rank the values of the root that `starts` says, and returns this rank's.
+template <class T>
+std::vector<T> shared_out(const Communicator& communicator, const std::vector<T>& values,
+                          std::vector<Offset> starts) {
+  if (!communicator.is_root()) starts.assign(static_cast<std::size_t>(communicator.size()) + 1, 0);
+  return communicator.exchange(std::span<const T>(values), starts).values;
+}
+
+std::vector<Offset> starts_of(const Layout& layout) {
+  std::vector<Offset> starts(1, 0);
+  for (int rank = 0; rank < layout.ranks(); ++rank) starts.push_back(layout.end(rank));
+  return starts;
+}
+
+}  // namespace
+
+MeshSlice scattered(const Communicator& communicator, const Mesh& mesh) {
+  const std::vector<GlobalIndex> counts =
+      communicator.broadcast(std::vector<GlobalIndex>{mesh.vertex_count(), mesh.cell_count()});
+  MeshSlice slice;
+  slice.vertices = Layout::even(counts[0], communicator.size());
+  slice.cells = Layout::even(counts[1], communicator.size());
+  slice.points = shared_out(communicator, mesh.points, starts_of(slice.vertices));
+  const std::vector<Offset> cell_starts = starts_of(slice.cells);
+  slice.shapes = shared_out(communicator, mesh.cells.shapes, cell_starts);
+
+  // where the rows begin among all of the root's, then where among the own
+  const std::vector<Offset> begins = shared_out(communicator, mesh.cells.offsets, cell_starts);
+  std::vector<Offset> vertex_starts(cell_starts.size(), 0);
+  if (communicator.is_root()) {
+    std::transform(cell_starts.begin(), cell_starts.end(), vertex_starts.begin(),
+                   [&](Offset cell) { return mesh.cells.offsets[static_cast<std::size_t>(cell)]; });
+  }
+  const std::vector<Index> vertices = shared_out(communicator, mesh.cells.vertices, std::move(vertex_starts));
+  communicator.together([&] {
+    slice.cell_vertices.entries.assign(vertices.begin(), vertices.end());
+    std::vector<Offset>& offsets = slice.cell_vertices.offsets;
+    offsets.clear();
+    offsets.reserve(begins.size() + 1);
+    for (const Offset begin : begins) offsets.push_back(begin - begins.front());
+    offsets.push_back(static_cast<Offset>(vertices.size()));
+  });
+  return slice;
+}
+
+std::vector<char> are_elements(const Communicator& communicator, const std::vector<Shape>& shapes) {
+  int highest = -1;
+  for (const Shape shape : shapes) highest = std::max(highest, dimension(shape));
+  for (const int other : communicator.gathered(highest)) highest = std::max(highest, other);
+  std::vector<char> result(shapes.size());
+  std::transform(shapes.begin(), shapes.end(), result.begin(),
+                 [&](Shape shape) { return dimension(shape) == highest; });
+  return result;
+}
+
+}  // namespace meshorder::distributed

@@ -1,0 +1,31 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/comm/communicator.hpp"
+#include "distributed/comm/layout.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// Vertices or cells by the numbers that their file gives them.
+struct NumberOrder {
+  std::vector<GlobalIndex> sorted;    ///< places in the file, by number; goes on on the next rank
+  std::optional<std::int64_t> twice;  ///< the smallest number that is given twice
+};
+
+/// Sorts the numbers of vertices or cells. Every rank has to call it. O(n log n) for n of a rank.
+///
+/// @param layout   who has which vertices or cells
+/// @param numbers  of the own ones
+/// @throws as `Communicator::exchange`
+[[nodiscard]] NumberOrder order_of_numbers(const Communicator& communicator, const Layout& layout,
+                                           const std::vector<std::int64_t>& numbers);
+
+/// Returns whether the numbers are 1, 2, … along all ranks. Every rank has to call it. O(numbers).
+[[nodiscard]] bool are_places(const Communicator& communicator, const Layout& layout,
+                              const std::vector<std::int64_t>& numbers);
+
+}  // namespace meshorder::distributed

@@ -1,0 +1,29 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/comm/communicator.hpp"
+#include "distributed/comm/halo.hpp"
+#include "distributed/order/global_graph.hpp"
+#include "distributed/order/local_orders.hpp"
+
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// Parts that are ranges of one order of the whole graph.
+struct RangesOfOrder {
+  PartOrders parts;
+  double imbalance = 1;  ///< the largest part relative to the mean
+  GlobalIndex cut = 0;   ///< edges between parts
+};
+
+/// Cuts an order into ranges of equal size, but for one vertex. Every rank has to call it. O(entries).
+///
+/// @param halo         of the graph's ghosts
+/// @param new_numbers  of the vertices in the graph's rows
+/// @param parts        ≥ 1
+/// @throws as `Communicator::exchange`
+[[nodiscard]] RangesOfOrder ranges_of(const Communicator& communicator, const GlobalGraph& graph,
+                                      const Halo& halo, std::vector<GlobalIndex> new_numbers, Index parts);
+
+}  // namespace meshorder::distributed
