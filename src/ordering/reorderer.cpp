@@ -82,8 +82,9 @@ class Reorderer::Inside {
     update.added = static_cast<Index>(memory_.begun == 0 ? hood.size() : std::ssize(changes.added));
     update.removed = changes.removed;
     const bool is_first = memory_.begun == 0 || update.added == hood.size();
-    Permutation carried = carry(hood, changes, is_first);
-    const double carried_span = hood.span_log2(places_of(carried));
+    const bool all_stay = is_first || changes.places.empty();
+    Permutation carried = all_stay ? Permutation::identity(hood.size()) : carry(hood, changes);
+    const double carried_span = hood.span_log2(all_stay ? std::span<const Index>() : places_of(carried));
     next.vector = carried_vector(memory_.vector, changes);
     next.begun = 1;
     next.count = hood.size();
@@ -130,8 +131,7 @@ class Reorderer::Inside {
  private:
   static std::span<const Index> places_of(const Permutation& order) { return order.old_to_new(); }
 
-  static Permutation carry(const Neighbourhood& hood, const VertexChanges& changes, bool is_first) {
-    if (is_first || changes.places.empty()) return Permutation::identity(hood.size());
+  static Permutation carry(const Neighbourhood& hood, const VertexChanges& changes) {
     const NeighbourRows rows = changes.added.empty() ? NeighbourRows{} : hood.rows_of(changes.added);
     const Index count = changes.removed + hood.size() - static_cast<Index>(changes.added.size());
     return Permutation::from_new_to_old(carried_order(changes.places, count, changes.added, rows));
