@@ -76,8 +76,7 @@ class WholeGrid {
     if (k < arrays_.size()) {
       return std::visit([&](const auto& values) { return bytes_of_values(values); }, arrays_[k]->values);
     }
-    if (k > arrays_.size())
-      return bytes_of_span(std::span(context_.types));  // after points and two of cells
+    if (k > arrays_.size()) return bytes_of_span(std::span(context_.types));  // after points and two of cells
     const std::vector<Point>& points = context_.mesh.points;
     const std::span<const double> numbers(points.front().data(), 3 * points.size());
     if (!context_.points_are_floats()) return bytes_of_span(numbers);
