@@ -7,8 +7,8 @@
 //
 // All orders share one memory, which each fills before its turn, so that none has luckier pages. Each round
 // has another sequence of them. A kernel runs by turns in the order and, in a memory of its own, in the first
-// one: on a shared machine a time alone would say more about the minute than about the order. Prints medians
-// of these ratios times the median in the first order, ms of the thread's processor time.
+// one, because the pace of a shared machine changes from minute to minute. Prints medians of the ratios of
+// these times, multiplied by the median time in the first order, ms of the thread's processor time.
 #include "io/npy.hpp"
 #include "kernels/plain.hpp"
 #include "measuring.hpp"

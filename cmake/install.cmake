@@ -1,6 +1,7 @@
 # What `cmake --install` puts where. Install components: library (shared C++ library), c (shared C library), development
 # (headers, archives, CMake and pkg-config files, examples), mpi (shared library for many ranks, if it was built), petsc
-# (plugin for PETSc, if it was built), command (program, manual, completions, documents), lab (meshorder-lab and its manual) and licence. All paths are relative to the prefix, so that an installed tree can be moved.
+# (plugin for PETSc, if it was built), command (program, manual, completions, documents), lab (meshorder-lab and its manual)
+# and licence. All paths are relative to the prefix, so that an installed tree can be moved.
 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)

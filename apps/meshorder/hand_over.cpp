@@ -33,10 +33,8 @@ char** subcommand(char** arguments) {
     const std::string_view word = *argument;
     if (word == "--plugin") {
       if (*++argument == nullptr) return nullptr;
-    } else if (word.starts_with("-") && !word.starts_with("--plugin=")) {
-      return nullptr;
-    } else if (word != "help" && !word.starts_with("-")) {
-      return argument;
+    } else if (word != "help" && !word.starts_with("--plugin=")) {
+      return word.starts_with("-") ? nullptr : argument;
     }
   }
   return nullptr;
@@ -57,9 +55,12 @@ bool is_of_lab(std::string_view word) {
                      [&](const LabCommand& command) { return command.name == word; });
 }
 
+/// Returns an empty path where the system does not say where this program is: a name alone would be that of a
+/// file in the present folder.
 std::filesystem::path beside_this_program(const char* name) {
-  std::error_code none;
-  return std::filesystem::read_symlink("/proc/self/exe", none).replace_filename(name);
+  std::error_code code;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", code);
+  return code ? std::filesystem::path() : self.parent_path() / name;
 }
 
 /// Executes the program, or reports why it is needed.

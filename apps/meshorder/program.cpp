@@ -54,9 +54,8 @@ void describe(const Program& program, CLI::App& app, std::vector<std::string>& a
 /// Runs what the arguments ask for; returns the exit status.
 int run(const Program& program, std::vector<std::string> arguments) {
   CLI::App app;
-  const bool has_none = arguments.empty();
   describe(program, app, arguments);
-  if (has_none) {
+  if (arguments.empty()) {
     write_stderr(app.help());
     return kBadInput;
   }

@@ -221,3 +221,23 @@ def test_a_calibration_is_written_through_no_link(command, tmp_path, precious, m
     file.unlink()
     file.symlink_to(precious / "thesis.tex")
     assert LINK.partition(";")[0] in command.run("calibrate", "--budget", "0.2").stderr
+
+
+@pytest.mark.parametrize("arguments", [["models"], ["order", "mesh.off", "--parts", "2"]])
+@pytest.mark.parametrize("has_proc", [True, False])
+def test_no_program_of_the_present_folder_is_executed(tmp_path, arguments, has_proc):
+    """Those that the command hands over to are beside it, not beside the user nor a link to it."""
+    for name in ("meshorder-lab", "meshorder-mpi"):
+        planted = tmp_path / name
+        planted.write_text("#!/bin/sh\necho planted\n")
+        planted.chmod(0o755)
+    (tmp_path / "meshorder").symlink_to(conftest.MESHORDER)
+    command = ["./meshorder", *arguments]
+    if not has_proc:  # as in a bare chroot
+        command = ["unshare", "--mount", "sh", "-c", 'mount -t tmpfs none /proc && exec "$0" "$@"', *command]
+        if subprocess.run(["unshare", "--mount", "true"], check=False, capture_output=True).returncode:
+            pytest.skip("unshare needs rights that this user does not have")
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+    assert "planted" not in done.stdout
+    if not has_proc:
+        assert done.returncode == 2 and "beside" in done.stderr and done.stderr.count("\n") == 1, done.stderr
