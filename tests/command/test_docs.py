@@ -125,3 +125,17 @@ def test_the_two_studies_compare_as_committed(command, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     command.ok("report", "results.json", "zen4.json", "-o", "comparison.html")
     assert (tmp_path / "comparison.md").read_text() == (committed / "comparison.md").read_text()
+
+
+def test_each_page_is_in_the_contents():
+    """As the manual's builder demands, which is reached an hour later."""
+    docs = conftest.ROOT / "docs"
+    pages = {page.relative_to(docs).with_suffix("").as_posix() for page in docs.rglob("*.md")} - {"index"}
+    listed = set()
+    for page in docs.rglob("*.md"):
+        for tree in re.findall(r"^```\{toctree\}\n(.*?)^```$", page.read_text(), flags=re.MULTILINE | re.DOTALL):
+            for line in tree.splitlines():
+                if line.strip() and not line.startswith(":"):
+                    entry = re.sub(r"^.*<(.*)>$", r"\1", line.strip())
+                    listed.add((page.parent / entry).relative_to(docs).as_posix())
+    assert pages - listed == set()
