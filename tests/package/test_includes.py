@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Who includes whom: the table of CONTRIBUTING.md, read off the include lines."""
+"""Who includes whom: the picture in CONTRIBUTING.md, read off the include lines."""
 import pathlib
 import re
 
