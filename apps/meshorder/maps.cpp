@@ -36,9 +36,6 @@ std::string ids_path(const std::string& prefix, const std::string& what) {
 }
 std::string kept_path(const std::string& prefix) { return prefix + ".cells.kept.npy"; }
 
-/// What the names of the maps of cells said before they said "cells".
-constexpr const char* kOldNameOfCells = "elements";
-
 /// Writes numbers, or has a file removed that an earlier run left where there are none.
 template <class Number>
 void write_or_remove(const std::vector<Number>& numbers, const std::string& path, OutputSet& files,
@@ -70,30 +67,19 @@ std::vector<std::int64_t> read_ids(const std::string& path, Index count) {
 }
 
 Maps read_permutations(const std::string& prefix, const Mesh& mesh) {
-  const bool is_old = !std::filesystem::exists(old_to_new_path(prefix, "cells")) &&
-                      std::filesystem::exists(old_to_new_path(prefix, kOldNameOfCells));
-  const std::string cells = is_old ? kOldNameOfCells : "cells";
   return {read_permutation(FilePath::derived(old_to_new_path(prefix, "vertices")), mesh.vertex_count(),
                            "vertices"),
-          read_permutation(FilePath::derived(old_to_new_path(prefix, cells)), mesh.cell_count(), "cells"),
+          read_permutation(FilePath::derived(old_to_new_path(prefix, "cells")), mesh.cell_count(), "cells"),
           read_ids(ids_path(prefix, "vertices"), mesh.vertex_count()),
-          read_ids(ids_path(prefix, cells), mesh.cell_count()),
+          read_ids(ids_path(prefix, "cells"), mesh.cell_count()),
           {},
           {},
           {}};
 }
 
-/// Removes maps of cells that an earlier version wrote with this prefix, so that nobody takes them for these.
-void remove_old_maps(const std::string& prefix, OutputSet& files) {
-  for (const std::string& path :
-       {old_to_new_path(prefix, kOldNameOfCells), new_to_old_path(prefix, kOldNameOfCells),
-        ids_path(prefix, kOldNameOfCells)})
-    files.remove(FilePath::derived(path));
-}
-
 /// Throws Error if a file of the maps is named instead of their prefix.
 void require_prefix(const std::string& prefix) {
-  for (const char* const what : {".vertices.", ".cells.", ".elements.", ".maps.json"}) {
+  for (const char* const what : {".vertices.", ".cells.", ".maps.json"}) {
     const std::size_t at = prefix.rfind(what);
     const bool is_file =
         at != std::string::npos && (prefix.ends_with(".npy") || prefix.ends_with(".maps.json"));
@@ -136,7 +122,7 @@ constexpr std::array<std::pair<const char*, std::uint64_t MapChecksums::*>, 5> k
      {"kept", &MapChecksums::kept}}};
 
 /// The checksums of the mesh before and after, unknown where another program wrote the mesh; those of the
-/// maps, unknown where another program wrote these or an earlier version of this one.
+/// maps, unknown where another program wrote these.
 struct Identity {
   std::optional<MeshChecksums> before;
   std::optional<MeshChecksums> after;
@@ -217,7 +203,6 @@ std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& befor
   std::vector<std::string> written;
   write_map(maps.vertices, maps.vertex_ids, prefix, "vertices", files, written);
   write_map(maps.cells, maps.cell_ids, prefix, "cells", files, written);
-  remove_old_maps(prefix, files);
   write_or_remove(maps.kept, kept_path(prefix), files, written);
   write_or_remove(maps.vertex_parts, map_paths(prefix, "vertices").parts, files, written);
   write_or_remove(maps.cell_parts, map_paths(prefix, "cells").parts, files, written);
@@ -241,7 +226,6 @@ void remove_other_maps(const std::string& prefix, OutputSet& files) {
   for (const char* const what : {"vertices", "cells"})
     files.remove(FilePath::derived(ids_path(prefix, what)));
   files.remove(FilePath::derived(kept_path(prefix)));
-  remove_old_maps(prefix, files);
 }
 
 void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& notes) {

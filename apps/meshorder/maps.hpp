@@ -75,8 +75,8 @@ std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& befor
 std::string write_identity(const MeshChecksums& before, const MeshChecksums& after, const MapChecksums& maps,
                            const std::string& prefix, OutputSet& files);
 
-/// Has a set remove maps that an earlier run left with this prefix and that not every mesh has: old numbers,
-/// kept cells, and maps of cells with the names of earlier versions.
+/// Has a set remove maps that an earlier run left with this prefix and that not every mesh has: old numbers
+/// and kept cells.
 void remove_other_maps(const std::string& prefix, OutputSet& files);
 
 /// Leaves those cells out of a mesh that were left out before it was ordered, with the notes of `keep_cells`.

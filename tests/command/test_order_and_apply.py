@@ -214,18 +214,6 @@ def test_maps_that_move_nothing_lead_back_without_checksums_of_the_mesh_after(co
     assert "not in the order" in command.fails("apply", "m", "other.vtu", "-o", "c.vtu")
 
 
-def test_maps_of_cells_with_their_old_name_are_applied(command, tmp_path):
-    write_boxes(tmp_path)
-    command.ok("order", "a.vtu", "-o", "b.vtu", "--vertices", "rcm", "--elements", "scrambled", "--maps", "m")
-    for name in ("old_to_new", "new_to_old"):
-        (tmp_path / f"m.cells.{name}.npy").rename(tmp_path / f"m.elements.{name}.npy")
-    command.ok("apply", "m", "a.vtu", "-o", "c.vtu")
-    assert (tmp_path / "c.vtu").read_bytes() == (tmp_path / "b.vtu").read_bytes()
-    # new maps with the prefix leave no old ones behind
-    command.ok("order", "a.vtu", "-o", "b.vtu", "--maps", "m")
-    assert not list(tmp_path.glob("m.elements.*"))
-
-
 @pytest.mark.parametrize("name", ["m.vertices.old_to_new.npy", "m.cells.new_to_old.npy", "m.maps.json"])
 def test_a_file_of_the_maps_is_not_their_prefix(command, tmp_path, name):
     write_boxes(tmp_path)

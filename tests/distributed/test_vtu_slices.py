@@ -239,7 +239,6 @@ def test_maps_are_those_that_one_rank_writes(tmp_path, ranks):
     write(tmp_path / "text.vtu", made, mode="binary")
     for name, by in (("raw", "all ranks"), ("zlib", "all ranks"), ("text", "rank 0")):
         (tmp_path / f"{name}.vertices.ids.npy").write_bytes(b"of an earlier run")
-        (tmp_path / f"{name}.elements.old_to_new.npy").write_bytes(b"of an earlier version")
         result = json.loads(order(ranks, tmp_path / f"{name}.vtu", "-o", tmp_path / f"{name}-out.vtu", "--parts", "4", "--maps",
                                   tmp_path / name, "--json").stdout)
         assert result["files_by"] == by

@@ -158,8 +158,7 @@ class _Maps:
     """
 
     #: what only some runs write; those of an earlier one go
-    _OPTIONAL = ("vertices.ids", "cells.ids", "cells.kept", "vertices.parts", "cells.parts",
-                 "elements.old_to_new", "elements.new_to_old", "elements.ids")  # fmt: skip
+    _OPTIONAL = ("vertices.ids", "cells.ids", "cells.kept", "vertices.parts", "cells.parts")
 
     def __init__(self, prefix: str, folder: str) -> None:
         self.prefix = prefix
