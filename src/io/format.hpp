@@ -5,6 +5,7 @@
 #include "io/stream/file_path.hpp"
 #include <meshorder/io.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -37,8 +38,11 @@ struct Format {
   /// the numbers of vertices: an entry below the diagonal, the edges of a graph by their vertices. Returns
   /// the applied permutation of cells. Null: files keep the cells as they are.
   Permutation (*settle_cells)(Mesh&) = nullptr;
-  bool single_file = true;        ///< whether a mesh is one file; others do not fit one stream
-  int first_number = 0;           ///< that vertices and cells have by their places where the mesh has no ids
+  bool single_file = true;  ///< whether a mesh is one file; others do not fit one stream
+  int first_number = 0;     ///< that vertices and cells have by their places where the mesh has no ids
+  /// Returns this number for a mesh that came from the format. Null: all files have the same.
+  std::int64_t (*first_number_of)(const Mesh&) = nullptr;
+  bool holds_ids = true;          ///< whether files can give vertices and cells any numbers
   std::string_view library = {};  ///< that parses the files; empty: meshorder does
 
   /// Returns the name in lower case, as the public functions take it.
@@ -71,12 +75,11 @@ const Format* format_of_bytes(std::string_view bytes);
 /// file.
 Permutation arrange_cells(Mesh& mesh, const Format& to);
 
-/// Throws InvalidArgument if files of the format number vertices and cells by their places, so that
-/// `Ids::keep` would be without effect.
+/// Throws InvalidArgument for `Ids::keep` if the format cannot hold ids.
 void check_holds_ids(const Format& format, Ids ids);
 
-/// Moves a mesh to the places that `reorder` returned for one that is written in the format `to`, which
-/// `check_holds_ids`; throws as the public `apply_reordering`.
+/// Moves a mesh to the places that `reorder` returned for one that is written in the format `to`; call
+/// `check_holds_ids` first. Throws as the public `apply_reordering`.
 void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,
                       Ids ids);
 

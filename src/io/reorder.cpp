@@ -5,10 +5,10 @@
 
 #include "base/arena.hpp"
 #include "io/format.hpp"
-#include "io/tetgen/tetgen.hpp"
-#include "io/vega/parts.hpp"
 #include "mesh/graphs.hpp"
 #include <meshorder/error.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -24,13 +24,11 @@ namespace {
 
 /// Returns the number that the mesh's file gives its first vertex, where no ids say otherwise.
 std::int64_t first_number(const Mesh& mesh) {
-  const FormatMetadata* const metadata = mesh.format_metadata.get();
-  if (const auto* of_tetgen = dynamic_cast<const tetgen::Metadata*>(metadata)) return of_tetgen->base;
-  if (const auto* of_vega = dynamic_cast<const vega::Metadata*>(metadata)) return of_vega->vertex_base;
   const std::span<const Format> formats = all_formats();
   const auto own = std::find_if(formats.begin(), formats.end(),
                                 [&](const Format& format) { return format.key() == mesh.format; });
-  return own == formats.end() ? 0 : own->first_number;
+  if (own == formats.end()) return 0;
+  return own->first_number_of != nullptr ? own->first_number_of(mesh) : own->first_number;
 }
 
 /// Writes the numbers down that a file gives by position, so that they can move with what they belong to.
@@ -90,9 +88,9 @@ Permutation arrange_cells(Mesh& mesh, const Format& to) {
 }
 
 void check_holds_ids(const Format& format, Ids ids) {
-  if (ids == Ids::keep && format.name == "TetGen") {
-    throw InvalidArgument("reorder: TetGen numbers points and cells by their places; ids cannot be kept");
-  }
+  if (ids != Ids::keep || format.holds_ids) return;
+  throw InvalidArgument(
+      fmt::format("reorder: {} numbers points and cells by their places; ids cannot be kept", format.name));
 }
 
 void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,

@@ -6,7 +6,7 @@
 #include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
 #include "mesh/stored_matrix.hpp"
-#include "ordering/method.hpp"
+#include "ordering/grouped.hpp"
 #include "ordering/moved.hpp"
 #include "ordering/order_cells.hpp"
 #include <meshorder/error.hpp>

@@ -1,4 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "ordering/auto.hpp"
+
 #include "base/point.hpp"
 #include "metrics/edge_span.hpp"
 #include "metrics/first_touches.hpp"

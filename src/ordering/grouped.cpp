@@ -1,9 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "ordering/grouped.hpp"
+
 #include "base/point.hpp"
-#include "ordering/method.hpp"
+#include "ordering/auto.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -82,6 +85,24 @@ void check_start(RealView start, Index vertices) {
 
 }  // namespace
 
+std::vector<Index> dense_groups(const IndexView& groups, Index size, const char* what, Index& count) {
+  if (std::cmp_not_equal(groups.size(), size)) {
+    throw InvalidArgument("groups: " + std::to_string(groups.size()) + " numbers for " +
+                          std::to_string(size) + " " + what);
+  }
+  std::vector<std::int64_t> values(groups.size());
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = groups[k];
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  count = index_size(values);
+  std::vector<Index> result(groups.size());
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    result[k] =
+        static_cast<Index>(std::lower_bound(values.begin(), values.end(), groups[k]) - values.begin());
+  }
+  return result;
+}
+
 Order order_graph_in_groups(std::string_view method, const VertexInput& input,
                             std::span<const Index> group_of, Index groups, const OrderOptions& options) {
   check_groups(input.graph, group_of, groups);
@@ -110,6 +131,16 @@ Order order_graph_in_groups(std::string_view method, const VertexInput& input,
   }
   result.permutation = Permutation::from_new_to_old(std::move(new_to_old));
   return result;
+}
+
+Order order_vertices_by_options(std::string_view method, const VertexInput& input,
+                                const OrderOptions& options) {
+  if (options.groups.empty()) return order_graph(method, input, options);
+  Index count = 0;
+  const std::vector<Index> group_of = dense_groups(options.groups, input.graph.size(), "vertices", count);
+  OrderOptions of_group = options;
+  of_group.groups = {};
+  return order_graph_in_groups(method, input, group_of, count, of_group);
 }
 
 }  // namespace meshorder

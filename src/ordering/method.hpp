@@ -40,31 +40,8 @@ struct ElementInput {
 /// @throws Unavailable for a method that this build lacks
 Order order_graph(std::string_view method, const VertexInput& input, const OrderOptions& options = {});
 
-/// Orders the vertices group after group, each group by the method on the graph of its own vertices, so that
-/// neighbours within a group stay neighbours in memory. `auto` chooses once, for the whole graph; reports of
-/// eigensolvers follow each other as the groups do. O(n + edges) and what the method costs.
-///
-/// @param group_of  for each vertex the number of its group, 0 … groups − 1
-/// @throws as `order_graph`, and InvalidArgument if `group_of` does not fit
-Order order_graph_in_groups(std::string_view method, const VertexInput& input,
-                            std::span<const Index> group_of, Index groups, const OrderOptions& options = {});
-
-/// Orders vertices by the method and the groups of `options`, whose values may be any integers.
-///
-/// @throws as `order_graph`, and InvalidArgument for another number of groups
-Order order_vertices_by_options(std::string_view method, const VertexInput& input,
-                                const OrderOptions& options);
-
 /// Orders elements by the method of that name; throws as `order_graph`.
 Order order_incidence(std::string_view method, const ElementInput& input, const OrderOptions& options = {});
-
-/// Returns the vertex method that measurements favour for that graph and workload: never `auto` itself, and
-/// none that needs coordinates where there are none that tell vertices apart. The rules stand in auto.cpp
-/// with their evidence. O(n).
-MethodChoice choose_vertex_method(const VertexInput& input, Workload workload);
-
-/// Returns the element method that measurements favour for that workload. O(1).
-MethodChoice choose_element_method(const ElementInput& input, Workload workload);
 
 /// Returns a registered method of that name, empty if there is none. Thread-safe.
 VertexMethod registered_vertex_method(std::string_view name);

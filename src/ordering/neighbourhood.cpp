@@ -6,6 +6,7 @@
 #include "graph/row_access.hpp"
 #include "metrics/first_touches.hpp"
 #include "ordering/all_methods.hpp"
+#include "ordering/grouped.hpp"
 #include "ordering/space_filling.hpp"
 #include <meshorder/error.hpp>
 

@@ -2,11 +2,11 @@
 #include "ordering/order_cells.hpp"
 
 #include "cells/facets.hpp"
-#include "ordering/method.hpp"
+#include "ordering/auto.hpp"
+#include "ordering/grouped.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
-#include <cstdint>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -16,25 +16,6 @@ namespace {
 
 bool is_one_class(std::span<const Index> classes) {
   return std::all_of(classes.begin(), classes.end(), [&](Index k) { return k == classes.front(); });
-}
-
-/// Returns the numbers of a view as ranks of their values, 0 … `count` − 1.
-std::vector<Index> dense_groups(const IndexView& groups, Index size, const char* what, Index& count) {
-  if (std::cmp_not_equal(groups.size(), size)) {
-    throw InvalidArgument("groups: " + std::to_string(groups.size()) + " numbers for " +
-                          std::to_string(size) + " " + what);
-  }
-  std::vector<std::int64_t> values(groups.size());
-  for (std::size_t k = 0; k < values.size(); ++k) values[k] = groups[k];
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  count = index_size(values);
-  std::vector<Index> result(groups.size());
-  for (std::size_t k = 0; k < result.size(); ++k) {
-    result[k] =
-        static_cast<Index>(std::lower_bound(values.begin(), values.end(), groups[k]) - values.begin());
-  }
-  return result;
 }
 
 }  // namespace
@@ -109,16 +90,6 @@ Order order_cells(std::string_view method, const CellArrays& cells, const Permut
   }
   result.permutation = permutation_within_classes(slot_classes(cells), std::move(sequence));
   return result;
-}
-
-Order order_vertices_by_options(std::string_view method, const VertexInput& input,
-                                const OrderOptions& options) {
-  if (options.groups.empty()) return order_graph(method, input, options);
-  Index count = 0;
-  const std::vector<Index> group_of = dense_groups(options.groups, input.graph.size(), "vertices", count);
-  OrderOptions of_group = options;
-  of_group.groups = {};
-  return order_graph_in_groups(method, input, group_of, count, of_group);
 }
 
 }  // namespace meshorder

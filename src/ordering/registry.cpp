@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/text.hpp"
 #include "ordering/all_methods.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/options.hpp>
@@ -13,17 +12,6 @@
 #include <vector>
 
 namespace meshorder {
-
-template <>
-struct EnumNames<Workload> {
-  static constexpr std::string_view kind = "use";
-  static constexpr std::array names{
-      std::pair{Workload::all, "all"},         std::pair{Workload::element, "element"},
-      std::pair{Workload::spmv, "spmv"},       std::pair{Workload::assembly, "assembly"},
-      std::pair{Workload::springs, "springs"}, std::pair{Workload::bandwidth, "bandwidth"},
-      std::pair{Workload::fill, "fill"},       std::pair{Workload::gpu, "gpu"},
-  };
-};
 
 namespace {
 
@@ -144,9 +132,6 @@ ElementMethod registered_element_method(std::string_view name) {
 }
 
 inline namespace v0_3 {
-
-std::string_view to_string(Workload workload) { return to_string<Workload>(workload); }
-Workload parse_workload(std::string_view name) { return parse<Workload>(name); }
 
 Registration& Registration::operator=(Registration&& other) noexcept {
   if (this != &other) {

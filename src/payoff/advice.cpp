@@ -9,7 +9,7 @@
 #include "mesh/stored_matrix.hpp"
 #include "metrics/edge_span.hpp"
 #include "metrics/sparsity_pattern.hpp"
-#include "ordering/method.hpp"
+#include "ordering/auto.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/cost_model.hpp"
 #include "payoff/shared_work.hpp"

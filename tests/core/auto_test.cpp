@@ -1,8 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "ordering/auto.hpp"
+
 #include "metrics/edge_span.hpp"
 #include "metrics/working_set.hpp"
 #include "ordering/judgement.hpp"
-#include "ordering/method.hpp"
 #include "ordering/moved.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"

@@ -1,5 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/method.hpp"
+#include "ordering/grouped.hpp"
+
+#include "ordering/auto.hpp"
 #include "support/sample_graphs.hpp"
 #include <meshorder/error.hpp>
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace meshorder::exodus {
@@ -83,6 +84,23 @@ void in_parts(Index count, const Put& put) {
     put(first, std::min(kRowsAtOnce, count - first));
   }
 }
+
+/// Attributes of elements or nodes, with their names.
+using Columns = std::vector<std::pair<std::string, const DataArray*>>;
+
+/// Divides the cells, which are in their places, into blocks.
+void plan_blocks(Writing& writing, bool is_own);
+
+/// Gives blocks the names of the sets that have all of their cells and no others, and returns the other sets
+/// of cells.
+std::vector<const EntitySet*> name_blocks(Writing& writing);
+
+/// Returns the attributes of a block: those that it had in its file, then those of arrays that are named so
+/// and have a value for it.
+Columns attributes_of(Writing& writing, const BlockPlan& block);
+
+/// Declares the blocks with their elements and attributes, one of `attributes` for each block.
+void write_blocks(Writing& writing, const std::vector<Columns>& attributes);
 
 /// A set as it is written.
 struct SetPlan {

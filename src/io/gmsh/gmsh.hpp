@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -123,6 +124,10 @@ struct Metadata : FormatMetadata {
   std::vector<EmptyBlock> empty_element_blocks;
 
   [[nodiscard]] std::vector<std::string> contents() const override;
+  [[nodiscard]] bool has(SectionKind kind) const {
+    return std::any_of(sections.begin(), sections.end(),
+                       [kind](const Section& section) { return section.kind == kind; });
+  }
   [[nodiscard]] bool is_version_1() const { return version < 2; }
   /// Whether elements have tags of their own: versions 1 and 2.
   [[nodiscard]] bool is_version_2() const { return version < 3; }
@@ -149,6 +154,8 @@ struct ReadContext {
   std::vector<std::size_t> view_arrays;  ///< index of each view's array in `mesh.data`, if it has one
   Notes& notes;
 };
+
+Mesh read(const FilePath& path, Notes& notes);
 
 /// Reads the line $EndSECTION ($ENDSECTION in version 1). Any other word that begins with $End ends the
 /// section, too, with a note.

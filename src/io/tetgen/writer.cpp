@@ -1,6 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/tetgen/tetgen.hpp"
-
 #include "base/checksum.hpp"
 #include "base/index.hpp"
 #include "base/text.hpp"
@@ -8,6 +6,7 @@
 #include "io/labels.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/text_rows.hpp"
+#include "io/tetgen/tetgen.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 
@@ -368,6 +367,11 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   note_other_companions(path, "does not fit the mesh that was just written beside it", notes);
 }
 
+std::int64_t first_number_of(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  return own == nullptr ? 0 : own->base;
+}
+
 }  // namespace meshorder::tetgen
 
 namespace meshorder {
@@ -380,7 +384,9 @@ Format tetgen_format() {
           .write = tetgen::write,
           .holds = tetgen::holds,
           .conflict = tetgen::conflict,
-          .single_file = false};
+          .single_file = false,
+          .first_number_of = tetgen::first_number_of,
+          .holds_ids = false};
 }
 
 }  // namespace meshorder

@@ -1,16 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/gmsh/gmsh.hpp"
 
-#include "io/all_formats.hpp"
-#include "io/unsupported.hpp"
-#include <meshorder/error.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <map>
 #include <set>
 #include <span>
 
@@ -19,11 +14,8 @@
 // and v4.cpp read and write nodes and elements, data.cpp and links.cpp their data and links, groups.cpp makes
 // groups and entities.
 
-namespace meshorder {
-namespace gmsh {
+namespace meshorder::gmsh {
 namespace {
-
-// ---- reading
 
 const std::set<std::string_view> kDataSections{"NodeData", "ElementData", "ElementNodeData"};
 
@@ -185,11 +177,6 @@ void read_periodic_or_ghosts(ReadContext& reading, SectionKind kind) {
   kind == SectionKind::periodic ? read_periodic(reading) : read_ghosts(reading);
 }
 
-bool has_section(const Metadata& metadata, SectionKind kind) {
-  return std::any_of(metadata.sections.begin(), metadata.sections.end(),
-                     [kind](const Section& section) { return section.kind == kind; });
-}
-
 /// The kinds of section that a file has at most once.
 struct Single {
   std::string_view name;
@@ -216,10 +203,10 @@ constexpr std::array kSingles{
 
 void read_single(ReadContext& reading, const Single& single) {
   const std::string name(single.name);
-  if (has_section(reading.metadata, single.kind)) {
+  if (reading.metadata.has(single.kind)) {
     reading.source.fail("a second section $" + name, "a file has one of them");
   }
-  if (!has_section(reading.metadata, single.after)) {
+  if (!reading.metadata.has(single.after)) {
     reading.source.fail("$" + name + " comes before what it names", "put $Nodes and $Elements first");
   }
   single.read(reading);
@@ -233,7 +220,7 @@ void read_section(ReadContext& reading, const std::string& name) {
     reading.metadata.version = 1;  // which has no $MeshFormat
     reading.metadata.sections.push_back({SectionKind::format, "", "", 0});
   }
-  const bool has_format = has_section(reading.metadata, SectionKind::format);
+  const bool has_format = reading.metadata.has(SectionKind::format);
   if (name == "MeshFormat") {
     if (has_format) source.fail("a second section $MeshFormat", "a file has one");
     return read_format(reading);
@@ -245,7 +232,7 @@ void read_section(ReadContext& reading, const std::string& name) {
   const bool entities = name == "Entities" || name == "PartitionedEntities";
   if (entities && !reading.metadata.is_version_2()) return read_entities(reading, name);
   if (kDataSections.contains(name)) {
-    if (!has_section(reading.metadata, SectionKind::elements)) {
+    if (!reading.metadata.has(SectionKind::elements)) {
       source.fail("$" + name + " comes before $Elements", "put $Nodes and $Elements first");
     }
     return read_view(reading, name);
@@ -262,7 +249,7 @@ void finish(ReadContext& reading) {
   for (const auto& [kind, name] : {std::pair{SectionKind::format, "$MeshFormat"},
                                    {SectionKind::nodes, "$Nodes"},
                                    {SectionKind::elements, "$Elements"}}) {
-    if (!has_section(reading.metadata, kind)) {
+    if (!reading.metadata.has(kind)) {
       reading.source.fail("the file has no section " + std::string(name), "it may be cut short");
     }
   }
@@ -276,6 +263,8 @@ void finish(ReadContext& reading) {
   std::move(sets.begin(), sets.end(), std::back_inserter(mesh.sets));
   mesh.format_metadata = std::make_shared<Metadata>(std::move(reading.metadata));
 }
+
+}  // namespace
 
 Mesh read(const FilePath& path, Notes& notes) {
   ReadContext reading(path, notes);
@@ -296,215 +285,6 @@ Mesh read(const FilePath& path, Notes& notes) {
   return std::move(reading.mesh);
 }
 
-// ---- writing
-
-bool holds(const Mesh& /*mesh*/, Shape shape, int nodes) { return find_type(shape, nodes) != nullptr; }
-
-/// Returns the type of every cell.
-std::vector<const ElementType*> types_of_cells(const Mesh& mesh) {
-  const std::vector<std::int32_t> numbers = integers_of(mesh, kCellType, Association::cells);
-  std::vector<const ElementType*> types;
-  types.reserve(mesh.cells.shapes.size());
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const Shape shape = mesh.cells.shapes[c];
-    const int nodes = mesh.cells.vertex_count(c);
-    const ElementType* last = types.empty() ? nullptr : types.back();
-    if (!last || last->shape != shape || last->nodes != nodes || !numbers.empty()) {
-      last = find_type(shape, nodes);
-      const ElementType* kept = numbers.empty() ? nullptr : find_type(numbers[c]);
-      if (kept && kept->shape == shape && kept->nodes == nodes) last = kept;
-    }
-    types.push_back(last);
-  }
-  return types;
-}
-
-/// Returns the ids of another format if Gmsh allows them: positive and distinct; else none, with a note.
-std::vector<std::int64_t> usable_ids(const std::vector<std::int64_t>& ids, std::string_view what,
-                                     Notes& notes) {
-  std::vector<std::int64_t> sorted = ids;
-  std::sort(sorted.begin(), sorted.end());
-  const bool usable = sorted.empty() || (sorted.front() > 0 &&
-                                         std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end());
-  if (usable) return ids;
-  notes.push_back(fmt::format("the {} are renumbered: Gmsh's numbers are positive and distinct", what));
-  return {};
-}
-
-bool is_parametric_2(const Metadata& layout) {
-  return layout.is_version_2() &&
-         std::any_of(layout.sections.begin(), layout.sections.end(),
-                     [](const Section& section) { return section.name == "ParametricNodes"; });
-}
-
-/// Returns whether the mesh still has the arrays that a file of this layout needs.
-bool still_fits(const Mesh& mesh, const Metadata& layout) {
-  const DataArray* entities = find_array(mesh, kNodeEntity, Association::vertices);
-  const bool has_node_entities =
-      entities && entities->components == 2 && !integers_of(mesh, kNodeEntity, Association::vertices).empty();
-  if (layout.is_version_2()) return !is_parametric_2(layout) || (has_node_entities && parameters_of(mesh));
-  return has_node_entities &&
-         integers_of(mesh, kCellEntity, Association::cells).size() == mesh.cells.shapes.size();
-}
-
-/// Takes ids, entities and tags from a mesh that came from a Gmsh file.
-void take_layout(const Metadata& layout, WriteContext& output) {
-  const Mesh& mesh = output.mesh;
-  const auto place = [&](std::string_view name, Association association) {
-    output.placed.push_back(find_array(mesh, name, association));
-  };
-  output.node_ids = mesh.vertex_ids;
-  output.cell_ids = mesh.cell_ids;
-  place(kCellEntity, Association::cells);
-  if (layout.is_version_2()) {
-    if (!integers_of(mesh, kLabel, Association::cells).empty()) place(kLabel, Association::cells);
-    if (layout.is_version_1()) return;
-    place(kCellPartitions, Association::cells);
-    place(kCellTagCount, Association::cells);
-    if (!is_parametric_2(layout)) return;
-    output.node_entities = integers_of(mesh, kNodeEntity, Association::vertices);
-    place(kNodeEntity, Association::vertices);
-    place(kNodeParameters, Association::vertices);
-    return;
-  }
-  output.cell_tags = integers_of(mesh, kCellEntity, Association::cells);
-  output.cell_dimensions = integers_of(mesh, kCellDimension, Association::cells);
-  if (output.cell_dimensions.empty()) {
-    std::array<std::int32_t, kShapes> dimensions{};
-    for (int s = 0; s < kShapes; ++s) dimensions[s] = dimension(static_cast<Shape>(s));
-    output.cell_dimensions.resize(mesh.cells.shapes.size());
-    std::transform(mesh.cells.shapes.begin(), mesh.cells.shapes.end(), output.cell_dimensions.begin(),
-                   [&](Shape shape) { return dimensions[static_cast<std::size_t>(shape)]; });
-  }
-  output.node_entities = integers_of(mesh, kNodeEntity, Association::vertices);
-  place(kCellDimension, Association::cells);
-  place(kNodeEntity, Association::vertices);
-  place(kNodeParameters, Association::vertices);
-  if (has_section(layout, SectionKind::ghosts)) place(kCellGhosts, Association::cells);
-  // labels that were changed after reading are no longer those of the entities: they become data
-  const std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Association::cells);
-  if (!labels.empty() && labels == labels_of_entities(mesh, layout)) place(kLabel, Association::cells);
-}
-
-/// Notes the sets that differ from the physical groups and periodic nodes of the layout.
-void note_sets(const Mesh& mesh, const Metadata& layout, Notes& notes) {
-  const std::vector<EntitySet> of_layout = physical_sets(mesh, layout);
-  using Name = std::pair<Association, std::string_view>;
-  std::multimap<Name, const EntitySet*> physical;
-  for (const EntitySet& set : of_layout) physical.emplace(Name(set.association, set.name), &set);
-  std::set<std::string> periodic;
-  for (const PeriodicLink& link : layout.periodic) periodic.insert({link.nodes, link.master_nodes});
-  for (const EntitySet& set : mesh.sets) {
-    if (set.association == Association::vertices && periodic.contains(set.name)) continue;
-    std::vector<Index> members = set.members;
-    std::sort(members.begin(), members.end());
-    const auto [first, last] = physical.equal_range({set.association, set.name});
-    const bool held =
-        std::any_of(first, last, [&](const auto& other) { return members == other.second->members; });
-    if (!held) note_set_unsupported(set, "Gmsh", notes);
-  }
-}
-
-/// Adds a data section for every array that has no place in the file yet.
-void add_views(Metadata& layout, const WriteContext& output, Notes& notes) {
-  std::set<std::pair<Association, std::string>> viewed;
-  for (const View& view : layout.views) {
-    if (view.array) viewed.emplace(view.association, *view.array);
-  }
-  for (const DataArray& array : output.mesh.data) {
-    const auto& placed = output.placed;
-    const bool has_view = viewed.contains({array.association, array.name});
-    if (has_view || std::find(placed.begin(), placed.end(), &array) != placed.end()) continue;
-    add_view(layout, array, notes);
-  }
-}
-
-void write_format(NumberWriter& sink, const Metadata& layout) {
-  sink.out.print("{}\n", layout.header);
-  if (!layout.binary) return;
-  sink.int32(1);
-  sink.out.write("\n");
-}
-
-void write_section(NumberWriter& sink, const WriteContext& output, const Section& section) {
-  if (section.name.empty()) return;  // the format of version 1
-  const bool version_2 = output.layout.is_version_2();
-  sink.out.print("${}\n", section.name);
-  switch (section.kind) {
-    case SectionKind::format:
-      write_format(sink, output.layout);
-      break;
-    case SectionKind::verbatim:
-      break;
-    case SectionKind::nodes:
-      version_2 ? write_nodes_2(sink, output) : write_nodes_4(sink, output);
-      break;
-    case SectionKind::elements:
-      version_2 ? write_elements_2(sink, output) : write_elements_4(sink, output);
-      break;
-    case SectionKind::periodic:
-      write_periodic(sink, output);
-      break;
-    case SectionKind::ghosts:
-      write_ghosts(sink, output);
-      break;
-    case SectionKind::view:
-      write_view(sink, output, output.layout.views[section.view]);
-      break;
-  }
-  const bool has_binary = section.kind != SectionKind::format && section.kind != SectionKind::verbatim &&
-                          !(version_2 && section.kind == SectionKind::periodic);
-  if (sink.binary && has_binary) sink.out.write("\n");
-  sink.out.write(section.text);
-  sink.out.print("{}{}\n", output.layout.is_version_1() ? "$END" : "$End", section.name);
-}
-
-void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
-  const bool keeps_layout = own && still_fits(mesh, *own);
-  Metadata layout = keeps_layout ? *own : Metadata{};
-  WriteContext output{mesh, layout, types_of_cells(mesh), {}, {}, {}, {}, {}, {}, NamedParts(mesh)};
-  output.placed.push_back(find_array(mesh, kCellType, Association::cells));
-  if (keeps_layout) {
-    take_layout(layout, output);
-    note_sets(mesh, layout, notes);
-  } else {
-    note_metadata_unsupported(mesh, "Gmsh", notes);
-    output.node_ids = usable_ids(mesh.vertex_ids, "vertices", notes);
-    output.cell_ids = usable_ids(mesh.cell_ids, "cells", notes);
-    classify(layout, output, notes);
-  }
-  add_views(layout, output, notes);
-
-  OutputFile out(path);
-  const std::string file = path.string();
-  NumberWriter sink(out, file, layout.binary, layout.order);
-  for (const Section& section : layout.sections) write_section(sink, output, section);
-  out.commit();
-}
-
-}  // namespace
-
-std::vector<std::string> Metadata::contents() const {
-  std::vector<std::string> result;
-  std::set<std::string> known;
-  const auto add = [&](std::string what) {
-    if (known.insert(what).second) result.push_back(std::move(what));
-  };
-  for (const Section& section : sections) {
-    if (section.kind != SectionKind::verbatim) continue;
-    // the groups themselves are labels and sets
-    const bool has_names = section.name == "PhysicalNames";
-    add(has_names ? "the numbers of named physical groups" : "Gmsh's $" + section.name);
-  }
-  if (!periodic.empty()) add(fmt::format("the pairs of {} periodic entities", periodic.size()));
-  const bool timed = std::any_of(views.begin(), views.end(), [](const View& view) {
-    return (!view.reals.empty() && view.reals[0] != 0) || view.integers[0] != 0;
-  });
-  if (timed) add("the times and steps of data");
-  return result;
-}
-
 const ElementType& known_type(const NumberReader& source, std::int64_t number) {
   const ElementType* type = number < 0 || number > 1000 ? nullptr : find_type(static_cast<int>(number));
   if (!type) {
@@ -520,21 +300,6 @@ void add_cell(Mesh& mesh, const ElementType& type, std::span<const Index> nodes)
   std::array<Index, 27> sorted{};  // only cells of second order are sorted
   for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = nodes[order[k]];
   mesh.cells.push_back(type.shape, std::span(sorted).first(order.size()));
-}
-
-void write_cell_nodes(RowWriter& to, const WriteContext& output, Index c, bool wide) {
-  const auto nodes = output.mesh.cells[c];
-  const std::span<const int> order = vtk_order(output.types[c]->shape, output.types[c]->nodes);
-  const auto put = [&](std::span<const Index> vertices) {
-    if (wide)
-      return to.all<std::int64_t>(vertices.size(),
-                                  [&](std::size_t k) { return output.node_id(vertices[k]); });
-    for (const Index v : vertices) to.int32(output.node_id(v));
-  };
-  if (order.empty()) return put(nodes);
-  std::array<Index, 27> sorted{};
-  for (std::size_t k = 0; k < order.size(); ++k) sorted[order[k]] = nodes[k];
-  put(std::span(sorted).first(order.size()));
 }
 
 void fail_unknown_node(const ReadContext& reading, std::int64_t id, std::string_view owner,
@@ -564,48 +329,4 @@ void keep_parameters(Mesh& mesh, std::vector<double> values) {
                        {"given", "u", "v", "w"}});
 }
 
-const std::vector<double>* parameters_of(const Mesh& mesh) {
-  const DataArray* array = find_array(mesh, kNodeParameters, Association::vertices);
-  if (!array || array->components != 4 || !array->is_dense()) return nullptr;
-  return std::get_if<std::vector<double>>(&array->values);
-}
-
-std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association) {
-  const DataArray* array = find_array(mesh, name, association);
-  if (!array || (!array->is_dense() && array->components != 1)) return {};
-  std::vector<std::int32_t> given = std::visit(
-      [](const auto& values) {
-        using T = typename std::decay_t<decltype(values)>::value_type;
-        std::vector<std::int32_t> result;
-        if constexpr (std::is_same_v<T, std::int32_t>) {
-          result = values;
-        } else if constexpr (std::is_integral_v<T>) {
-          result.reserve(values.size());
-          for (const T value : values) {
-            if (!std::in_range<std::int32_t>(value)) return std::vector<std::int32_t>{};
-            result.push_back(static_cast<std::int32_t>(value));
-          }
-        }
-        return result;
-      },
-      array->values);
-  if (array->is_dense() || given.empty()) return given;
-  const Index count = association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
-  std::vector<std::int32_t> all(static_cast<std::size_t>(count), 0);
-  for (std::size_t k = 0; k < given.size(); ++k) all[array->indices[k]] = given[k];
-  return all;
-}
-
-}  // namespace gmsh
-
-Format gmsh_format() {
-  return {.name = "Gmsh",
-          .extensions = {".msh"},
-          .groups_cells_by_type = false,
-          .read = gmsh::read,
-          .write = gmsh::write,
-          .holds = gmsh::holds,
-          .first_number = 1};
-}
-
-}  // namespace meshorder
+}  // namespace meshorder::gmsh

@@ -272,8 +272,22 @@ void write_vega(const Mesh& mesh, const FilePath& path, Notes& notes) {
   VegaWriter(mesh, path, notes).write();
 }
 
+std::int64_t first_number_of(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const vega::Metadata*>(mesh.format_metadata.get());
+  return own == nullptr ? 0 : own->vertex_base;
+}
+
 }  // namespace
 
-Format vega_format() { return {"Vega", {".veg"}, false, vega::read, write_vega, vega_holds, vega_conflict}; }
+Format vega_format() {
+  return {.name = "Vega",
+          .extensions = {".veg"},
+          .groups_cells_by_type = false,
+          .read = vega::read,
+          .write = write_vega,
+          .holds = vega_holds,
+          .conflict = vega_conflict,
+          .first_number_of = first_number_of};
+}
 
 }  // namespace meshorder

@@ -1,0 +1,35 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "ordering/method.hpp"
+#include <meshorder/number_view.hpp>
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace meshorder {
+
+/// Returns the numbers of groups as ranks of their values, 0 … `count` − 1. O(size · log size).
+///
+/// @param what   "vertices" or "cells", for the message
+/// @param count  receives how many groups there are
+/// @throws InvalidArgument unless there are `size` numbers
+std::vector<Index> dense_groups(const IndexView& groups, Index size, const char* what, Index& count);
+
+/// Orders the vertices group after group, each group by the method on the graph of its own vertices, so that
+/// neighbours within a group stay neighbours in memory. `auto` chooses once, for the whole graph; reports of
+/// eigensolvers follow each other as the groups do. O(n + edges) and what the method costs.
+///
+/// @param group_of  for each vertex the number of its group, 0 … groups − 1
+/// @throws as `order_graph`, and InvalidArgument if `group_of` does not fit
+Order order_graph_in_groups(std::string_view method, const VertexInput& input,
+                            std::span<const Index> group_of, Index groups, const OrderOptions& options = {});
+
+/// Orders vertices by the method and the groups of `options`, whose values may be any integers.
+///
+/// @throws as `order_graph`, and InvalidArgument for another number of groups
+Order order_vertices_by_options(std::string_view method, const VertexInput& input,
+                                const OrderOptions& options);
+
+}  // namespace meshorder
