@@ -4,6 +4,7 @@
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
+#include "mesh/stored_matrix.hpp"
 #include <meshorder/error.hpp>
 
 #include <gmock/gmock.h>
@@ -127,6 +128,29 @@ TEST(Race, WithoutATimerAGoodOrderStays) {
   EXPECT_EQ(result.winner, std::nullopt);
   EXPECT_EQ(result.reason,
             "no order is predicted to be faster than the file's by more than predictions tell, for zen3");
+}
+
+TEST(Race, LeavesOutOrdersByCoordinatesForAMatrixWithoutThem) {
+  const Mesh mesh = scrambled_grid();
+  const CsrGraph graph = vertex_graph(mesh);
+  Mesh matrix = matrix_mesh({graph.offsets, graph.neighbours});
+  const auto orders = [&] {
+    std::vector<std::string> names;
+    RaceOptions options;
+    options.machine = choose_machine("zen3");
+    options.ordering.workload = Workload::spmv;
+    options.timer = [](Index timed, const auto& /*prepare*/, const TimingOptions& /*timing*/) {
+      return Timings{std::vector<OrderTimes>(static_cast<std::size_t>(timed)), {}};
+    };
+    for (const Candidate& candidate : race(matrix, graph, options).advice.candidates) {
+      names.push_back(candidate.vertices.name);
+      EXPECT_EQ(candidate.elements.name, "original");
+    }
+    return names;
+  };
+  EXPECT_THAT(orders(), testing::Each(testing::Not(HasSubstr("hilbert"))));
+  matrix.points = mesh.points;
+  EXPECT_THAT(orders(), testing::Contains(HasSubstr("hilbert")));
 }
 
 TEST(Race, RefusesWhatNoKernelTells) {
