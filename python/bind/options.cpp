@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -31,12 +32,14 @@ bool is_false(const nb::object& answer) {
 }
 
 /// Reports to a Python function, or to none, and lets signals through: Ctrl-C ends the call as
-/// KeyboardInterrupt. Only the function's False stops; its None goes on.
-std::function<bool(const Progress&)> reporter(const nb::object& function) {
-  return [function](const Progress& progress) {
+/// KeyboardInterrupt. Only the function's False stops; its None goes on. The library may copy it while Python
+/// is unlocked: copies share one reference, the last of which the options hold.
+std::function<bool(const Progress&)> reporter(const nb::object& given) {
+  return [shared = std::make_shared<const nb::object>(given)](const Progress& progress) {
     if (interpreter_ends) return false;
     const nb::gil_scoped_acquire lock;
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    const nb::object& function = *shared;
     if (function.is_none()) return true;
     const nb::object answer =
         function(nb::str(progress.stage.data(), progress.stage.size()), progress.fraction);
