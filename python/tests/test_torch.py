@@ -427,6 +427,17 @@ def test_the_manuals_example_runs(geometric):
     torch.testing.assert_close(made["scores"], expected)
 
 
+def test_the_example_of_the_page_on_gpus_runs():
+    page = pathlib.Path(__file__).resolve().parents[2] / "docs" / "gpu.md"
+    if not page.exists():
+        pytest.skip("the manual is not here")
+    (example,) = re.findall(r"```py\n(.*?)```", page.read_text(), re.DOTALL)
+    points, cells = np.eye(4, 3), np.array([[0, 1, 2, 3]])
+    made: dict[str, typing.Any] = {"nodes": meshorder.Permutation.identity(4), "points": points, "ordered": cells}
+    exec(example, made)
+    assert made["by_torch"].tolist() == pytest.approx([1 / 24] * 4)
+
+
 def test_adjacency_between_two_types(geometric):
     data = geometric.data.HeteroData()
     data["a"].x, data["b"].x = torch.rand(30, 1), torch.rand(20, 1)

@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core, _html
+from . import _core, _devices, _html
 from ._arrays import integers
 from ._errors import InvalidArgument
 
@@ -114,11 +114,12 @@ class Permutation:
         """Moves data of the items to their new places: entry k of the result is entry ``new_to_old[k]`` of ``a``.
 
         Args:
-            a: an array or a tensor of PyTorch with n entries along ``axis``, a list or tuple of n entries, a pandas
-                Series or DataFrame with n entries along ``axis``, or an n × n matrix of SciPy or PyTorch (COO or CSR),
-                whose rows and columns both move. Unchanged. Tensors stay on their device, and gradients flow through.
-            axis: the axis of an array, a tensor or a pandas object that the items lie along.
-            out: for arrays, where to write the result: of the same shape and dtype, C-contiguous, without memory in
+            a: an array with n entries along ``axis``, a list or tuple of n entries, a pandas Series or DataFrame with n
+                entries along ``axis``, or an n × n matrix of SciPy or PyTorch (COO or CSR), whose rows and columns both
+                move. Unchanged. Arrays of PyTorch, JAX, CuPy, Warp and other libraries that follow the Python array API
+                standard stay on their device, and gradients of PyTorch and JAX flow through.
+            axis: the axis of an array or a pandas object that the items lie along.
+            out: for arrays of NumPy, where to write the result: of the same shape and dtype, C-contiguous, without memory in
                 common with ``a``.
 
         Returns:
@@ -140,6 +141,11 @@ class Permutation:
             if len(a) != len(self):
                 raise InvalidArgument(f"move: expected {len(self)} entries, not {len(a)}")
             return type(a)([a[k] for k in self.new_to_old])
+        library = _devices.library_of(a)
+        if library is not None:
+            _refuse(0, out, "an array of another library")
+            self._check_shape(tuple(a.shape), axis)
+            return library.moved(a, self.new_to_old, axis)
         array = np.asanyarray(a)
         self._check_shape(array.shape, axis)
         if out is not None and not _takes(out, array):
@@ -190,13 +196,14 @@ class Permutation:
         Entry i of the result is ``old_to_new[numbers[i]]``. A number keeps its place; `move` changes places.
 
         Args:
-            numbers: integers in 0 … n−1, of any shape, also a tensor of PyTorch. Unchanged unless it is ``out``.
-            out: for arrays, a C-contiguous array of 32- or 64-bit integers of the same shape, to write to;
+            numbers: integers in 0 … n−1, of any shape, in an array of any library that `move` takes. Unchanged unless it
+                is ``out``.
+            out: for arrays of NumPy, a C-contiguous array of 32- or 64-bit integers of the same shape, to write to;
                 ``out=numbers`` works in place. None: a new array.
 
         Returns:
-            ``out``, or a new array of the type of ``numbers``, which is int32 for integers of less than 32 bits; of a
-            tensor a tensor of its type, on its device.
+            ``out``, or a new array of the type and library of ``numbers``, on its device; of int32 for integers of less
+            than 32 bits, but for tensors of PyTorch.
 
         Raises:
             InvalidArgument: a number outside 0 … n−1, an array of other types, an ``out`` that does not fit.
@@ -207,6 +214,11 @@ class Permutation:
             if out is not None:
                 raise InvalidArgument("renumber: a tensor has no out; it is for arrays")
             return torch.renumbered(numbers, self)
+        library = _devices.library_of(numbers)
+        if library is not None:
+            if out is not None:
+                raise InvalidArgument("renumber: an array of another library has no out; it is for arrays of NumPy")
+            return library.renumbered(numbers, self.old_to_new)
         if out is None:
             out = integers(numbers, "numbers", rank=None).copy()
         elif not isinstance(out, np.ndarray) or not out.flags.c_contiguous or not out.flags.writeable:
