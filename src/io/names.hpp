@@ -22,7 +22,7 @@ class DistinctNames {
   /// `longest`: bytes of a name, at least 12; a name that is cut ends with a whole character of UTF-8.
   explicit DistinctNames(std::size_t longest = std::string::npos) : longest_(longest) {}
 
-  /// Returns the name, cut to the longest size; with a number behind it if it is taken. Takes it. O(log
+  /// Returns the name, cut to the longest size, with a number after it if it is taken. Takes it. O(log
   /// names), also where all want the same name.
   std::string take(std::string_view wanted);
 

@@ -13,7 +13,7 @@ namespace meshorder {
 /// O(1).
 double volume_at_first_corner(const std::vector<Point>& points, Shape shape, std::span<const Index> cell);
 
-/// Tells from volumes how a file numbers its linear wedges.
+/// Finds out from volumes how a file numbers its linear wedges.
 ///
 /// The first triangle of a wedge faces outward in the files of some programs and inward in those of others,
 /// and the files do not say which. Shape functions do not mind; faces, normals and volumes do.
@@ -26,12 +26,12 @@ class WedgeVote {
   /// say. O(1).
   void add(Shape shape, std::span<const Index> cell);
 
-  /// Returns whether at least 19 of 20 wedges have, if their first triangle faces inward, volumes of the sign
-  /// of the other cells: of a positive one where there are none. Meshes in which signs are mixed tell
-  /// nothing: false.
+  /// Returns whether the first triangles of wedges face inward: whether more than 20 of 21 wedges then have
+  /// volumes of the sign of the other cells, or positive ones where there are no others. False if signs
+  /// are mixed.
   [[nodiscard]] bool wedges_face_inward() const;
 
-  /// Returns 1 or −1 where at least 19 of 20 cells, wedges with their first triangle inward, have volumes of
+  /// Returns 1 or −1 where more than 20 of 21 cells, wedges with their first triangle inward, have volumes of
   /// that sign, else 0.
   [[nodiscard]] int sign_of_volumes() const;
 

@@ -191,7 +191,7 @@ std::string capitals(std::string_view text) {
 
 namespace {
 
-/// Which fields of a data line are nodes (n), elements (e) and neither (-); the last letter stands for all
+/// Which fields of a data line are nodes (n), elements (e) and neither (-); the last letter holds for all
 /// further fields where a + follows.
 struct Layout {
   std::string_view keyword;

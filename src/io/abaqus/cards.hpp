@@ -78,7 +78,7 @@ bool pairs_sets(const Card& card, std::string_view lines);
 bool depends_on_numbers(const Card& card);
 
 /// Returns all whole numbers above 0 that are the value of a parameter of a card, given with its lines, or
-/// stand alone in a field below its keyword.
+/// the whole content of a field below its keyword.
 std::vector<std::int64_t> numbers_in(std::string_view lines);
 
 }  // namespace meshorder::abaqus

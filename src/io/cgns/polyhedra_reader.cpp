@@ -10,7 +10,7 @@
 #include <type_traits>
 
 // Reads sections of polygons (NGON_n) and polyhedra (NFACE_n). From version 3.4 of CGNS, ElementStartOffset
-// says where the members of an element begin; before, the number of its members stands before them.
+// says where the members of an element begin; in older files the number of members precedes them.
 
 namespace meshorder::cgns {
 namespace {
@@ -318,7 +318,7 @@ void PolyhedraReader::append_polyhedra(const FoundSection& found) {
   turn_by_volumes(first, found.path, contradictions, vote.sign_of_volumes());
 }
 
-/// Turns the cells from `first` on whose orientation the signs of their faces do not tell.
+/// Turns cells from `first` on: where signs of faces contradict, those of volume < 0; else all if `sign` < 0.
 void PolyhedraReader::turn_by_volumes(Index first, const std::string& path, Index contradictions, int sign) {
   Mesh& mesh = reading_.mesh;
   if (contradictions > 0) {

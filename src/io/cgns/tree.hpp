@@ -65,7 +65,7 @@ Tree read_tree(const FilePath& path);
 void write_tree(const Tree& tree, const FilePath& path, const std::function<void(Node&)>& fill);
 
 /// Throws InputError unless libcgns can read a file of HDF5 safely: groups with the attributes of nodes, of
-/// the lengths that it expects, and data that are there. `path` is on disk, `name` stands in messages.
+/// the lengths that it expects, and data that are there. `path` is on disk, `name` is for messages.
 void check_hdf5(const std::filesystem::path& path, const std::string& name);
 
 /// Throws InputError unless libcgns can read a file of ADF safely: nodes, their lists of children and values

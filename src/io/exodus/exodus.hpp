@@ -77,7 +77,7 @@ struct BlockRecord {
   std::string name;     ///< in the file
   std::string in_mesh;  ///< name of the set of its cells, empty if there is none
   std::string type;
-  std::int64_t label = 0;  ///< with shape and nodes, tells the block's cells
+  std::int64_t label = 0;  ///< of its cells; with shape and nodes it identifies the block
   Shape shape = Shape::vertex;
   int nodes = 0;  ///< 0 for a block without elements
   NcType connect_type = kInt;

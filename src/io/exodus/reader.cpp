@@ -95,8 +95,8 @@ void refuse_unknown_kinds(const NcInput& file) {
   }
 }
 
-/// Leaves out what a piece of a decomposed mesh (Nemesis) tells of the others: its numbers do not follow an
-/// order.
+/// Leaves out what a piece of a decomposed mesh (Nemesis) says of the others: an order does not change the
+/// numbers in it.
 void leave_out_decomposition(Reading& reading) {
   constexpr std::array<std::string_view, 9> kCommunication{"node_mapi",   "node_mapb",   "node_mape",
                                                            "elem_mapi",   "elem_mapb",   "n_comm_nids",

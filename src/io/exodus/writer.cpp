@@ -336,7 +336,7 @@ void add_names(const Columns& columns, std::vector<std::string>& names) {
   for (const auto& [name, array] : columns) names.push_back(name);
 }
 
-/// Writes the attributes of the file, of which one tells how long the longest name is.
+/// Writes the attributes of the file, one of which gives the length of the longest name.
 void write_attributes_of_file(Writing& writing, const std::vector<std::string>& names) {
   std::size_t longest = 0;
   for (const std::string& name : names) longest = std::max(longest, std::min(name.size(), kLongestName));

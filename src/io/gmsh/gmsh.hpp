@@ -318,7 +318,7 @@ void classify(Metadata& layout, WriteContext& output, Notes& notes);
 /// Adds a view for an array that has none yet; returns false, with a note, if Gmsh has no place for it.
 bool add_view(Metadata& layout, const DataArray& array, Notes& notes);
 
-/// Returns a name that can stand between double quotes in one line.
+/// Returns a name that fits between double quotes in one line.
 std::string name_in_quotes(std::string_view name);
 
 /// Writes the numbers of a cell's nodes in Gmsh's order, as size_t (4.1) if `wide`, else as int.

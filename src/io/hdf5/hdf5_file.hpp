@@ -40,9 +40,9 @@ class File {
  public:
   /// Opens a file to read it.
   static File open(const FilePath& path);
-  /// Opens a file on disk to read it. `name` stands in messages.
+  /// Opens a file on disk to read it. `name` is for messages.
   static File open(const std::filesystem::path& path, std::string name);
-  /// Opens a file on disk to change it. `name` stands in messages.
+  /// Opens a file on disk to change it. `name` is for messages.
   static File change(const std::filesystem::path& path, std::string name);
   /// Opens a copy of a file's bytes to change it in memory. No bytes: an empty file.
   static File in_memory(std::string_view bytes, std::string name);
@@ -62,7 +62,7 @@ class File {
   /// Returns whole numbers as indices, those out of range as the limit that they exceed, which no index is.
   [[nodiscard]] std::vector<Index> read_indices(const std::string& path) const;
   /// Returns the byte of the file where the values of a dataset that `info` accepts begin, one after another
-  /// in this machine's order of bytes, 0 for a dataset without values; nothing if they do not stand there so.
+  /// in this machine's order of bytes, 0 for a dataset without values; nothing if they are not stored so.
   [[nodiscard]] std::optional<std::uint64_t> place_of_values(const std::string& path) const;
   /// Returns the paths of all datasets with at least one dimension, and the length of their first.
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> datasets() const;

@@ -10,7 +10,7 @@
 namespace meshorder::hdf5 {
 
 /// Work for each entry that an iteration of libhdf5 comes to. The library knows no exceptions: what the work
-/// throws ends the iteration and is thrown by `rethrow`. `Info` is what the library tells of an entry:
+/// throws ends the iteration and is thrown by `rethrow`. `Info` is what the library says of an entry:
 /// H5A_info_t, H5L_info_t or H5O_info_t.
 template <class Info>
 class Visitor {

@@ -20,7 +20,7 @@ bool begins_with(std::string_view line, std::string_view word) {
          std::string_view(" \t,=$'\"").find(line[word.size()]) != std::string_view::npos;
 }
 
-/// Returns the word behind BEGIN; empty for other lines.
+/// Returns the word after BEGIN; empty for other lines.
 std::string_view word_after_begin(std::string_view line) {
   if (!begins_with(line, "BEGIN")) return {};
   line.remove_prefix(std::string_view("BEGIN").size());

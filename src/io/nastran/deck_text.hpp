@@ -37,7 +37,7 @@ class DeckText {
   [[nodiscard]] Location location(std::size_t byte) const;
 
  private:
-  /// Lines of one file, one behind the other.
+  /// Lines of one file, one after the other.
   struct Origin {
     std::size_t begin;  // in the text
     std::string file;

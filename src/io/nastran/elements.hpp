@@ -46,7 +46,7 @@ bool has_size(const ElementType& type, int nodes);
 /// Returns the card that cells of a mesh of another format are written as; an empty text if there is none.
 std::string_view card_of(Shape shape, int nodes);
 
-/// Returns the place of the k-th vertex of a cell among the nodes of its element. Behind the corners Nastran
+/// Returns the place of the k-th vertex of a cell among the nodes of its element. After the corners Nastran
 /// has the edges from the bottom to the top before those of the top, VTK after them.
 std::size_t node_place(Shape shape, int nodes, std::size_t k);
 

@@ -394,7 +394,7 @@ class DeckReader {
     }
     for (const auto& [name, card] : strangers_) {
       split_card(card.of(text), fields_);
-      const std::size_t first = name == "SET1" ? 2 : 1;  // behind the number of the set
+      const std::size_t first = name == "SET1" ? 2 : 1;  // after the number of the set
       bool names = !fields_.fault.empty();
       for (std::size_t k = first; k < fields_.fields.size(); ++k) names = names || may_name(fields_.text(k));
       if (names) add(shown(name), card.begin);

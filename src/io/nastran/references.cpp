@@ -11,9 +11,9 @@
 namespace meshorder::nastran {
 namespace {
 
-/// What the fields behind the name are: nodes (n), elements (e), the number of an element that is no cell
+/// What the fields after the name are: nodes (n), elements (e), the number of an element that is no cell
 /// (x), and neither (-). Letters in parentheses repeat to the end of the card. A capital letter begins a list
-/// of nodes (N), elements (E) or points that are no nodes (S). Where a "." stands, the card may have nothing
+/// of nodes (N), elements (E) or points that are no nodes (S). From a "." on the card must have nothing
 /// more: some programs give a second element there.
 struct Layout {
   std::string_view name;
@@ -165,11 +165,11 @@ class Finder {
     return found_;
   }
 
-  /// The grid points of RBE3 stand behind each weight and its components; then UM and ALPHA.
+  /// The grid points of RBE3 follow each weight and its components; then come UM and ALPHA.
   std::optional<References> of_rbe3() {
     found_.defines_element = true;
     add('n', 3);
-    bool in_dependent = false;  // behind UM: pairs of points and components
+    bool in_dependent = false;  // after UM: pairs of points and components
     int since = 0;              // fields since the last weight or UM
     for (std::size_t field = 5; field < card_.fields.size(); ++field) {
       const std::string_view text = card_.text(field);
@@ -185,7 +185,7 @@ class Finder {
         since = 0;
         continue;
       }
-      // behind a weight or UM: components or a point first
+      // after a weight or UM: components or a point first
       const bool is_point = in_dependent ? since % 2 == 0 : since > 0;
       ++since;
       if (!is_point) continue;

@@ -14,7 +14,7 @@
 namespace meshorder::nastran {
 
 /// The coordinate systems of a deck, in which nodes may be given: CORD1R, CORD1C, CORD1S by three nodes,
-/// CORD2R, CORD2C, CORD2S by three points. They may stand on each other. 0 is the basic system. Angles are in
+/// CORD2R, CORD2C, CORD2S by three points. One may be given in another. 0 is the basic system. Angles are in
 /// degrees (MSC Nastran Quick Reference Guide, "CORD2R").
 class CoordinateSystems {
  public:
@@ -28,7 +28,7 @@ class CoordinateSystems {
   void add(std::string_view name, const CardFields& fields, std::size_t byte);
 
   /// Returns a point of a system in the basic one. Throws InputError for a system that is missing, has no
-  /// axes or stands on itself.
+  /// axes or is given in itself.
   ///
   /// @param byte  of the card that names the system
   [[nodiscard]] Point in_basic(std::int64_t system, const Point& point, std::size_t byte,

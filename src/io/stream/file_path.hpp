@@ -16,7 +16,7 @@ namespace meshorder {
 /// Returns the path without the ".gz" (in any case) at its end, if it has one.
 std::filesystem::path without_gz(std::filesystem::path path);
 
-/// Returns the rest of a stream, whose name stands in messages. Throws InputError for one that does not end
+/// Returns the rest of a stream; `name` is for messages. Throws InputError for one that does not end
 /// within the limit on memory.
 std::string read_to_end(std::istream& stream, const std::string& name);
 
@@ -66,7 +66,7 @@ class FilePath {
   [[nodiscard]] std::string string() const { return path_.string(); }
   /// Returns the store, null for a file on disk.
   [[nodiscard]] FileStore* store() const noexcept { return store_; }
-  /// Returns the set of outputs that the file belongs to, null if it stands alone.
+  /// Returns the set of outputs that the file belongs to, null if there is none.
   [[nodiscard]] OutputSet* set() const noexcept { return set_; }
   /// Returns the folder that the user named where the rest of the path is derived; nothing if the user gave
   /// the whole path.

@@ -10,7 +10,7 @@ namespace meshorder {
 
 /// Where the bytes of an output go.
 struct OutputPlace {
-  std::filesystem::path path;  ///< behind all symbolic links
+  std::filesystem::path path;  ///< with all symbolic links followed
   bool exists = false;
   bool is_through = false;   ///< a device, a pipe or an open file of this process: nothing to replace
   int own_descriptor = -1;   ///< of an open file of this process, such as /dev/stdout
@@ -20,8 +20,8 @@ struct OutputPlace {
 /// Returns the folder of a path, "." for a plain name.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
-/// Returns where a path leads: behind all symbolic links, but for those in what this program named. Throws
-/// InputError for these, for a folder, links in a circle, a name that the file system refuses and a link that
+/// Returns where a path leads, with all symbolic links followed. Throws InputError for links in what this
+/// program named, for a folder, links in a circle, a name that the file system refuses and a link that
 /// another user left in a folder open to all; where this program named the file, for a device or a pipe.
 OutputPlace output_place(const FilePath& file);
 

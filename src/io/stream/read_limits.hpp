@@ -78,7 +78,7 @@ inline constexpr const char* kClaimRemedy =
 /// As `refused_claim`, but throws InputError at that place; without a file, of the mesh that is read.
 void claim_memory(std::uint64_t bytes, std::string_view what, Location where = {});
 
-/// Returns the most bytes that are read of what does not tell its size.
+/// Returns the most bytes that are read of an input whose size is not known before.
 std::uint64_t limit_on_unknown_sizes();
 
 /// Allows files below that folder to be included by all meshes that this process reads.

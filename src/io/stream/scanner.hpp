@@ -29,7 +29,7 @@ class Scanner {
   /// Reads the whole file. Throws Error for a folder, an unreadable or an empty file.
   explicit Scanner(const FilePath& file, char comment = '\0');
 
-  /// Returns a scanner of the same text that stands elsewhere.
+  /// Returns a scanner of the same text at another place.
   ///
   /// @param byte  0 … size of the text
   /// @param line  of that byte
@@ -109,7 +109,7 @@ class Scanner {
   void skip_blanks();
   void next_line();
   [[nodiscard]] bool at_break() const;
-  /// Skips spaces; returns whether a word follows. False does not tell that none does: after a tab, say.
+  /// Skips spaces; returns whether a word follows. False does not mean that none does: a tab may precede it.
   bool skip_spaces() {
     while (text_[position_] == ' ') ++position_;  // a zero byte ends the text
     return text_[position_] > ' ' && text_[position_] != comment_;

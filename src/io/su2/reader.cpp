@@ -216,7 +216,7 @@ class Su2Reader {
     if (!in_.at_line_end()) in_.fail("the line has too many numbers", "one number may follow");
   }
 
-  /// Takes what stands behind the coordinates of a point. SU2 does not read it.
+  /// Takes what follows the coordinates of a point, which SU2 does not read.
   void take_numbers_behind_point(Index v) {
     if (in_.at_line_end()) return;
     std::int64_t number = -1;

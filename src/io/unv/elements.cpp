@@ -9,7 +9,7 @@
 namespace meshorder::unv {
 namespace {
 
-/// Types that have cells of one dimension; the number of nodes tells the shape. Documents and programs give
+/// Types that have cells of one dimension; the number of nodes gives the shape. Documents and programs give
 /// linear and parabolic membranes (71 to 75) in two orders, so the type alone does not.
 struct Family {
   int first;

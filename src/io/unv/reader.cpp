@@ -535,7 +535,7 @@ class UnvReader {
     }
   }
 
-  /// Makes arrays of the numbers of properties and materials where they tell elements apart.
+  /// Makes arrays of the numbers of properties and materials that differ, or of one property except 0 and 1.
   void make_arrays_of_fields() {
     const auto make = [&](std::string_view name, std::int64_t ElementFields::*field) {
       const auto& all = file_->element_fields.different();

@@ -8,7 +8,7 @@
 
 namespace meshorder::vtk {
 
-/// What the pieces of a mesh hold, one behind another. Borrowed from a reader.
+/// What the pieces of a mesh hold, one after another. Borrowed from a reader.
 struct Pieces {
   std::vector<Point>& points;
   FileCells& cells;

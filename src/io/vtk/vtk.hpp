@@ -123,7 +123,7 @@ struct ArrayRole {
 struct ArrayFacts {
   std::optional<Association> association;  ///< none: an array of the whole mesh
   std::string array;
-  std::string type;             ///< a number type that Values does not tell: "vtkIdType", "long"
+  std::string type;             ///< a number type that Values cannot express: "vtkIdType", "long"
   std::string information;      ///< legacy: the lines of its INFORMATION
   std::string xml_information;  ///< .vtu: its InformationKey elements
 };
@@ -241,7 +241,7 @@ Values marks_of(const EntitySet& set, Index count);
 /// Returns an array with a row for each of `count` vertices or cells: of NaN or 0 where it has none.
 DataArray full_array(const DataArray& array, Index count);
 
-/// Where a file has the names of its arrays, which tells the characters that they may have.
+/// Where a file has the names of its arrays, which decides what characters they may have.
 enum class NamePlace : std::uint8_t { legacy, xml, hdf5 };
 
 /// Returns a name that is one of a dataset of HDF5: there a slash parts groups, a dot is the group itself,

@@ -176,7 +176,7 @@ void VtuDocument::parse() {
       throw error_at(all.size(), "unexpected end of file in <" + open.back().name + ">",
                      "it may be cut short");
     }
-    // comments and children can stand before the text
+    // comments and children can precede the text
     if (!open.empty() && is_blank(open.back().text)) open.back().text = all.substr(p, tag - p);
     const std::string_view rest = all.substr(tag);
     const auto skip_to = [&](std::string_view end) {

@@ -60,7 +60,7 @@ class VtuReader {
   }
 
  private:
-  /// Reads the pieces that stand in a file.
+  /// Reads the pieces of a file.
   void read_grid(const VtuDocument& file, const VtuElement& grid) {
     file_ = &file;
     if (!metadata_->vtu) {

@@ -79,7 +79,7 @@ class VtkHdfReader {
 
   // ---- datasets by their places
 
-  /// Adds a dataset of the mesh; returns false where its values do not stand there as they are.
+  /// Adds a dataset of the mesh; returns false where its values are not stored as they are.
   bool add(RawDataset::Role role, std::string_view name, std::int64_t rows, Index width = 1) {
     const std::string path = path_of(name);
     const hdf5::DatasetInfo info = check_rows(path, rows, static_cast<std::uint64_t>(width));
@@ -92,7 +92,7 @@ class VtkHdfReader {
     return true;
   }
 
-  /// Adds the arrays on points or cells; returns false where the values of one do not stand there so.
+  /// Adds the arrays on points or cells; returns false where the values of one are not stored so.
   bool add_data(Association association) {
     const std::string group = data_group(association);
     read_roles(association);

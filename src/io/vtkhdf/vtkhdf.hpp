@@ -37,7 +37,7 @@ struct Partition {
   std::int64_t entries = 0;  ///< of the connectivity
 };
 
-/// A dataset whose values stand in the file as they do in memory, one after another.
+/// A dataset whose values are in the file as they are in memory, one after another.
 struct RawDataset {
   enum class Role : std::uint8_t { points, connectivity, offsets, types, data };
 

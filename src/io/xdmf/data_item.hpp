@@ -41,7 +41,7 @@ struct DataPlace {
   };
   std::vector<Repeat> repeats = {};
 
-  /// Adds a place of the same values that the file names behind this one.
+  /// Adds a later place in the file that names the same values.
   void repeat(const DataPlace& other);
 };
 

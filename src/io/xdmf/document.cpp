@@ -126,7 +126,7 @@ void print_indented(const pugi::xml_document& xml, const TakeText& take) {
 
 Document::Document(const FilePath& path)
     : file_(path.string()), source_(with_entities_expanded(path.read(), file_)) {
-  // parsed in a copy on large pages, as `source_` tells the lines of errors
+  // parsed in a copy on large pages, as `source_` is needed for the lines of errors
   auto* const text = static_cast<char*>(pugi::get_memory_allocation_function()(source_.size()));
   if (text == nullptr) throw std::bad_alloc();
   ask_for_large_pages(text, source_.size());

@@ -55,7 +55,7 @@ class Document {
   [[nodiscard]] std::string take_values_out(std::vector<std::size_t> items);
 
  private:
-  /// Returns what stands before the root element: the declaration, which pugixml has, and the blanks.
+  /// Returns the text before the root element; a plain declaration if it names an encoding but UTF-8.
   [[nodiscard]] std::string_view prolog() const;
   [[nodiscard]] const std::vector<pugi::xml_node>& selected(pugi::xml_node from, std::string path) const;
 
@@ -82,7 +82,7 @@ void set_attribute(pugi::xml_node element, const char* name, const std::string& 
 /// Takes the next part of a text.
 using TakeText = std::function<void(std::string_view part)>;
 
-/// Puts XML out as text: as it was parsed, after what stands before its root, or with a line for each
+/// Writes XML as text: as it was parsed, after `prolog`, the text before its root; or with a line for each
 /// element.
 void print(const pugi::xml_document& xml, std::string_view prolog, const TakeText& take);
 void print_indented(const pugi::xml_document& xml, const TakeText& take);

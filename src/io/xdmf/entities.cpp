@@ -231,7 +231,7 @@ class Expansion {
     return result;
   }
 
-  /// Appends what the reference at the beginning of `text` stands for; returns its length.
+  /// Appends what replaces the reference at the beginning of `text`; returns the length of the reference.
   std::size_t append_reference(std::string& result, std::string_view text, bool in_attribute,
                                std::size_t place, int depth) {
     const std::size_t end = end_of_name(text, 1);

@@ -15,7 +15,7 @@
 namespace meshorder::xdmf {
 namespace {
 
-/// Returns what stands for a value that an array does not give.
+/// Returns what is written in place of a value that an array does not give.
 template <class Number>
 Number nothing() {
   if constexpr (std::is_floating_point_v<Number>) return std::numeric_limits<Number>::quiet_NaN();

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// XDMF files whose values all stand in one HDF5 file, one after another, so that others than libhdf5 can read
-// and write them by their bytes.
+// XDMF files whose values are all in one HDF5 file, those of a dataset one after another, so that code other
+// than libhdf5 can read and write them by their bytes.
 
 #include "io/stream/file_path.hpp"
 #include <meshorder/mesh.hpp>
@@ -19,7 +19,7 @@ namespace meshorder::xdmf {
 
 struct Layout;
 
-/// A dataset whose values stand in the file as they do in memory, one after another.
+/// A dataset whose values are in the file as they are in memory, one after another.
 struct RawDataset {
   enum class Role : std::uint8_t { points, topology, array };
 

@@ -55,7 +55,7 @@ struct Reading {
   std::string next_set_name(Association association, const std::string& wanted, int part);
 
   std::map<std::pair<Association, std::string>, KnownSet> known_sets_;
-  /// By the wanted name and the part, −1 for sets of Grids: the number behind the name that was given last.
+  /// The number of the name given last, by the wanted name and the part (−1 for sets of Grids).
   std::map<std::tuple<Association, std::string, int>, int> set_numbers_;
 };
 

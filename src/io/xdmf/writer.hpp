@@ -122,7 +122,7 @@ class Writer {
   void note_filled(const DataArray& array);
 
   // what the layout has no place for: attribute_writer.cpp
-  /// Returns the array of marks that stands for a set, by the name of the array.
+  /// Returns the array of marks that represents a set, by the name of the array.
   [[nodiscard]] std::optional<DataArray> marks_named(const std::string& name, Association association) const;
   [[nodiscard]] DataArray marks_of(const EntitySet& set) const;
   void add_others();
