@@ -93,7 +93,7 @@ void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
     require(given.cell_offsets != nullptr && given.cell_vertices != nullptr, "cells: an array is null");
     require(given.cell_offsets[0] == 0, "cell_offsets: the first must be 0");
   }
-  // all of them before any is followed: the last one tells how many vertices there are
+  // all offsets are checked before any is used, as the last one says how many vertices there are
   for (std::int64_t c = 0; c < given.cell_count; ++c) {
     require(given.cell_offsets[c] < given.cell_offsets[c + 1],
             "cell_offsets: element " + std::to_string(c) + " has no vertices");

@@ -13,7 +13,7 @@ namespace meshorder {
 
 /// A facet of an element: a face of a volume, an edge of a surface, an end of a line.
 struct ElementFacet {
-  std::array<Index, 4> corners;  ///< descending; −1 behind the last
+  std::array<Index, 4> corners;  ///< descending; −1 after the last
   Index element;
 };
 
@@ -26,7 +26,7 @@ class FacetsOfTypes {
   std::map<std::pair<Shape, int>, std::vector<std::vector<int>>> by_type_;
 };
 
-/// Returns the corners of a cell at these positions, at most four, descending, −1 behind the last.
+/// Returns the corners of a cell at these positions, at most four, descending, −1 after the last.
 std::array<Index, 4> sorted_corners(std::span<const Index> cell, const std::vector<int>& positions);
 
 /// Sorts facets so that those with the same corners are adjacent, in ascending order of their elements.

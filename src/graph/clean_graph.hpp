@@ -17,8 +17,8 @@ struct OwnedGraph {
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
 };
 
-/// Makes a caller's graph clean: ascending rows, no loops, no repeats, every edge in both rows. Without a
-/// copy where it is clean already and has the library's types; otherwise `notes` tell what was done.
+/// Makes a caller's graph clean: ascending rows, no loops, no repeats, every edge in both rows. Makes
+/// no copy where it is clean already and has the library's types; otherwise `notes` say what was done.
 ///
 /// @param check     full, fast: as stated there; fast mirrors an asymmetric pattern. none: the arrays are
 ///                  taken as they are, apart from their types

@@ -10,7 +10,7 @@ namespace meshorder {
 
 /// An undirected graph in compressed sparse rows: the neighbours of vertex v are
 /// `neighbours[offsets[v]] … neighbours[offsets[v + 1] − 1]`, rising, without v itself and without repeats.
-/// Every edge stands in the rows of both its ends.
+/// Every edge is in the rows of both its ends.
 struct CsrGraph {
   std::vector<Offset> offsets{0};  ///< n + 1
   std::vector<Index> neighbours;   ///< twice the number of edges

@@ -32,7 +32,7 @@ GraphFindings examine(const GraphArrays& graph, bool symmetry);
 /// caller's numbers. Returns if there is none. O(n + entries).
 void refuse_faults(const GraphView& view, const GraphArrays& graph, const GraphFindings& findings);
 
-/// Throws InvalidArgument for the first edge of a clean graph that stands in one row only or has two weights;
+/// Throws InvalidArgument for the first edge of a clean graph that is in one row only or has two weights;
 /// returns if there is none. One cursor for each row; O(n + entries) time, 8 n bytes.
 ///
 /// @param base  number of the first vertex in messages

@@ -14,7 +14,7 @@
 namespace meshorder {
 namespace {
 
-/// number ± base as unsigned arithmetic has it: a faulty offset may stand at the end of the range.
+/// number ± base in unsigned arithmetic, which may wrap: a faulty offset can be at an end of the range.
 Offset less_base(std::int64_t number, int base) {
   return static_cast<Offset>(static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(base));
 }

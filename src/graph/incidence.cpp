@@ -132,7 +132,7 @@ struct Rows {
   Offset end = 0;  ///< of what is used
 };
 
-/// Where the elements stand among all vertices of elements. `Size` is the size of every element, which
+/// Where the vertices of each element lie in the list of all. `Size` is the size of every element, which
 /// spares reading the offsets, or 0 where they differ.
 template <int Size>
 struct Elements {

@@ -10,7 +10,7 @@ namespace meshorder {
 // Loops over vertices of all kinds come to rows that lie anywhere in memory, and search them for entries that
 // nobody can foresee: they ask for rows a few steps ahead, and search without branches.
 
-/// Asks for the row of the vertex that stands a few places after `k` in the order.
+/// Prefetches the row of the vertex that comes a few places after `k` in the order.
 inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {
   constexpr Index kAhead = 8;
   if (k + kAhead < index_size(order)) {

@@ -24,7 +24,7 @@ struct OwnedBlocks {
   Offset room = 0;  ///< blocks that the matrix's values must hold, including spare ones
 };
 
-/// The map of share number `part`, whose spare blocks stand behind the matrix's and those of the shares
+/// The map of share number `part`, whose spare blocks follow the matrix's and those of the shares
 /// before it. Throws InvalidArgument if their numbers exceed an Index. O(boundary simplices).
 OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const BlockCsr& matrix,
                          const OwnedBatches& share, Index part);

@@ -31,7 +31,7 @@ struct RowSums {
 
   template <class Value>
   HWY_INLINE void add(const Value* block, const double* p) {
-    // p₀ p₁ p₂ p₂, since behind p₂ nothing may be read; loaded as `store` has stored it, or it would wait
+    // p₀ p₁ p₂ p₂, since nothing may be read beyond p₂; loaded as `store` has stored it, or it would wait
     const hn::FixedTag<double, 2> two;
     const hn::FixedTag<double, 4> four;
     const auto p0122 = hn::Combine(four, hn::Set(two, p[2]), hn::LoadU(two, p));

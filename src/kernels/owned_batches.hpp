@@ -11,7 +11,7 @@ namespace meshorder {
 
 /// One thread's share of a kernel that adds to the vertices of elements or springs: a range of vertices that
 /// it owns, and all batches that touch one of them. Contributions to vertices that other threads own go to
-/// spare vertices behind the mesh's, which are never read; the owners compute these batches as well. So no
+/// spare vertices after the mesh's, which are never read; the owners compute these batches as well. So no
 /// two threads write to the same address, without atomics or colouring, and every sum has the terms of the
 /// serial kernel in the same order: the same bits for any number of threads. In a good order few batches are
 /// computed twice.
@@ -41,7 +41,7 @@ void owners_of(std::span<const Index> vertices, std::span<const Index> bounds, s
 
 /// Returns one share for each range of `bounds` (see balanced_ranges), the last bound being the number of
 /// vertices, of the batches of `corners` · kBatch vertices each: RestShapes::vertices with D + 1 corners,
-/// Springs::ends with 2. Each share has its own spare vertices behind those of the mesh. O(entries · log
+/// Springs::ends with 2. Each share has its own spare vertices after those of the mesh. O(entries · log
 /// parts).
 std::vector<OwnedBatches> owned_batches(std::span<const Index> vertices, Index corners,
                                         std::span<const Index> bounds);

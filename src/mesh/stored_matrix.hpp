@@ -17,7 +17,7 @@ namespace meshorder {
 /// lines and vertex cells the stored entries, each from row to column.
 struct StoredMatrix : FormatMetadata {
   bool is_graph = false;           ///< of vertices and edges; there are no entries on the diagonal
-  bool is_half = false;            ///< each line stands for two entries, (i, j) and (j, i)
+  bool is_half = false;            ///< each line represents two entries, (i, j) and (j, i)
   std::string_view field = {};     ///< "real", as the file names it; empty for a graph
   std::string_view symmetry = {};  ///< "general", likewise
 
@@ -28,7 +28,7 @@ struct StoredMatrix : FormatMetadata {
 /// `mesh.format_metadata`.
 const StoredMatrix* stored_matrix(const Mesh& mesh);
 
-/// Returns the mesh that stands for a matrix, as its reader would make it: rows at the origin, entries in
+/// Returns a matrix as the mesh that its reader would make of it: rows at the origin, entries in
 /// their order. Throws InvalidArgument, TooLarge as `check`; a pattern need not be symmetric. O(n + entries).
 Mesh matrix_mesh(const GraphView& matrix);
 

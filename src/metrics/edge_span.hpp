@@ -11,7 +11,7 @@
 
 namespace meshorder {
 
-/// How far apart the ends of edges stand in an order: the span of edge ij is |rank i − rank j| (the paper,
+/// How far apart the ends of edges are in an order: the span of edge ij is |rank i − rank j| (the paper,
 /// section 4.3). All 0 for a graph without edges.
 struct EdgeSpan {
   double mean = 0;       ///< 1 at best; n/3 for a random order

@@ -49,7 +49,7 @@ class ReuseHistogram {
 };
 
 /// How a program comes to a cache line: as the next one of an array that it goes through from front to back,
-/// or where the mesh tells it to.
+/// or at a place that the mesh names.
 enum class Access : bool { streamed, gathered };
 
 /// What a processor's caches see of a stream of accesses.

@@ -7,7 +7,7 @@
 
 namespace meshorder {
 
-/// A graph whose vertices may stand for several vertices of a finer one, and its edges for several edges:
+/// A graph whose vertices may represent several vertices of a finer one, and its edges several edges:
 /// what a multilevel search for a linear arrangement works on.
 struct ArrangementGraph {
   std::vector<Offset> offsets{0};  ///< n + 1, of rows as in CsrGraph but that these need not rise
@@ -19,8 +19,8 @@ struct ArrangementGraph {
   [[nodiscard]] Offset weight(Offset k) const { return weights.empty() ? 1 : weights[k]; }
 };
 
-/// Where the middle of each vertex stands on the line, in half places, when the vertices stand in `order` (a
-/// list of all of them) side by side. O(n).
+/// Where the middle of each vertex lies on the line, in half places, when the vertices lie side by side in
+/// `order` (a list of all of them). O(n).
 std::vector<Offset> middles(const ArrangementGraph& graph, const std::vector<Index>& order);
 
 /// Σ weight · distance of the middles over all edges, in half places: twice the sum of edge spans where all
@@ -34,8 +34,8 @@ struct CoarseArrangement {
 };
 
 /// Puts each vertex, in the given order, into one group with the neighbour that draws it most, by weight over
-/// distance on the line, up to eight in one: groups hold what stands and belongs together, so that the order
-/// of the groups says most of the order of the vertices. The edges between two groups become one that weighs
+/// distance on the line, up to eight in one: groups hold near and strongly joined vertices, so that the order
+/// of the groups fixes most of the order of the vertices. The edges between two groups become one that weighs
 /// as much as all of them. O(n + edges), deterministic.
 CoarseArrangement coarsen(const ArrangementGraph& graph, const std::vector<Index>& order);
 

@@ -6,7 +6,7 @@
 namespace meshorder {
 
 /// Returns the vertex method that measurements favour for that graph and workload: never `auto` itself, and
-/// none that needs coordinates where there are none that tell vertices apart. docs/auto.md has the evidence.
+/// none that needs coordinates unless coordinates tell the vertices apart. docs/auto.md has the evidence.
 /// O(n).
 MethodChoice choose_vertex_method(const VertexInput& input, Workload workload);
 

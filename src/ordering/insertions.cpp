@@ -20,8 +20,8 @@ struct Places {
   Index end;
 };
 
-/// The state of the search. Threads work on chunks of their own and touch only what stands there: `chunk_of_`
-/// says so of a vertex without a look at its place, which another thread may be writing.
+/// The state of the search. Each thread touches only the vertices of its own chunk. `chunk_of_` gives the
+/// chunk of a vertex without a look at its place, which another thread may be writing.
 class InsertionSearch {
  public:
   InsertionSearch(const ArrangementGraph& graph, std::vector<Index>& order)

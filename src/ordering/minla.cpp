@@ -19,7 +19,7 @@ constexpr Index kCoarsest = 40;  // graphs up to this size are not coarsened
 constexpr int kPasses = 2;
 constexpr int kVisits = 2;
 
-/// The part of the graph that stands at the places first … first + count − 1, a union of components; its
+/// The subgraph of the vertices at places first … first + count − 1, a union of components; its
 /// vertices are numbered in their order.
 ArrangementGraph local_graph(GraphRef graph, const Permutation& order, Index first, Index count) {
   ArrangementGraph local;
@@ -41,7 +41,7 @@ std::vector<Index> identity(Index n) {
   return order;
 }
 
-/// Groups in `coarse_order`, the members of each as they stand in `order`.
+/// Returns the vertices group by group along `coarse_order`, those of a group in the sequence of `order`.
 std::vector<Index> expanded(const std::vector<Index>& coarse_order, const std::vector<Index>& group_of,
                             const std::vector<Index>& order) {
   std::vector<Index> next(coarse_order.size(), 0);  // first the sizes of groups, then their next free places

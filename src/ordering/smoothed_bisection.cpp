@@ -11,7 +11,7 @@ namespace {
 constexpr Index kSmallestPiece = 16;  // smaller pieces are sorted and left
 constexpr int kSmoothingSteps = 12;
 
-/// A connected part of a piece; its vertices stand at [begin, end) of the sorted ones.
+/// A connected part of a piece; its vertices are sorted_[begin … end − 1].
 struct Component {
   float push;  ///< minus the mean pull of its vertices: what is pulled forward most comes first
   Index begin;
@@ -41,7 +41,7 @@ class Bisection {
   }
 
  private:
-  /// Orders the piece that stands at [begin, end) of the sequence and whose rows end within it.
+  /// Orders the piece at [begin, end) of the sequence; its rows hold no neighbours outside the piece.
   void order(Index begin, Index end) {
     if (end - begin < 2) return;
     sort(begin, end);

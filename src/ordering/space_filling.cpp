@@ -66,7 +66,7 @@ Lattice lattice_of(const PointsView& points) {
 
 namespace {
 
-/// The bits that stand in groups of `size`, each followed by Axes − 1 groups of zeros.
+/// A mask of groups of `size` ones, each followed by Axes − 1 groups of zeros.
 template <int Axes>
 constexpr std::uint64_t spread_mask(unsigned size) {
   std::uint64_t mask = 0;

@@ -77,7 +77,7 @@ std::vector<Index> along_fiedler_vector(const Piece& piece, std::uint64_t seed) 
   return sequence;
 }
 
-/// The mean over all places of the sequence of how many vertices before it have neighbours behind it: the
+/// The mean, over all places of the sequence, of the number of vertices before with neighbours after: the
 /// size of the piece's cross-section. At least 1.
 double mean_front(GraphRef graph, const std::vector<Index>& sequence) {
   std::vector<Index> place(sequence.size());

@@ -74,7 +74,7 @@ double factor_for(Workload workload, const Advice& advice, std::size_t candidate
 /// Returns the place of the candidate in which the kernels of a workload run fastest, all of them or one; the
 /// mesh's own order, and after it the first candidate, wins where no other is faster than that by more than
 /// same_time, of all kernels its geometric mean. Nothing if the mesh's own order wins. Throws InvalidArgument
-/// for `bandwidth` and `fill`, which no kernel tells.
+/// for `bandwidth` and `fill`, which times of kernels do not decide.
 std::optional<std::size_t> winner_for(Workload workload, const Advice& advice);
 
 /// Returns the milliseconds that a candidate saves in each time step (see runs_in_time_step), negative if it
@@ -100,12 +100,12 @@ std::optional<double> certain_gain(const Advice& advice);
 /// or none.
 std::size_t kernel_of(Workload workload);
 
-/// Whether times of kernels tell what is best for a workload.
+/// Whether times of kernels decide what is best for a workload.
 inline bool is_told_by_kernels(Workload workload) {
   return workload == Workload::all || kernel_of(workload) < kKernels.size();
 }
 
-/// Returns the workload, or `all` for one that no kernel of the advice tells.
+/// Returns the workload if it is that of one kernel of the advice, else `all`.
 Workload told_by_kernels(const Advice& advice, Workload workload);
 
 /// Returns "hilbert", or "hilbert/original" where elements do not follow their vertices as `order` has them;

@@ -22,7 +22,7 @@ Index joined_vertices(const CsrGraph& graph) {
   return count;
 }
 
-/// The number of different vertices that the simplices stand on.
+/// The number of different vertices that are corners of simplices.
 Index corner_vertices(const Simplices& simplices, Index vertices) {
   std::vector<bool> seen(static_cast<std::size_t>(vertices), false);
   for (const Index v : simplices.vertices) seen[v] = true;

@@ -26,7 +26,7 @@ struct FoundCache {
   bool operator==(const FoundCache&) const = default;
 };
 
-/// The caches, the smallest first, and the memory behind them.
+/// The caches, the smallest first, and the memory.
 struct FoundCaches {
   std::vector<FoundCache> levels;
   double memory_nanoseconds = 0;  ///< of a load that finds its line in none
@@ -44,7 +44,7 @@ std::vector<Offset> probe_sizes(Offset largest);
 std::vector<ProbePoint> probe_latencies(std::span<const Offset> sizes, int rounds,
                                         const std::function<void(double)>& tell = {});
 
-/// Tells the caches from latencies at ascending sizes. Random loads within s bytes miss a cache of c < s
+/// Finds the caches from latencies at ascending sizes. Random loads within s bytes miss a cache of c < s
 /// bytes in the share 1 − c/s of all cases, so that the latency is a + Σ d · max(0, 1 − c/s) for levels of c
 /// bytes that cost d more to miss than to hit. Of all choices of at most `most` sizes, in whole KiB, the one
 /// is taken whose relative errors are least (by non-negative least squares for a and d); a level more only

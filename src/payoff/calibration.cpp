@@ -326,7 +326,7 @@ Latencies latencies_behind(const FoundCaches& found, const Caches& caches) {
   const double first = latency_behind(sizes[0]);
   const double second = latency_behind(sizes[1]);
   const double rest = (found.memory_nanoseconds - second) / 2;
-  // what is too close to tell is no reason to take jumps for free
+  // a difference too small to measure does not make jumps free
   constexpr double kLeast = 1;
   return {std::max(kLeast, first - found.levels.front().nanoseconds), std::max(kLeast, second - first),
           std::max(kLeast, rest), std::max(kLeast, rest)};

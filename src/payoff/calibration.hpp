@@ -17,8 +17,8 @@ struct FitQuality {
   std::array<double, kKernels.size()> condition{};  ///< of the fit's equations, see condition_number
   /// By what share predicted times of the problems differ from measured ones, the median.
   std::array<double, kKernels.size()> error{};
-  /// By what share two timings of the same problem at other addresses differ, the median of some: no smaller
-  /// difference of two times tells anything.
+  /// By what share two timings of the same problem at other addresses differ, the median of some: a smaller
+  /// difference of two times means nothing.
   std::array<double, kKernels.size()> floor{};
 
   bool operator==(const FitQuality&) const = default;
@@ -53,7 +53,7 @@ struct CalibrationEffort {
 };
 
 /// Returns the effort for so many seconds: with less than half of the usual time, smaller lattices and
-/// buffers, which tell less of the last cache and the memory.
+/// buffers, which show less of the last cache and the memory.
 CalibrationEffort effort_of(double seconds);
 
 /// Measures this machine: its caches, latencies and bandwidths, and the kernels themselves on small lattices
@@ -78,21 +78,21 @@ struct FittedCosts {
   double error = 0;  ///< see FitQuality
 };
 
-/// What a load that waits for the one before takes longer behind each of the sizes that cost, ns.
+/// The extra latency of a load that waits for the one before, beyond each of the sizes that cost, ns.
 using Latencies = std::array<double, 4>;
 
-/// Returns these latencies, what lies behind the last cache in equal parts for it and its half; at least 1
-/// ns.
+/// Returns these latencies, at least 1 ns each. The last two share equally what a load from memory takes
+/// longer than one beyond the second size.
 Latencies latencies_behind(const FoundCaches& found, const Caches& caches);
 
 /// Fits the costs of a kernel on a machine with such caches. Loads do not wait for each other, so that a jump
-/// costs a share of its latency. Where runs have too few jumps to tell what they cost, it is the same share
+/// costs a share of its latency. Where runs have too few jumps to show what they cost, it is the same share
 /// as of the others: the equations say so, with an eightieth of the weight of a run each. What all runs of a
 /// lattice are off by has half of the weight of what each is off by beside them: costs are for ratios,
 /// and the rate of a shared memory changes from minute to minute.
 ///
 /// @param like  costs of the same kernel on one thread where the runs are on all, or null. Where the runs do
-///              not tell otherwise, all costs are those, times one factor: an equation for each says so, with
+///              not show otherwise, all costs are those, times one factor: an equation for each says so, with
 ///              two fifths of the weight of a run
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies,
                       const KernelCosts* like = nullptr);

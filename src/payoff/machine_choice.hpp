@@ -17,7 +17,7 @@ struct ShippedMachine {
   const CostModel& (*costs)();
 };
 
-/// Returns them. The first stands in for a machine that is not calibrated.
+/// Returns them. The first one's costs serve for a machine that is not calibrated.
 std::span<const ShippedMachine> shipped_machines();
 
 /// Returns " on 2 threads", nothing for one.
@@ -40,13 +40,13 @@ struct MachineChoice {
 };
 
 /// Returns the shipped machine of a name; for "this", a calibration of this machine that was stored for this
-/// build, else the shipped machine that stands for it, with this machine's caches. An empty name stands for
+/// build, else the first shipped machine, with this machine's caches. An empty name means
 /// what the environment variable MESHORDER_MACHINE says, and "this" where it is not set. Throws
 /// InvalidArgument, which names the nearest one, for unknown names.
 ///
 /// With `all_threads` the costs are those of kernels that all threads share, which only a calibration of this
 /// machine has: throws InvalidArgument for a shipped machine and where this one was calibrated on another
-/// number of threads than there are now; a machine that stands in keeps the costs of one thread.
+/// number of threads than there are now; a machine that is not calibrated gets the costs of one thread.
 MachineChoice choose_machine(std::string_view name = {}, bool all_threads = false);
 
 /// Returns what choose_machine returns for "this" where this machine is not calibrated.

@@ -20,10 +20,10 @@ struct RaceOptions {
   OrderTimer timer = time_orders;            ///< nothing: predictions decide
 };
 
-/// What timing or predicting orders of a mesh beside its own told.
+/// The result of timing or predicting other orders of a mesh than its own.
 struct Race {
   Advice advice;                      ///< its candidates are the orders that were timed, or predicted best
-  std::vector<double> factors;        ///< as `factor_for` tells, by candidate
+  std::vector<double> factors;        ///< as `factor_for` returns them, by candidate
   std::optional<std::size_t> winner;  ///< place of a candidate; nothing: the mesh's own order
   std::string reason;                 ///< why that won, a sentence
 
@@ -32,9 +32,9 @@ struct Race {
 };
 
 /// Times the kernels, in half a second an order, in a mesh's own order, in what `auto` takes and in the two
-/// predicted to be the best of five others, and tells which is the fastest; without a timer, by their
-/// predicted times. `graph` is the vertex graph of `mesh`. Throws InvalidArgument for `bandwidth` and `fill`,
-/// which no kernel tells. O(the orders).
+/// predicted to be the best of five others, and finds the fastest; without a timer, by predicted
+/// times. `graph` is the vertex graph of `mesh`. Throws InvalidArgument for `bandwidth` and `fill`, which
+/// times of kernels do not decide. O(the orders).
 Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options = {});
 
 /// Says in an order by the methods of a race that this chose them.

@@ -19,8 +19,8 @@ namespace {
 constexpr double kMostWaiting = 0.05;
 constexpr double kMostPace = 0.1;
 constexpr double kMostRepeat = 0.05;
-/// Returns the most seconds that a run of a kernel that has settled takes, as the fastest of these runs
-/// tells.
+/// Returns how many seconds a run of a settled kernel takes at most, judged by the fastest of these
+/// runs.
 double most_when_settled(const std::vector<double>& seconds) {
   constexpr double kSettled = 1.05;
   return kSettled * *std::min_element(seconds.begin(), seconds.end());

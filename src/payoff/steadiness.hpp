@@ -15,7 +15,7 @@ struct Steadiness {
   bool operator==(const Steadiness&) const = default;
 };
 
-/// Returns why times that were taken so tell little, a sentence; empty if they can be trusted: if no thread
+/// Returns why times taken so are unreliable, as a sentence; empty if they can be trusted: if no thread
 /// waited for more than 5 % of the time, arithmetic took at most 10 % longer than at best, and timings of the
 /// same differ by no more than the 5 % from which measured orders count as different.
 std::string reason_to_doubt(const Steadiness& steadiness);

@@ -26,10 +26,10 @@ SparseRows transposed(const SparseRows& a);
 /// two aggregates added up. O(n + edges), on all threads.
 Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggregation& aggregation);
 
-/// The same of some rows of a larger graph, whose other vertices are numbered behind those of the rows.
+/// The same of some rows of a larger graph, whose other vertices are numbered after those of the rows.
 ///
 /// @param aggregation  of the rows, and with `aggregate_of` of the others, too
-/// @param columns      aggregates in all; those of the others are numbered behind those of the rows
+/// @param columns      aggregates in all; those of the others are numbered after those of the rows
 Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggregation& aggregation,
                     Index columns);
 

@@ -89,7 +89,7 @@ void Search::go_through_batch() {
 }
 
 /// Goes through several batches at once, with the result of one after another: a vertex belongs to the first
-/// row that it stands in. It is marked with that row's place, counted from head_: kFound less it.
+/// row that contains it. It is marked with that row's place, counted from head_: kFound less it.
 void Search::go_through_wave(Index batches) {
   if (index_size(found_) < batches) {
     found_.resize(batches);

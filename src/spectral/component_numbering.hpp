@@ -12,7 +12,7 @@ namespace meshorder {
 /// Every component's vertices in a numbering of its own that makes passes over the graph fast, whatever the
 /// numbering that it came in.
 ///
-/// The numbering is breadth first, so that neighbours stand close, and what a batch of vertices discovers is
+/// The numbering is breadth first, so that neighbours are close, and what a batch of vertices discovers is
 /// sorted by degree: rows that follow one another then have the same length, and the processor predicts where
 /// their loops end. On tetrahedral meshes, whose degrees vary, that more than doubles the speed of a product
 /// with the graph's matrix.

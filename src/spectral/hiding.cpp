@@ -76,7 +76,7 @@ double spread_slack(const Part& part, Index founder, double least) {
   return slack;
 }
 
-/// Whether more than one pivot of a symmetric matrix is negative, or one is too small to tell.
+/// Whether more than one pivot of a symmetric matrix is negative, or the sign of one is uncertain.
 ///
 /// @param rows  its lower triangle, `size` entries a row; is overwritten
 bool has_two_negative_pivots(std::vector<double>& rows, Index size) {

@@ -25,7 +25,7 @@ struct Level {
   SparseRows prolongation;     ///< smoothed coarsening: the way from the next coarser level; else empty
 
   [[nodiscard]] bool is_smoothed() const { return prolongation.rows() > 0; }
-  /// How many vertices of the finest graph v stands for.
+  /// How many vertices of the finest graph v represents.
   [[nodiscard]] double mass(Index v) const { return masses.empty() ? 1.0 : masses[v]; }
 };
 

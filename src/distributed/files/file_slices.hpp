@@ -29,8 +29,8 @@ struct SliceFile {
 /// chunked nor compressed, read and written by all ranks at once: each its share of every array, one array
 /// after another. The new file is the old one with the rows of its arrays in their new places; whatever else
 /// it has is copied byte by byte, but for the offsets of arrays after compressed ones. An .xdmf file and its
-/// HDF5 file are those that the serial writer makes. libhdf5 tells rank 0 where the datasets are; no rank
-/// else needs it.
+/// HDF5 file are those that the serial writer makes. Rank 0 finds the datasets by libhdf5; no other rank
+/// needs it.
 ///
 /// Formats: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, and
 /// "VTKHDF File Format".

@@ -101,8 +101,8 @@ void MeshParts::find_own(const Mesh& mesh, const std::vector<GlobalIndex>& part_
   }
 }
 
-/// Adds the parts of other ranks to those that have a vertex: the ranks that answer for vertices ask which
-/// parts have them, and tell all ranks that have one of several.
+/// Adds the parts of other ranks that have a vertex: the owner of a vertex's number learns from all ranks
+/// which parts have it, and sends the list to the ranks of these parts if there are several.
 void MeshParts::find_sharing_parts(const Communicator& communicator, const ShareNumbers& numbers) {
   if (communicator.size() == 1) return;
   struct Letter {
