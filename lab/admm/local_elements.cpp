@@ -158,7 +158,7 @@ LocalElements<Real> tetrahedra_of(const LocalLaw& law, const Simplices& simplice
     }
   }
   const auto is_flat = [&](Offset s) { return shapes.volume(s) <= 0.0; };
-  // the last one before or the first one behind that is not flat, where there is any
+  // flat ones take the shape of the last one before that is not flat, else of the first that is not
   Offset shape = 0;
   while (shape + 1 < result.count && is_flat(shape)) ++shape;
   for (Offset s = 0; s < lanes; ++s) {

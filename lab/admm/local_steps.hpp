@@ -74,7 +74,7 @@ class LocalSteps {
 
   /// For every element q = D x + u, z = argmin U(z) + ½w²‖z − q‖², u = q − z; then right_hand_side[v] =
   /// scale · Σ Dᵀw²(z − u) at each vertex v. Both vectors have kPaddedStride numbers for each vertex (see
-  /// padded_positions); the right-hand side has `room()` vertices, of which those behind the mesh's are
+  /// padded_positions); the right-hand side has `room()` vertices, of which those after the mesh's are
   /// scratch. O(elements).
   LocalResidual pass(std::span<const Real> positions, Real scale, std::span<Real> right_hand_side);
 

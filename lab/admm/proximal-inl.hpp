@@ -175,7 +175,7 @@ struct InvariantSteps {
     return Lanes::mul_add(a * a, a - b * p[0], b * b * Lanes::mul_add(a, p[1], Lanes::set(0.0) - b * p[2]));
   }
 
-  /// Whether the nine curvatures are well above 0, as far as products and sums of them tell: A − b zₖ where
+  /// Whether the nine curvatures are well above 0, as far as products and sums of them show: A − b zₖ where
   /// two singular vectors turn against each other, those along with each other, which have the signs of
   /// zᵢ + zⱼ, and those of the stretches, whose product has the sign of the determinant.
   [[nodiscard]] HWY_INLINE bool is_minimum(Value determinant) const {

@@ -158,7 +158,7 @@ MotionState read_state(Scanner& file) {
   return state;
 }
 
-/// Checks the file and leaves the scanner behind its header.
+/// Checks the header and leaves the scanner after it.
 void read_header(Scanner& file) {
   if (!file.all().starts_with(kMagic))
     file.fail_at_byte("is not a checkpoint", "give a file that simulate --checkpoint wrote");

@@ -61,7 +61,7 @@ std::vector<double> differences(const std::vector<double>& from, const std::vect
   return result;
 }
 
-/// Half the interval's width in seconds, of what every run saved in every turn; 0 where nothing tells.
+/// Half the interval's width in seconds, from what each of two or more runs saved in every turn.
 double half_width_of_runs(const std::vector<std::vector<double>>& saved_by_run) {
   const auto runs = static_cast<double>(saved_by_run.size());
   double of_turns = 0;

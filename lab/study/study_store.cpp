@@ -40,7 +40,7 @@ std::ptrdiff_t place_of(const ScenarioRecord& record) {
 }  // namespace
 
 StudyStore::StudyStore(const StudyPlan& plan, const StudyFolder& folder) : folder_(folder) {
-  (void)output_place(folder.file(folder.mesh("any")));  // makes no folder behind a link
+  (void)output_place(folder.file(folder.mesh("any")));  // refuses a link before a folder is made through it
   make_folders(folder);
   lock_.emplace(folder.root());
   (void)OutputFile(folder.file(folder.mesh("any")));  // fail before the work if it cannot be written

@@ -51,7 +51,7 @@ void planes_of_leaf(TetrahedronLeaves& tetrahedra, Index leaf, const double* pos
   }
   float* const planes = tetrahedra.planes.data() + Offset{16} * kLeaf * leaf;
   if (!(radius < kTooLarge)) {
-    // floats cannot tell: planes that keep nothing out
+    // too large for floats: planes that keep nothing out
     center = {};
     for (Index i = 0; i < 16 * kLeaf; ++i) planes[i] = i / kLeaf % 4 < 3 ? 0.0F : 1.0F;
     return;

@@ -47,9 +47,9 @@ struct PointCluster {
 struct TetrahedronLeaves {
   Index leaves = 0;
   Index branches = 0;
-  /// Corner k of lane l of leaf i at 16 · (4i + k) + l. Lanes behind the last repeat one.
+  /// Corner k of lane l of leaf i at 16 · (4i + k) + l. Lanes after the last tetrahedron repeat it.
   AlignedVector<Index> corners;
-  AlignedVector<Index> numbers;  ///< of the tetrahedra, as the caller knows them; −1 behind the last
+  AlignedVector<Index> numbers;  ///< of the tetrahedra, as the caller knows them; −1 after the last
   /// End e (the three lower ones, then the upper ones) of the box of leaf l of branch b at 16 · (6b + e) + l.
   AlignedVector<float> leaf_boxes;
   AlignedVector<float> branch_boxes;           ///< the same of branches
@@ -63,7 +63,7 @@ struct TetrahedronLeaves {
                     std::span<const Index> tetrahedron_numbers);
 
   [[nodiscard]] Index leaves_of(Index branch) const { return std::min(kBranch, leaves - kBranch * branch); }
-  /// The ends of a leaf's box, each kLeaf behind the one before; and of a branch's.
+  /// The ends of a leaf's box, each kLeaf floats after the one before; and of a branch's.
   [[nodiscard]] const float* leaf_box(Index leaf) const {
     return leaf_boxes.data() + Offset{6} * kLeaf * (leaf / kBranch) + leaf % kBranch;
   }

@@ -29,7 +29,7 @@ struct ContactSolveReport {
 /// coefficient times the force across it, and opposes the motion since `from`.
 ///
 /// Solves the dual problem: the contact forces λ minimise ½λᵀSλ − gᵀλ with S = C A⁻¹Cᵀ and g the depths of
-/// the contacts without forces; then x = A⁻¹(b + Cᵀλ). ("Uzawa" in scenarios stands for "dual".) A
+/// the contacts without forces; then x = A⁻¹(b + Cᵀλ). ("Uzawa" in scenarios means "dual".) A
 /// multiplication by S takes one solve with the part of the factor that contacts reach. minimise_forces needs
 /// few of them, since forces start from the last call's and the preconditioner is the part of A at the
 /// contacts' vertices (the lumped one of FETI: Farhat, Roux 1991). A call takes two more solves with the

@@ -51,7 +51,7 @@ class Builder {
   PanelFactor<Real> factor_;
   Offset rows_ = 0, values_ = 0;  ///< in all panels so far
   Index filled_ = 0;              ///< panels
-  std::vector<Index> above_;      ///< the column that each slot stands for
+  std::vector<Index> above_;      ///< the column that each slot is for
 
   void begin_task(const SolveTasks& tasks, Index task) {
     PanelTask& added = factor_.tasks.emplace_back();

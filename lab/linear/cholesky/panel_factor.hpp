@@ -16,7 +16,7 @@ namespace meshorder {
 struct PanelTask {
   Index first_column, end_column;
   Index first_panel, end_panel;
-  Index first_slot, end_slot;   ///< places in the vector of the solve, behind all columns
+  Index first_slot, end_slot;   ///< places in the vector of the solve, after all columns
   std::vector<Index> children;  ///< with smaller numbers
   double cost;                  ///< of the task and all below it, see PanelCosts
 };

@@ -20,7 +20,7 @@ struct Panel {
 
 /// Panels of a factor L D Lᵀ. The values of each are the entries left of the diagonal of its own columns, row
 /// by row; 1/D of its columns; those of the rows below in groups of kGroup rows and one of the rest, each
-/// column by column. Behind the last must follow 16 bytes. Vectors have kPaddedStride numbers for each column
+/// column by column. 16 more bytes must follow the last. Vectors have kPaddedStride numbers for each column
 /// and row.
 template <class Real>
 struct PanelView {

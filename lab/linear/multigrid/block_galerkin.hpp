@@ -7,7 +7,7 @@
 
 namespace meshorder {
 
-/// Where the blocks of each column of a prolongation stand: those of column a are blocks `blocks[k]`, in the
+/// Where the blocks of each column of a prolongation are: those of column a are blocks `blocks[k]`, in the
 /// rows `rows[k]`, offsets[a] ≤ k < offsets[a + 1], rows ascending.
 struct ColumnBlocks {
   std::vector<Offset> offsets{0};

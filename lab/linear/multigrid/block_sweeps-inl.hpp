@@ -28,7 +28,7 @@ struct Quad {
   HWY_INLINE void store(float* to) const {
     for (int i = 0; i < 4; ++i) to[i] = lanes[i];
   }
-  /// With zeros behind the first `count`.
+  /// With zeros after the first `count`.
   HWY_INLINE Quad first(int count) const {
     Quad result = set(0);
     for (int i = 0; i < count; ++i) result.lanes[i] = lanes[i];
@@ -81,7 +81,7 @@ struct Quad {
 };
 #endif
 
-/// R floats, and anything behind them.
+/// R floats, and anything after them.
 template <int R>
 struct Node {
   static constexpr int kQuads = (R + 3) / 4;
@@ -104,7 +104,7 @@ struct Node {
     MESHORDER_UNROLL
     for (int q = 0; q < kQuads; ++q) part[q].store(to + 4 * q);
   }
-  /// With zeros behind.
+  /// With zeros after the R floats.
   HWY_INLINE Node clean() const {
     Node result = *this;
     result.part[kQuads - 1] = part[kQuads - 1].first(R - 4 * (kQuads - 1));
@@ -156,7 +156,7 @@ struct ProductSum {
   }
 };
 
-/// y += Bᵀ x of a block B of R×C numbers, column by column, y in memory; x has zeros behind it
+/// y += Bᵀ x of a block B of R×C numbers, column by column, y in memory; zeros follow x
 template <int R, int C>
 HWY_INLINE void add_transposed_product(const float* block, const Node<R>& x, float* y) {
   constexpr int kQuads = Node<C>::kQuads;

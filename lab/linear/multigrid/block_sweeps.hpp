@@ -10,7 +10,7 @@
 
 namespace meshorder {
 
-/// Floats from one node to the next in the vectors of a level with R unknowns a node: those behind the
+/// Floats from one node to the next in the vectors of a level with R unknowns a node: those after the
 /// unknowns stay 0.
 template <int R>
 inline constexpr Index kNodeStride = R == 3 ? 4 : 8;

@@ -31,8 +31,8 @@ struct RigidProlongation {
 };
 
 /// Prolongation that is zero but where a fine node meets its own aggregate, its columns the modes restricted
-/// to the aggregate and orthonormalised (Vaněk, Mandel, Brezina 1996). A mode that an aggregate cannot tell
-/// from those before it (rotations of a single vertex, the rotation of a line about itself) gets a column of
+/// to the aggregate and orthonormalised (Vaněk, Mandel, Brezina 1996). A mode that there is a combination
+/// of those before it (rotations of a single vertex, the rotation of a line about itself) gets a column of
 /// zeros. `modes` holds R×6 numbers for each of `fine_count` nodes; nodes in no aggregate get empty rows.
 /// O(fine nodes).
 template <int R>

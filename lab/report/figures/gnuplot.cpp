@@ -58,7 +58,7 @@ std::string printable(std::string_view text) {
   return result;
 }
 
-constexpr std::ptrdiff_t kLongest = 24;   ///< characters of what stands beside an axis
+constexpr std::ptrdiff_t kLongest = 24;   ///< characters of a text beside an axis
 constexpr std::ptrdiff_t kTicBytes = 49;  ///< that gnuplot keeps of a tic's label
 
 /// UTF-8 text of at most so many characters and bytes, with "…" in place of what is cut off.

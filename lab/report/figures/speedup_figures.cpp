@@ -31,11 +31,11 @@ std::vector<const OrderingSpec*> compared_orders(const StudyResults& results) {
   return orders;
 }
 
-/// Rows of a picture in which scenarios stand below one another, and in each the orders.
+/// Rows of a picture: scenarios one below another, and in each scenario its orders.
 struct Rows {
   std::size_t orders = 0;
 
-  /// The height at which an order of a scenario stands; a scenario is 1 high.
+  /// The height at which an order of a scenario is drawn; a scenario is 1 high.
   [[nodiscard]] double at(std::size_t scenario, std::size_t order) const {
     const double place = (static_cast<double>(order) + 0.5) / static_cast<double>(orders);
     return -static_cast<double>(scenario) - (0.1 + 0.8 * place);

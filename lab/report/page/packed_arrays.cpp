@@ -37,7 +37,7 @@ void append(std::vector<char>& bytes, std::uint32_t number, int width) {
   for (int i = 0; i < width; ++i) bytes.push_back(static_cast<char>((number >> (8 * i)) & 0xFFU));
 }
 
-/// How numbers stand for coordinates: x = offset + scale · number.
+/// How whole numbers encode coordinates: x = offset + scale · number.
 struct Quantisation {
   Point offset{};
   Point scale{};

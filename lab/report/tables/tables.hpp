@@ -17,7 +17,7 @@ enum class Certainty {
   costs    ///< it lies below 0
 };
 
-/// A cell of a table: its text, and the number behind it, by which a column is sorted.
+/// A cell of a table: its text, and the value that it shows, by which a column is sorted.
 struct TableCell {
   std::string text;
   std::optional<double> value;
