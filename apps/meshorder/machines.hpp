@@ -20,7 +20,7 @@ void add_all_threads_option(CLI::App& subcommand, bool& all_threads);
 /// Adds --kernels, plain or tuned.
 void add_kernels_option(CLI::App& subcommand, KernelSet& kernels);
 
-/// Returns the machine to predict for. Where it only stands in for this machine, which is not calibrated,
+/// Returns the machine to predict for. If the choice only replaces this machine, which is not calibrated,
 /// this machine is calibrated and the result is kept for the next time. A line on stderr says so, unless
 /// quiet; `notes` receives a sentence where something went wrong.
 MachineChoice calibrated(MachineChoice choice, bool all_threads, Progress& progress, bool quiet,

@@ -18,7 +18,7 @@ namespace meshorder::command {
 /// in the input's order. If cells of the input were left out, the maps of cells number those that were kept,
 /// and PREFIX.cells.kept.npy holds their positions among all cells of the input. Where the mesh is in parts,
 /// PREFIX.vertices.parts.npy and PREFIX.cells.parts.npy hold the part of each in the new order.
-/// PREFIX.maps.json tells which mesh the maps are for, without the cells that were left out.
+/// PREFIX.maps.json says which mesh the maps are for, without the cells that were left out.
 struct Maps {
   Permutation vertices;
   Permutation cells;
@@ -29,7 +29,7 @@ struct Maps {
   std::vector<Index> cell_parts;    ///< of each cell in the new order
 };
 
-/// Checksums that tell a mesh, and the order that it is in, from others.
+/// Checksums that distinguish a mesh, and the order that it is in, from others.
 struct MeshChecksums {
   std::uint64_t points = 0;  ///< of the coordinates
   std::uint64_t cells = 0;   ///< of the vertices of all cells

@@ -150,7 +150,7 @@ class Case {
     if (missing != meshes_.end()) refuse_missing(poly_mesh(*missing));
   }
 
-  /// Throws InputError for a processor's folder behind one that is missing.
+  /// Throws InputError for a processor's folder where one with a lower number is missing.
   void check_processors() const {
     constexpr std::string_view kProcessor = "processor";
     for (const std::string& name : folders_in(folder_)) {

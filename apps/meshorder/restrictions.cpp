@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// ---- Landlock. Its numbers stand here since the headers of older systems lack some of them.
+// ---- Landlock. Its numbers are given here since the headers of older systems lack some of them.
 
 constexpr long kCreateRuleset = 444;
 constexpr long kAddRule = 445;

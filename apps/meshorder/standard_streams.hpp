@@ -16,7 +16,7 @@ void write_stdout(std::string_view text);
 /// Writes what is buffered; throws likewise.
 void flush_stdout();
 
-/// Writes text to stderr; where that fails, there is nobody to tell.
+/// Writes text to stderr; ignores a failure, which could not be reported.
 void write_stderr(std::string_view text) noexcept;
 
 /// Has what libraries print on stderr dropped, also what the C library says before it aborts. What this

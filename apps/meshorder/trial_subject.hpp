@@ -15,7 +15,7 @@ namespace meshorder::command {
 /// What a program is tried on: a mesh, or a case of OpenFOAM.
 class TrialSubject : public Polymorphic {
  public:
-  /// Returns what {} stands for in the command, and {stem}.
+  /// Returns what replaces {} in the command, and what replaces {stem}.
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual std::string stem() const = 0;
 
