@@ -13,7 +13,7 @@ namespace nb = nanobind;
 constexpr std::array kClasses{"Error",       "InvalidArgument", "InputError", "TooLarge",
                               "Unavailable", "Stopped",         "Error",      "InternalError"};
 
-/// Sets Python's error to the one that stands for the library's.
+/// Sets Python's error to the one that corresponds to the library's.
 void translate(const std::exception_ptr& thrown, void* /*unused*/) {
   try {
     std::rethrow_exception(thrown);

@@ -70,7 +70,7 @@ def _run_as_is(arguments: list[str]) -> int:
 
 @dataclass
 class _Word:
-    """An argument, or the part of one behind "=", that names a file, as in --output=FILE.
+    """An argument, or the part of one after "=", that names a file, as in --output=FILE.
 
     Attributes:
         path: the name of the file.

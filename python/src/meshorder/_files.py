@@ -46,7 +46,7 @@ def read(
 
     Args:
         source: the path of a file, or its bytes.
-        format: name of the format, "gmsh" or "vtu"; None: the extension tells it, or the first bytes.
+        format: name of the format, "gmsh" or "vtu"; None: by the extension, or by the first bytes.
         memory_limit: the most bytes of memory for values of which the file holds only a shorter form or the number,
             such as compressed ones; None: 256 MiB and 100 times the file, at most three quarters of the memory. Files
             that meshio reads have no limit.
@@ -54,7 +54,7 @@ def read(
                 it.
 
     Returns:
-        The mesh; its ``notes`` tell what the reader dropped or repaired.
+        The mesh; its ``notes`` say what the reader dropped or repaired.
 
     Raises:
         InputError: the file is missing, faulty or without cells, has an unknown extension, needs more than the limit,

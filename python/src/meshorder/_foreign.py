@@ -29,7 +29,7 @@ def format_of_meshio(path: str, format: str = "") -> str | None:
     """Returns meshio's name of the format of a file; None for formats that meshorder has and for unknown ones.
 
     Args:
-        path: the file, whose extension tells the format.
+        path: the file, whose extension gives the format.
         format: name of the format, which counts instead of the extension; empty: none.
 
     Raises:

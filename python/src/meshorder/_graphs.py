@@ -153,7 +153,7 @@ class Fiedler:
 
 @dataclass(frozen=True)
 class Quality:
-    """Numbers that tell how near the two ends of edges are in an order of n vertices.
+    """Numbers that say how near the two ends of edges are in an order of n vertices.
 
     The span of an edge is the distance between the places of its ends. All numbers are 0 for a graph without edges.
 

@@ -16,7 +16,7 @@ ProgressFunction = Union[Callable[[str, float], Any], bool, None]
 
 
 class Options(TypedDict, total=False):
-    """Keyword arguments that the functions on graphs and meshes share. None stands for the default.
+    """Keyword arguments that the functions on graphs and meshes share. None means the default.
 
     Another name is a TypeError; a value that is out of range is an InvalidArgument.
 

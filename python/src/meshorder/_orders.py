@@ -161,7 +161,7 @@ def reorder(
     Returns:
         The mesh in its new order, of the same type, and its orders. Those of a graph are of its nodes, type after type,
         and of its edges, type after type, then its faces. A UserWarning names tensors of which name and shape do not
-        tell whether they belong to the nodes or faces.
+        show whether they belong to the nodes or faces.
 
     Raises:
         InvalidArgument: an object that is no mesh or cannot be reordered, faulty arrays, an unknown method or array, a

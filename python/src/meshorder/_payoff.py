@@ -252,7 +252,7 @@ def advise(
     all_threads: bool = False,
     **options: Any,
 ) -> Advice:
-    """Tells how much faster simulators' kernels would run if a mesh or matrix were reordered. It is not changed.
+    """Says how much faster simulators' kernels would run if a mesh or matrix were reordered. It is not changed.
 
     Args:
         mesh: the path of a file; a mesh that `reorder` takes, with lines, surfaces or volumes; or a matrix or graph of

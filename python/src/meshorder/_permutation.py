@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Permutations, and the moves of arrays and matrices that they stand for."""
+"""Permutations, and the moves of arrays and matrices that they describe."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ def _named(order: Any, mesh: Mesh) -> dict[str, Permutation]:
 
 
 def _permutation(order: Any, mesh: Mesh) -> tuple[str, Permutation]:
-    """Returns the name and the permutation of the vertices that an order, or the name of a method, stands for."""
+    """Returns the name and the permutation of the vertices for an order, or for a method given by its name."""
     if isinstance(order, str):
         order = reorder(mesh, vertices=order, elements="original")[1]
     if isinstance(order, MeshOrder):

@@ -60,7 +60,7 @@ def image(counts: NDArray[Any], words: str, most: int | None = None) -> str:
 
     Args:
         counts: an array of rank 2.
-        words: the alternative text, which tells what the image shows.
+        words: the alternative text, which says what the image shows.
         most: the count that is drawn darkest; None: the largest.
     """
     if counts.size == 0:

@@ -50,5 +50,5 @@ def compare(methods: Any = None, **options: Any) -> Comparison:
 
 
 def advise(**options: Any) -> Advice:
-    """Tells what reordering the current model's mesh would gain; see `meshorder.advise`."""
+    """Says what reordering the current model's mesh would gain; see `meshorder.advise`."""
     return _payoff.advise(_model(), **options)

@@ -82,7 +82,7 @@ def fiedler_vector(
         normalized: True leaves the work to networkx.
         tol: the residual ‖L x − λ x‖ relative to λ₂ ‖x‖.
         method: not used, except by networkx.
-        seed: an integer for the eigensolver's start vector; others, such as a RandomState, stand for 0.
+        seed: an integer for the eigensolver's start vector; others, such as a RandomState, count as 0.
 
     Returns:
         One number for each node, in the order of ``G``'s nodes, of norm 1 and sum 0.

@@ -52,5 +52,5 @@ class MeshorderAccessor:
         return _payoff.compare(self._dataset, methods, **options)
 
     def advise(self, **options: Any) -> Advice:
-        """Tells what reordering the dataset would gain; see `meshorder.advise`."""
+        """Says what reordering the dataset would gain; see `meshorder.advise`."""
         return _payoff.advise(self._dataset, **options)

@@ -218,7 +218,7 @@ class PygGraph(Host):
         return bool(step.any())
 
     def _doubts(self, store: Any, key: str, value: Any, owner: str | None, rows: int) -> list[str]:
-        """Returns a warning where name and shape do not tell whether a value moves."""
+        """Returns a warning where name and shape do not show whether a value moves."""
         name = _name(store, key)
         if owner == "nodes" and value.shape[1:2] == (rows,) and rows > 1 and key not in _OF_NODES:
             return [f"{name} has a row and a column for each node: only its rows were moved; 'adj' in its name moves both"]

@@ -117,7 +117,7 @@ class Surface(_Dataset):
         return super().grouped_order(request)
 
     def _has_polygons_and_strips(self) -> bool:
-        """Tells whether an order could mix cells of two arrays: polygons and strips have the same dimension."""
+        """Returns whether an order could mix cells of two arrays: polygons and strips have the same dimension."""
         return self._counts[2] > 0 and self._counts[3] > 0
 
     def _move_cells(self, moved: Any, vertices: Permutation, cells: Permutation) -> None:
