@@ -81,7 +81,7 @@ void handle_endings(void (*handler)(int)) {
 void clean_up_at_signals() { handle_endings(clean_up); }
 
 void clean_up_quietly_at_signals() {
-  std::signal(SIGXFSZ, SIG_IGN);  // the write fails instead, which the other processes are told of
+  std::signal(SIGXFSZ, SIG_IGN);  // the write fails instead, and the other processes learn of it
   handle_endings(clean_up_quietly);
 }
 
