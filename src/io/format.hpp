@@ -65,7 +65,7 @@ const Format& output_format_of(const std::filesystem::path& path);
 const Format& format_named(std::string_view name);
 
 /// Returns the format that the bytes of a file look like, null if they look like none. TetGen's files cannot
-/// be told from other columns of numbers.
+/// be distinguished from other columns of numbers.
 const Format* format_of_bytes(std::string_view bytes);
 
 /// Prepares a mesh for reordering and writing in a format that is not its own: drops its blocks, which bind

@@ -17,7 +17,7 @@ struct Labels {
   [[nodiscard]] bool any() const noexcept { return !values.empty(); }
 };
 
-/// Returns the labels of a mesh. Ignores an array of that name unless it holds one integer for each.
+/// Returns the labels of vertices or cells. Ignores an array that does not hold one integer for each.
 Labels labels_of(const Mesh& mesh, Association association);
 
 /// Returns the array that `labels_of` uses, or nullptr.

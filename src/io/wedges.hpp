@@ -41,7 +41,7 @@ class WedgeVote {
     Offset positive = 0;
     Offset negative = 0;
 
-    /// 1 or −1 where at least 19 of 20 have that sign, else 0.
+    /// 1 or −1 where more than 20 of 21 have that sign, else 0.
     [[nodiscard]] int sign() const;
   };
 

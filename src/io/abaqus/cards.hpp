@@ -72,9 +72,9 @@ std::optional<std::vector<Reference>> references(const Card& card, std::string_v
 /// one set, by its number, to the first of another. Other numbers would tie other nodes.
 bool pairs_sets(const Card& card, std::string_view lines);
 
-/// Returns whether what a card does depends on the order of the numbers of nodes and elements, also where it
-/// names none: cyclic symmetry, for which CalculiX 2.20 interpolates between sides of different meshes in
-/// triangles that follow the numbers, and what is read from an earlier analysis.
+/// Returns whether the effect of a card depends on the order of node and element numbers, even if it names
+/// none: cyclic symmetry, for which CalculiX 2.20 interpolates between sides of different meshes in
+/// triangles that follow the numbers, and reading data of an earlier analysis.
 bool depends_on_numbers(const Card& card);
 
 /// Returns all whole numbers above 0 that are the value of a parameter of a card, given with its lines, or

@@ -19,8 +19,8 @@ class DeckOutput {
  public:
   DeckOutput(OutputFile& out, std::string_view line_end) : out_(out), line_end_(line_end) {}
 
-  /// Writes a part of the deck as it is. The last line of a deck may lack its end; what follows begins a
-  /// line.
+  /// Writes a part of the deck as it is. If its last line has no line end, later output still begins on a
+  /// new line.
   void text(std::string_view text) {
     out_.write(text);
     if (!text.empty()) within_line_ = text.back() != '\n' && text.back() != '\r';

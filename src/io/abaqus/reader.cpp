@@ -231,7 +231,7 @@ class DeckReader {
   // ---- data lines
 
   /// Gives the next data line of nodes or elements, not yet taken; returns false at the next keyword.
-  /// Comments go to `comments`, blank lines nowhere.
+  /// Comments go to `comments`; blank lines are dropped.
   bool peek_data(std::string_view& line, std::string& comments) {
     while (peek_in_card(line)) {
       if (line.empty()) {

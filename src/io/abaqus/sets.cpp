@@ -21,7 +21,7 @@ std::string_view name_of_sets(Association association) {
 
 }  // namespace
 
-/// Keeps sets of vertices or of cells from growing by members that they have.
+/// Drops repeated members of sets of vertices or cells before they take much memory.
 class SetReader::Repeats {
  public:
   /// @param items  vertices or cells of the mesh

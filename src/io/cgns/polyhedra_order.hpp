@@ -37,7 +37,7 @@ class PolyhedraOrder {
   /// elements of each section.
   [[nodiscard]] std::vector<std::int64_t> face_numbers(int section, const std::vector<Index>& cells,
                                                        const std::vector<std::int64_t>& first_numbers) const;
-  /// Returns ElementStartOffset of a section of polygons or polyhedra, of which `cells` are the latter.
+  /// Returns ElementStartOffset of a section of polygons, or of polyhedra, which are `cells`.
   [[nodiscard]] std::vector<std::int64_t> offsets(int section, const std::vector<Index>& cells) const;
 
  private:

@@ -69,7 +69,7 @@ void write_tree(const Tree& tree, const FilePath& path, const std::function<void
 void check_hdf5(const std::filesystem::path& path, const std::string& name);
 
 /// Throws InputError unless libcgns can read a file of ADF safely: nodes, their lists of children and values
-/// are where it is told that they are, each node once. O(nodes · log nodes).
+/// are where the file says that they are, each node once. O(nodes · log nodes).
 void check_adf(const InputFile& file, const std::string& name);
 
 }  // namespace meshorder::cgns

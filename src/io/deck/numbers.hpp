@@ -60,7 +60,7 @@ class FileNumbers {
   const std::vector<std::int64_t>& ids_;
 };
 
-/// The sets of a mesh by their names, which must stay where they are; of one name the first.
+/// The sets of a mesh by name; of several with one name, the first. The names must stay where they are.
 class SetsByName {
  public:
   explicit SetsByName(const std::vector<EntitySet>& sets) {

@@ -217,7 +217,7 @@ class NcOutput {
   /// Returns whether the file can hold 64-bit integers.
   [[nodiscard]] bool holds_wide_integers() const noexcept;
 
-  /// Writes all values and replaces the target, or leaves that to others.
+  /// Writes all values, and puts the file in place unless others do.
   void finish();
 
  private:

@@ -171,7 +171,7 @@ void read_points(Reading& reading) {
   }
 }
 
-/// Reads the elements of a block, those of the range, into the mesh.
+/// Reads those elements of a block that are in the range into the mesh.
 void read_elements(Reading& reading, const Variable& connect, std::size_t b) {
   const NcInput& file = reading.file;
   const BlockRecord& block = reading.metadata->blocks[b];

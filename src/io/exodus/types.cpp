@@ -16,7 +16,7 @@ struct TypeName {
 
 constexpr Shape kVertex = Shape::vertex;
 
-// by their first letters; SHELL is told by its nodes
+// by their first letters; SHELL is identified by its nodes
 constexpr std::array kTypeNames{
     TypeName{"SPHERE", kVertex},     TypeName{"CIRCLE", kVertex},         TypeName{"POINT", kVertex},
     TypeName{"NODE", kVertex},       TypeName{"BAR", Shape::line},        TypeName{"BEAM", Shape::line},

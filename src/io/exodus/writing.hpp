@@ -26,7 +26,7 @@ struct Writing {
   Writing(const Mesh& written, const Metadata& of_file, NcOutput& out, Notes& warnings)
       : mesh(written), metadata(of_file), file(out), notes(warnings) {}
 
-  /// Returns the array of that name, which has its place with that, or null.
+  /// Returns the array of that name and notes that it has a place; null if it cannot be written.
   const DataArray* take(std::string_view name, Association association);
 
   /// Declares a variable with the attributes that it had in the file that the mesh came from.
@@ -49,8 +49,8 @@ struct Writing {
   std::size_t steps = 0;
 };
 
-/// Returns the type in which values are written that had a type in the file that the mesh came from: this one
-/// if it holds each of them, else double precision.
+/// Returns the type in which to write values whose type in the mesh's file was `of_file`: this one if it
+/// holds each of them, else double precision.
 NcType written_type(NcType of_file, const Values& values);
 
 /// Returns whether values are whole numbers of up to 53 bits, whatever their type.
@@ -64,7 +64,7 @@ std::vector<std::int64_t> whole_values(const Values& values);
 /// none at all for a dense array, of which row i belongs to vertex or cell i.
 std::vector<Index> row_table(const DataArray& array, Index count);
 
-/// Returns a number as another type; of strings nothing is taken.
+/// Converts a number to another type; a string becomes 0.
 template <class To, class From>
 To number_as(const From& value) {
   if constexpr (std::is_arithmetic_v<From>) {
@@ -76,8 +76,8 @@ To number_as(const From& value) {
 
 inline constexpr Index kRowsAtOnce = 1 << 16;
 
-/// Calls `put(first, count)` for one part of `count` rows after another, so that what is written has a small
-/// copy.
+/// Calls `put(first, count)` for one part of `count` rows after another, so that the copy that is written
+/// stays small.
 template <class Put>
 void in_parts(Index count, const Put& put) {
   for (Index first = 0; first < count; first += std::min(kRowsAtOnce, count - first)) {
@@ -111,13 +111,13 @@ struct SetPlan {
   std::vector<std::int32_t> sides = {};    ///< of each member, where these are elements with sides
   std::vector<Index> ranks = {};           ///< place of each side among those of its element
   const DataArray* factors = nullptr;
-  std::vector<int> factor_counts = {};  ///< of sides: of each; empty if each member has one
+  std::vector<int> factor_counts = {};  ///< of sides: factors of each; empty if each member has one
   int factor_width = 1;                 ///< of sides: places in the array for one
   std::vector<std::vector<const DataArray*>> variables =
       {};  ///< by variable and step, as the record has them
 };
 
-/// Returns the sets of each kind, which take their arrays with that.
+/// Returns the sets of each kind as they are written, and takes their arrays.
 std::vector<std::vector<SetPlan>> plan_sets(Writing& writing,
                                             const std::vector<const EntitySet*>& element_sets);
 

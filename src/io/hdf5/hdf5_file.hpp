@@ -3,9 +3,9 @@
 
 // HDF5 files, by the C interface of libhdf5 (The HDF Group, HDF5 1.10 reference manual).
 //
-// libhdf5 is not thread-safe as Debian builds it, and it reports faults on standard error unless told
-// otherwise: every function here holds one lock for the whole program and keeps the library quiet meanwhile.
-// Code of others that calls the same library at the same time is not kept out.
+// libhdf5 is not thread-safe as Debian builds it, and by default it reports faults on standard error.
+// Therefore every function here holds one lock for the whole program and keeps the library quiet meanwhile.
+// Other code that calls the same library at the same time does not take this lock.
 
 #include "io/hdf5/handle.hpp"
 #include "io/hdf5/library.hpp"
@@ -48,7 +48,7 @@ class File {
   static File in_memory(std::string_view bytes, std::string name);
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
-  /// Returns the library's handle, for what the functions below do not do; in a `Session` only.
+  /// Returns the library's handle, for work that the functions below do not do; only within a `Session`.
   [[nodiscard]] hid_t id() const noexcept { return file_.id(); }
 
   /// Returns the size and number type of a dataset of numbers whose values are in this file. Refuses one that
@@ -59,7 +59,7 @@ class File {
   [[nodiscard]] std::optional<std::size_t> number_type(const std::string& path) const;
   /// Returns the values of a dataset that `info` accepts, row by row, in its own number type.
   [[nodiscard]] Values read(const std::string& path) const;
-  /// Returns whole numbers as indices, those out of range as the limit that they exceed, which no index is.
+  /// Returns whole numbers as indices; one out of range becomes the limit that it exceeds, which is no index.
   [[nodiscard]] std::vector<Index> read_indices(const std::string& path) const;
   /// Returns the byte of the file where the values of a dataset that `info` accepts begin, one after another
   /// in this machine's order of bytes, 0 for a dataset without values; nothing if they are not stored so.
@@ -86,12 +86,12 @@ class File {
   [[nodiscard]] std::optional<std::string> text_attribute(const std::string& path,
                                                           const std::string& name) const;
 
-  /// Writes numbers to a dataset. One that is there keeps its number type, attributes, chunks and compression
-  /// (the shape only if it has as many values; else it gets a new one); one that is not is made with the type
+  /// Writes numbers to a dataset. If it exists, it keeps its number type, attributes, chunks and compression
+  /// (and its shape if it has as many values; else it gets a new one); otherwise it is made with the type
   /// of the values.
   void write(const std::string& path, const Values& values, const std::vector<std::uint64_t>& shape);
   void write(const std::string& path, std::span<const Index> values, const std::vector<std::uint64_t>& shape);
-  /// Writes texts to a dataset, as rows of so many characters: cut or filled at their ends. One that is there
+  /// Writes texts to a dataset, as rows of `width` characters, cut or filled at their ends. If it exists, it
   /// keeps its attributes.
   void write_texts(const std::string& path, std::span<const std::string> texts, std::size_t width,
                    char filling = '\0');
@@ -100,11 +100,11 @@ class File {
   /// Makes a dataset of numbers of a type, as an alternative of Values, with room in the file that is not
   /// written to.
   void make_room(const std::string& path, std::size_t alternative, const std::vector<std::uint64_t>& shape);
-  /// Gives the values of a dataset that is there without them their room in the file, which is not written
-  /// to but for the first value.
+  /// Allots room in the file to the values of a dataset that exists without them; only the first value is
+  /// written.
   void give_room(const std::string& path);
-  /// Makes a group, and those around it, where it is not there. It keeps the order in which its links are
-  /// made, or has them by their names.
+  /// Makes a group, and those around it, unless it exists. Its links are in the order in which they are
+  /// made, or in that of their names.
   enum class LinkOrder : std::uint8_t { made, names };
   void make_group(const std::string& path, LinkOrder order = LinkOrder::made);
   /// Gives a group or a dataset an attribute. A whole number keeps the number type that the attribute has.
@@ -117,10 +117,10 @@ class File {
   /// Removes a group or a dataset if it is there.
   void remove(const std::string& path);
 
-  /// Returns the bytes of a copy of this file in which these datasets are there with their types, attributes,
-  /// chunks and filters, but without their values; one that several of the paths lead to is there for each of
-  /// them. Paths that end in "/" are those of groups to which something will be added, and which are there
-  /// for each of their paths, too. Everything else is copied.
+  /// Returns the bytes of a copy of this file in which these datasets have their types, attributes, chunks
+  /// and filters, but no values; a dataset that several of the paths lead to becomes one for each of
+  /// them. Paths that end in "/" are those of groups to which something will be added; such a group, too,
+  /// becomes one for each of its paths. Everything else is copied.
   [[nodiscard]] std::string without_values(const std::set<std::string>& paths) const;
   /// Returns the bytes of a file in memory.
   [[nodiscard]] std::string bytes() const;
@@ -151,8 +151,8 @@ class File {
 /// Returns the path with one slash before each part and none at its end.
 std::string normal_path(std::string_view path);
 
-/// Writes a file of HDF5 that begins as the bytes of another, which `fill` adds to: in memory for a path in a
-/// store, else beside the path, and puts it in place. Throws as OutputFile and File.
+/// Writes an HDF5 file: `fill` adds to a file that starts as `bytes`, in memory for a path in a store,
+/// else beside the path. Then puts it in place. Throws as OutputFile and File.
 void write_from(const FilePath& path, const std::string& bytes, const std::function<void(File&)>& fill);
 
 }  // namespace meshorder::hdf5

@@ -18,8 +18,8 @@ inline constexpr std::string_view kSize = "size";      ///< array on vertices: s
 /// Returns whether a cell is an entry: a line or a vertex.
 bool is_entry(const Mesh& mesh, Shape shape, int vertices);
 
-/// Claims the memory of vertices that have at most a line end in the file. Throws InputError beyond the
-/// limit.
+/// Claims the memory of vertices for which the file may hold no more than a line end. Throws InputError
+/// beyond the limit.
 void claim_vertices(Index count);
 
 /// Returns the array of that name if it has a row for every vertex or cell; null otherwise.

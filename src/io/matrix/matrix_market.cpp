@@ -147,7 +147,7 @@ class MatrixReader {
     }
     entries_ = in_.count("the number of entries", 4);
     if (!in_.at_line_end()) in_.fail("the line of sizes has too many numbers", "three are needed");
-    // a large matrix has an entry in most rows
+    // a large matrix is expected to have an entry in most rows
     constexpr std::int64_t kFewRows = 1 << 20;
     if (rows < 0 || rows > kFewRows) (void)in_.checked_count(rows, "the number of rows", 1);
     claim_vertices(static_cast<Index>(rows));

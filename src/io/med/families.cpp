@@ -112,7 +112,7 @@ void read_families_of(Reading& reading, Association association) {
   }
 }
 
-/// Numbers the vertices or cells by what they belong to.
+/// Numbers the combinations of a family and groups that vertices or cells belong to.
 class Combinations {
  public:
   /// By numbers of families.
@@ -157,7 +157,7 @@ class Combinations {
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-  /// A family with groups, of which only the last is here: thousands of groups may have an item in common.
+  /// A family and groups, kept as a chain with one group a link, as thousands may share an item.
   struct Combination {
     std::int64_t family;
     std::size_t without_last;  ///< the combination before the last group; kNone for a family alone

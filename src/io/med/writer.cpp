@@ -48,7 +48,7 @@ std::string axis_names(int axes) {
   return names;
 }
 
-/// Puts numbers of axis after axis into one row.
+/// Returns the coordinates in one list, axis after axis.
 template <class Number>
 Values columns_of(const std::vector<Point>& points, int axes) {
   std::vector<Number> columns;

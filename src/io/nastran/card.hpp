@@ -57,7 +57,7 @@ struct Field {
 struct CardFields {
   std::vector<Field> fields;
   bool is_large = false;     ///< whether the first line has large fields
-  std::string_view fault{};  ///< why the fields cannot be told; empty if they can
+  std::string_view fault{};  ///< why the fields cannot be found; empty if they can
 
   /// Returns the text of a field without blanks; empty where the card has none.
   [[nodiscard]] std::string_view text(std::size_t field) const {

@@ -182,7 +182,7 @@ class DeckReader {
 
   void add_property(const ElementType& type) {
     if (!type.has_property) return;
-    // a blank field is told when all cards are known
+    // a blank field is resolved when all cards are known
     labels_.push_back(fields_.text(2).empty() ? 0 : number(2, "the property of an element"));
     labelled_.push_back(mesh_.cell_count() - 1);
   }

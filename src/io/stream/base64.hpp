@@ -14,12 +14,12 @@ inline constexpr std::string_view kBase64Alphabet =
 /// Returns the number of characters for that many bytes, padding included.
 constexpr std::uint64_t base64_length(std::uint64_t bytes) { return (bytes + 2) / 3 * 4; }
 
-/// Bytes as base64 (RFC 4648), as they come.
+/// Encodes bytes as base64 (RFC 4648), part by part.
 class Base64Encoder {
  public:
-  /// The characters that are complete with these bytes.
+  /// Returns the characters that these bytes complete.
   [[nodiscard]] std::string put(std::span<const char> bytes);
-  /// Those of the one or two bytes left, padded.
+  /// Returns those of the one or two bytes left, padded.
   [[nodiscard]] std::string finish();
 
  private:

@@ -13,7 +13,7 @@
 namespace meshorder {
 
 /// A folder on which this process holds a lock of its own, for as long as this object lives: `FolderLocks`
-/// leave it out, which would wait for this process itself.
+/// leave it out, as they would wait for this process itself.
 class HeldFolder {
  public:
   /// @param descriptor  of the open folder
@@ -29,12 +29,12 @@ class HeldFolder {
 };
 
 /// Locks on folders (`flock`), by which only one process at a time renames files there. Whoever may read a
-/// folder can lock it, so nobody waits for long: after ten seconds the locks are done without, and so they
-/// are where a folder cannot be opened or the file system has none.
+/// folder can lock it, so the wait is limited: after ten seconds the process goes on without the locks, as
+/// it does where a folder cannot be opened or the file system has none.
 class FolderLocks {
  public:
   /// Locks the folders, always in the same order, so that no two processes wait for each other; of many
-  /// folders the first ones, which suffices for sets of the same folders.
+  /// folders only the first ones, which suffices if all processes name the same folders.
   explicit FolderLocks(const std::set<std::filesystem::path>& folders);
 
  private:

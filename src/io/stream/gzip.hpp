@@ -15,7 +15,7 @@ namespace meshorder {
 std::string uncompressed(std::string bytes, const std::string& file);
 
 /// Returns the first bytes as they are, or what begins in them if they are those of a gzip file: at most 1
-/// MiB, as far as it can be told. For a look at what a file holds; throws Unavailable likewise.
+/// MiB, as far as it can be decoded. To find out what a file holds; throws Unavailable likewise.
 std::string uncompressed_start(std::string bytes, const std::string& file);
 
 }  // namespace meshorder

@@ -84,9 +84,9 @@ constexpr const char* kAcl = "system.posix_acl_access";
 
 bool has_acl(const fs::path& path) { return ::getxattr(path.c_str(), kAcl, nullptr, 0) > 0; }
 
-/// Copies what is copied without asking the system for privileges that it does not give.
+/// Copies those extended attributes that the system lets this process copy.
 void copy_extended_attributes(const fs::path& from, const Descriptor& to) {
-  // what the folder's default ACL gave
+  // the one that came from the folder's default ACL
   (void)::fremovexattr(to.get(), kAcl);
   const ssize_t size = ::listxattr(from.c_str(), nullptr, 0);
   if (size <= 0) return;

@@ -25,7 +25,7 @@ class ReadScope {
  public:
   /// @param file             the mesh, for messages; must outlive this object
   /// @param memory           the limit on claims in bytes; none: as above
-  /// @param include_folders  where files may be that this one names, besides its own folder
+  /// @param include_folders  folders besides its own that may hold the files that it names
   explicit ReadScope(const FilePath& file, std::optional<std::uint64_t> memory = {},
                      std::vector<std::filesystem::path> include_folders = {});
   ~ReadScope();

@@ -66,7 +66,7 @@ const char* read_number(const char* at, const char* end, Number& value) {
   return code == std::errc{} && (after == end || is_separator(*after)) ? after : nullptr;
 }
 
-/// Divides the text from `begin` to `end` into parts that end after a separator, and at the end of the text.
+/// Divides the text from `begin` to `end` into parts, each of which ends after a separator or with the text.
 std::vector<std::string_view> divided_at_blanks(std::string_view text, std::size_t begin, std::size_t end,
                                                 std::size_t part_bytes) {
   std::vector<std::string_view> parts;

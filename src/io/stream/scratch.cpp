@@ -117,8 +117,8 @@ std::vector<std::string> scratches_in(const Descriptor& folder) {
   return names;
 }
 
-/// Removes a scratch folder if it is this user's and its owner is dead, and what another process that wrote
-/// into it left there.
+/// Removes a scratch folder if it is this user's and the process that made it is dead, and the scratch
+/// folders of dead processes in it.
 void remove_if_dead(const Descriptor& parent, const std::string& name, bool is_inner = false) {
   const Descriptor folder = opened_folder(parent, name.c_str());
   struct stat status {};

@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-/// A folder beside an output for what is not complete: `.meshorder-DIGITS.new`, of mode 700, with a name that
+/// A folder beside an output for unfinished files: `.meshorder-DIGITS.new`, of mode 700, with a name that
 /// nobody can guess. Its file `lock` is locked (`flock`) as long as its owner lives, also on other machines
 /// that share the disk. It holds the new file, and the old one while files are put in place
 /// (`put_in_place`). The only place where unfinished outputs are kept.
@@ -16,7 +16,7 @@ class Scratch {
  public:
   /// Makes the folder beside `target`. Throws InputError if the system refuses.
   explicit Scratch(const std::filesystem::path& target);
-  /// Removes it with what is in it, also what dead processes left that wrote there.
+  /// Removes it with its content, including what dead processes left in it.
   ~Scratch();
   Scratch(Scratch&& other) noexcept;
   Scratch(const Scratch&) = delete;
@@ -37,7 +37,7 @@ class Scratch {
   int slot_ = -1;
 };
 
-/// Has scratch folders of outputs in a folder made in another one of the same file system, for a process that
+/// Has scratch folders of outputs in `folder` made in `place`, in the same file system, for a process that
 /// may write nowhere else. To be called while there is one thread.
 void keep_scratches_in(const std::filesystem::path& place, const std::filesystem::path& folder);
 

@@ -148,7 +148,7 @@ class UnvReader {
     if (dataset_ != 151) kept_.insert(name);
   }
 
-  /// Skips the binary part of a dataset: after lines and bytes of which the first line says the numbers.
+  /// Skips the binary part of a dataset, whose first line gives the numbers of its lines and bytes.
   void skip_binary() {
     std::array<std::int64_t, 4> fields{};  // byte order, format of numbers, lines, bytes
     std::string_view rest = binary_fields_;

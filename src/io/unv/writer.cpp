@@ -370,7 +370,7 @@ class UnvWriter {
     if (begun) lines_.delimiter();
   }
 
-  /// Returns the number of the file's own dataset of groups, that of Gmsh's files without one.
+  /// Returns the number of the dataset in which the file has its groups; without one, that of Gmsh's files.
   [[nodiscard]] int dataset_of_groups() const {
     const auto own = std::find_if(file_.sections.begin(), file_.sections.end(),
                                   [](const Section& section) { return section.part == Part::groups; });

@@ -17,7 +17,7 @@ constexpr std::string_view kGhostType = "vtkGhostType";
 /// In an entry of vtkGhostType: another piece owns the point or cell.
 constexpr std::int64_t kOfAnotherPiece = 1;
 
-/// Rows of arrays of points or cells, in the order in which they stay.
+/// The rows of points or cells that are kept, in their order.
 using RowsKept = std::vector<Index>;
 
 std::string_view word_for(Association association) {
@@ -67,7 +67,7 @@ class PieceJoiner {
     });
   }
 
-  /// Takes that mark off the rows that stayed, and the array where it says nothing else of them.
+  /// Clears that mark in the rows that stayed, and removes the array if all its values are then 0.
   void forget_other_pieces(Association association) {
     bool says_more = false;
     for (DataArray& array : pieces_.arrays) {
@@ -147,7 +147,7 @@ class PieceJoiner {
     return rows;
   }
 
-  /// Returns the points that stay, and gives the entries of all cells their new numbers.
+  /// Returns the points that stay, and renumbers the entries of all cells.
   [[nodiscard]] RowsKept points_kept(const RowsKept& cells) {
     const std::vector<bool> is_ghost = ghosts(Association::vertices);
     std::vector<bool> is_used(is_ghost.size(), false);
@@ -188,7 +188,7 @@ class PieceJoiner {
     return kept;
   }
 
-  /// Leaves those cells.
+  /// Keeps only those cells.
   void take_cells_of(const RowsKept& rows) {
     const FileCells all = std::move(pieces_.cells);
     FileCells& cells = pieces_.cells = {};
@@ -205,7 +205,7 @@ class PieceJoiner {
     }
   }
 
-  /// Leaves those rows in all arrays of points or of cells.
+  /// Keeps only those rows in all arrays of points or of cells.
   void take_rows(Association association, const RowsKept& rows) {
     for (DataArray& array : pieces_.arrays) {
       if (array.association != association) continue;
