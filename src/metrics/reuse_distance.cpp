@@ -18,8 +18,8 @@ constexpr int kFineBits = 7;
 constexpr std::uint32_t kWord = 64;
 constexpr std::uint32_t kSisters = 16;
 
-/// Entry i of row k is 1 where i < k: rows to be added in vector registers, where a loop that ends at k would
-/// be mispredicted.
+/// Entry i of row k is 1 where i < k: adding a row in vector registers avoids a loop to k, whose end would be
+/// mispredicted.
 constexpr auto kOneBefore = [] {
   std::array<std::array<std::uint32_t, kSisters>, kSisters> rows{};
   for (std::uint32_t k = 0; k < kSisters; ++k) {
@@ -28,7 +28,7 @@ constexpr auto kOneBefore = [] {
   return rows;
 }();
 
-/// Through a copy, without which the compiler takes entry after entry.
+/// Subtracts through a copy, without which the compiler handles one entry at a time.
 void subtract(const std::array<std::uint32_t, kSisters>& what, std::array<std::uint32_t, kSisters>& from) {
   std::array<std::uint32_t, kSisters> rest;
   for (std::uint32_t i = 0; i < kSisters; ++i) rest[i] = from[i] - what[i];
@@ -69,7 +69,7 @@ ReuseHistogram ReuseHistogram::scaled(int halvings, double times) const {
   ReuseHistogram result;
   for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
     if (bins_[bin] == 0) continue;
-    // a line more or less among those seen is 2^halvings more or less in truth: take the middle
+    // one sampled line more means 2^halvings lines more: take the middle
     const double distance = std::ldexp(middle_of(bin) + 0.5, halvings) - 0.5;
     const auto in_range = static_cast<Index>(std::min<double>(distance, kMaxIndex));
     result.bins_[bin_of(in_range)] += std::llround(times * static_cast<double>(bins_[bin]));
@@ -141,7 +141,7 @@ Index ReuseDistance::move_to_front(Index line) {
   return distance;
 }
 
-/// Notes an access from afar; whether no other led to it.
+/// Counts a far access; returns whether it is a jump.
 bool ReuseDistance::is_jump(Index line, Access how, std::uint32_t streamed) {
   if (halvings_ > 0) return is_jump_in_sample(line, how, streamed);
   ++far_accesses_;
@@ -176,7 +176,7 @@ void ReuseDistance::mark_first(Slot slot) {
   for (std::uint32_t& marks : marks_in_open_) ++marks;
 }
 
-/// Marks `to`, after all marks, instead of `from`; returns the marks between.
+/// Moves the mark at `from` to `to`, which comes after all marks; returns the number of marks between.
 Index ReuseDistance::move_mark(Slot from, Slot to) {
   std::uint32_t a = from / kWord;
   std::uint32_t b = to / kWord;

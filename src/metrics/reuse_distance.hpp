@@ -10,8 +10,8 @@
 
 namespace meshorder {
 
-/// How often each reuse distance occurs in a stream of accesses to cache lines: the number of other lines
-/// accessed since a line's last access. A fully associative cache of c lines that drops the least recently
+/// How often each reuse distance, the number of other lines accessed since a line's last access, occurs
+/// in a stream of accesses to cache lines. A fully associative cache of c lines that drops the least recently
 /// used one misses the accesses of distance c and more, and the cold ones, the first to a line (Mattson,
 /// Gecsei, Slutz and Traiger 1970: Evaluation techniques for storage hierarchies).
 ///
@@ -55,34 +55,34 @@ enum class Access : bool { streamed, gathered };
 /// What a processor's caches see of a stream of accesses.
 struct Reuse {
   ReuseHistogram all;
-  /// Gathered ones of distance 512 (an L1 cache of 32 KB) and more that no stream leads to: neither of the
-  /// two lines before was among the last 64 accesses of such a distance. Processors fetch ahead what follows
-  /// such accesses, line after line; a jump waits for the memory.
+  /// Gathered accesses of distance 512 (an L1 cache of 32 KB) or more that no stream leads to: neither of
+  /// the two lines before was among the last 64 accesses of such a distance. Processors prefetch the lines
+  /// that follow such accesses; a jump waits for the memory.
   ReuseHistogram jumps;
 
   bool operator==(const Reuse&) const = default;
 };
 
-/// Measures the reuse distances of a stream that is fed access after access and not kept.
+/// Measures the reuse distances of a stream, access by access, without storing the stream.
 ///
-/// Time is a row of slots, each marked while it is the last access of some line, so that a distance is the
+/// Each access takes a slot, marked as long as it is the last access to its line, so that a distance is the
 /// number of marks after a line's own (Bennett and Kruskal 1975, LRU stack processing). The marks are bits,
 /// counted by a tree of 16 children a node; an access goes up the tree only until its line's old and new
 /// slots meet, and so costs O(log distance) steps. When the slots run out, the marks are moved together.
 /// Memory: 13 bytes for each line.
 class ReuseDistance {
  public:
-  /// For accesses to lines 0 … lines − 1. With `halvings` > 0 these are told to be a sample of 2^-halvings of
-  /// the lines, as ReuseSample draws it: the last nine of eleven lines count, and what is far is nearer by
-  /// that.
+  /// For accesses to lines 0 … lines − 1. With `halvings` > 0 these are a sample of 2^-halvings of the lines,
+  /// as ReuseSample draws it: the last nine of eleven lines count, and accesses are far from a distance that
+  /// is 2^halvings times shorter.
   explicit ReuseDistance(Index lines, int halvings = 0);
 
   /// Returns the distance, −1 for a cold access. Amortised O(1 + log distance).
   ///
-  /// @param streamed  of a sample: how many accesses were streamed so far, those to other lines among them
+  /// @param streamed  of a sample: number of streamed accesses so far, those to other lines included
   Index access(Index line, Access how = Access::gathered, std::uint32_t streamed = 0);
 
-  /// Asks for what `access` will need to know of the line, of a sample.
+  /// Prefetches what `access` needs of a line in a sample.
   void prefetch(Index line) const {
     __builtin_prefetch(&last_access_of_line_[line]);
     __builtin_prefetch(&far_of_line_[line]);
@@ -95,9 +95,9 @@ class ReuseDistance {
   /// Lines accessed so far.
   [[nodiscard]] Index distinct() const noexcept { return index_size(first_accesses_); }
 
-  /// The accesses of every run but the first, when the stream so far is repeated for ever: nothing is cold,
-  /// since the first access to a line in a run is a reuse from the run before. Whether it is a jump is taken
-  /// from the first run, where all before it are far accesses too. Ends the measurement.
+  /// The accesses of every run but the first if the stream so far is repeated for ever: none is cold, since
+  /// the first access to a line in a run reuses it from the run before. Such an access is a jump if the cold
+  /// one in the first run was. Ends the measurement.
   /// O(distinct lines · log distance).
   [[nodiscard]] Reuse repeated() &&;
 
@@ -109,22 +109,22 @@ class ReuseDistance {
   static constexpr Index kSampledBlock = 11;
   static constexpr Index kUncounted = 2;  ///< the first of a block
 
-  /// Side by side, since both are wanted together and lie far from what is in this machine's caches.
+  /// Side by side, since both are needed together and are seldom in this machine's caches.
   struct LastAccess {
     Slot slot = kNever;
-    std::uint32_t far = 0;  ///< number of the last access from afar, cold ones among them
+    std::uint32_t far = 0;  ///< number of the last far access, cold ones included
   };
 
-  /// Accesses from afar before a line's last one, of a sample. A line's block is sampled with it, so that
-  /// those to the block are all there are, and gathered ones to other blocks a sample of them. What streams
-  /// comes from afar.
+  /// Far accesses before a line's last one, in a sample. A line's block is sampled as a whole, so accesses
+  /// to the block are counted exactly; gathered ones to other blocks are a sample. Streamed accesses
+  /// count as far.
   struct FarOfSample {
     std::uint32_t gathered = 0;
     std::uint32_t own = 0;  ///< those gathered in the line's block
     std::uint32_t streamed = 0;
   };
 
-  /// For each of 16 sister nodes the marks in those after it.
+  /// For each of 16 sister nodes the number of marks in the sisters after it.
   struct alignas(64) Sisters {
     std::array<std::uint32_t, 16> marks_after{};
   };
@@ -147,10 +147,10 @@ class ReuseDistance {
   std::vector<std::uint64_t> marks_;   ///< a bit for each slot
   /// From the words of marks_ up; the nodes that hold the next slot count as empty here.
   std::vector<std::vector<Sisters>> levels_;
-  std::vector<std::uint32_t> marks_in_open_;  ///< at each level those in the node that holds the next slot
+  std::vector<std::uint32_t> marks_in_open_;  ///< at each level, in the node that holds the next slot
   Slot slot_count_ = 0;
   Slot next_ = 0;
-  std::uint32_t far_accesses_ = kFollowing;  ///< of a sample the gathered ones
+  std::uint32_t far_accesses_ = kFollowing;  ///< in a sample only the gathered ones
   std::vector<FarOfSample> far_of_line_;     ///< of a sample
   std::vector<std::uint32_t> far_of_block_;  ///< of a sample: gathered ones
   std::vector<bool> first_access_jumps_;     ///< as first_accesses_

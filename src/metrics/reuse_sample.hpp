@@ -11,12 +11,12 @@
 
 namespace meshorder {
 
-/// Estimates the reuse distances of a stream from the accesses to some of its lines: a distance between
-/// accesses to sampled lines, seen among these alone, is the share of the lines sampled of the true one
+/// Estimates the reuse distances of a stream from the accesses to a sample of its lines: the distance counted
+/// in sampled lines alone is about the true distance times the share of lines that are sampled
 /// (Waldspurger, Park, Garthwaite and Ahmad 2015: Efficient MRC construction with SHARDS).
 ///
-/// Sampled are blocks of eleven lines, by a hash of their number, of which the last nine count: whether a
-/// stream leads to one is seen on the two before. Eleven divides no period of a kernel's arrays, such as the
+/// The sample consists of blocks of eleven lines, chosen by a hash of their number. The last nine count; the
+/// first two show whether a stream leads to those. Eleven divides no period of a kernel's arrays, such as the
 /// 9 lines of 8 matrix blocks. Other accesses cost a hash each. The same stream gives the same estimate on
 /// every run. Its error falls with the root of the lines sampled and of the cache's size: estimates for
 /// caches below about 100 · 2^halvings lines are unreliable.
@@ -49,7 +49,7 @@ class ReuseSample {
     }
   }
 
-  /// Whether one of the lines first … last is sampled: accesses to others need not be told. O(lines).
+  /// Whether one of the lines first … last is sampled; other accesses need not be reported. O(lines).
   [[nodiscard]] bool samples(Index first, Index last) const noexcept {
     if (place_of_block_.empty()) return true;
     for (Index block = first / kBlock; block <= last / kBlock; ++block) {
@@ -70,7 +70,7 @@ class ReuseSample {
   struct Waiting {
     Index line = 0;
     Access how = Access::gathered;
-    std::uint32_t streamed = 0;  ///< accesses that had been streamed
+    std::uint32_t streamed = 0;  ///< accesses that were streamed before
   };
   static constexpr std::size_t kWaiting = 32;
 
@@ -92,7 +92,7 @@ class ReuseSample {
 
   void measure_those_that_wait();
 
-  /// By mixed bits of its number, so that no stride of a stream falls in step with the sample.
+  /// Decides by mixed bits of the block's number, so that no stride of a stream is in step with the sample.
   [[nodiscard]] bool sampled(Index block) const noexcept {
     std::uint32_t bits = static_cast<std::uint32_t>(block) * 0x9e3779b1U;
     bits = (bits ^ bits >> 15U) * 0x85ebca6bU;

@@ -66,8 +66,8 @@ AccessStream::Array AccessStream::place(Offset bytes) {
 
 namespace {
 
-/// Foresees how long a loop is, as a processor does that keeps some thousands of what followed the last
-/// branches.
+/// Predicts lengths of loops, as a processor does that remembers what followed some thousands of sequences
+/// of branches, and counts the wrong ones.
 class LoopLengths {
  public:
   void add(Index length) {
@@ -93,14 +93,14 @@ class LoopLengths {
   Offset turns_ = 0;
 };
 
-/// See RunReuse::turns, of a product with rows of these lengths, or with as many more in each.
+/// See RunReuse::turns: of a product with rows of these lengths, or all longer by the same number.
 Offset turns_of_product(GraphRef rows) {
   LoopLengths lengths;
   for (Index v = 0; v < rows.size(); ++v) lengths.add(rows.degree(v));
   return lengths.turns();
 }
 
-/// See RunReuse::turns. Of large meshes every eighth stretch of elements is looked at.
+/// See RunReuse::turns. Large meshes are sampled: every eighth stretch of elements.
 Offset turns_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings) {
   if (kernel == Kernel::spmv) return turns_of_product(graph);
   LoopLengths lengths;
@@ -125,7 +125,7 @@ Offset turns_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, in
                       static_cast<double>(std::max<Offset>(1, counted)));
 }
 
-/// Polls while a sample is told of accesses.
+/// Passes accesses to a sample, and polls.
 struct PolledSample {
   ReuseSample& reuse;
   std::uint32_t visits = 0;
@@ -150,7 +150,7 @@ struct PolledSample {
 namespace {
 
 Reuse followed(const AccessStream& stream, Kernel kernel, int halvings) {
-  // a product gathers from few lines, and is soon followed
+  // a product gathers from few lines, and its simulation is fast
   constexpr int kOfProduct = 2;
   ReuseSample reuse(stream.line_count(),
                     kernel == Kernel::spmv ? std::max(0, halvings - kOfProduct) : halvings);

@@ -30,7 +30,7 @@ class AccessStream {
   /// order to be judged; both must outlive the stream. Throws InvalidArgument if the kernel needs 2^31 lines
   /// or more. O(1).
   AccessStream(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices);
-  /// Of the product with a matrix that has these entries and no others; likewise.
+  /// The stream of a product with a matrix of exactly these entries; likewise.
   explicit AccessStream(const EntryPattern& pattern);
 
   [[nodiscard]] Index line_count() const noexcept { return static_cast<Index>(lines_); }
@@ -44,8 +44,8 @@ class AccessStream {
   }
 
   /// As visit, by `visitor.gather(line)` and, for lines that are streamed one after another,
-  /// `visitor.stream(first, end)`. May leave out gathered accesses to lines first … last of which
-  /// `visitor.samples(first, last)` says that none counts, and then does not look for their places.
+  /// `visitor.stream(first, end)`. May leave out gathered accesses to lines first … last where
+  /// `visitor.samples(first, last)` is false: none of them counts, and their places are not looked up.
   template <class Visitor>
   void visit_some(Visitor& visitor) const {
     switch (kernel_) {
@@ -105,7 +105,7 @@ class AccessStream {
     Offset left_ = 0;  ///< bytes of the last touched line that are not read yet
   };
 
-  /// Gathers vertices from an array, and leaves out those that lie in no line that counts.
+  /// Gathers vertices from an array; leaves out those of which no line counts.
   class VertexGatherer {
    public:
     template <class Visitor>
@@ -132,7 +132,7 @@ class AccessStream {
     std::vector<bool> sampled_;
   };
 
-  /// A visitor that hands every line of a stream to `touch`.
+  /// A visitor that calls `touch` for every line of a stream.
   template <class Touch>
   struct ToEveryLine {
     Touch& touch;
@@ -223,7 +223,7 @@ class AccessStream {
     }
   }
 
-  /// The rows of the matrix of which a line counts.
+  /// Marks the rows of the matrix that have a line that counts.
   template <class Visitor>
   [[nodiscard]] std::vector<bool> sampled_rows(const Visitor& visitor) const {
     std::vector<bool> rows(static_cast<std::size_t>(graph_.size()));
@@ -237,7 +237,7 @@ class AccessStream {
     return rows;
   }
 
-  /// The corners of a simplex, of the last one for those after it.
+  /// The corners of a simplex; those of the last one for numbers beyond it.
   [[nodiscard]] std::span<const Index> corners_of(Offset simplex) const {
     const Offset corners = simplices_.dimension + 1;
     return simplices_.vertices.subspan(corners * std::min(simplex, simplices_.size() - 1), corners);
@@ -264,7 +264,7 @@ class AccessStream {
   static constexpr Offset kAhead = 12;  ///< elements
 
   Kernel kernel_;
-  GraphRef graph_;  ///< of a product with a matrix its rows, which need not be symmetric
+  GraphRef graph_;  ///< for a product with a matrix: its rows, which need not be symmetric
   bool adds_diagonal_ = true;
   SimplicesRef simplices_;
   Offset lines_ = 0;
@@ -274,19 +274,19 @@ class AccessStream {
   Array ends_, lengths_;
 };
 
-/// What a run of a kernel uses again.
+/// The reuse of data in a run of a kernel.
 struct RunReuse : Reuse {
   Kernel kernel = Kernel::spmv;
   int dimension = 0;  ///< of the simplices: 3 for tetrahedra
-  /// Loops that do not end where a processor foresees: rows of a product, and searches of assembly along a
-  /// row, that are not as long as what followed the last eight lengths the time before. 0 for other kernels.
+  /// Loops whose end a processor mispredicts: rows of a product, and searches of assembly along a row, whose
+  /// length differs from what followed the same eight lengths the last time. 0 for other kernels.
   Offset turns = 0;
 
   bool operator==(const RunReuse&) const = default;
 };
 
 /// Returns the reuse of a repeated kernel: of every run but the first. O(accesses · log distance) time and
-/// about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0 that of
+/// about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0 reuse of
 /// the lines is estimated from 2^-halvings of them (see ReuseSample), which is faster; from four halvings on
 /// the turns of assembly are an estimate, too.
 RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
@@ -294,10 +294,10 @@ RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, 
 /// The same of the product with a matrix that has these entries.
 RunReuse reuse_of_product(const EntryPattern& pattern, int halvings = 0);
 
-/// The places in kKernels, what takes longest to follow first: assembly adds to 16 entries an element.
+/// The kernels' places in kKernels, the slowest to simulate first: assembly adds to 16 entries an element.
 inline constexpr std::array<std::size_t, kKernels.size()> kLongestFirst{2, 0, 1, 3};
 
-/// Returns the halvings with which `reuse_of` follows a mesh of so many simplices: 0 below 200,000, and up to
+/// Returns the halvings with which `reuse_of` takes a mesh of so many simplices: 0 below 200,000, and up to
 /// 5 from eight million on, so that larger meshes take less time than in proportion (docs/prediction.md says
 /// how far off that is).
 int halvings_for(Offset simplices);
@@ -305,10 +305,10 @@ int halvings_for(Offset simplices);
 /// By kernel, as kKernels lists them.
 using KernelReuse = std::array<RunReuse, kKernels.size()>;
 
-/// Returns the reuse of all kernels, each computed on its own thread.
+/// Returns the reuse of all kernels, which the threads compute in turns.
 KernelReuse reuse_of_kernels(const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
-/// Returns the reuse of the product with a matrix; of the kernels that it has not, nothing.
+/// Returns the reuse of the product with a matrix; the entries of other kernels are empty.
 KernelReuse reuse_of_kernels(const EntryPattern& pattern, int halvings = 0);
 
 /// Returns the reuse of all kernels that a mesh has (see kernels_of), whose vertex graph is `graph`, after

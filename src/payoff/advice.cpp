@@ -40,7 +40,7 @@ struct Ordered {
   const CsrGraph* graph = nullptr;
   const CellSimplices* simplices = nullptr;
   const EntryPattern* pattern = nullptr;    ///< null of a mesh that is no matrix
-  std::unique_ptr<const Moved> moved = {};  ///< what they are of; none: the mesh as it is
+  std::unique_ptr<const Moved> moved = {};  ///< what the pointers refer to; none: the mesh as it is
 };
 
 Ordered ordered(std::unique_ptr<const Moved> moved, bool is_matrix) {
@@ -53,7 +53,7 @@ RunReuse reuse_in(const Ordered& order, Kernel kernel, int halvings) {
                                   : reuse_of(kernel, *order.graph, *order.simplices, halvings);
 }
 
-/// The predictions for all orders, every kernel of every order on a thread of its own.
+/// The predictions for all orders; each kernel in each order is one turn of the threads.
 std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
                                             const AdviceOptions& options) {
   report("predict");

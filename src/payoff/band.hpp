@@ -17,7 +17,7 @@ struct Band {
 /// with vertex i joined to i ± 1 … ± k and each simplex on some of the vertices i … i + k, ascending and in
 /// all combinations, so that simplices use every edge as those of a mesh do. Every kernel reads and writes
 /// memory front to back and finds reused data in the first cache: a reference for the orders of
-/// `mesh`, in which a body of two or three dimensions has to be cut.
+/// `mesh`, which have to cut a body of two or three dimensions.
 ///
 /// `graph` is the vertex graph of `mesh`. The counts are exact, except that a degenerate mesh gets the edges
 /// that its simplices need. As many vertices as in `mesh` have no neighbours; they come last. The points lie

@@ -21,8 +21,8 @@ constexpr Offset kKilobyte = Offset{1} << 10;
 constexpr Offset kSmallest = 8 * kKilobyte;
 constexpr std::uint64_t kLineWords = kLineBytes / sizeof(std::uint64_t);
 
-/// Follows `steps` loads, each of which waits for the one before, at random lines of the first `lines` ones
-/// of a buffer of zeros. Without `Load` only the arithmetic between them.
+/// Makes `steps` loads, each of which waits for the one before, at random lines among the first `lines` of
+/// a buffer of zeros. Without `Load` it does only the arithmetic between them.
 template <bool Load>
 std::uint64_t follow(const std::uint64_t* buffer, std::uint64_t lines, int steps, std::uint64_t state) {
   for (int step = 0; step < steps; ++step) {
@@ -44,7 +44,7 @@ double seconds_of(const std::uint64_t* buffer, std::uint64_t lines, int steps, s
   return stopwatch.seconds() / steps;
 }
 
-/// Reads the words, one a line, at most the last `most` bytes, twice.
+/// Reads one word a line twice, of at most the last `most` bytes.
 void fill_caches(std::span<const std::uint64_t> words, std::size_t most) {
   const std::size_t skipped = words.size() - std::min(words.size(), most / sizeof(std::uint64_t));
   for (int pass = 0; pass < 2; ++pass) {
@@ -54,10 +54,10 @@ void fill_caches(std::span<const std::uint64_t> words, std::size_t most) {
   }
 }
 
-/// Latencies as levels of these sizes explain them.
+/// A fit of the latencies by levels of these sizes.
 struct Explanation {
   std::vector<std::size_t> sizes;  ///< of the levels, as places among the points, ascending
-  std::vector<double> costs;       ///< of a load that hits the first level, then what missing each costs more
+  std::vector<double> costs;       ///< of a hit in the first level, then the extra cost of missing each
   double error = std::numeric_limits<double>::infinity();  ///< the sum of squares of relative errors
 };
 
@@ -80,8 +80,8 @@ Explanation explained(std::span<const ProbePoint> points, const std::vector<std:
   return result;
 }
 
-/// Whether missing each level costs so much, in proportion to what lies before it, that it is a cache of its
-/// own and no table of pages or disturbance.
+/// Whether missing each level costs enough, relative to the levels before it, to be a cache of its own
+/// and not an effect of page tables or a disturbance.
 bool has_steps(const Explanation& explanation) {
   constexpr double kLeastStep = 0.25;
   double before = explanation.costs.front();
@@ -104,7 +104,7 @@ Explanation best_explanation(std::span<const ProbePoint> points, std::size_t lev
     }
     for (std::size_t size = from; size + 1 < points.size(); ++size) {
       sizes[level] = size;
-      // caches less than twice as large as the one before are none
+      // a next cache is at least twice as large
       std::size_t next = size + 1;
       while (next < points.size() && points[next].bytes < 2 * points[size].bytes) ++next;
       choose_next(choose_next, level + 1, next);
@@ -147,7 +147,7 @@ std::vector<ProbePoint> probe_latencies(std::span<const Offset> sizes, int round
       }
       const auto lines = static_cast<std::uint64_t>(std::max<Offset>(1, sizes[i] / kLineBytes));
       arithmetic = std::min(arithmetic, seconds_of<false>(buffer.data(), lines, kSteps, 1));
-      // what lies in the caches must be of this part of the buffer
+      // the caches must hold lines of this part of the buffer
       fill_caches(std::span(buffer).first(static_cast<std::size_t>(lines) * kLineWords), kMostFilled);
       const double seconds =
           seconds_of<true>(buffer.data(), lines, kSteps, 2 * static_cast<std::uint64_t>(round) + 1);
@@ -164,7 +164,7 @@ FoundCaches find_caches(std::span<const ProbePoint> points, std::size_t most) {
   if (points.empty()) throw InvalidArgument("caches: no latencies to find them in");
   Explanation best = explained(points, {});
   for (std::size_t levels = 1; levels <= most; ++levels) {
-    // a level must explain a good part of what those before leave unexplained
+    // one more level must reduce the error by a quarter
     constexpr double kLeastGain = 0.75;
     Explanation next = best_explanation(points, levels);
     if (next.error < kLeastGain * best.error) best = std::move(next);

@@ -42,7 +42,7 @@ struct Runs {
   std::vector<Steadiness> steadiness = {};  ///< of each measurement
 };
 
-/// Reuse of the larger lattices is estimated, from more of the lines than that of meshes.
+/// The reuse of larger lattices is estimated, from more of their lines than the reuse of meshes.
 int halvings_for_lattice(SimplicesRef simplices) { return simplices.size() < 50'000 ? 0 : 3; }
 
 /// How long orders are timed.
@@ -76,7 +76,7 @@ struct Prepared {
       graphs[i] = vertex_graph(meshes[turn]);
       simplices[i] = cut_into_simplices(meshes[turn]);
     });
-    // what a lattice is timed twice in is followed once
+    // an order that is timed twice is simulated once
     const auto place_of = [&](std::size_t i) {
       return static_cast<std::size_t>(
           std::find(orders.begin() + static_cast<std::ptrdiff_t>(first), orders.end(), orders[i]) -
@@ -130,8 +130,8 @@ Timings time_all(Prepared& prepared, int lattice, const Rounds& rounds, Runs& ru
   return timings;
 }
 
-/// What disturbed several measurements: the worst of it, and for how well timings repeat the middle, as a
-/// short measurement repeats less well than a long one.
+/// The steadiness of several measurements: the worst disturbances, but the median of how well timings repeat,
+/// as a short measurement repeats less well than a long one.
 Steadiness steadiness_of(std::span<const Steadiness> measurements) {
   Steadiness result;
   std::vector<double> repeats;
@@ -144,11 +144,11 @@ Steadiness steadiness_of(std::span<const Steadiness> measurements) {
   return result;
 }
 
-/// Sizes of caches within this factor are of one cache.
+/// Sizes that differ by less than this factor are taken for one cache.
 constexpr double kSameCache = 1.6;
 
-/// The caches that costs belong to. A found one that is within that factor of a reported one is that one, but
-/// for the last, of which a thread has what others leave.
+/// The caches that costs belong to. A found one within that factor of a reported one gets the reported size,
+/// except the last, of which a thread has what others leave.
 Caches effective_caches(const FoundCaches& found, const Caches& reported) {
   Caches caches;
   for (std::size_t i = 0; i < found.levels.size(); ++i) {
@@ -211,7 +211,7 @@ void time_small(const CalibrationLattice& lattice, int number, double seconds, s
 void time_large(CalibrationLattice lattice, int number, const Stopwatch& since_start, double seconds,
                 std::span<Runs> runs) {
   std::vector<LatticeOrder>& orders = lattice.orders;
-  // the most that an order can cost is what meshes are predicted by that are larger than all of these
+  // the worst order comes second, as it decides the predictions for meshes larger than all lattices
   std::swap(orders[1], orders.back());
   double longest = 0;
   for (std::size_t i = 0; i < orders.size(); ++i) {
@@ -225,7 +225,7 @@ void time_large(CalibrationLattice lattice, int number, const Stopwatch& since_s
   }
 }
 
-/// Of each run, the share of its time that each of its counts takes at a nanosecond each.
+/// For each run, the share of its time that each of its counts would take at one nanosecond a count.
 Rows shares_of(std::span<const TimedReuse> runs, const Caches& caches) {
   const std::array<Offset, 4> sizes = sizes_that_cost(caches);
   Rows rows{.columns = CostRow{}.size()};
@@ -237,7 +237,7 @@ Rows shares_of(std::span<const TimedReuse> runs, const Caches& caches) {
   return rows;
 }
 
-/// Multiplies what all runs of a lattice have in common, the mean of their rows, by a factor.
+/// Multiplies the mean of the rows of a lattice's runs by a factor; the differences from it stay.
 void scale_means(double factor, std::span<const TimedReuse> runs, Rows& rows) {
   struct Mean {
     std::vector<double> row;
@@ -278,7 +278,7 @@ std::vector<TimedReuse> of_solids(std::span<const TimedReuse> runs) {
 }
 
 /// Puts the costs that fit the runs best into a model whose caches are known; `like` as in fit_costs. Returns
-/// how well they do.
+/// how well they fit.
 FitQuality fit_all(const Runs& runs, const Latencies& latencies, CostModel& model,
                    const CostModel* like = nullptr) {
   FitQuality quality;
@@ -335,13 +335,13 @@ Latencies latencies_behind(const FoundCaches& found, const Caches& caches) {
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies,
                       const KernelCosts* like) {
   const Rows shares = shares_of(runs, caches);
-  // Two more unknowns. One, in units of a share that is about right: how much of a latency a jump costs. For
+  // Two more unknowns. The first: which share of a latency a jump costs, in units of kShare. For
   // each jump an equation says that its cost is that share, with an eightieth of the weight of a run.
   constexpr double kShare = 0.1;
   constexpr double kWeight = 0.0125;
-  // What all runs of a lattice are off by counts so much.
+  // The weight of the error that all runs of a lattice have in common.
   constexpr double kCommon = 0.5;
-  // The other: how many times as long all takes as it does by `like`. For each cost an equation says so.
+  // The second: the ratio of all costs to those of `like`. For each cost an equation says so.
   constexpr double kLike = 0.4;
   Rows rows{.columns = shares.columns + 2};
   std::vector<double> row(rows.columns);
@@ -367,7 +367,7 @@ FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, co
       row[j] = kLike / known[j];
       row.back() = -kLike;
     } else {
-      // none, as far as it would change the times in the mean
+      // a cost that is 0 in `like` stays near 0, by its mean share of the times
       for (std::size_t i = 0; i < shares.size(); ++i)
         row[j] += shares[i][j] / static_cast<double>(shares.size());
     }
@@ -421,7 +421,7 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   constexpr Offset kBytesOfVertex = 4096;
   const Offset fitting = static_cast<Offset>(usable_memory() / 4) / kBytesOfVertex;
   const auto largest = static_cast<Index>(std::clamp<Offset>(fitting, 1000, effort.vertices));
-  // Rows of matrices that fill parts of the second cache and of the last, so that what streams misses one
+  // Rows of matrices that fill parts of the second cache and of the last, so that streams miss one
   // cache and not the next.
   constexpr Offset kRowBytes = 180;
   const auto rows_in = [&](Offset bytes, double part) {
@@ -429,8 +429,8 @@ Calibration measure_machine(const CalibrationEffort& effort) {
     return static_cast<Index>(std::clamp<Offset>(rows, 300, largest / 4));
   };
   const std::array<Offset, 4> sizes = sizes_that_cost(model.caches);
-  /// A lattice, and its share of the time. It is also timed on all threads where it adds to what they cost:
-  /// to wake them takes as long as a run on the smallest. One whose matrix streams from memory has one more
+  /// A lattice, and its share of the time. Some are also timed on all threads, not the smallest, for which
+  /// waking the threads takes as long as a run. One whose matrix streams from memory has one more
   /// order, with a window whose rows fill the second cache twice: as in a Fiedler order, what is gathered has
   /// left the first cache and what is added to the second.
   struct Step {

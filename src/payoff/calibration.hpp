@@ -12,19 +12,19 @@
 
 namespace meshorder {
 
-/// How well costs are determined, by kernel as kKernels lists them.
+/// How well the fit determines the costs, by kernel as kKernels lists them.
 struct FitQuality {
   std::array<double, kKernels.size()> condition{};  ///< of the fit's equations, see condition_number
-  /// By what share predicted times of the problems differ from measured ones, the median.
+  /// The median share by which predicted times of the problems differ from measured ones.
   std::array<double, kKernels.size()> error{};
-  /// By what share two timings of the same problem at other addresses differ, the median of some: a smaller
+  /// The median share by which two timings of one problem at different addresses differ: a smaller
   /// difference of two times means nothing.
   std::array<double, kKernels.size()> floor{};
 
   bool operator==(const FitQuality&) const = default;
 };
 
-/// What was measured of a machine, so that times can be predicted for it.
+/// What was measured on a machine to predict times for it.
 struct Calibration {
   CostModel
       model;  ///< on one thread; its caches are those found, the first ones as reported where they agree
@@ -36,11 +36,11 @@ struct Calibration {
   std::string date;   ///< "2026-11-22", in UTC
   Caches reported;    ///< by the system; empty where it reports none
   FoundCaches found;
-  int threads = 1;            ///< all that there were
+  int threads = 1;            ///< with which `all_threads` was measured
   double read_bandwidth = 0;  ///< GB/s, one thread
   double read_bandwidth_all = 0;
   Steadiness steadiness;
-  double seconds = 0;  ///< that it took
+  double seconds = 0;  ///< that the calibration took
 
   bool operator==(const Calibration&) const = default;
 };
@@ -64,7 +64,7 @@ CalibrationEffort effort_of(double seconds);
 /// progress and polls.
 Calibration measure_machine(const CalibrationEffort& effort = {});
 
-/// A run of a kernel: the levels of reuse, and what it took; on several threads, divided by `times_computed`.
+/// A run of a kernel: its reuse, and its time; on several threads, divided by `times_computed`.
 struct TimedReuse {
   RunReuse reuse;
   double milliseconds = 0;
@@ -87,20 +87,20 @@ Latencies latencies_behind(const FoundCaches& found, const Caches& caches);
 
 /// Fits the costs of a kernel on a machine with such caches. Loads do not wait for each other, so that a jump
 /// costs a share of its latency. Where runs have too few jumps to show what they cost, it is the same share
-/// as of the others: the equations say so, with an eightieth of the weight of a run each. What all runs of a
-/// lattice are off by has half of the weight of what each is off by beside them: costs are for ratios,
+/// as of the others: the equations say so, with an eightieth of the weight of a run each. The error that all
+/// runs of a lattice have in common has half the weight of each run's own: costs are for ratios,
 /// and the rate of a shared memory changes from minute to minute.
 ///
-/// @param like  costs of the same kernel on one thread where the runs are on all, or null. Where the runs do
-///              not show otherwise, all costs are those, times one factor: an equation for each says so, with
-///              two fifths of the weight of a run
+/// @param like  costs of the same kernel on one thread where the runs are on all threads, or null. Unless the
+///              runs show otherwise, all costs are those, times one factor: an equation for each says so,
+///              with two fifths of the weight of a run
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies,
                       const KernelCosts* like = nullptr);
 
 /// Fits one factor to the runs, by which all of the costs are multiplied.
 FittedCosts scale_costs(std::span<const TimedReuse> runs, const KernelCosts& costs, const Caches& caches);
 
-/// What a quick look at a machine finds changed since it was calibrated.
+/// What a quick check of a machine finds changed since its calibration.
 struct Recheck {
   std::array<double, kKernels.size()> ratio{};  ///< time now / predicted time, by kernel
   std::string moved;                            ///< why the calibration should be done anew, or empty

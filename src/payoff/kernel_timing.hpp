@@ -13,14 +13,14 @@ namespace meshorder {
 
 /// How long and how often kernels run.
 struct TimingOptions {
-  /// No round begins that is expected to end later. Preparation and warm-up are not included.
+  /// No round begins that is expected to end after this time, without preparation and warm-up.
   double budget_seconds = 12.0;
   int min_rounds = 3;  ///< even beyond the budget
   int max_rounds = 25;
   /// A faster kernel is repeated until one sample takes this long: solvers repeat it too, and find the data
   /// of the last run in the caches.
   double sample_seconds = 0.02;
-  /// Count the time in which the calling thread ran, not that in which other programs had its processor: for
+  /// Count the calling thread's processor time instead of elapsed time: for
   /// kernels on one thread.
   bool processor_time = false;
   /// For time_orders: memory for all prepared orders together; 0: half of the machine's.
@@ -45,7 +45,7 @@ struct OrderTimes {
   [[nodiscard]] KernelTimes& operator[](Kernel kernel) { return times[static_cast<std::size_t>(kernel)]; }
 };
 
-/// The times of several orders, and what they are worth.
+/// The times of several orders, and how far they can be trusted.
 struct Timings {
   std::vector<OrderTimes> orders;
   Steadiness steadiness;
@@ -66,7 +66,7 @@ Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOpti
 /// reference, and share the budget; at least two benches must fit.
 Timings time_orders(Index orders, const PrepareOrder& prepare, const TimingOptions& options = {});
 
-/// What times orders as `time_orders` does.
+/// A function that times orders as `time_orders` does.
 using OrderTimer =
     std::function<Timings(Index orders, const PrepareOrder& prepare, const TimingOptions& options)>;
 
