@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kRemedy = "put the file itself there, or allow its own folder by --allow-includes-from";
 
-// O_NONBLOCK: a pipe without a writer is not waited for; it does nothing to a file
+// O_NONBLOCK: opening does not wait for the writer of a pipe; files ignore it
 constexpr int kReading = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
 #ifdef O_PATH
 constexpr int kPassing = O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
@@ -43,7 +43,7 @@ int opened_without_links(const fs::path& path) {
     const bool is_last = std::next(part) == below.end();
     struct stat status {};
     int next = -1;
-    // a device is not opened, which may do something
+    // a device is not opened, since that may have an effect
     if (::fstatat(folder, part->c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0) {
       const bool may_open = is_last ? S_ISREG(status.st_mode) || S_ISFIFO(status.st_mode) : true;
       errno = S_ISLNK(status.st_mode) ? ELOOP : ENXIO;
@@ -61,7 +61,7 @@ bool is_below(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// Returns what a path leads to that cannot be read, nullptr for a file or a pipe.
+/// Returns "is a folder" and the like for what cannot be read, nullptr for a file or a pipe.
 const char* kind_of_unreadable(mode_t mode, bool may_be_pipe) {
   if (S_ISDIR(mode)) return "is a folder";
   if (S_ISSOCK(mode)) return "is a socket";
@@ -127,7 +127,7 @@ void InputFile::fail(int error) const {
                    "check the path and the disk");
 }
 
-/// Takes the size of what has been opened, which others may have put there meanwhile.
+/// Checks what has been opened, which others may have put there meanwhile, and takes its size.
 void InputFile::require_readable() {
   struct stat status {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) fail(errno);
@@ -140,8 +140,8 @@ void InputFile::require_readable() {
   if (S_ISFIFO(status.st_mode)) wait_for_writer();
 }
 
-/// Reads the first byte of a pipe, without which nobody knows whether it has a writer. From there on reading
-/// waits.
+/// Waits up to three seconds for a writer of a pipe: a byte, an end or EAGAIN shows that there is or was one.
+/// Reading blocks from there on.
 void InputFile::wait_for_writer() {
   constexpr int kTurns = 300;
   constexpr int kMilliseconds = 10;

@@ -15,10 +15,10 @@ namespace meshorder {
 std::optional<std::filesystem::path> real_path_below(const std::filesystem::path& path,
                                                      std::span<const std::filesystem::path> folders);
 
-/// A file that is open for reading. Everything that is read is opened here, but for what the system says of
-/// itself (/proc, /sys).
+/// A file that is open for reading. All files that are read are opened here, except those in which the
+/// system describes itself (/proc, /sys).
 ///
-/// Nobody is waited for: a pipe that the user named needs a writer within three seconds, and others are
+/// It does not wait for long: a pipe that the user named needs a writer within three seconds; other pipes are
 /// refused like devices, sockets and folders. Throws InputError for these, for a file that is missing or may
 /// not be read, and for failures of the disk.
 class InputFile {
@@ -26,8 +26,8 @@ class InputFile {
   /// Opens the path that the user gave. Links are followed; a pipe is read to its end.
   explicit InputFile(const std::filesystem::path& path);
   /// Opens a file whose name comes from a file, a folder or another name. It must lie below one of the
-  /// folders (see `real_path_below`). The path is checked first and then opened part by part, none of which
-  /// may be a link: what others put in its place meanwhile is not opened.
+  /// folders (see `real_path_below`). The path is checked first and then opened part by part; no part may be
+  /// a link, so what others put in its place meanwhile is not opened.
   InputFile(const std::filesystem::path& path, std::span<const std::filesystem::path> folders);
   ~InputFile();
   InputFile(InputFile&& other) noexcept;
@@ -35,10 +35,10 @@ class InputFile {
   InputFile& operator=(const InputFile&) = delete;
   InputFile& operator=(InputFile&&) = delete;
 
-  /// Returns the bytes of the file when it was opened; 0 for a pipe and for files of /proc.
+  /// Returns the size of the file when it was opened, in bytes; 0 for a pipe and for files of /proc.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
-  /// Reads the next bytes. Returns their number, less than asked for at the end only.
+  /// Reads the next bytes. Returns their number, less than asked for only at the end.
   std::size_t read(std::span<char> into);
   /// Reads bytes at a place, which a pipe does not have. Returns their number, less than asked for at the end
   /// only.
@@ -46,8 +46,8 @@ class InputFile {
   /// Returns the rest of a file that is small. Throws InputError if it has more than `most` bytes.
   std::string text(std::size_t most);
 
-  /// Returns a path by which libraries open this very file, as long as this object lives: nobody can put
-  /// another in its place. Where the system has no /proc, its own path.
+  /// Returns a path by which libraries open this very file while this object lives, even if others put
+  /// another in its place; where the system has no /proc, the file's own path.
   [[nodiscard]] std::string path_for_libraries() const;
 
  private:

@@ -60,8 +60,8 @@ void for_each_chunk(Index n, Index size, Work work) {
   });
 }
 
-/// Calls `work(i)` for 0 … n−1, on all threads: each takes the next i when it is done with one, so that what
-/// takes longest should come first. For few turns of a millisecond and more; each polls on the calling
+/// Calls `work(i)` for 0 … n−1, on all threads: each takes the next i when it is done with one, so the
+/// longest turns should come first. For few turns of a millisecond and more; each polls on the calling
 /// thread.
 ///
 /// @throws as `parallel_loop`; turns that have not begun by then are left out

@@ -7,7 +7,7 @@
 
 namespace meshorder {
 
-/// Sorts every row of compressed sparse rows, drops repeats, and loops unless `keeps_loops`, and closes the
+/// Sorts every row of compressed sparse rows, drops repeats and, unless `keeps_loops`, loops, and closes the
 /// gaps. O(entries · log row length).
 ///
 /// @param starts  rows + 1

@@ -16,11 +16,11 @@ namespace {
 constexpr std::size_t kCacheLine = 64;
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
 constexpr std::size_t kMinPaged = kHugePage / 2;
-// malloc puts blocks from about here on at the same place of a page each
+// malloc puts all blocks of about this size and more at the same place of a page
 constexpr std::size_t kMinColoured = std::size_t{64} << 10;
 
-// As many places in 4096 bytes as are all at least kApart from each other, the last one and the first one of
-// the next page included.
+// The number of places in 4096 bytes that are at least kApart from each other, and the last one from the
+// first one of the next page.
 constexpr std::size_t kColours = 3;
 constexpr std::size_t kBetweenColours = 4096 / kColours / kCacheLine * kCacheLine;
 static_assert(kBetweenColours >= kApart);
@@ -41,8 +41,8 @@ std::size_t next_colour() {
 
 #if defined(__linux__)
 
-/// Returns memory of its own from a multiple of kHugePage on: what the heap hands out a second time keeps the
-/// small pages that it had. Large pages are a hint; without it they have their ordinary size.
+/// Returns newly mapped memory from a multiple of kHugePage on: memory that the heap reuses keeps its small
+/// pages. Large pages are only asked for; the system may give ordinary ones.
 void* allocate_pages(std::size_t bytes) {
   const std::size_t mapped = bytes + kHugePage;
   void* const map = mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

@@ -37,7 +37,7 @@ class HalfRow {
     row2_ = hn::MulAdd(load_four(block + 6), factors, row2_);
   }
 
-  /// Adds a block that counts in this row and in that of its column, whose sum is padded.
+  /// Adds a block to this row and, transposed, to the row of its column, whose sum is padded.
   template <class Value>
   HWY_INLINE void add_both(const Value* block, const double* p, double* column_sum) {
     const Tag d;
@@ -48,7 +48,7 @@ class HalfRow {
     row0_ = hn::MulAdd(block0, factors, row0_);
     row1_ = hn::MulAdd(block1, factors, row1_);
     row2_ = hn::MulAdd(block2, factors, row2_);
-    // by itself first: a sum just stored by the row before is waited for only once
+    // computed before the sum is loaded: what the row before has just stored is waited for only once
     const auto column = hn::MulAdd(block2, p2_, hn::MulAdd(block1, p1_, hn::Mul(block0, p0_)));
     hn::Store(hn::Add(hn::Load(d, column_sum), column), d, column_sum);
   }

@@ -13,7 +13,7 @@ namespace meshorder {
 /// slabs, is stored in its row; of two blocks that mirror each other within a slab only the upper one is
 /// stored, and counts in both rows. So a slab writes to its own rows alone: threads take slabs, without
 /// atomics or a second pass, and every sum has its terms in the same order for any number of threads. In a
-/// poor order most blocks are between slabs, and what is stored is the full matrix.
+/// poor order most blocks are between slabs, and nearly the full matrix is stored.
 ///
 /// Block k holds `values[9 k] … values[9 k + 8]`, row by row. Of row v, blocks `offsets[2 v] … offsets[2 v +
 /// 1] − 1` count in this row, blocks `offsets[2 v + 1] … offsets[2 v + 2] − 1` also in that of their column.
@@ -22,7 +22,7 @@ template <class Value>
 struct HalfBlockCsrOf {
   std::vector<Index> slabs{0};     ///< bounds of the slabs
   std::vector<Offset> offsets{0};  ///< 2 n + 1
-  std::vector<Index> columns;      ///< and kSpareColumns zeros, which are asked for early
+  std::vector<Index> columns;      ///< and kSpareColumns zeros, since columns are read ahead
   AlignedVector<Value> values;     ///< and one more number, since vector loads read past the end
 
   static constexpr Offset kSpareColumns = 64;
@@ -49,8 +49,8 @@ template <class Value>
 void store_half(const BlockCsr& matrix, HalfBlockCsrOf<Value>& result);
 
 /// y = A x for the rows of one slab; returns their part of xᵀA x. x and y hold 3 doubles for each vertex and
-/// must not overlap; x is read everywhere. All sums are in double, also with a matrix in float. Each product
-/// by a block is rounded as that by the full matrix, the sums in another order. Throws InvalidArgument if a
+/// must not overlap; all of x is read. All sums are in double, even if the matrix is in float. Each product
+/// with a block is rounded as with the full matrix; sums have another order. Throws InvalidArgument if a
 /// size differs. O(blocks).
 template <class Value>
 double multiply_slab_dot(const HalfBlockCsrOf<Value>& matrix, std::span<const double> x, std::span<double> y,

@@ -96,8 +96,8 @@ class ReuseDistance {
   [[nodiscard]] Index distinct() const noexcept { return index_size(first_accesses_); }
 
   /// The accesses of every run but the first if the stream so far is repeated for ever: none is cold, since
-  /// the first access to a line in a run reuses it from the run before. Such an access is a jump if the cold
-  /// one in the first run was. Ends the measurement.
+  /// the first access to a line in a run reuses it from the run before. Such an access is a jump if it is
+  /// far and the line's cold access was a jump. Ends the measurement.
   /// O(distinct lines · log distance).
   [[nodiscard]] Reuse repeated() &&;
 

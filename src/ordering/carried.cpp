@@ -14,8 +14,8 @@ namespace {
 
 constexpr Index kUnranked = -1;
 
-/// Where a new vertex comes: after the old vertex of that rank, in the order in which such vertices were
-/// found.
+/// The place of a new vertex: after the old vertex of that rank. New vertices with the same place keep the
+/// order in which they were found.
 struct Insertion {
   Index after;
   Index vertex;

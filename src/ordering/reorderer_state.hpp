@@ -44,7 +44,7 @@ struct ReordererState {
   Index since = 0;      ///< updates since the last order that was computed anew
   Index interval = 10;  ///< after so many there is another one
   double fresh_span = 0;
-  double fresh_seconds = 0;  ///< that the last order took that was computed without a start vector; 0: none
+  double fresh_seconds = 0;  ///< of the last order computed without a start vector; 0: none
   double warm_seconds = 0;   ///< with one
   Observed observed;
   std::string method;          ///< that the renewals take; "auto" where the first one was no better

@@ -36,7 +36,7 @@ class Session {
 /// Returns the name and version of the MPI library, as "Open MPI v4.1.4".
 std::string name_of_mpi();
 
-/// An exception of one rank, thrown on all of them. None of them waits for another.
+/// An exception of one rank, thrown on all of them, so that no rank waits for another.
 struct SharedError : Error {
   using Error::Error;
 };
@@ -106,7 +106,7 @@ class Communicator {
     return exchange(std::span<const T>(own), starts).values;
   }
 
-  /// Returns those of the root's values that are this rank's: starts[r] … starts[r + 1] − 1 are rank r's.
+  /// Returns this rank's part of the root's values: starts[r] … starts[r + 1] − 1 are rank r's.
   /// Throws as `exchange`.
   ///
   /// @param at_root  not looked at elsewhere
@@ -129,7 +129,7 @@ class Communicator {
     return at_root;
   }
 
-  /// The same for texts, none of which has a zero in it.
+  /// The same for texts without zero bytes.
   [[nodiscard]] std::vector<std::string> broadcast(const std::vector<std::string>& at_root) const;
 
   /// Returns the value of each rank, on all of them. O(ranks).
@@ -153,7 +153,7 @@ class Communicator {
   /// Returns the sums of the ranks' values, entry by entry; `own` has the same size on all ranks.
   [[nodiscard]] std::vector<std::int64_t> sums(std::vector<std::int64_t> own) const;
 
-  /// Does work that is a rank's own, and returns what it returns.
+  /// Does work that this rank does by itself, and returns what the work returns.
   ///
   /// @throws SharedError on all ranks if it throws on one
   template <class Work>

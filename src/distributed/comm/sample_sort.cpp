@@ -11,7 +11,7 @@ namespace {
 
 constexpr Offset kSamplesPerRank = 64;  // of all entries, for each rank: its share is then right to a few %
 
-/// The entries of all ranks at which the ranges of the ranks but the first begin.
+/// Returns the entries at which the ranges of ranks 1, 2, … begin, chosen from samples of all ranks.
 std::vector<SortEntry> splitters(const Communicator& communicator, const std::vector<SortEntry>& sorted) {
   const auto count = static_cast<Offset>(sorted.size());
   const Offset ranks = communicator.size();

@@ -35,7 +35,7 @@ BlockRange blocks_with(const FileArray& array, Offset begin, Offset end) {
   return {block_of(begin), block_of(end - 1) + 1};
 }
 
-/// Hands each rank the first bytes in the file of the blocks that it wants, and the last one's end.
+/// Returns for the blocks that this rank wants the first byte of each in the file, and the end of the last.
 std::vector<Offset> own_starts(const Communicator& communicator, const std::vector<Offset>& at_root,
                                BlockRange wanted) {
   Parcels<Offset> sent;

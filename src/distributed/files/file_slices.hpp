@@ -24,11 +24,11 @@ struct SliceFile {
   std::string data;  ///< path of the HDF5 file that belongs to an .xdmf file, while it is unfinished
 };
 
-/// A .vtu file of one piece, the arrays of which are in its appended data, raw or in compressed blocks, or
-/// a .vtkhdf file of one partition or an .xdmf file of one mesh of one cell type whose datasets are neither
-/// chunked nor compressed, read and written by all ranks at once: each its share of every array, one array
-/// after another. The new file is the old one with the rows of its arrays in their new places; whatever else
-/// it has is copied byte by byte, but for the offsets of arrays after compressed ones. An .xdmf file and its
+/// A file that all ranks read and write at once, each its share of one array after another: a .vtu file of
+/// one piece with its arrays in appended data, raw or in compressed blocks; or, with datasets neither
+/// chunked nor compressed, a .vtkhdf file of one partition or an .xdmf file of one mesh of one cell type.
+/// The new file is the old one with the rows of its arrays in their new places; everything else
+/// is copied byte by byte, except the offsets of arrays after compressed ones. An .xdmf file and its
 /// HDF5 file are those that the serial writer makes. Rank 0 finds the datasets by libhdf5; no other rank
 /// needs it.
 ///
@@ -36,7 +36,7 @@ struct SliceFile {
 /// "VTKHDF File Format".
 class FileSlices {
  public:
-  /// Looks at a file; every rank has to call it. Returns nothing for a file that is no such one: of several
+  /// Looks at a file; every rank has to call it. Returns nothing for a file of another kind: of several
   /// pieces or partitions, with text, base64, chunks, the other order of bytes, or compression that this
   /// build lacks. O(size of its XML + blocks) at the root.
   ///
@@ -57,7 +57,7 @@ class FileSlices {
   ///         few, or with such that do not exist, and for blocks that are damaged
   [[nodiscard]] MeshSlice read(const Communicator& communicator) const;
 
-  /// Returns the mesh in its new order, this object's as long as it lives. Every rank has to call it. Reads
+  /// Returns the mesh in its new order, valid as long as this object. Every rank has to call it. Reads
   /// the cells once more, and each array when its rows are asked for. O(size of the slice).
   ///
   /// @throws SharedError where a rank cannot read
@@ -91,7 +91,7 @@ class FileSlices {
                                        const Layout& cells) const;
   void read_shapes(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
   void read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
-  /// Reads the first entry of this rank's cells and where, from there on, they begin and end.
+  /// Reads where this rank's cells begin and end, counted from their first entry, which it returns.
   [[nodiscard]] Offset read_offsets(const Communicator& communicator, const SharedFile& file,
                                     MeshSlice& slice) const;
   /// Returns the rows of an array that are in this rank's places.

@@ -19,8 +19,8 @@ struct GridRows {
   Layout vertices;
   Layout cells;
   Rows cell_vertices;  ///< of the own cells: new numbers, in VTK's order
-  /// Returns the own rows of an array, which is the k-th of the piece in `xml`, and neither the connectivity
-  /// nor the offsets of cells. Of an array of texts, 32-bit places among `texts`. Every rank has to call it.
+  /// Returns the own rows of the k-th array of the piece in `xml`, which is not the connectivity or the
+  /// offsets of cells; of an array of texts, 32-bit places among `texts`. Every rank has to call it.
   std::function<std::vector<std::byte>(std::size_t k)> rows;
 
   // at the root

@@ -66,7 +66,7 @@ std::vector<Candidate> candidates(const Mesh& mesh, const ShareNumbers& numbers,
   return found;
 }
 
-/// Calls `take(a, b)` for the facets with the same corners, in pairs of different parts.
+/// Calls `take(a, b)` for every two facets that have the same corners and are of different parts.
 template <class Take>
 void for_pairs(std::vector<Candidate>& facets, const Take& take) {
   std::sort(facets.begin(), facets.end(),

@@ -41,7 +41,7 @@ PiecesReport write_pieces(const Communicator& communicator, const GridRows& grid
                           const std::vector<GlobalIndex>& part_starts, bool with_ghosts,
                           const std::vector<std::string>& paths, const std::vector<std::string>& names);
 
-/// Returns what pieces in a .vtkhdf file lack of those in .vtu files.
+/// Returns what pieces lose in a .vtkhdf file that .vtu files hold.
 [[nodiscard]] Notes losses_in_vtkhdf(const PieceSchema& schema);
 
 /// Writes the pieces as the partitions of one .vtkhdf file, over a file that exists; each rank writes the

@@ -12,7 +12,7 @@ namespace meshorder::distributed {
 /// .vtu file of one piece with raw appended data in this machine's order of bytes, and for one whose
 /// compression this build lacks. O(size of the XML + blocks).
 ///
-/// @param ranks  that share what the arrays take when uncompressed
+/// @param ranks  number of ranks that share the memory of uncompressed arrays
 /// @throws InputError for a file of that kind that is damaged: XML, counts that differ, bytes beyond its end,
 ///         blocks that cannot hold what they are said to
 [[nodiscard]] std::optional<FileHead> read_vtu_head(const std::string& path, int ranks);

@@ -62,12 +62,12 @@ Rows elements_of(const Communicator& communicator, const MeshSlice& slice) {
   });
 }
 
-/// Gives vertices in rows the values that are their numbers' in the halo.
+/// Replaces each vertex in the rows by its value: that at its position in the halo.
 void renumber(Rows& rows, const Halo& halo, const std::vector<GlobalIndex>& values) {
   for (GlobalIndex& vertex : rows.entries) vertex = values[halo.position(vertex)];
 }
 
-/// Those vertices of a slice that elements use, by their halo.
+/// Marks the vertices of a slice that elements use: those that the elements' halo asks of this rank.
 std::vector<char> used_vertices(const Communicator& communicator, const Layout& vertices, const Halo& halo) {
   return communicator.together([&] {
     std::vector<char> used(static_cast<std::size_t>(vertices.size(communicator.rank())), 0);
