@@ -51,7 +51,7 @@ void check_race(const OrderArguments& arguments) {
   const ReorderOptions& options = arguments.reordering;
   const Workload use = options.order.workload;
   if (!is_told_by_kernels(use)) {
-    throw InvalidArgument(fmt::format("{} goes by the times of kernels, which tell nothing of --for {}",
+    throw InvalidArgument(fmt::format("{} goes by the times of kernels, which say nothing of --for {}",
                                       option, to_string(use)));
   }
   if (options.methods != MeshMethods{} || !options.group_by.empty()) {

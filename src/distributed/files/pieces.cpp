@@ -194,7 +194,7 @@ PiecesReport report_on(const Communicator& communicator, const std::vector<Piece
 std::string size_word(Offset size, Offset word, const std::string& name) {
   if (word == 4 && size > Offset{std::numeric_limits<std::uint32_t>::max()}) {
     throw TooLarge(name +
-                   ": an array of more than 4 GiB, which sizes of 32 bits cannot tell; give more --parts");
+                   ": an array of more than 4 GiB, which sizes of 32 bits cannot hold; give more --parts");
   }
   std::string text(static_cast<std::size_t>(word), '\0');
   const auto wide = static_cast<std::uint64_t>(size);

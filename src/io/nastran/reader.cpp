@@ -75,7 +75,7 @@ class DeckReader {
   void check_lines() const {
     if (!fields_.fault.empty()) {
       fail(std::string(fields_.fault),
-           "write it in fields of 8 or 16 columns, its lines one behind the other");
+           "write it in fields of 8 or 16 columns, its lines one after the other");
     }
   }
 
@@ -367,7 +367,7 @@ class DeckReader {
     std::vector<std::string>& contents = deck_->contents;
     if (file_.bulk().begin > 0) contents.emplace_back("executive and case control");
     if (has_more_in_nodes_) contents.emplace_back("displacement systems and constraints of GRID");
-    if (!with_more_.list.empty()) contents.push_back("fields behind the nodes of " + join(with_more_.list));
+    if (!with_more_.list.empty()) contents.push_back("fields after the nodes of " + join(with_more_.list));
     if (without_some_ > 0) contents.emplace_back("nodes of edges, of elements that have only some");
     if (!others_.list.empty()) contents.push_back("cards of the bulk data: " + join(others_.list));
   }
