@@ -57,7 +57,7 @@ class Hierarchy {
   [[nodiscard]] const std::vector<Level>& levels() const noexcept { return levels_; }
 
   /// x ≈ L⁺ b on level `level` by one symmetric W-cycle: Gauss–Seidel forwards before and backwards after the
-  /// coarse correction, which two cycles on the next level find, or a dense solver on the coarsest. Plain
+  /// coarse correction, which two cycles on the next level find; a small coarsest level is exact. Plain
   /// coarsening makes L too stiff for smooth vectors; its corrections are therefore made larger (Braess
   /// 1995). The columns of b must sum to 0.
   template <int M>
