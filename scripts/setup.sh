@@ -165,7 +165,8 @@ configure() {
 }
 
 # build FOLDER TARGET…
-build() { ninja -C "$1" -j "$(build_jobs)" "${@:2}"; }
+# build FOLDER TARGET…: each line begins with the share that is done and the seconds that it has taken
+build() { NINJA_STATUS=${NINJA_STATUS:-'[%p, %es] '} ninja -C "$1" -j "$(build_jobs)" "${@:2}"; }
 
 # sources FOLDER…: all sources of ours in those folders that exist, each ended by a zero byte
 sources() {

@@ -60,6 +60,8 @@ constexpr double kMeasureWithin = 3.8;
 /// The same where nobody asked for --measure, and the simplices up to which kernels run so soon.
 constexpr double kMeasureQuicklyWithin = 0.7;
 constexpr Offset kMaxQuick = 250'000;
+/// The smallest first-level cache of today's processors, bytes.
+constexpr Offset kFirstCache = 32 * 1024;
 /// Simplices up to which times are predicted without being asked, in a few seconds a million vertices.
 constexpr Offset kMaxPredicted = 100'000'000;
 /// Simplices above which there is no time to measure a second order.
@@ -71,6 +73,14 @@ bool has_elements(SimplicesRef simplices) { return simplices.size() > 0; }
 /// Whether times are predicted: unless --cache is given, only where this takes seconds.
 bool is_predicted(const InfoArguments& arguments, SimplicesRef simplices) {
   return has_elements(simplices) && (simplices.size() <= kMaxPredicted || !arguments.caches.empty());
+}
+
+/// Whether the matrix of a graph and two vectors fit in the first cache: then no order is faster than
+/// another.
+bool fits_in_first_cache(const CsrGraph& graph) {
+  constexpr Offset kBytesPerEntry = sizeof(double) + sizeof(Index);
+  const Offset entries = graph.neighbours.size() + graph.size();
+  return entries * kBytesPerEntry + Offset{2} * graph.size() * sizeof(double) <= kFirstCache;
 }
 
 /// How the gain is found.
@@ -89,8 +99,8 @@ int halvings_of(const InfoArguments& arguments, SimplicesRef simplices) {
   return arguments.caches.empty() ? halvings_for(simplices.size()) : 0;
 }
 
-/// Returns what reordering is worth; nothing for a mesh without elements, nor for a large one unless --cache
-/// or --measure is given.
+/// Returns what reordering is worth; nothing for a mesh without elements, nor for a large or tiny one unless
+/// --cache, --predict or --measure is given.
 std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph,
                                 double graph_seconds, SimplicesRef simplices,
                                 const std::optional<KernelReuse>& reuse, const MachineChoice& machine, By by,
@@ -107,6 +117,7 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
                     is_predicted(arguments, simplices) && machine.model.threads == options.threads;
   const bool is_measured = by != By::prediction && has_elements(simplices);
   if (!options.predict && !is_measured) return std::nullopt;
+  if (by == By::quick_measurement && fits_in_first_cache(graph)) return std::nullopt;
   if (is_measured) {
     options.measure_within =
         (by == By::measurement ? kMeasureWithin : kMeasureQuicklyWithin) - since_start.seconds();
@@ -279,11 +290,14 @@ void print_details(const Console& console, const Mesh& mesh, const Findings& fou
 void print_findings(const Console& console, const InfoArguments& arguments, const Mesh& mesh,
                     const Findings& found) {
   const std::optional<Advice>& advice = found.advice;
-  console.print("{}: {}", arguments.input,
-                advice               ? to_string(*advice)
-                : found.has_elements ? "too large to be judged unasked; --measure runs the kernels, and "
-                                       "--cache this predicts cache misses and times"
-                                     : "nothing to compute on: it has no elements");
+  const char* const without_advice =
+      !found.has_elements ? "nothing to compute on: it has no elements"
+      : fits_in_first_cache(found.graph)
+          ? "nothing to gain: its data fit in a processor's first cache, in any order"
+          : "too large to be judged unasked; --measure runs the kernels, and --cache this predicts cache "
+            "misses "
+            "and times";
+  console.print("{}: {}", arguments.input, advice ? to_string(*advice) : without_advice);
   if (advice) print_next(console, *advice, arguments.input);
   console.print("\n{:<12} {}", "format", found.format);
   if (found.stored != nullptr) {

@@ -39,4 +39,6 @@ def test_paths_are_those_of_the_caller(root, tmp_path, given, passed):
     caller.mkdir()
     (caller / "mesh.off").touch()
     done = subprocess.run([root / "run", "mesh.off", *given], cwd=caller, capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[0] == f"{caller}: order mesh.off {passed}"
+    steps = [line for line in done.stdout.splitlines() if line.startswith("== ")]
+    assert steps == ["== 1 of 3: packages", "== 2 of 3: build", "== 3 of 3: mesh.off"]
+    assert done.stdout.splitlines()[len(steps)] == f"{caller}: order mesh.off {passed}"

@@ -2,6 +2,8 @@
 """What `info` says at its end: what the order costs, and what another is worth."""
 import pytest
 
+import meshes
+
 KERNELS = {"spmv", "element", "assembly", "springs"}
 
 
@@ -30,6 +32,17 @@ def test_the_order_that_was_advised_has_nothing_to_gain(command, scrambled):
     for kernel in KERNELS:
         assert result["kernels"][kernel] == {"factor": 1, "order": None, "runs_to_pay": None}
     assert "nothing to gain" in command.ok("info", "ordered.node").stdout.splitlines()[0]
+
+
+def test_a_tiny_mesh_is_judged_without_running_anything(command, tmp_path):
+    meshes.write_tetgen(tmp_path)
+    done = command.run("info", "mesh.node")
+    assert done.stdout.splitlines()[0] == \
+        "mesh.node: nothing to gain: its data fit in a processor's first cache, in any order"
+    assert done.returncode == 0 and done.stderr == ""  # however busy the machine is
+    assert command.json("info", "mesh.node")["verdict"] is None
+    for options in (["--measure"], ["--machine", "zen3"]):
+        assert command.json("info", "mesh.node", *options)["verdict"] is not None
 
 
 def test_verdict_keys(command, scrambled):
