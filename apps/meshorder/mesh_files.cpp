@@ -42,7 +42,9 @@ MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t by
   mesh = read_to_work_on(files.input, notes, bytes_of_entry);
   const Format& format = output_format_of(files.output, mesh.format);
   const Index cells_read = mesh.cell_count();
-  const std::vector<Index> wanted = keep_cells(mesh, {.dimension = files.keeping.dimension, .notes = &notes});
+  const int dimension = files.keeping.dimension;
+  const std::vector<Index> wanted =
+      dimension < 0 ? all_cells(mesh) : keep_cells(mesh, {.dimension = dimension, .notes = &notes});
   const std::vector<Index> held = files.keeping.strict ? all_cells(mesh) : cells_for(mesh, format, notes);
   require_held_cells(mesh, held, files.output, format);  // fail before the work
   keep_cells_at(mesh, held, notes);

@@ -1,8 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/parallel.hpp"
 #include <meshorder/number_view.hpp>
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 
@@ -18,6 +20,18 @@ inline bool all_below(std::span<const Index> numbers, Index limit) noexcept {
     signs |= bits | (last - bits);
   }
   return limit > 0 ? signs >> 31U == 0 : numbers.empty();
+}
+
+/// Returns whether `holds(begin, end)` for all parts of 0 … n−1, which all threads share.
+template <class Holds>
+bool holds_for_all(Offset n, const Holds& holds) {
+  constexpr Offset kAtOnce = 65536;
+  std::atomic<bool> all = true;
+  for_each_range(n, kAtOnce, [&](Offset begin, Offset end) {
+    if (all.load(std::memory_order_relaxed) && !holds(begin, end))
+      all.store(false, std::memory_order_relaxed);
+  });
+  return all;
 }
 
 }  // namespace meshorder

@@ -10,6 +10,10 @@ namespace meshorder {
 /// fault for 2 MiB instead of 512. A hint, without effect on smaller blocks and other systems than Linux.
 void ask_for_large_pages(void* memory, std::size_t bytes) noexcept;
 
+/// Has the system clear the pages of memory that is about to be filled, on all threads; touching the memory
+/// would do so on one. Polls. A hint, without effect on smaller blocks and other systems than Linux.
+void clear_pages(void* memory, std::size_t bytes);
+
 /// As `container.reserve(size)`, on large pages where that allocates. What grows part by part at least
 /// doubles.
 template <class Container>
@@ -19,10 +23,12 @@ void reserve_large(Container& container, std::size_t size) {
   ask_for_large_pages(container.data(), container.capacity() * sizeof(*container.data()));
 }
 
-/// As `container.resize(size)`, likewise.
+/// As `container.resize(size)`, likewise, with pages that all threads clear. Polls.
 template <class Container>
 void resize_large(Container& container, std::size_t size) {
   reserve_large(container, size);
+  if (const std::size_t old = container.size(); size > old)
+    clear_pages(container.data() + old, (size - old) * sizeof(*container.data()));
   container.resize(size);
 }
 

@@ -2,9 +2,10 @@
 #include "graph/incidence.hpp"
 
 #include "base/buckets.hpp"
+#include "base/checks.hpp"
+#include "base/large_pages.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
-#include "base/resize_in_steps.hpp"
 #include "base/run_scope.hpp"
 #include "graph/join_limit.hpp"
 #include <meshorder/error.hpp>
@@ -54,7 +55,7 @@ template <class EntriesOf>
 std::vector<Index> by_columns(Index row_count, const EntriesOf& entries_of,
                               const std::vector<Offset>& offsets) {
   std::vector<Index> rows;
-  resize_in_steps(rows, static_cast<std::size_t>(offsets.back()));
+  resize_large(rows, static_cast<std::size_t>(offsets.back()));
   std::vector<Offset> next(offsets.begin(), offsets.end() - 1);
   const auto write = [rows = rows.data(), next = next.data()](Position at) {
     rows[next[at.column]++] = at.row;
@@ -78,7 +79,7 @@ std::vector<Index> by_columns_in_buckets(Index row_count, const EntriesOf& entri
   const auto columns = static_cast<Index>(offsets.size() - 1);
   const Buckets<Position> buckets(row_count, kRowsOfPart, columns, entries_of, column_of);
   std::vector<Index> rows;
-  resize_in_steps(rows, static_cast<std::size_t>(buckets.start(buckets.size())));
+  resize_large(rows, static_cast<std::size_t>(buckets.start(buckets.size())));
   parallel_loop(buckets.size(), [&](Index bucket) {
     std::vector<Offset> next = buckets.key_starts(bucket, column_of);
     const Index first = buckets.first_key(bucket);
@@ -114,17 +115,18 @@ Incidence transposed(IncidenceRef incidence) {
   return result;
 }
 
-namespace {
-
-/// The size that all elements share, 0 where they differ.
 Offset common_size(IncidenceRef elements) {
   if (elements.size() == 0) return 0;
   const Offset size = elements.offsets[1];
-  for (Index e = 0; e < elements.size(); ++e) {
-    if (elements.offsets[e + 1] != (e + 1) * size) return 0;
-  }
-  return size;
+  const bool is_common = holds_for_all(elements.size(), [&](Offset begin, Offset end) {
+    bool all = true;
+    for (Offset e = begin; e < end; ++e) all &= elements.offsets[e + 1] == (e + 1) * size;
+    return all;
+  });
+  return is_common ? size : 0;
 }
+
+namespace {
 
 /// Rows of a graph one after another, entries within a row in any order.
 struct Rows {

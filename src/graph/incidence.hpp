@@ -40,6 +40,9 @@ struct IncidenceRef {
   }
 };
 
+/// Returns the size that all elements share, 0 where they differ. O(elements).
+Offset common_size(IncidenceRef elements);
+
 /// Returns the elements at each vertex, ascending. O(entries).
 Incidence transposed(IncidenceRef incidence);
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/append_cells.hpp"
 
-#include "base/resize_in_steps.hpp"
+#include "base/large_pages.hpp"
 
 #include <cstddef>
 
@@ -11,9 +11,9 @@ void append_cells(Cells& cells, Shape shape, int nodes, Index count) {
   const Index first = cells.size();
   const Offset begin = cells.offsets.back();
   cells.shapes.resize(static_cast<std::size_t>(Offset{first} + count), shape);
-  resize_in_steps(cells.offsets, static_cast<std::size_t>(Offset{first} + count + 1));
+  resize_large(cells.offsets, static_cast<std::size_t>(Offset{first} + count + 1));
   for (Offset c = 1; c <= count; ++c) cells.offsets[static_cast<std::size_t>(first + c)] = begin + c * nodes;
-  resize_in_steps(cells.vertices, static_cast<std::size_t>(begin + Offset{count} * nodes));
+  resize_large(cells.vertices, static_cast<std::size_t>(begin + Offset{count} * nodes));
 }
 
 }  // namespace meshorder

@@ -90,10 +90,12 @@ void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, 
 /// As the public `read_mesh`; a file whose name comes from another one is read only below its folder.
 Mesh read_mesh_from(const FilePath& path, const ReadOptions& options = {});
 
-/// As the public `write_mesh`; a mesh whose path belongs to a set of outputs is put in place by that.
+/// As the public `write_mesh`, for a valid mesh; one whose path belongs to a set of outputs is put in place
+/// by that.
 Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options);
 
-/// As the public function; `graph` is the vertex graph of the mesh in its old order, or receives it.
+/// As the public function, for a valid mesh; `graph` is the vertex graph of the mesh in its old order, or
+/// receives it.
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph>& graph);
 
 }  // namespace meshorder

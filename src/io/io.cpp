@@ -154,11 +154,11 @@ void refuse_losses(const Mesh& mesh, const FilePath& path, const Format& format)
     throw InputError(path.string(), lost.front(), "nothing is written, as no loss is allowed");
 }
 
-Permutation write_checked(const Mesh& mesh, const FilePath& path, const Format& format,
-                          const WriteOptions& options) {
+/// Writes a valid mesh.
+Permutation write_valid(const Mesh& mesh, const FilePath& path, const Format& format,
+                        const WriteOptions& options) {
   Notes ignored;
   Notes& notes = options.notes != nullptr ? *options.notes : ignored;
-  check_mesh(mesh);
   Notes left_out;
   const std::vector<Index> kept = options.strict ? all_cells(mesh) : cells_for(mesh, format, left_out);
   require_held_cells(mesh, kept, path, format);
@@ -185,7 +185,7 @@ Permutation write_checked(const Mesh& mesh, const FilePath& path, const Format& 
 }  // namespace
 
 Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options) {
-  return write_checked(mesh, path, output_format_of(path.path(), mesh.format), options);
+  return write_valid(mesh, path, output_format_of(path.path(), mesh.format), options);
 }
 
 Mesh read_mesh_from(const FilePath& path, const ReadOptions& options) {
@@ -217,6 +217,7 @@ Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path, Note
 }
 
 Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options) {
+  check_mesh(mesh);
   return write_mesh_to(mesh, path, options);
 }
 
@@ -235,8 +236,9 @@ Permutation write_mesh(const Mesh& mesh, std::ostream& stream, std::string_view 
 
 MemoryFiles write_mesh_to_memory(const Mesh& mesh, std::string_view format, std::string_view name,
                                  Notes* notes) {
+  check_mesh(mesh);
   MemoryStore store;
-  Permutation cells = write_checked(mesh, {std::string(name), store}, format_named(format), {.notes = notes});
+  Permutation cells = write_valid(mesh, {std::string(name), store}, format_named(format), {.notes = notes});
   return {std::move(store).files(), std::move(cells)};
 }
 

@@ -2,6 +2,7 @@
 #include "io/kept_cells.hpp"
 
 #include "base/index.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
@@ -29,20 +30,40 @@ struct TypeCount {
   }
 };
 
+/// The types of some cells, in the order in which they first appear.
+struct TypeCounts {
+  std::vector<TypeCount> types;
+  std::size_t last = 0;  ///< of the types: neighbours are mostly of one
+
+  void add(Shape shape, int vertices, Index count) {
+    const auto is_it = [&](const TypeCount& type) {
+      return type.shape == shape && type.vertices == vertices;
+    };
+    if (types.empty() || !is_it(types[last])) {
+      const auto found = std::find_if(types.begin(), types.end(), is_it);
+      last = static_cast<std::size_t>(found - types.begin());
+      if (found == types.end()) types.push_back({shape, vertices, 0});
+    }
+    types[last].count += count;
+  }
+
+  TypeCounts& operator+=(const TypeCounts& next) {
+    for (const TypeCount& type : next.types) add(type.shape, type.vertices, type.count);
+    return *this;
+  }
+};
+
 /// Returns the types of the cells, in the order in which they first appear.
 std::vector<TypeCount> counted_types(const Mesh& mesh) {
-  std::vector<TypeCount> types;
-  std::size_t last = 0;  // neighbours are mostly of one type
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    if (types.empty() || !types[last].is_type_of(mesh, c)) {
-      const auto found = std::find_if(types.begin(), types.end(),
-                                      [&](const TypeCount& type) { return type.is_type_of(mesh, c); });
-      last = static_cast<std::size_t>(found - types.begin());
-      if (found == types.end()) types.push_back({mesh.cells.shapes[c], mesh.cells.vertex_count(c), 0});
-    }
-    ++types[last].count;
-  }
-  return types;
+  constexpr Index kCellsAtOnce = 65536;
+  return sum_over_chunks<TypeCounts>(mesh.cell_count(), kCellsAtOnce,
+                                     [&](Index begin, Index end) {
+                                       TypeCounts counts;
+                                       for (Index c = begin; c < end; ++c)
+                                         counts.add(mesh.cells.shapes[c], mesh.cells.vertex_count(c), 1);
+                                       return counts;
+                                     })
+      .types;
 }
 
 int highest_dimension_of(const std::vector<TypeCount>& types) {

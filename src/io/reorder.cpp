@@ -112,7 +112,6 @@ void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, 
 
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph>& graph) {
   return in_call(options.order.run, [&] {
-    if (options.order.check != Check::none) check_mesh(mesh);
     if (!options.format.empty()) check_holds_ids(format_named(options.format), options.ids);
     const std::vector<Index> blocks = mesh.cell_blocks;
     const Permutation arranged = options.format.empty() ? Permutation::identity(mesh.cell_count())
@@ -142,6 +141,7 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGr
 inline namespace v0_3 {
 
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options) {
+  if (options.order.check != Check::none) in_arena(options.order.run, [&] { check_mesh(mesh); });
   std::optional<CsrGraph> graph;
   return reorder(mesh, options, graph);
 }

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/all_below.hpp"
+#include "base/arena.hpp"
+#include "base/checks.hpp"
 #include "base/index.hpp"
 #include "base/large_pages.hpp"
 #include "base/point.hpp"
@@ -11,6 +12,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
 
 namespace meshorder {
 inline namespace v0_3 {
@@ -19,35 +23,75 @@ namespace {
 [[noreturn]] void fail(const std::string& what) { throw InvalidArgument("mesh: " + what); }
 
 void check_members(const std::vector<Index>& members, Index count, const std::string& owner) {
-  if (all_below(members, count)) return;
+  const bool are_in_range = holds_for_all(std::ssize(members), [&](Offset begin, Offset end) {
+    return all_below(std::span(members).subspan(begin, end - begin), count);
+  });
+  if (are_in_range) return;
   const auto wrong = std::find_if(members.begin(), members.end(),
                                   [&](Index member) { return member < 0 || member >= count; });
   fail(owner + " names " + std::to_string(*wrong) + ", outside 0 … " + std::to_string(count - 1));
 }
 
-void check_cells(const Mesh& mesh) {
-  const Cells& cells = mesh.cells;
-  if (cells.offsets.size() != cells.shapes.size() + 1 || cells.offsets.front() != 0 ||
-      cells.offsets.back() != static_cast<Offset>(cells.vertices.size()) ||
-      !std::is_sorted(cells.offsets.begin(), cells.offsets.end())) {
-    fail("offsets do not fit the cells");
-  }
+/// The least number of vertices of a cell, by its shape; of what is no shape more than any cell has.
+constexpr std::size_t kBytes = 256;
+std::array<Offset, kBytes> least_vertices() {
+  std::array<Offset, kBytes> least{};
+  least.fill(std::numeric_limits<Offset>::max());
+  for (int shape = 0; shape < kShapes; ++shape)
+    least[shape] = std::max(1, corners(static_cast<Shape>(shape), 1));
+  return least;
+}
+
+/// Throws for the first cell with an unknown shape or, if there is none, with too few vertices.
+[[noreturn]] void fail_for_cell(const Cells& cells, const std::array<Offset, kBytes>& least) {
   const auto unknown = std::find_if(cells.shapes.begin(), cells.shapes.end(),
                                     [](Shape shape) { return static_cast<int>(shape) >= kShapes; });
   if (unknown != cells.shapes.end()) {
     fail("cell " + std::to_string(unknown - cells.shapes.begin()) + " has the shape " +
          std::to_string(static_cast<int>(*unknown)) + ", which is none of Shape");
   }
-  std::array<int, kShapes> least{};
-  for (int shape = 0; shape < kShapes; ++shape)
-    least[shape] = std::max(1, corners(static_cast<Shape>(shape), 1));
-  for (Index c = 0; c < cells.size(); ++c) {
-    if (cells.vertex_count(c) < least[static_cast<std::size_t>(cells.shapes[c])]) {
-      fail("cell " + std::to_string(c) + " has too few vertices for a " +
-           std::string(to_string(cells.shapes[c])));
-    }
-  }
+  Index c = 0;
+  while (cells.vertex_count(c) >= least[static_cast<std::size_t>(cells.shapes[c])]) ++c;
+  fail("cell " + std::to_string(c) + " has too few vertices for a " +
+       std::string(to_string(cells.shapes[c])));
+}
+
+void check_cells(const Mesh& mesh) {
+  const Cells& cells = mesh.cells;
+  const Offset count = std::ssize(cells.shapes);
+  const bool fit = std::ssize(cells.offsets) == count + 1 && cells.offsets.front() == 0 &&
+                   cells.offsets.back() == std::ssize(cells.vertices) &&
+                   holds_for_all(count, [&](Offset begin, Offset end) {
+                     bool rise = true;
+                     for (Offset c = begin; c < end; ++c) rise &= cells.offsets[c] <= cells.offsets[c + 1];
+                     return rise;
+                   });
+  if (!fit) fail("offsets do not fit the cells");
+  const std::array<Offset, kBytes> least = least_vertices();
+  const bool have_enough = holds_for_all(count, [&](Offset begin, Offset end) {
+    bool enough = true;
+    for (Offset c = begin; c < end; ++c)
+      enough &= cells.offsets[c + 1] - cells.offsets[c] >= least[static_cast<std::uint8_t>(cells.shapes[c])];
+    return enough;
+  });
+  if (!have_enough) fail_for_cell(cells, least);
   check_members(cells.vertices, mesh.vertex_count(), "a cell");
+}
+
+void check_points(const Mesh& mesh) {
+  const auto is_finite = [&](Offset v) {
+    const Point& p = mesh.points[v];
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+  };
+  const bool are_finite = holds_for_all(std::ssize(mesh.points), [&](Offset begin, Offset end) {
+    bool all = true;
+    for (Offset v = begin; v < end; ++v) all &= is_finite(v);
+    return all;
+  });
+  if (are_finite) return;
+  Offset v = 0;
+  while (is_finite(v)) ++v;
+  fail("vertex " + std::to_string(v) + " has a coordinate that is not finite");
 }
 
 void check_data(const Mesh& mesh) {
@@ -124,14 +168,12 @@ const DataArray* find_array(const Mesh& mesh, std::string_view name, Association
 }
 
 void check_mesh(const Mesh& mesh) {
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    for (const double x : mesh.points[v]) {
-      if (!std::isfinite(x)) fail("vertex " + std::to_string(v) + " has a coordinate that is not finite");
-    }
-  }
-  check_cells(mesh);
-  check_data(mesh);
-  check_numbering(mesh);
+  in_arena({}, [&] {
+    check_points(mesh);
+    check_cells(mesh);
+    check_data(mesh);
+    check_numbering(mesh);
+  });
 }
 
 MeshView view(const Mesh& mesh) {

@@ -1,8 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/reorder.hpp"
 
+#include "base/large_pages.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
+#include "graph/incidence.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
 #include "mesh/stored_matrix.hpp"
@@ -14,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -24,20 +27,34 @@ Index class_count(const Mesh& mesh) { return 4 * std::max<Index>(1, index_size(m
 
 Cells reordered(const Cells& cells, const Permutation& vertices, const Permutation& order) {
   constexpr Index kCellsAtOnce = 65536;
+  constexpr Index kAhead = 16;  // cells lie anywhere in memory: ask for them early
+  const std::span<const Index> new_to_old = order.new_to_old();
+  const std::span<const Index> new_number = vertices.old_to_new();
   const auto for_cells = [&](auto work) {
     for_each_chunk(cells.size(), kCellsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
-      for (Index c = begin; c < end; ++c) work(c, order.new_to_old()[c]);
+      for (Index c = begin; c < end; ++c) work(c, new_to_old[c], new_to_old[std::min(c + kAhead, end - 1)]);
     });
   };
+  const Offset size = common_size({vertices.size(), cells.offsets, cells.vertices});
+  const auto begin_of = [&](Index cell) { return size > 0 ? size * cell : cells.offsets[cell]; };
   Cells result;
   result.shapes = moved(order, cells.shapes);
-  result.offsets.resize(cells.offsets.size());
-  for_cells([&](Index c, Index old) { result.offsets[c + 1] = cells.vertex_count(old); });
-  std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
-  result.vertices.resize(cells.vertices.size());
-  for_cells([&](Index c, Index old) {
-    std::transform(cells[old].begin(), cells[old].end(), result[c].begin(),
-                   [&](Index v) { return vertices.old_to_new()[v]; });
+  if (size > 0) {
+    result.offsets = cells.offsets;
+  } else {
+    result.offsets.resize(cells.offsets.size());
+    for_cells([&](Index c, Index old, Index ahead) {
+      __builtin_prefetch(&cells.offsets[ahead]);
+      result.offsets[c + 1] = cells.vertex_count(old);
+    });
+    std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
+  }
+  resize_large(result.vertices, cells.vertices.size());
+  for_cells([&](Index c, Index old, Index ahead) {
+    __builtin_prefetch(cells.vertices.data() + begin_of(ahead));
+    const Index* const from = cells.vertices.data() + begin_of(old);
+    std::transform(from, from + result.vertex_count(c), result[c].begin(),
+                   [&](Index v) { return new_number[v]; });
   });
   return result;
 }

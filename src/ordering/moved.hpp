@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/large_pages.hpp"
 #include <meshorder/permutation.hpp>
 
 #include <cstddef>
@@ -13,7 +14,8 @@ namespace meshorder {
 /// @throws InvalidArgument if the sizes do not fit
 template <class T>
 std::vector<T> moved(const Permutation& order, const std::vector<T>& values, std::size_t width = 1) {
-  std::vector<T> result(values.size());
+  std::vector<T> result;
+  resize_large(result, values.size());
   order.move(values, result, width);
   return result;
 }

@@ -7,6 +7,8 @@
 #include <meshorder/error.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -22,8 +24,17 @@ bool is_one_class(std::span<const Index> classes) {
 
 bool has_one_slot_class(const CellArrays& cells) {
   if (cells.block_starts.size() > 1) return false;
-  const auto is_as_first = [&](Shape shape) { return dimension(shape) == dimension(cells.shapes.front()); };
-  return std::all_of(cells.shapes.begin(), cells.shapes.end(), is_as_first);
+  constexpr std::size_t kShapesAtMost = 256;
+  std::array<bool, kShapesAtMost> occurs{};
+  for (const Shape shape : cells.shapes) occurs[static_cast<std::uint8_t>(shape)] = true;
+  int found = -1;
+  for (int shape = 0; shape < kShapes; ++shape) {
+    if (!occurs[shape]) continue;
+    const int of_shape = dimension(static_cast<Shape>(shape));
+    if (found >= 0 && of_shape != found) return false;
+    found = of_shape;
+  }
+  return true;
 }
 
 std::vector<Index> slot_classes(const CellArrays& cells) {

@@ -135,10 +135,15 @@ Permutation Permutation::then(const Permutation& next) const {
   }
   std::vector<Index> forward(old_to_new_.size());
   std::vector<Index> backward(old_to_new_.size());
-  for (std::size_t i = 0; i < forward.size(); ++i) {
-    forward[i] = next.old_to_new_[old_to_new_[i]];
-    backward[i] = new_to_old_[next.new_to_old_[i]];
-  }
+  constexpr Offset kAtOnce = 65536;
+  in_arena({}, [&] {
+    for_each_range(size(), kAtOnce, [&](Offset begin, Offset end) {
+      for (Offset i = begin; i < end; ++i) {
+        forward[i] = next.old_to_new_[old_to_new_[i]];
+        backward[i] = new_to_old_[next.new_to_old_[i]];
+      }
+    });
+  });
   return {std::move(forward), std::move(backward)};
 }
 

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/component_numbering.hpp"
 
+#include "base/large_pages.hpp"
 #include "base/parallel.hpp"
-#include "base/resize_in_steps.hpp"
 #include "base/run_scope.hpp"
 #include "graph/row_access.hpp"
 
@@ -167,7 +167,7 @@ Laplacian component_laplacian(GraphRef graph, std::span<const double> weights,
   result.offsets.resize(Offset{n} + 1);
   for (Index k = 0; k < n; ++k) result.offsets[k + 1] = result.offsets[k] + graph.degree(vertices[k]);
   result.diagonal.resize(n);
-  resize_in_steps(result.neighbours, result.offsets[n]);
+  resize_large(result.neighbours, result.offsets[n]);
   if (!weights.empty()) result.weights.resize(result.offsets[n]);
   for_each_chunk(n, kRows, [&](Index, Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/lobpcg.hpp"
 
-#include "base/resize_in_steps.hpp"
+#include "base/large_pages.hpp"
 #include "base/run_scope.hpp"
 #include "spectral/dense.hpp"
 
@@ -35,7 +35,7 @@ struct WithImage {
 
   explicit WithImage(std::size_t n) : WithImage(VectorBlock<M>(n, std::array<double, M>{})) {}
   explicit WithImage(VectorBlock<M> block) : vectors(std::move(block)) {
-    resize_in_steps(images, vectors.size());
+    resize_large(images, vectors.size());
   }
 };
 

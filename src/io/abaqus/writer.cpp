@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/abaqus/abaqus.hpp"
-
 #include "io/abaqus/output.hpp"
 #include "io/all_formats.hpp"
 #include "io/deck/numbers.hpp"

@@ -1,9 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/cgns/cgns.hpp"
-
 #include "base/index.hpp"
 #include "io/all_formats.hpp"
 #include "io/cell_division.hpp"
+#include "io/cgns/cgns.hpp"
 #include "io/cgns/filler.hpp"
 #include "io/unsupported.hpp"
 

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/large_pages.hpp"
 #include "base/memory.hpp"
-#include "base/resize_in_steps.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/parts.hpp"
 #include "io/hdf5/session.hpp"
@@ -123,7 +123,7 @@ Values File::read(const std::string& path) const {
     if (I != of.alternative) return;
     auto& numbers = values.emplace<I>();
     claim(path, bytes_for(of.size(), sizeof(numbers.front())));
-    resize_in_steps(numbers, of.size());
+    resize_large(numbers, of.size());
     if (!numbers.empty()) read(path, native_types()[I], numbers.data());
   };
   [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -138,7 +138,7 @@ std::vector<Index> File::read_indices(const std::string& path) const {
   std::vector<Index> values;
   const std::uint64_t size = info(path).size();
   claim(path, bytes_for(size, sizeof(Index)));
-  resize_in_steps(values, size);
+  resize_large(values, size);
   if (!values.empty()) read(path, H5T_NATIVE_INT32, values.data());
   return values;
 }

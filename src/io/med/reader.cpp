@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
 #include "base/large_pages.hpp"
-#include "base/resize_in_steps.hpp"
 #include "base/text.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/labels.hpp"
@@ -152,7 +151,7 @@ void read_points(Reading& reading) {
   const Index count = row_count_of(reading, path, width);
   reading.take(path);
   const Values values = reading.file.read(path);
-  resize_in_steps(mesh.points, static_cast<std::size_t>(count));
+  resize_large(mesh.points, static_cast<std::size_t>(count));
   std::visit(
       [&](const auto& numbers) {
         using Number = typename std::decay_t<decltype(numbers)>::value_type;
@@ -202,7 +201,7 @@ void read_cells(Reading& reading, const GeometryType& type) {
   const auto last = static_cast<std::uint32_t>(reading.mesh.vertex_count());
   const std::size_t begin = cells.vertices.size();
   const auto rows = static_cast<std::size_t>(count);
-  resize_in_steps(cells.vertices, begin + rows * nodes);
+  resize_large(cells.vertices, begin + rows * nodes);
   for (std::size_t k = 0; k < nodes; ++k) {
     const Index* const column = numbers.data() + k * rows;
     Index* const target = cells.vertices.data() + begin + k;

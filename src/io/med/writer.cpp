@@ -1,9 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/med/med.hpp"
-
 #include "base/index.hpp"
 #include "io/all_formats.hpp"
 #include "io/hdf5/session.hpp"
+#include "io/med/med.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
 

@@ -1,8 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/medit/medit.hpp"
-
 #include "io/all_formats.hpp"
 #include "io/labels.hpp"
+#include "io/medit/medit.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"

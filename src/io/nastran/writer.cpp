@@ -1,10 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/nastran/nastran.hpp"
-
 #include "io/all_formats.hpp"
 #include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
 #include "io/names.hpp"
+#include "io/nastran/nastran.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>

@@ -3,6 +3,7 @@
 
 #include "base/large_pages.hpp"
 #include "base/memory.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/stream/gzip.hpp"
 #include "io/stream/read_limits.hpp"
@@ -11,9 +12,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <istream>
 #include <limits>
+#include <span>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -21,6 +24,23 @@
 namespace meshorder {
 namespace fs = std::filesystem;
 namespace {
+
+/// Reads the first bytes of a file, a large one on all threads. Returns how many came before its end.
+std::size_t read_on_threads(InputFile& file, std::span<char> into) {
+  constexpr Offset kAtOnce = Offset{16} << 20;
+  if (std::ssize(into) <= kAtOnce) return file.read(into);
+  std::atomic<std::size_t> end_of_file = into.size();
+  for_each_range(std::ssize(into), kAtOnce, [&](Offset begin, Offset end) {
+    const auto at = static_cast<std::size_t>(begin);
+    const std::span<char> part = into.subspan(at, static_cast<std::size_t>(end - begin));
+    const std::size_t got = file.read_at(at, part);
+    if (got == part.size()) return;
+    std::size_t found = end_of_file;
+    while (at + got < found && !end_of_file.compare_exchange_weak(found, at + got)) {
+    }
+  });
+  return end_of_file;
+}
 
 /// Returns the first `wanted` bytes of a file.
 std::string read_sized(InputFile& file, const std::string& name, std::uint64_t wanted) {
@@ -33,12 +53,12 @@ std::string read_sized(InputFile& file, const std::string& name, std::uint64_t w
   }
   std::string bytes;
   resize_large(bytes, wanted);
-  const std::size_t got = file.read(bytes);
+  const std::size_t got = read_on_threads(file, bytes);
   if (got < wanted) {
     throw InputError(name, fmt::format("had {} bytes and ended after {}", file.size(), got),
                      "it may have been written to meanwhile, or the disk fails");
   }
-  if (char further = 0; wanted == file.size() && file.read({&further, 1}) > 0) {
+  if (char further = 0; wanted == file.size() && file.read_at(wanted, {&further, 1}) > 0) {
     throw InputError(name, fmt::format("had {} bytes and goes on after them", file.size()),
                      "wait until it is written to the end");
   }

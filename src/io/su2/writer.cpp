@@ -1,12 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/su2/su2.hpp"
-
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/labels.hpp"
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/text_rows.hpp"
+#include "io/su2/su2.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 

@@ -1,6 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/ucd/ucd.hpp"
-
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/deck/numbers.hpp"
@@ -9,6 +7,7 @@
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/text_rows.hpp"
+#include "io/ucd/ucd.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
 

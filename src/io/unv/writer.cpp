@@ -1,6 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/unv/unv.hpp"
-
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/deck/numbers.hpp"
@@ -9,6 +7,7 @@
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
 #include "io/unv/results.hpp"
+#include "io/unv/unv.hpp"
 #include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 

@@ -1,11 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/vtkhdf/vtkhdf.hpp"
-
 #include "io/all_formats.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/unique_names.hpp"
 #include "io/unsupported.hpp"
+#include "io/vtkhdf/vtkhdf.hpp"
 #include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 

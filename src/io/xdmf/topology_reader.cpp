@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/all_below.hpp"
+#include "base/checks.hpp"
 #include "base/index.hpp"
 #include "base/large_pages.hpp"
 #include "base/text.hpp"
