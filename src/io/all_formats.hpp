@@ -11,23 +11,23 @@ namespace meshorder {
 /// Extensions of Exodus II, also in builds without it.
 inline constexpr std::array<std::string_view, 4> kExodusExtensions{".exo", ".e", ".ex2", ".g"};
 
-// Each is defined in the file of its name; format.cpp lists them.
+// Each function is defined in the folder of its format; format.cpp lists the formats.
 Format tetgen_format();  ///< .node with .ele, .face and .edge beside it
 Format vega_format();    ///< .veg
 Format gmsh_format();    ///< .msh 2.2 and 4.1, text and binary
 Format medit_format();   ///< .mesh
 Format vtu_format();     ///< VTK's XML unstructured grid
 Format vtk_format();     ///< VTK's legacy files
-Format vtkhdf_format();  ///< .vtkhdf; only where HDF5 is built in
+Format vtkhdf_format();  ///< .vtkhdf; only in builds with HDF5
 Format off_format();
 Format obj_format();
 Format ply_format();
 Format stl_format();
 Format su2_format();            ///< .su2
-Format xdmf_format();           ///< .xdmf with .h5 beside it; only where HDF5 is built in
-Format med_format();            ///< .med of Salome and Code_Aster; only where HDF5 is built in
+Format xdmf_format();           ///< .xdmf with .h5 beside it; only in builds with HDF5
+Format med_format();            ///< .med of Salome and Code_Aster; only in builds with HDF5
 Format abaqus_format();         ///< .inp of Abaqus and CalculiX
-Format ucd_format();            ///< .avs and .ucd, and .inp where it is no deck
+Format ucd_format();            ///< .avs, .ucd, and .inp files that are not Abaqus decks
 Format nastran_format();        ///< bulk data of Nastran
 Format matrix_market_format();  ///< .mtx
 Format metis_graph_format();    ///< .graph

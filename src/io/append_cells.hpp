@@ -5,7 +5,7 @@
 
 namespace meshorder {
 
-/// Appends cells of one shape whose vertices, 0 now, are still to be read. O(cells · nodes).
+/// Appends `count` cells of one shape with `nodes` vertices each, all of them vertex 0. O(cells · nodes).
 void append_cells(Cells& cells, Shape shape, int nodes, Index count);
 
 }  // namespace meshorder

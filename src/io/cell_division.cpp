@@ -22,8 +22,8 @@ std::vector<std::int64_t> usable_labels(const Mesh& mesh, bool with_wide_ones) {
   return are_usable ? std::move(labels.values) : std::vector<std::int64_t>();
 }
 
-/// Returns the set that each cell belongs to, from 1, where the sets have no cell in common with an earlier
-/// one; 0 for cells of no set. Empty if there are no sets.
+/// Returns the number of each cell's set, from 1; 0 for cells without one. Skips sets that share a cell with
+/// an earlier set. Empty if there are no sets of cells.
 std::vector<std::int64_t> sets_of_cells(const Mesh& mesh) {
   std::vector<std::int64_t> result;
   std::int64_t number = 0;
@@ -38,8 +38,8 @@ std::vector<std::int64_t> sets_of_cells(const Mesh& mesh) {
   return result;
 }
 
-/// Divides the cells by a value of each, if there are any, and by type. Returns false if the parts are too
-/// many.
+/// Divides the cells by type and, unless `values` is empty, by the value of each. Returns false if the values
+/// give more than kMostBlocks parts.
 bool divide_by(const Mesh& mesh, const std::vector<std::int64_t>& values, CellDivision& division) {
   std::map<std::tuple<std::int64_t, Shape, int>, Index> known;
   std::tuple<std::int64_t, Shape, int> last;

@@ -19,28 +19,28 @@ struct CellPart {
   std::int64_t label = 0;
 };
 
-/// Labels of more kinds are no labels of blocks.
+/// Greatest number of blocks: labels or sets that give more do not divide cells.
 inline constexpr std::size_t kMostBlocks = 10000;
 
-/// How cells are divided into blocks: by label, by sets where there are no labels, and by type.
+/// A division of cells into blocks: by label and type, by set and type, or by type alone.
 struct CellDivision {
   bool by_labels = false;
   bool by_sets = false;
-  std::vector<Index> key_of_cell;  ///< cells of one key are one block
-  std::vector<CellPart> keys;      ///< in the order in which they appear; `first` is not used
+  std::vector<Index> key_of_cell;  ///< index in `keys` of each cell's block
+  std::vector<CellPart> keys;      ///< the blocks, in the order of their first cells; `first` is not used
 };
 
-/// What may divide cells into blocks, beside labels of 32 bits.
+/// What may divide cells into blocks besides their types and 32-bit labels.
 struct DividedBy {
-  bool sets = false;         ///< where there are no labels
+  bool sets = false;         ///< sets of cells, if there are no labels to use
   bool wide_labels = false;  ///< labels of 64 bits
 };
 
 /// Returns the division of a mesh. O(cells · log blocks).
 CellDivision divide_cells(const Mesh& mesh, DividedBy divided_by);
 
-/// Returns the places of cells block by block, cells of the highest dimension first; `blocks` receives the
-/// first cell of each. O(cells).
+/// Returns the position of each cell when the blocks follow one another, those of the highest dimension
+/// first; `blocks` receives the first cell of each block. O(cells).
 Permutation places_by_division(const CellDivision& division, std::vector<Index>& blocks);
 
 }  // namespace meshorder

@@ -13,8 +13,8 @@
 
 namespace meshorder {
 
-/// Returns whether a number is one of another type's, to the last digit. NaN and infinity are those of real
-/// types only, whole numbers those of a real type up to 2^(its digits).
+/// Returns whether the type `To` can hold a number exactly. Only real types hold NaN and infinity. A real
+/// type holds integers up to ±2^(its digits).
 template <class To, class From>
 bool is_exact(From value) {
   constexpr int kDigits = std::numeric_limits<To>::digits;
@@ -35,7 +35,7 @@ bool is_exact(From value) {
   }
 }
 
-/// Returns whether all values are; false for texts. O(values), O(1) for values of that type.
+/// Returns whether `To` can hold all values exactly; false for texts. O(values), O(1) if `To` is their type.
 template <class To>
 bool are_exact(const Values& values) {
   return std::visit(

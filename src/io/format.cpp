@@ -51,7 +51,7 @@ struct LackingFormat {
   std::string_view name;
   std::vector<std::string_view> extensions;  ///< with dot, lower case
   std::string_view library;
-  std::string_view option;  ///< of CMake, that builds it in
+  std::string_view option;  ///< CMake option that enables the library
 };
 
 const std::vector<LackingFormat> kLackingFormats{
@@ -92,7 +92,7 @@ bool has_size_of_stl(std::string_view bytes) {
   return bytes.size() == kHeader + 4 + 50 * triangles;
 }
 
-/// Returns whether a line that begins with this word, before `rest`, begins SU2's files.
+/// Returns whether a line can begin an SU2 file; `word` is its first word, `rest` what follows it.
 bool is_su2_keyword(std::string_view word, std::string_view rest) {
   constexpr std::array<std::string_view, 5> kKeywords{"NDIME", "NZONE", "IZONE", "NELEM", "NPOIN"};
   const std::size_t equals = word.find('=');
@@ -120,13 +120,13 @@ bool is_vtkhdf(std::string_view bytes) {
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("VTKHDF") != std::string_view::npos;
 }
 
-/// Returns whether the bytes are a file of ADF, or one of HDF5 with the node that all of CGNS have.
+/// Returns whether the bytes are an ADF file, or an HDF5 file with the node that all CGNS files have.
 bool is_cgns(std::string_view bytes) {
   if (bytes.substr(0, 64).find("ADF Database Version") != std::string_view::npos) return true;
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("CGNSLibraryVersion") != std::string_view::npos;
 }
 
-/// Returns whether XML is that of XDMF, by the first of the elements that VTK's files and those begin with.
+/// Returns whether an XML file is XDMF: whether it has <Xdmf before any <VTKFile.
 bool is_xdmf(std::string_view word, std::string_view rest_of_line, std::string_view rest) {
   for (const std::string_view text : {word, rest_of_line, rest.substr(0, 4096)}) {
     const std::size_t xdmf = text.find("<Xdmf");
@@ -136,8 +136,8 @@ bool is_xdmf(std::string_view word, std::string_view rest_of_line, std::string_v
   return false;
 }
 
-/// Returns whether a file is a deck of Abaqus, whose first word, before the lines `rest`, has an asterisk as
-/// in Vega's files. Both have *MATERIAL and *INCLUDE.
+/// Returns whether a file whose first word begins with an asterisk is an Abaqus deck, not a Vega file.
+/// `rest`: the lines after the first. Both formats have *MATERIAL and *INCLUDE.
 bool is_deck(std::string_view word, std::string_view rest) {
   constexpr std::array<std::string_view, 4> kOfVega{"*VERTICES", "*ELEMENTS", "*SET", "*REGION"};
   constexpr std::array<std::string_view, 4> kOfBoth{"*MATERIAL", "*INCLUDE", "*MATERIAL,", "*INCLUDE,"};
@@ -156,7 +156,7 @@ bool is_deck(std::string_view word, std::string_view rest) {
   return !is_one_of(kOfVega);
 }
 
-/// Returns whether a file is one of Nastran, by the first line that is no comment.
+/// Returns whether the first line that is not a comment begins a Nastran file.
 bool is_bulk_data(std::string_view bytes) {
   constexpr std::array<std::string_view, 6> kWords{"SOL", "CEND", "BEGIN", "NASTRAN", "GRID", "GRID*"};
   while (!bytes.empty()) {
@@ -203,8 +203,8 @@ std::string_view format_that_begins(std::string_view bytes) {
   return {};
 }
 
-/// Returns the path of a piece of a decomposed mesh, "mesh.e.16.03", without the two numbers at its end;
-/// others as they are.
+/// Returns the path of a piece of a decomposed Exodus mesh, "mesh.e.16.03", without the two numbers at its
+/// end; returns other paths unchanged.
 std::filesystem::path without_piece_numbers(const std::filesystem::path& path) {
   const auto is_number = [](const std::string& extension) {
     return extension.size() > 1 && extension.find_first_not_of("0123456789", 1) == std::string::npos;

@@ -25,25 +25,25 @@ struct Format {
   bool groups_cells_by_type;                 ///< whether files keep the cells of a type together
   Mesh (*read)(const FilePath&, Notes&);
   void (*write)(const Mesh&, const FilePath&, Notes&);
-  /// Returns whether other programs that read the format find cells of this type in a file of this mesh. For
-  /// a mesh that came from the format it is enough that the reader finds them. `write` gets no other cells.
+  /// Returns whether a file of this mesh can hold cells of this type so that other programs find them; for a
+  /// mesh that came from the format, so that meshorder's reader does. `write` gets no other cells.
   bool (*holds)(const Mesh& mesh, Shape shape, int vertices);
-  /// Returns why cells that it `holds` by their types do not fit one file together, as a clause that begins
-  /// with the format's name; an empty text if they do. Null if all do. `write` gets no mesh with a conflict.
+  /// Returns why cells whose types the format `holds` do not fit one file together: a clause that begins with
+  /// the format's name, empty if they fit. Null: they always fit. `write` gets no mesh with a conflict.
   std::string (*conflict)(const Mesh& mesh) = nullptr;
-  /// Returns the places that the cells of a mesh of another format have in a file, where types do not decide
-  /// them; `blocks` receives the first cell of each part that stays together. Null: cells keep their order.
+  /// Returns the position in a file of each cell of a mesh from another format; `blocks` receives the first
+  /// cell of each part that stays together. Null: `groups_cells_by_type` decides.
   Permutation (*places)(const Mesh&, std::vector<Index>& blocks) = nullptr;
-  /// Brings the cells of a mesh into the form in which a file of this format has them where that follows from
-  /// the numbers of vertices: an entry below the diagonal, the edges of a graph by their vertices. Returns
-  /// the applied permutation of cells. Null: files keep the cells as they are.
+  /// Normalises cells whose form follows from the numbers of their vertices, such as matrix entries, which
+  /// lie below the diagonal, and edges of a graph, which are sorted. Call it after vertices have moved.
+  /// Returns the permutation of cells that it applied. Null: the format has no such cells.
   Permutation (*settle_cells)(Mesh&) = nullptr;
-  bool single_file = true;  ///< whether a mesh is one file; others do not fit one stream
-  int first_number = 0;     ///< that vertices and cells have by their places where the mesh has no ids
-  /// Returns this number for a mesh that came from the format. Null: all files have the same.
+  bool single_file = true;  ///< whether a mesh is one file; several files do not fit one stream
+  int first_number = 0;     ///< number of the first vertex and the first cell of a mesh without ids
+  /// Returns this number for a mesh that came from the format. Null: it is the same in all files.
   std::int64_t (*first_number_of)(const Mesh&) = nullptr;
   bool holds_ids = true;          ///< whether files can give vertices and cells any numbers
-  std::string_view library = {};  ///< that parses the files; empty: meshorder does
+  std::string_view library = {};  ///< name of the library that parses the files; empty: none, meshorder does
 
   /// Returns the name in lower case, as the public functions take it.
   [[nodiscard]] std::string key() const;
@@ -52,50 +52,50 @@ struct Format {
 /// Returns all formats, in the order of the help text.
 std::span<const Format> all_formats();
 
-/// Returns the format that belongs to the extension of `path`, in any case, before a ".gz". Throws
-/// InputError, which lists the known extensions, if there is none, and Unavailable for a format of which this
-/// build lacks the library.
+/// Returns the format of the extension of `path`; case and a final ".gz" are ignored. Throws InputError,
+/// which suggests or lists known extensions, if the extension is unknown, and Unavailable if this build lacks
+/// the library of the format.
 const Format& format_of(const std::filesystem::path& path);
 
-/// As format_of, of a file to be written. Throws InputError for .pvtu, which lists pieces and is only read.
+/// As `format_of`, for a file to be written. Throws InputError for .pvtu: it lists pieces and is only read.
 const Format& output_format_of(const std::filesystem::path& path);
 
-/// Returns the format of that name, in any case. Throws InvalidArgument, which lists the known ones, if there
-/// is none, and Unavailable likewise.
+/// Returns the format of that name; case is ignored. Throws InvalidArgument, which lists the known names, if
+/// the name is unknown, and Unavailable as `format_of` does.
 const Format& format_named(std::string_view name);
 
-/// Returns the format that the bytes of a file look like, null if they look like none. TetGen's files cannot
-/// be distinguished from other columns of numbers.
+/// Guesses the format of a file from its bytes; returns null if it recognises none. It never recognises
+/// TetGen's files, which look like any other columns of numbers.
 const Format* format_of_bytes(std::string_view bytes);
 
-/// Prepares a mesh for reordering and writing in a format that is not its own: drops its blocks, which bind
-/// cells in their own format only, and groups the cells as the format does: by type, each type a block, or by
-/// its own places.
-/// Returns the applied permutation of cells. Reordering afterwards describes the cells as they are in the
-/// file.
+/// Arranges the cells of a mesh as a file of the format `to` has them, before reordering and writing. A mesh
+/// that came from `to` stays as it is. Otherwise the mesh loses its blocks; cells are sorted by `to.places`
+/// or, if the format groups cells, by type, each type a block.
+/// Returns the applied permutation of cells. A reordering that is computed afterwards refers to the cells as
+/// the file has them.
 Permutation arrange_cells(Mesh& mesh, const Format& to);
 
 /// Throws InvalidArgument for `Ids::keep` if the format cannot hold ids.
 void check_holds_ids(const Format& format, Ids ids);
 
-/// Moves a mesh to the places that `reorder` returned for one that is written in the format `to`; call
+/// Applies to a mesh what `reorder` returned for a mesh to be written in the format `to`. Call
 /// `check_holds_ids` first. Throws as the public `apply_reordering`.
 void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,
                       Ids ids);
 
-/// Moves a mesh that was moved to these places back, to be written in the format `to`; throws likewise. Ids
-/// are sorted.
+/// Undoes `apply_reordering` with these permutations in a mesh to be written in the format `to`. Throws as it
+/// does. Ids ascend afterwards.
 void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells);
 
-/// As the public `read_mesh`; a file whose name comes from another one is read only below its folder.
+/// As the public `read_mesh`; a file that another file names must be in that file's folder or below.
 Mesh read_mesh_from(const FilePath& path, const ReadOptions& options = {});
 
-/// As the public `write_mesh`, for a valid mesh; one whose path belongs to a set of outputs is put in place
-/// by that.
+/// As the public `write_mesh`, for a valid mesh; if `path` belongs to an OutputSet, its commit puts the files
+/// in place.
 Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options);
 
-/// As the public function, for a valid mesh; `graph` is the vertex graph of the mesh in its old order, or
-/// receives it.
+/// As the public function, for a valid mesh; `graph` is the vertex graph before reordering and receives it if
+/// it is empty.
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph>& graph);
 
 }  // namespace meshorder

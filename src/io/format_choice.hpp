@@ -8,15 +8,15 @@
 
 namespace meshorder {
 
-// Which of two formats a file with the extension .inp has, that of decks or AVS UCD, and what follows from a
-// format.
+// Chooses between the two formats of the extension .inp, Abaqus decks and AVS UCD; says which formats have
+// numbers.
 
-/// As `format_of`, of a file to be read: .inp is AVS UCD where its first bytes are, else Abaqus. Throws
-/// InputError for an unreadable file of that extension.
+/// As `format_of`, for a file to be read: .inp is AVS UCD if its first bytes look so, else Abaqus. Throws
+/// InputError for an .inp file that cannot be read.
 const Format& format_of_file(const FilePath& path);
 
-/// As `output_format_of`, for a mesh of that format (`Mesh::format`): .inp stays AVS UCD for one that came
-/// from it.
+/// As `output_format_of`, for a mesh of the format `of_mesh` (`Mesh::format`): .inp means AVS UCD if the mesh
+/// came from it, else Abaqus.
 const Format& output_format_of(const std::filesystem::path& path, std::string_view of_mesh);
 
 /// Returns whether files of a format give vertices and cells numbers, by which other files may name them.

@@ -56,7 +56,7 @@ class MemoryStore : public FileStore {
   std::function<std::string(std::string_view)> companion_;
 };
 
-/// Returns whether files were renamed in the folder of a path since then, or a moment before.
+/// Returns whether the folder of a path was written to after `since`, or up to a second before.
 bool is_written_to(const FilePath& path, std::chrono::file_clock::time_point since) {
   std::error_code code;
   const std::filesystem::path folder = path.path().parent_path();
@@ -64,7 +64,7 @@ bool is_written_to(const FilePath& path, std::chrono::file_clock::time_point sin
   return path.store() == nullptr && !code && last > since - std::chrono::seconds(1);
 }
 
-/// Reads a mesh; again where another process was just putting its files in place.
+/// Reads a mesh. Tries again if its files do not belong together while another process replaces them.
 Mesh read_together(const FilePath& path, const Format& format, Notes& notes) {
   constexpr int kAttempts = 20;
   constexpr std::chrono::milliseconds kPause{50};
@@ -82,7 +82,7 @@ Mesh read_together(const FilePath& path, const Format& format, Notes& notes) {
   }
 }
 
-/// @param stored  bytes of a file in memory before it was decompressed; 0: as many as are read
+/// @param stored  bytes of a file in memory before decompression; 0 if it was not compressed, or is on disk
 Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions& options,
                   std::uint64_t stored = 0) {
   Notes ignored;
@@ -126,7 +126,7 @@ Mesh read_from_memory(std::string bytes, const ReadOptions& options) {
   return read_checked({name, store}, *format, options, is_as_stored ? 0 : stored);
 }
 
-/// Returns the places of all cells: of those that were kept as `of_kept` says, then of the others.
+/// Returns the new positions of all cells: `of_kept` gives those of the kept cells; the others come after.
 Permutation places_of(const std::vector<Index>& kept, const Permutation& of_kept, Index count) {
   std::vector<Index> old_to_new(static_cast<std::size_t>(count), -1);
   for (Index k = 0; k < index_size(kept); ++k) old_to_new[kept[k]] = of_kept.old_to_new()[k];
@@ -137,7 +137,7 @@ Permutation places_of(const std::vector<Index>& kept, const Permutation& of_kept
   return Permutation::from_old_to_new(std::move(old_to_new));
 }
 
-/// Whether the cells of a mesh are where a file of the format has them.
+/// Returns whether the cells of a mesh are in the order of a file of the format.
 bool has_places_of(const Format& format, const Mesh& mesh) {
   if (mesh.format == format.key()) return true;
   std::vector<Index> blocks;
@@ -145,7 +145,7 @@ bool has_places_of(const Format& format, const Mesh& mesh) {
   return !format.groups_cells_by_type || places_by_type(mesh.cells).is_identity();
 }
 
-/// Writes the mesh to memory and throws InputError for the first thing that gets lost.
+/// Writes the mesh to memory and throws InputError if anything is lost.
 void refuse_losses(const Mesh& mesh, const FilePath& path, const Format& format) {
   Notes lost;
   MemoryStore store;

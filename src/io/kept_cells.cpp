@@ -72,8 +72,8 @@ int highest_dimension_of(const std::vector<TypeCount>& types) {
   return highest;
 }
 
-/// Returns those of the types that a file of the format goes without; none if it cannot hold one of the
-/// highest dimension.
+/// Returns the types that a file of the format does not hold and leaves out; none if one of the highest
+/// dimension is among them.
 std::vector<TypeCount> types_left_out(const Mesh& mesh, const std::vector<TypeCount>& types,
                                       const Format& format) {
   const int highest = highest_dimension_of(types);
@@ -208,7 +208,7 @@ void keep_cells_at(Mesh& mesh, const std::vector<Index>& kept, Notes& notes) {
 std::string fault_of_cells(const Mesh& mesh, const Format& format) {
   std::vector<TypeCount> types = counted_types(mesh);
   std::erase_if(types, [&](const TypeCount& type) { return format.holds(mesh, type.shape, type.vertices); });
-  const int highest = highest_dimension_of(types);  // the others might have been left out
+  const int highest = highest_dimension_of(types);  // name one of these: lower ones may be left out
   for (const TypeCount& type : types) {
     if (dimension(type.shape) < highest) continue;
     return fmt::format("{} cannot hold a cell of type {}", format.name, type_name(type.shape, type.vertices));
@@ -232,7 +232,7 @@ void require_held_cells(const Mesh& mesh, const std::vector<Index>& kept, const 
   std::string fault;
   if (index_size(kept) == mesh.cell_count()) {
     fault = fault_of_cells(mesh, format);
-  } else if (format.conflict != nullptr) {  // one by one, the cells that were kept have a place
+  } else if (format.conflict != nullptr) {  // kept cells are held by their types
     Mesh part = mesh;
     Notes ignored;
     keep_cells_at(part, kept, ignored);

@@ -10,34 +10,34 @@
 
 namespace meshorder {
 
-// Which cells of a mesh a file of a format gets. Cells of the highest dimension are what a mesh is for: where
-// the format cannot hold them all, the mesh is refused. Cells of lower dimensions that it cannot hold are
-// left out. Vertices always stay.
+// Selects the cells of a mesh that go into a file. If the format cannot hold all cells of the highest
+// dimension, the mesh is refused. Cells of lower dimensions that it cannot hold are left out. All vertices
+// stay.
 
 /// Returns the positions of all cells: 0, 1, …
 std::vector<Index> all_cells(const Mesh& mesh);
 
-/// Returns the positions of the cells that a file of the format gets, ascending: all cells where the format
-/// has no place for one of the highest dimension. Notes the others, one line for each type. O(cells).
+/// Returns the positions of the cells to be written in the format, ascending. If it cannot hold one of the
+/// highest dimension, these are all cells. Notes the cells left out, a line for each type. O(cells).
 std::vector<Index> cells_for(const Mesh& mesh, const Format& format, Notes& notes);
 
-/// Keeps the cells at these ascending positions with their arrays, sets, ids and blocks, and notes the sets
-/// and arrays that have no cells any more and go. O(size of the mesh).
+/// Keeps the cells at these ascending positions with their arrays, sets, ids and blocks. Removes and notes
+/// the sets and partial arrays that have no cells left. O(size of the mesh).
 void keep_cells_at(Mesh& mesh, const std::vector<Index>& kept, Notes& notes);
 
-/// Returns why a file of the format cannot hold the cells of a mesh that were kept for it; an empty text if
-/// it can. O(cells).
+/// Returns why a file of the format cannot hold all cells of a mesh: a type that it has no place for, or a
+/// conflict of types. Returns an empty text if it can. O(cells).
 std::string fault_of_cells(const Mesh& mesh, const Format& format);
 
-/// Returns "write .msh or .vtu", the formats that hold all cells of a mesh. O(cells · formats).
+/// Returns advice such as "write .msh or .vtu": formats that hold all cells of a mesh. O(cells · formats).
 std::string advice_on_formats(const Mesh& mesh);
 
-/// Returns the rows of values that `rows` names, `components` values each. O(values that are returned).
+/// Returns the given rows of an array's values, `components` values each. O(returned values).
 Values rows_of_values(const Values& values, Index components, std::span<const Index> rows);
 
-/// Throws InputError with `fault_of_cells` of the cells at the positions `kept`, and with the formats that
-/// hold all cells of the mesh, if a file of the format cannot hold these cells. O(cells); for a format with a
-/// `conflict` a copy of the mesh, unless `kept` has all of them.
+/// Throws InputError if a file of the format cannot hold the cells at the positions `kept`; the error has the
+/// text of `fault_of_cells` and that of `advice_on_formats`. O(cells); for a format with a `conflict` it
+/// copies the mesh, unless `kept` has all cells.
 void require_held_cells(const Mesh& mesh, const std::vector<Index>& kept, const FilePath& path,
                         const Format& format);
 

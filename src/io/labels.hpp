@@ -17,13 +17,13 @@ struct Labels {
   [[nodiscard]] bool any() const noexcept { return !values.empty(); }
 };
 
-/// Returns the labels of vertices or cells. Ignores an array that does not hold one integer for each.
+/// Returns the labels of vertices or cells. Ignores an array whose rows are not single integers.
 Labels labels_of(const Mesh& mesh, Association association);
 
 /// Returns the array that `labels_of` uses, or nullptr.
 const DataArray* label_array(const Mesh& mesh, Association association);
 
-/// Notes that arrays other than the labels of cells are not written, for formats with nothing but these.
+/// Notes that all arrays but the labels of cells are not written, for formats that hold no others.
 void note_arrays_beside_cell_labels(const Mesh& mesh, std::string_view format, Notes& notes);
 
 /// Converts labels to the values of an array: 32-bit integers if all fit.

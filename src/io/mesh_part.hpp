@@ -31,44 +31,44 @@ struct MeshRanges {
   MeshRange cells;
 };
 
-/// What such ranges have of a mesh, for readers that give a large mesh to several processes in parts.
+/// The part of a mesh in such ranges, for readers that give each process a part of a large mesh.
 struct MeshPart {
-  /// Which members of a set of `mesh` these are.
+  /// Where the members of a set of `mesh` are in the file's list.
   struct SetRows {
-    Index size = 0;              ///< entries of the file's list, for all vertices or cells
-    std::vector<Index> entries;  ///< place in that list of each member, ascending
+    Index size = 0;              ///< length of the file's list, for the whole mesh
+    std::vector<Index> entries;  ///< position in that list of each member, ascending
   };
   /// A list of the file that may name a member twice.
   struct List {
-    std::string set;  ///< that is made of it, in words
-    Index size;       ///< entries, for all vertices or cells
-    Index kept;       ///< those of this part, without repeated ones
+    std::string set;  ///< the set that is made of it, as messages name it
+    Index size;       ///< length of the list, for the whole mesh
+    Index kept;       ///< members in this part, each counted once
   };
 
-  /// Which rows of an array of `mesh` these are.
+  /// Where the rows of an array of `mesh` are in the file.
   struct ArrayRows {
-    bool is_partial = false;  ///< rows for some vertices or cells only, perhaps for none of this part
-    /// Place in the file's list of each row, ascending; none where rows ascend by vertex or cell.
+    bool is_partial = false;  ///< rows for some vertices or cells only, perhaps none in this part
+    /// Position of each row in the file's list, ascending; empty if that list ascends by vertex or cell.
     std::vector<Index> entries = {};
   };
 
   MeshRanges ranges;
-  /// Cells name vertices by their numbers in the whole mesh. Rows of arrays and members of sets are counted
-  /// from the first vertex or cell of the range on. Ids are those of the file, though they may be 1, 2, …
+  /// Cells name vertices by their positions in the whole mesh. Rows of arrays and members of sets count from
+  /// the first vertex or cell of the range. Ids are given even if they are 1, 2, …
   Mesh mesh;
   std::vector<ArrayRows> arrays;  ///< of each array of the mesh
   std::vector<SetRows> sets;      ///< of each set of the mesh
   std::vector<List> lists;
-  std::string vertex_ids;  ///< name that the file has for these numbers; empty where it has none
+  std::string vertex_ids;  ///< what the file calls the vertex ids; empty if it has none
   std::string cell_ids;
 };
 
-/// Returns the note that numbers of vertices or cells, which the file calls `name`, are left out.
+/// Returns the note that the ids called `name` in the file are left out, as they have `number` twice.
 inline std::string note_of_number_twice(const std::string& name, std::int64_t number) {
   return name + " is left out: it gives the number " + std::to_string(number) + " twice";
 }
 
-/// Returns the note on members that a set names again.
+/// Returns the note that a set names members more than once.
 inline std::string note_of_repeated(const std::string& set, std::size_t repeated) {
   return set + " names " + std::to_string(repeated) + " members twice, which are kept once";
 }

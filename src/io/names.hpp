@@ -19,11 +19,11 @@ std::string plain_name(std::string_view name, std::string_view forbidden = {});
 /// Names that are unique in a file.
 class DistinctNames {
  public:
-  /// `longest`: bytes of a name, at least 12; a name that is cut ends with a whole character of UTF-8.
+  /// `longest`: most bytes of a name, at least 12. Names are cut between characters of UTF-8.
   explicit DistinctNames(std::size_t longest = std::string::npos) : longest_(longest) {}
 
-  /// Returns the name, cut to the longest size, with a number after it if it is taken. Takes it. O(log
-  /// names), also where all want the same name.
+  /// Takes and returns a free name: the wanted one, cut to the longest size, with a number at its end if it
+  /// is taken. O(log names), also if all want the same name.
   std::string take(std::string_view wanted);
 
  private:

@@ -5,7 +5,7 @@
 
 namespace meshorder {
 
-/// Thrown for files of one mesh that were not written together, by their marks.
+/// Thrown if the marks of a mesh's files show that they were not written together.
 struct NotTogether : InputError {
   using InputError::InputError;
   explicit NotTogether(const InputError& error) : InputError(error) {}

@@ -17,7 +17,7 @@
 namespace meshorder {
 namespace {
 
-constexpr std::string_view kMagic = "\x93NUMPY\x01";  // and the minor version 0
+constexpr std::string_view kMagic = "\x93NUMPY\x01";  // with the major version 1
 constexpr std::size_t kAlignment = 64;                // of the header, magic included
 constexpr std::size_t kPreamble = 10;                 // magic, versions and the header's length
 
@@ -125,7 +125,7 @@ Permutation read_permutation(const FilePath& path, Index count, const std::strin
   }
   std::vector<Index> old_to_new;
   old_to_new.reserve(places.size());
-  // -1 is no position, which Permutation reports
+  // Permutation reports -1 as an invalid position
   for (const std::int64_t place : places)
     old_to_new.push_back(place < 0 || place >= count ? -1 : static_cast<Index>(place));
   try {

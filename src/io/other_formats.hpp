@@ -9,7 +9,7 @@ namespace meshorder {
 struct OtherFormat {
   std::string_view extension;  ///< with dot, lower case
   std::string_view what;       ///< "holds VTK's PolyData"
-  std::string_view advice;     ///< what makes a mesh of it that meshorder reads
+  std::string_view advice;     ///< how to make a mesh of it that meshorder reads
 };
 
 /// Returns the format of files with this extension in lower case, null for one that is not known.

@@ -22,7 +22,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the number that the mesh's file gives its first vertex, where no ids say otherwise.
+/// Returns the number of the first vertex and the first cell in the mesh's file, if the mesh has no ids.
 std::int64_t first_number(const Mesh& mesh) {
   const std::span<const Format> formats = all_formats();
   const auto own = std::find_if(formats.begin(), formats.end(),
@@ -31,7 +31,7 @@ std::int64_t first_number(const Mesh& mesh) {
   return own->first_number_of != nullptr ? own->first_number_of(mesh) : own->first_number;
 }
 
-/// Writes the numbers down that a file gives by position, so that they can move with what they belong to.
+/// Makes ids of the numbers that a file gives by position, so that they move with vertices and cells.
 void write_down_ids(Mesh& mesh, bool of_vertices, bool of_cells) {
   const std::int64_t first = first_number(mesh);
   if (of_vertices && mesh.vertex_ids.empty()) {
@@ -44,7 +44,7 @@ void write_down_ids(Mesh& mesh, bool of_vertices, bool of_cells) {
   }
 }
 
-/// Moves a sound mesh, and what becomes of its ids.
+/// Moves a valid mesh and updates its ids.
 void move_with_ids(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {
   const bool has_vertex_ids = !mesh.vertex_ids.empty();
   const bool has_cell_ids = !mesh.cell_ids.empty();
@@ -59,13 +59,13 @@ void move_with_ids(Mesh& mesh, const Permutation& vertices, const Permutation& c
   }
 }
 
-/// Returns the format in which the mesh will be written: its own if none is named, null without any.
+/// Returns the format in which the mesh will be written: the named one, else its own; null without both.
 const Format* format_to_write(const Mesh& mesh, const std::string& name) {
   if (!name.empty()) return &format_named(name);
   return mesh.format.empty() ? nullptr : &format_named(mesh.format);
 }
 
-/// Returns the numbers of cells in the order in which these were arranged.
+/// Returns one number for each cell, in the order in which `arranged` put the cells.
 std::vector<std::int64_t> in_new_order(const IndexView& numbers, const Permutation& arranged) {
   std::vector<std::int64_t> moved;
   moved.reserve(numbers.size());
@@ -104,7 +104,7 @@ void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, 
   if (mesh.format == to.key()) {
     apply_reordering(mesh, vertices.inverse(), cells.inverse());
   } else {
-    restore_cells(mesh, cells, {});  // the old places may mix what this file keeps apart
+    restore_cells(mesh, cells, {});  // the old order may mix cells that this format groups
     apply_reordering(mesh, vertices.inverse(), Permutation::identity(mesh.cell_count()));
   }
   if (to.settle_cells != nullptr) (void)to.settle_cells(mesh);

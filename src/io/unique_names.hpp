@@ -28,10 +28,10 @@ class NameNumbers {
   }
 
  private:
-  std::map<std::string, int> last_;  // number, by the wanted name
+  std::map<std::string, int> last_;  // last number given, by wanted name
 };
 
-/// Gives arrays, or sets, names that no other of their association has.
+/// Gives arrays or sets names that are unique among those of vertices or those of cells.
 class UniqueNames {
  public:
   /// Returns the wanted name, or "NAME (2)", "NAME (3)" and so on where it is taken. O(log names), also where

@@ -18,10 +18,10 @@ void note_set_unsupported(const EntitySet& set, std::string_view format, Notes& 
 /// Notes "the set 'fixed' of vertices is not written: it has no members".
 void note_set_empty(const EntitySet& set, Notes& notes);
 
-/// Notes the ids of vertices and cells, if there are any.
+/// Notes that the ids of vertices and cells are not written, if there are any.
 void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& notes);
 
-/// Notes the contents of the metadata that another format left, if any.
+/// Notes that the contents of another format's metadata are not written, if there are any.
 void note_metadata_unsupported(const Mesh& mesh, std::string_view format, Notes& notes);
 
 }  // namespace meshorder

@@ -26,9 +26,9 @@ struct PvdEntry {
   std::string file;  ///< its path, relative to the folder of the collection
 };
 
-/// Writes a collection of files of several times (.pvd), which ParaView opens as an animation. Throws Error
-/// if it cannot be written, InvalidArgument for a time that is not finite; leaves no partial file.
-/// O(entries). https://www.paraview.org/Wiki/ParaView/Data_formats
+/// Writes a .pvd collection, which lists files for different times and which ParaView opens as an animation.
+/// Throws Error if it cannot be written, InvalidArgument for a time that is not finite; leaves no partial
+/// file. O(entries). https://www.paraview.org/Wiki/ParaView/Data_formats
 void write_pvd(std::span<const PvdEntry> entries, const FilePath& path);
 
 }  // namespace meshorder

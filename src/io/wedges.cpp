@@ -8,9 +8,9 @@
 namespace meshorder {
 namespace {
 
-/// Three edges out of the first corner that are right-handed in a cell of positive volume.
+/// Three edges from the first corner of a cell, right-handed if its volume is positive.
 struct Handedness {
-  std::size_t corners;  ///< 0 for a shape that is no volume
+  std::size_t corners;  ///< 0 for shapes that are not counted
   std::array<std::size_t, 3> ends;
 };
 

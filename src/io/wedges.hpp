@@ -8,31 +8,31 @@
 
 namespace meshorder {
 
-/// Returns the volume that three edges of a cell span at its first corner, which has the sign of the volume
-/// of the cell where it is convex; 0 for other cells than linear tetrahedra, pyramids, wedges and hexahedra.
-/// O(1).
+/// Returns the volume of the parallelepiped of three edges at the first corner of a cell. Its sign is that of
+/// the cell's volume if the cell is convex. Returns 0 for other cells than linear tetrahedra, pyramids,
+/// wedges and hexahedra. O(1).
 double volume_at_first_corner(const std::vector<Point>& points, Shape shape, std::span<const Index> cell);
 
 /// Finds out from volumes how a file numbers its linear wedges.
 ///
 /// The first triangle of a wedge faces outward in the files of some programs and inward in those of others,
-/// and the files do not say which. Shape functions do not mind; faces, normals and volumes do.
+/// and the files do not say which. Faces, normals and volumes depend on it; shape functions do not.
 class WedgeVote {
  public:
-  /// Of cells with these vertices, which must outlive this object.
+  /// `points`: the vertices of the cells; they must outlive this object.
   explicit WedgeVote(const std::vector<Point>& points) : points_(points) {}
 
-  /// Counts a cell in the order of the file. Only linear tetrahedra, hexahedra, pyramids and wedges have a
-  /// say. O(1).
+  /// Counts a cell in the order of the file. Only linear tetrahedra, hexahedra, pyramids and wedges count.
+  /// O(1).
   void add(Shape shape, std::span<const Index> cell);
 
-  /// Returns whether the first triangles of wedges face inward: whether more than 20 of 21 wedges then have
-  /// volumes of the sign of the other cells, or positive ones where there are no others. False if signs
-  /// are mixed.
+  /// Returns whether the first triangles of wedges face inward. They do if, read that way, more than 20 of 21
+  /// wedges have volumes with the sign of the other cells' volumes, or positive volumes if there are no other
+  /// cells. Returns false if signs are mixed.
   [[nodiscard]] bool wedges_face_inward() const;
 
-  /// Returns 1 or −1 where more than 20 of 21 cells, wedges with their first triangle inward, have volumes of
-  /// that sign, else 0.
+  /// Returns 1 or −1 if more than 20 of 21 cells have volumes of that sign, else 0. Wedges count as if their
+  /// first triangles faced inward.
   [[nodiscard]] int sign_of_volumes() const;
 
  private:
@@ -41,7 +41,7 @@ class WedgeVote {
     Offset positive = 0;
     Offset negative = 0;
 
-    /// 1 or −1 where more than 20 of 21 have that sign, else 0.
+    /// Returns 1 or −1 if more than 20 of 21 have that sign, else 0.
     [[nodiscard]] int sign() const;
   };
 

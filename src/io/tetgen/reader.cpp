@@ -43,7 +43,7 @@ struct ReadContext {
 
 // ---- lines of numbers
 
-/// Moves to the next record, which begins on a line of its own.
+/// Moves to the next record, which begins on a new line; fails at the end of the file.
 void begin_record(Scanner& in, std::string_view what) {
   if (in.at_end()) {
     in.fail(fmt::format("unexpected end of file; expected {}", what),
@@ -77,7 +77,7 @@ std::int64_t whole(Scanner& in, std::string_view what) {
   return static_cast<std::int64_t>(value);
 }
 
-/// Reads the numbers of a header line; missing ones are those of `standard`.
+/// Reads the numbers of a header line; `standard` has the values of those that are missing.
 template <std::size_t N>
 std::array<std::int64_t, N> header(Scanner& in, std::array<std::int64_t, N> standard) {
   begin_record(in, "the header");
@@ -115,12 +115,12 @@ void add_number(Scanner& in, IdMap& numbering, std::string_view what) {
     in.fail(fmt::format("{} {} is given twice", what, number), "each must be unique");
 }
 
-/// Takes numbers that a record has.
+/// Takes as many numbers as `values` has; returns false if one is missing or is not regular.
 bool take_all(Scanner& in, std::span<double> values) {
   return std::ranges::all_of(values, [&](double& value) { return in.take_number(value); });
 }
 
-/// Reads records with their numbers, as `read_regular_records`; those are regular whose numbers run.
+/// Reads records as `read_regular_records` does; a record is regular only if its number follows the last.
 template <class Read>
 Index read_numbered(Scanner& in, Index count, IdMap& numbering, const Read& read) {
   constexpr std::int64_t kFarthest = std::int64_t{1} << 40;
@@ -135,8 +135,8 @@ Index read_numbered(Scanner& in, Index count, IdMap& numbering, const Read& read
   return regular;
 }
 
-/// Takes the mark of the files of a mesh out of the comments at the end of one; returns an empty text if
-/// there is none.
+/// Removes the mark of a mesh's files from the comments at the end of one and returns it; returns an empty
+/// text if there is none.
 std::string take_mark(std::string& comments) {
   const std::size_t at = comments.rfind(kMarkBefore);
   if (at == std::string::npos || (at > 0 && comments[at - 1] != '\n')) return {};
@@ -148,7 +148,7 @@ std::string take_mark(std::string& comments) {
   return mark;
 }
 
-/// Keeps the comments at the end of the file but for its mark, which is returned; fails for anything else.
+/// Keeps the comments of a file and returns its mark; fails if other text follows the last record.
 std::string end_file(Scanner& in, Metadata::Part& part, Notes& notes) {
   if (!in.at_end()) in.fail("unexpected text after the last record", "correct the number in the header");
   part.present = true;
@@ -199,8 +199,8 @@ void read_points(Scanner& in, ReadContext& to) {
     end_record(in);
   }
 
-  // As TetGen does, the first number decides whether counting begins at 0 or at 1. Where numbers do not run,
-  // any 0 decides, so that no order of the points changes what the numbers of cells mean.
+  // As in TetGen, the first number decides whether numbers begin at 0 or at 1. If they are not consecutive,
+  // any 0 decides, so that reordering the points does not change which points the cells name.
   to.metadata->base = to.points.id(0) == 0 ? 0 : 1;
   mesh.vertex_ids = to.points.ids_unless_from(to.metadata->base);
   if (std::find(mesh.vertex_ids.begin(), mesh.vertex_ids.end(), 0) != mesh.vertex_ids.end())
@@ -268,7 +268,7 @@ void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, Rea
   }
 }
 
-/// TetGen's region attribute is one whole number for each cell: a label. Others stay attributes.
+/// Makes a label of TetGen's region attribute, one whole number for each cell. Other attributes stay.
 void take_regions_as_markers(Part& part) {
   using Limits = std::numeric_limits<std::int32_t>;
   const bool regions = part.attributes_per_cell == 1 &&
@@ -317,7 +317,7 @@ int columns_of_first_record(Scanner& in) {
       "remove them, or let TetGen write the file without -nn");
 }
 
-/// Reads faces and edges; their header lacks the number of points of a cell, which the first line shows.
+/// Reads faces or edges. Their header lacks the number of points of a cell; the first record shows it.
 void read_boundary(Scanner& in, File file, ReadContext& to) {
   const auto [records, has_markers] = header<2>(in, {0, 0});
   const bool marked = checked_markers(in, has_markers);
@@ -358,8 +358,8 @@ std::vector<std::array<Index, 2>> edges_of_nodes(const Mesh& mesh, Index tetrahe
   return result;
 }
 
-/// TetGen 1.5 writes the second-order nodes of faces in two orders: with -f that of the opposite edges, else
-/// that of VTK, in which they were read. The tetrahedra, which have the edge of every node, decide.
+/// TetGen 1.5 writes the second-order nodes of faces by opposite edges with -f, else in VTK's order, in which
+/// they were read. Finds the order by the edges of the tetrahedra, and corrects it.
 void settle_face_order(ReadContext& to) {
   const Index tetrahedra = to.parts[kEle].count;
   const Index end = tetrahedra + to.parts[kFace].count;
@@ -405,7 +405,7 @@ void set_cell_ids(ReadContext& to) {
 void set_cell_data(ReadContext& to) {
   Mesh& mesh = to.mesh;
 
-  // attributes are those of the first file's cells
+  // only cells of .ele have attributes
   Part& ele = to.parts[kEle];
   if (ele.attributes_per_cell > 0 && ele.count > 0) {
     DataArray array{"attribute", Association::cells, ele.attributes_per_cell, std::move(ele.attributes), {},

@@ -34,28 +34,28 @@ struct Metadata final : FormatMetadata {
   std::array<Part, 4> parts;
   int base = 1;  ///< the number of the first point
   int nodes_in_ele = 4;
-  /// .face gives the node of the edge opposite to the first corner first, as TetGen's switch -f does.
+  /// Whether .face lists second-order nodes by opposite edges, corner 1's first, as TetGen's -f does.
   bool faces_name_opposite_edges = false;
 
   [[nodiscard]] std::vector<std::string> contents() const override { return {}; }
 };
 
-/// Positions in TetGen's line of a cell's nodes in VTK's order. In the tetrahedra that TetGen's -o2
+/// For each node of a cell in VTK's order, its position in TetGen's line. In the tetrahedra that TetGen's -o2
 /// writes, nodes 5 to 10 are those of the edges (3,4) (1,4) (1,2) (2,3) (2,4) (1,3).
 inline constexpr std::array<int, 10> kTetrahedron{0, 1, 2, 3, 6, 7, 9, 5, 8, 4};
 /// Triangle's order: nodes 4 to 6 are those of the edges opposite to corners 1 to 3.
 inline constexpr std::array<int, 6> kTriangleOpposite{0, 1, 2, 5, 3, 4};
 inline constexpr std::array<int, 6> kTriangle{0, 1, 2, 3, 4, 5};
 
-/// Returns those positions for cells of `nodes` nodes in that file.
+/// Returns these positions for cells of `nodes` nodes in a file of that kind.
 inline std::span<const int> places(File file, int nodes, bool faces_name_opposite_edges) {
   if (nodes == 4 || nodes == 10) return {kTetrahedron.data(), static_cast<std::size_t>(nodes)};
   const bool opposite = file == kEle || (file == kFace && faces_name_opposite_edges);
   return {(opposite ? kTriangleOpposite : kTriangle).data(), static_cast<std::size_t>(nodes)};
 }
 
-/// The last line of each file that was written with others begins so. A mark of 16 digits follows, the same
-/// in all files of the mesh: the reader refuses files of different ones.
+/// The last line of each written file begins with this text. A mark of 16 digits follows, the same in all
+/// files of a mesh; the reader refuses files with different marks.
 inline constexpr std::string_view kMarkBefore = "# meshorder ";
 inline constexpr std::size_t kMarkDigits = 16;
 

@@ -73,8 +73,8 @@ bool is_plane(const Mesh& mesh) {
   return std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& p) { return p[2] == 0; });
 }
 
-/// Returns why the cells cannot be one mesh of TetGen or Triangle, which other programs read by its .ele
-/// file; an empty text if they can.
+/// Returns why the cells cannot be one mesh of TetGen or Triangle; an empty text if they can. Programs read
+/// such a mesh by its .ele file, so it needs tetrahedra, or triangles in a plane.
 std::string conflict(const Mesh& mesh) {
   const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   std::array<int, kShapes> nodes{};
@@ -130,7 +130,7 @@ void refuse_leftovers(const Layout& layout, const Metadata& metadata, const File
 
 // ---- columns
 
-/// One component of an array as a column of a file; `row_of` leads from a vertex or cell to its row.
+/// One component of an array as a column of a file; `row_of` gives the row of each vertex or cell.
 struct Column {
   const DataArray* array;
   Index component;
@@ -166,8 +166,8 @@ void note_missing_labels(std::ptrdiff_t missing, std::string_view file, Notes& n
   notes.push_back(fmt::format("{} in {} have no label and get 0", missing, file));
 }
 
-/// The columns of attributes that `items` (the points, or the cells of .ele) get. An array called "attribute"
-/// comes first, then the labels of cells, then all else that has numbers for every item; names get lost.
+/// Returns the attribute columns of `items` (the points, or the cells of .ele): an array "attribute" first,
+/// then the labels of cells, then other arrays with numbers for every item. Notes arrays that do not fit.
 std::vector<Column> attribute_columns(const Mesh& mesh, Association association,
                                       const std::vector<Index>& items, Notes& notes) {
   const Index count = association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
@@ -188,7 +188,7 @@ std::vector<Column> attribute_columns(const Mesh& mesh, Association association,
     std::vector<Index> row_of = rows_of(*array, count);
     const auto has_row = [&](Index item) { return row_of.empty() || row_of[item] >= 0; };
     const auto given = std::count_if(items.begin(), items.end(), has_row);
-    if (array == labels && given == 0) continue;  // they are markers of other cells
+    if (array == labels && given == 0) continue;  // these labels are markers of faces and edges
     const bool text = std::holds_alternative<std::vector<std::string>>(array->values);
     if (text || items.empty() || (given < index_size(items) && array != labels)) {
       note_array_unsupported(*array, "TetGen", notes);
@@ -295,10 +295,10 @@ void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes&
   write_cells(out, file, from, {}, marked);
 }
 
-/// Returns a line that two meshes, or one in two orders or with other data, hardly share.
+/// Returns a line with a checksum of the mesh, its order and its data: meshes that differ hardly share it.
 std::string mark_of(const WriteContext& from) {
   Checksum sum;
-  Notes ignored;  // the files that are written give them
+  Notes ignored;  // writing the files gives the same notes
   const auto add_columns = [&](Association association, const std::vector<Index>& items) {
     for (const Column& column : attribute_columns(from.mesh, association, items, ignored)) {
       for (const Index item : items) sum.add_all(text_of(column, item));

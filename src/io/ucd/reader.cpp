@@ -141,7 +141,7 @@ class Reader {
 
   // ---- data
 
-  /// Reads the arrays of all nodes or cells: their sizes, their labels with units, and a line for each item.
+  /// Reads the arrays on nodes or cells: their sizes, their labels with units, and a line for each item.
   void read_data(Association association, std::int64_t values, const IdMap& numbers) {
     if (values == 0) return;
     const bool of_nodes = association == Association::vertices;
@@ -174,7 +174,7 @@ class Reader {
     for (std::size_t i = 0; i < arrays.size(); ++i) mesh_.data[first + i].values = std::move(arrays[i]);
   }
 
-  /// Takes the number of the item that a line of data belongs to; of cells without numbers it is the row.
+  /// Takes the number of a line of data; returns the position of its item, `row` if cells have no numbers.
   Index place_of_row(const IdMap* numbers, Index row, std::string_view item) {
     const Index id = number("the number of a line of data");
     const Index place = numbers == nullptr ? row : numbers->find(id);
@@ -207,7 +207,7 @@ class Reader {
     }
   }
 
-  /// Keeps the data of the model. Without such, nothing may follow: it would be data in the old order.
+  /// Keeps the data of the model. If there are none, fails for further text: it could be in the old order.
   void keep_rest() {
     if (in_.at_end()) return;
     if (metadata_->model_values == 0) {
@@ -223,7 +223,7 @@ class Reader {
   std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
   IdMap node_numbers_;
   IdMap cell_numbers_;
-  bool cells_are_numbered_ = true;  // each by a number of its own
+  bool cells_are_numbered_ = true;  // whether all numbers of cells differ
   UniqueNames names_;
 };
 

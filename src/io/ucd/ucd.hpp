@@ -23,7 +23,7 @@ struct CellKind {
   std::string_view name;
   Shape shape;
   int nodes;
-  std::array<int, 8> places;  ///< in the file, of the cell's vertices
+  std::array<int, 8> places;  ///< position in the file's line of each vertex of the cell
 };
 
 inline constexpr std::array kCellKinds{
@@ -40,7 +40,7 @@ inline constexpr std::array kCellKinds{
 /// Data of the files beyond the mesh.
 struct Metadata final : FormatMetadata {
   std::string comments_before;
-  /// The file's lines "label, unit" by the names of their arrays.
+  /// The lines "label, unit" of the file, by the names of their arrays.
   std::map<std::pair<Association, std::string>, std::string> labels;
   std::int64_t model_values = 0;
   std::string model_data;  ///< all lines after the data of nodes and cells, verbatim
@@ -48,7 +48,7 @@ struct Metadata final : FormatMetadata {
   [[nodiscard]] std::vector<std::string> contents() const override;
 };
 
-/// Returns whether a file that begins like this is UCD, text or binary, and no other with numbers in columns.
+/// Returns whether a file that begins with these bytes is UCD, as text or binary.
 bool begins_ucd(std::string_view bytes);
 
 Mesh read(const FilePath& path, Notes& notes);

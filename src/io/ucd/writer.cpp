@@ -33,7 +33,7 @@ bool holds(const Mesh& /*mesh*/, Shape shape, int vertices) { return kind_of(sha
 /// The number of each vertex or cell in the file.
 struct Numbers {
   const std::vector<std::int64_t>& ids;
-  bool are_ids;  ///< else 1, 2, …
+  bool are_ids;  ///< whether `ids` are written; else 1, 2, …
 
   explicit Numbers(const std::vector<std::int64_t>& of)
       : ids(of), are_ids(can_be_numbers(of, kMaxIndex, 0)) {}
@@ -84,7 +84,7 @@ class Writer {
     return values;
   }
 
-  /// Finds the arrays that the file has room for, and their labels. The labels of cells are their materials.
+  /// Finds the arrays that the file can hold, and their lines. Labels of cells are materials instead.
   void collect_arrays() {
     DistinctNames of_nodes;
     DistinctNames of_cells;
@@ -158,7 +158,7 @@ class Writer {
           if constexpr (std::is_arithmetic_v<Value>) {
             for (Index k = 0; k < array.components; ++k) {
               const Value value = values[Offset{row} * array.components + k];
-              // a float as the double that it is, which is read back
+              // a float is written as the same double, which reads back exactly
               if constexpr (std::is_same_v<Value, float>) {
                 text.real(" ", double{value});
               } else {

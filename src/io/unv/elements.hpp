@@ -9,7 +9,7 @@
 
 namespace meshorder::unv {
 
-/// The cells that elements are.
+/// A kind of cells: the shape and the number of nodes.
 struct ElementKind {
   Shape shape;
   int nodes;
@@ -17,19 +17,19 @@ struct ElementKind {
   bool operator==(const ElementKind&) const = default;
 };
 
-/// Returns the cells that elements of a type ("FE descriptor id") with so many nodes are; none if they are
-/// not known.
+/// Returns the kind of cells that elements of a type ("FE descriptor id") with so many nodes are; none if it
+/// is not known.
 std::optional<ElementKind> kind_of(std::int64_t type, std::int64_t nodes);
 
-/// Returns the type that cells of a mesh of another format are written as; 0 if there is none.
+/// Returns the type of element as which cells of another format's mesh are written; 0 if there is none.
 int type_of(ElementKind kind);
 
-/// Returns whether a line of three numbers follows the first one of an element: always for beams, which these
-/// types are.
+/// Returns whether a type is that of beams. Their elements always have a line of three numbers after the
+/// first line.
 bool is_beam(std::int64_t type);
 
-/// Returns the vertex of the cell that each node of an element is, in the order of the file: middle nodes
-/// come between their corners. Empty where the order is the cell's.
+/// Returns, for each node of an element in the order of the file, its position in the cell. Middle nodes come
+/// between their corners. Empty if the order is the same.
 std::span<const int> file_order(ElementKind kind);
 
 }  // namespace meshorder::unv

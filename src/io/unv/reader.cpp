@@ -27,7 +27,7 @@ constexpr std::size_t kMostNodes = 20;
 /// Returns whether a line begins or ends a dataset: −1 in its first six columns.
 bool is_delimiter(std::string_view line) { return trimmed(line) == "-1" && line.find('-') <= 4; }
 
-/// Returns whether a dataset that is kept as it is names no node and no element.
+/// Returns whether a dataset that is kept verbatim is known to name no nodes and no elements.
 bool is_harmless(int dataset) {
   // systems of coordinates, header, units, materials, header of the model, systems of coordinates
   constexpr std::array kHarmless{18, 151, 164, 1710, 2400, kSystems};
@@ -166,8 +166,8 @@ class UnvReader {
 
   // ---- numbers
 
-  /// Takes the number at the beginning of a record; returns false, and takes the line, where it is the −1
-  /// that ends the dataset.
+  /// Takes the first number of a record. If it is the −1 that ends the dataset, takes the line and returns
+  /// false.
   bool begin_record(std::int64_t& number, std::string_view what) {
     if (in_.at_end()) fail_open();
     number = in_.integer<std::int64_t>(what);
@@ -272,7 +272,7 @@ class UnvReader {
     section.count = mesh_.cell_count() - section.first;
   }
 
-  /// Takes the line of three numbers that beams have, and rods in the files of some programs.
+  /// Takes the line of three numbers that beams have, and rods in some programs' files.
   void read_beam(ElementFields& fields, std::int64_t nodes) {
     if (nodes == 2) {
       std::string_view line = in_.peek_line();
@@ -318,7 +318,7 @@ class UnvReader {
 
   // ---- groups
 
-  /// Returns false for groups in parts of an assembly, whose members have more numbers than their own.
+  /// Reads groups; returns false if a member is in a part of an assembly: its last two numbers are not 0.
   bool read_groups() {
     const auto per_member = static_cast<std::size_t>(numbers_of_member(dataset_));
     const std::size_t groups_before = file_->groups.size();
@@ -517,7 +517,7 @@ class UnvReader {
     }
   }
 
-  /// Refuses coordinates in systems other than the global one, which the file describes.
+  /// Refuses nodes with coordinates in a system of the file that is not the global one.
   void check_systems() {
     for (const Section& section : file_->sections) {
       if (section.part != Part::text || section.dataset != kSystems) continue;
@@ -535,7 +535,7 @@ class UnvReader {
     }
   }
 
-  /// Makes arrays of the numbers of properties and materials that differ, or of one property except 0 and 1.
+  /// Makes arrays of properties and of materials if they differ, or of one property other than 0 and 1.
   void make_arrays_of_fields() {
     const auto make = [&](std::string_view name, std::int64_t ElementFields::*field) {
       const auto& all = file_->element_fields.different();

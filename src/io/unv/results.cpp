@@ -36,8 +36,8 @@ std::vector<std::string_view> take_lines(Scanner& in, std::size_t count) {
   return lines;
 }
 
-/// Sets what a data type (1 integer, 2 single, 4 double, 5 and 6 the same complex) and the number of values
-/// say; returns false for others.
+/// Sets what follows from a data type (1 integer, 2 single, 4 double, 5 complex single, 6 complex double) and
+/// the number of values; returns false for other types.
 bool set_type(ResultsHeader& header, std::int64_t type, std::int64_t values) {
   if (values < 1 || values > kMostComponents) return false;
   const bool is_complex = type == 5 || type == 6;
@@ -49,7 +49,7 @@ bool set_type(ResultsHeader& header, std::int64_t type, std::int64_t values) {
   return true;
 }
 
-/// Sets the name to the first of the lines that says something.
+/// Sets the name to the first of the candidate lines that is not empty or NONE.
 void set_name(ResultsHeader& header, const std::vector<std::string_view>& lines,
               std::initializer_list<std::size_t> candidates) {
   header.name = "results";
@@ -87,7 +87,7 @@ std::optional<ResultsHeader> header_of_old(Scanner& in, int dataset) {
   header.results.association = dataset == kResultsAtNodes ? Association::vertices : Association::cells;
   if (!set_type(header, kinds[4], kinds[5])) return {};
   set_name(header, lines, {0, 1});
-  // 8 whole and 6 real numbers on a line; the two counts are among the whole ones
+  // a line has 8 whole or 6 real numbers; the two counts are whole numbers, too
   const auto lines_of = [](std::int64_t numbers, std::int64_t on_line) {
     return static_cast<std::size_t>(std::max<std::int64_t>((numbers + on_line - 1) / on_line, 1));
   };
@@ -104,7 +104,7 @@ std::optional<ResultsHeader> read_results_header(Scanner& in, int dataset) {
 std::optional<DataArray> array_of(const FoundResults& found, const IdMap& items) {
   const auto components = static_cast<std::size_t>(found.results.components);
   const auto count = static_cast<std::size_t>(items.size());
-  std::vector<Index> rows;  // items of the rows
+  std::vector<Index> rows;  // node or element of each row
   std::vector<bool> seen(count, false);
   rows.reserve(found.numbers.size());
   for (const std::int64_t number : found.numbers) {
@@ -141,7 +141,7 @@ std::optional<DataArray> array_of(const FoundResults& found, const IdMap& items)
 }
 
 std::vector<std::int64_t> local_systems(std::string_view text) {
-  // after the lines that begin the dataset, name the part: number, type and colour, name, matrix in 4 lines
+  // 2 lines begin the dataset, 2 name the part; then each system: numbers, name, matrix in 4 lines
   std::vector<std::string_view> lines;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size() - 1);

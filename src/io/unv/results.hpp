@@ -25,11 +25,11 @@ struct FoundResults : ResultsHeader {
   std::string all = {};                    ///< all lines
 };
 
-/// Takes the records before the values; none if the values are neither at nodes nor at elements, or of a kind
-/// that is not known.
+/// Takes the records before the values; returns none if the values are neither at nodes nor at elements, or
+/// are of an unknown type.
 std::optional<ResultsHeader> read_results_header(Scanner& in, int dataset);
 
-/// Returns the values as an array; none if a node or element does not exist or comes twice.
+/// Returns the values as an array; none if there are no values, or an item is unknown or comes twice.
 std::optional<DataArray> array_of(const FoundResults& found, const IdMap& items);
 
 /// Returns the numbers of those systems of coordinates in a dataset 2420 that are not the global one.
@@ -38,8 +38,8 @@ std::vector<std::int64_t> local_systems(std::string_view text);
 /// Returns a number as Fortran writes it: 1.5D-3, 1.5E-3, 1.5-103. Throws an Error at the scanner's line.
 double real_of(const Scanner& at, std::string_view word, std::string_view what);
 
-/// Returns whether a whole number leaves a blank in its ten columns, so that readers that go by words find
-/// it.
+/// Returns whether a whole number leaves a blank in its ten columns, so that readers can split the line at
+/// blanks.
 inline bool fits_columns(std::int64_t number) {
   constexpr std::int64_t kLargest = 999'999'999;
   return number <= kLargest && number > -kLargest / 10;

@@ -32,7 +32,7 @@ inline constexpr int kResultsAtNodes = 55;
 inline constexpr int kResultsAtElements = 56;
 inline constexpr int kSystems = 2420;  ///< of coordinates
 
-// Codes of what a group holds.
+// Codes of the kinds of members of groups.
 inline constexpr std::int64_t kNodeCode = 7;
 inline constexpr std::int64_t kElementCode = 8;
 
@@ -48,12 +48,12 @@ struct NodeFields {
 /// The fields of an element besides its number and nodes.
 struct ElementFields {
   std::int64_t type = 0;
-  std::int64_t property_table = 0;  ///< of dataset 780 alone; likewise the material's
+  std::int64_t property_table = 0;  ///< in dataset 780 only, like `material_table`
   std::int64_t property = 1;
   std::int64_t material_table = 0;
   std::int64_t material = 0;
   std::int64_t colour = 7;
-  bool has_beam = false;                  ///< whether there is a line of the next three
+  bool has_beam = false;                  ///< whether the file has a line for `beam`
   std::array<std::int64_t, 3> beam = {};  ///< node that gives the orientation, cross-sections of both ends
 
   auto operator<=>(const ElementFields&) const = default;
@@ -100,8 +100,8 @@ struct Group {
   std::vector<std::int64_t> fields;                 ///< the first line without the number of members
   std::string name;                                 ///< as in the file
   std::string set;                                  ///< name of its sets in the mesh
-  bool has_nodes = false;                           ///< whether there is a set of vertices
-  bool has_elements = false;                        ///< or of cells; of vertices if the group is empty
+  bool has_nodes = false;                           ///< whether it has a set of vertices; empty groups have
+  bool has_elements = false;                        ///< whether it has a set of cells
   std::vector<std::array<std::int64_t, 4>> others;  ///< members of other kinds: code, number, two more
 };
 
@@ -111,36 +111,36 @@ struct Results {
   std::string name;   ///< as in the file
   Association association = Association::vertices;
   Index components = 1;
-  std::int64_t components_in_file = 1;  ///< where complex numbers are one component
+  std::int64_t components_in_file = 1;  ///< complex numbers count once
   int digits = 5;                       ///< after the point
   bool integers = false;                ///< whether the values are whole numbers
 };
 
 enum class Part : std::uint8_t { text, nodes, elements, groups, results };
 
-/// A dataset, or what is between two.
+/// A dataset, or the lines between two datasets.
 struct Section {
   Part part = Part::text;
   int dataset = 0;
-  std::string text = {};  ///< all lines of what is kept as it is; of results, those before the values
-  Index first = 0;        ///< of the file's nodes, elements, groups or results
+  std::string text = {};  ///< all lines, if kept as they are; of results, those before the values
+  Index first = 0;        ///< first node, element, group or result of the file in it
   Index count = 0;
-  std::vector<OtherElement> others = {};  ///< of elements
+  std::vector<OtherElement> others = {};  ///< elements that are no cells
 };
 
-/// What a universal file says, in its own order.
+/// The contents of a universal file, in its order.
 struct Contents {
   std::vector<Section> sections;
   IdMap nodes;     ///< numbers in the order of the file
-  IdMap elements;  ///< of those that are cells
+  IdMap elements;  ///< numbers of those that are cells
   FieldTable<NodeFields> node_fields;
   FieldTable<ElementFields> element_fields;
   std::vector<Group> groups;
   std::vector<Results> results;
   char exponent = 'D';  ///< letter before exponents of coordinates
   std::string line_end = "\n";
-  /// Datasets that may name nodes or elements by number and are not understood: "dataset 791 (line 12)".
-  /// With one of them all numbers must stay.
+  /// Datasets that are not understood and may name nodes or elements by number: "dataset 791 (line 12)". If
+  /// there are any, all numbers must stay.
   std::vector<std::string> unknown;
   std::vector<std::string> contents;  ///< what other formats lose
 };
@@ -151,14 +151,14 @@ using Metadata = DeckMetadata<Contents>;
 /// Name of the array on cells that holds the numbers of materials, where they differ.
 inline constexpr std::string_view kMaterial = "material";
 
-/// Returns how many numbers a dataset of groups gives to a member, 2 or 4; 0 if it is none of groups.
+/// Returns how many numbers a member has in a dataset of groups, 2 or 4; 0 for other datasets.
 int numbers_of_member(int dataset);
 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
-/// Returns the file that a mesh can be written into; null if it came from elsewhere or no longer fits. Valid
-/// as long as the mesh. O(cells).
+/// Returns the metadata of the file that a mesh came from, if the mesh can still be written into that file;
+/// else null. Valid as long as the mesh. O(cells).
 const Metadata* own_file(const Mesh& mesh);
 
 }  // namespace meshorder::unv

@@ -42,12 +42,12 @@ class Lines {
   void integer(std::int64_t value, int width = kWidth) {
     const fmt::format_int digits(value);
     const auto size = static_cast<int>(digits.size());
-    // what fills the field would run into the number before
+    // a number that fills its field would run into the number before
     line_.append(static_cast<std::size_t>(std::max(width - size, line_.empty() ? 0 : 1)), ' ');
     line_.append(digits.data(), digits.size());
   }
 
-  /// Adds a number with that many digits after the point, or as many as it takes to read the same number.
+  /// Adds a number with that many digits after the point, or with 16 if it would not read back the same.
   void exact(double value, int digits, char exponent) {
     char* const end = rounded(value, digits);
     double read = 0;
@@ -91,7 +91,7 @@ class Lines {
         .ptr;
   }
 
-  /// Adds the number in the buffer: 8 columns wider than its digits, or 9 with 16 of them.
+  /// Adds the number in the buffer, right-aligned in `digits` + 8 columns, + 9 for 16 digits, or in more.
   void add(char* end, int digits, char exponent) {
     const auto width = static_cast<std::size_t>(digits < kDigitsOfCoordinates ? digits + 8 : digits + 9);
     const auto size = static_cast<std::size_t>(end - buffer_.data());
@@ -102,11 +102,11 @@ class Lines {
 
   OutputFile& out_;
   std::string line_end_;
-  std::string line_;  // so far
+  std::string line_;  // current line
   std::array<char, 64> buffer_{};
 };
 
-/// Returns the file of a mesh that came from elsewhere: nodes, then elements.
+/// Returns the contents of a file for a mesh that came from elsewhere: nodes, then elements.
 Contents plain_contents(const Mesh& mesh) {
   Contents file;
   Section& nodes = file.sections.emplace_back();
@@ -120,7 +120,7 @@ Contents plain_contents(const Mesh& mesh) {
   return file;
 }
 
-/// Returns which item of the file is at each place of the mesh; empty if they are in its order.
+/// Returns the item of the file at each position of the mesh; empty if they are in the file's order.
 std::vector<Index> inverse(const std::vector<Index>& places) {
   std::vector<Index> items(places.size());
   for (Index k = 0; k < index_size(places); ++k) items[places[k]] = k;
@@ -269,7 +269,7 @@ class UnvWriter {
     }
   }
 
-  /// Returns the numbers of materials in the array of that name; none if it is not whole numbers, one each.
+  /// Returns the array of materials; an empty one unless it has one whole number for each cell.
   static std::vector<std::int64_t> materials_of(const Mesh& mesh) {
     const DataArray* const array = find_array(mesh, kMaterial, Association::cells);
     if (array == nullptr || array->components != 1 || !array->is_dense()) return {};
@@ -339,7 +339,7 @@ class UnvWriter {
     return taken.take(name == kDelimiter ? "_" + name : name);
   }
 
-  /// Writes sets that no group of the file is; those of one name become one group.
+  /// Writes the sets that belong to no group of the file; sets of one name become one group.
   void write_new_groups() {
     DistinctNames taken(kLongestGroup);
     std::int64_t last = 0;
@@ -400,8 +400,8 @@ class UnvWriter {
       return;
     }
     written_arrays_.insert(array);
-    // a header that says whole numbers of others is made anew, in its place: the steps of one name are
-    // counted
+    // if values are not whole any more, the dataset gets a new header but stays in place, as the order of
+    // datasets gives the steps of one name their numbers
     if (results.integers && !holds_integers(*array)) return write_result(*array, results.name, 1);
     lines_.text(section.text);
     const bool counts = results.association == Association::cells;
@@ -444,7 +444,7 @@ class UnvWriter {
     }
   }
 
-  /// Writes arrays that no dataset of the file is.
+  /// Writes the arrays that belong to no dataset of the file.
   void write_new_results() {
     std::int64_t label = 0;
     for (const DataArray& array : mesh_.data) {
@@ -481,11 +481,11 @@ class UnvWriter {
 
   void write_header(const DataArray& array, const std::string& name, const Results& results,
                     std::int64_t label) {
-    /// What is said of values with so many components.
+    /// The codes for values with so many components.
     struct Meaning {
       Index components;
       int characteristic;
-      int type;  ///< one of those that are not known
+      int type;  ///< code for an unknown result
     };
     constexpr std::array kMeanings{Meaning{1, 1, 94}, Meaning{3, 2, 95}, Meaning{6, 4, 97},
                                    Meaning{9, 5, 98}};

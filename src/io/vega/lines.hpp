@@ -18,8 +18,8 @@ class VegaLines {
  public:
   explicit VegaLines(const FilePath& path);
 
-  /// Gives the next line, trimmed, without taking it; returns false at the end. The line is valid until the
-  /// next peek.
+  /// Sets `line` to the next line, trimmed, without taking it; returns false at the end. The line is valid
+  /// until the next peek.
   bool peek(std::string_view& line);
   void take() { (void)at().raw_line(); }
 

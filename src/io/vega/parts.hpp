@@ -22,7 +22,7 @@ enum class Kind : std::uint8_t { vertices, elements, material, set, region, othe
 struct Section {
   Kind kind = Kind::other;
   std::string comments;            ///< whole lines
-  std::string title;               ///< the keyword's line, if kept verbatim
+  std::string title;               ///< name of a material; keyword's line of an unknown section
   std::vector<std::string> lines;  ///< of materials and unknown sections
   std::size_t set = 0;             ///< its place in Mesh::sets
   std::string region_set;

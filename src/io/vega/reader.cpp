@@ -300,7 +300,7 @@ class Reader {
     lines_.take();
     (void)data_line("the set and material of a region");
     std::string_view line;
-    lines_.peek(line);  // names may hold what begins a comment elsewhere
+    lines_.peek(line);  // with the text after any #, which names may have
     const std::size_t comma = line.find(',');
     if (comma == std::string_view::npos) lines_.at().fail("a region without a comma", "write SET, MATERIAL");
     section.region_set = trimmed(line.substr(0, comma));
@@ -314,7 +314,7 @@ class Reader {
     lines_.take();
   }
 
-  /// Keeps an unknown section verbatim, provided it cannot name elements or vertices.
+  /// Keeps an unknown section verbatim; fails if it has whole numbers, which could name elements or vertices.
   void read_other(Section& section, const std::string& title) {
     section.title = title;
     const std::int64_t where = lines_.at().line();

@@ -115,7 +115,7 @@ class VegaWriter {
             std::holds_alternative<std::vector<std::int64_t>>(array.values));
   }
 
-  /// Without materials there are no regions, but a set for each label keeps the cells of one together.
+  /// Writes the cells of each label as a set: without materials there can be no regions.
   void write_labels_as_sets(const DataArray& array) {
     std::map<std::int64_t, EntitySet> sets;
     std::visit(
@@ -154,7 +154,7 @@ class VegaWriter {
     return fits ? array : nullptr;
   }
 
-  // numbers are those of the file where it was Vega's, which counts lines itself when it reads
+  // a mesh from a Vega file keeps the file's numbers, although Vega itself counts lines when it reads
   [[nodiscard]] std::int64_t vertex_number(Index v) const {
     if (!native_) return v + std::int64_t{1};
     return mesh_.vertex_ids.empty() ? v + std::int64_t{native_->vertex_base} : mesh_.vertex_ids[v];
@@ -224,7 +224,7 @@ class VegaWriter {
     out_.write("\n");
   }
 
-  /// The word of the file (TET or TETS) when it still fits.
+  /// Returns the word of the file (TET or TETS) if it still fits, else the usual one.
   [[nodiscard]] std::string word_of(int width) const {
     const std::string usual = width == 4 ? "TET" : "CUBIC";
     const bool fits = native_ && same_but_for_case(native_->element_word.substr(0, usual.size()), usual);

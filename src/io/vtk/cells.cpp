@@ -18,7 +18,7 @@ struct CellType {
   int number;
   std::string_view name;
   Shape shape;
-  int vertices;  // their exact number; if negative, −vertices at least
+  int vertices;  // their number; if negative, at least −vertices
 
   // positions whose vertices are swapped in a Mesh; {0, 0} is none
   std::array<std::pair<int, int>, 2> swapped{};
@@ -30,10 +30,10 @@ constexpr int kVoxel = 11;
 constexpr int kLinearWedge = 13;
 constexpr int kPyramid = 14;
 
-// The first triangle of a linear wedge faces outward in VTK up to 9.6 and in the files of Gmsh and meshio; in
-// a Mesh, in Gmsh's own files, in Lagrange wedges and in VTK 9.7 it faces inward. Shape functions do not
-// mind, but faces, normals and volumes do. Quadratic wedges have the order of a Mesh, as in the files of Gmsh
-// and meshio: VTK 9.1 sees their faces from inside, a mistake by the notes of a later version.
+// The first triangle of a linear wedge faces outward in VTK up to 9.6 and in VTK's files by Gmsh and meshio.
+// It faces inward in a Mesh, in Gmsh's own files, in Lagrange wedges and in VTK 9.7. Faces, normals and
+// volumes depend on it. Quadratic wedges are ordered as in a Mesh, also in the files of Gmsh and meshio; VTK
+// 9.1 sees their faces from inside, which the notes of a later version call a mistake.
 constexpr std::array<std::pair<int, int>, 2> kWedge{{{1, 2}, {4, 5}}};
 
 // in the order in which a type is chosen for a shape and its vertices
@@ -129,14 +129,14 @@ const CellType* default_type(Shape shape, int vertices) {
   return found == kTypes.end() ? nullptr : &*found;
 }
 
-/// Whether a cell of this shape can be of the type of that number.
+/// Returns whether a cell of this shape can have the VTK type of that number.
 bool can_be(int number, Shape shape, int vertices) {
   const CellType* const type = type_of(number);
   return type != nullptr && type->shape == shape && fits(*type, vertices);
 }
 
-/// Returns the numbers of VTK's types that the reader kept, null if there are none: an array of that name
-/// with a number that does not fit its cell is one like any other. O(cells).
+/// Returns the numbers of VTK's types that the reader kept; null if there are none. An array of that name
+/// with a number that does not fit its cell does not count. O(cells).
 const std::vector<std::uint8_t>* kept_types(const Mesh& mesh) {
   const DataArray* const kept = find_array(mesh, kCellTypes, Association::cells);
   if (kept == nullptr || !kept->is_dense() || kept->components != 1) return nullptr;
@@ -164,7 +164,7 @@ class DefaultTypes {
   std::array<std::array<std::pair<bool, const CellType*>, kRemembered>, kShapes> types_{};
 };
 
-/// Whether the linear wedges are numbered as by VTK 9.7. Cells with a wrong number of vertices have no say.
+/// Returns whether linear wedges are numbered as by VTK 9.7. Cells of a wrong size do not count.
 bool wedges_face_inward(const std::vector<Point>& points, const FileCells& cells) {
   if (std::find(cells.types.begin(), cells.types.end(), kLinearWedge) == cells.types.end()) return false;
   WedgeVote vote(points);
@@ -282,7 +282,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
   if (type->number == kPolyhedron) return has_polyhedra(mesh) || kept_types(mesh) != nullptr;
   const bool lagrange = type->number >= kFirstLagrange && type->number <= kLastLagrange;
   if (!lagrange || is_from_vtk(mesh)) return true;
-  return kept_types(mesh) != nullptr;  // which Lagrange type it is, is known then
+  return kept_types(mesh) != nullptr;  // the kept types say which Lagrange type it is
 }
 
 std::vector<std::uint8_t> cell_types(const Mesh& mesh) {
@@ -322,7 +322,7 @@ void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& ty
           },
           array->values);
     }
-    // 8 corners, the edges along x and y, two of those along z; then the two that change places
+    // the swapped edges come after 8 corners, the edges along x and y, and two of those along z
     const Offset along_z = degrees[2] - 1;
     const Offset first = 8 + 4 * (degrees[0] - 1 + degrees[1] - 1) + 2 * along_z;
     if (along_z <= 0 || first + 2 * along_z > n) continue;

@@ -14,7 +14,7 @@ namespace meshorder::vtk {
 namespace {
 
 constexpr std::string_view kGhostType = "vtkGhostType";
-/// In an entry of vtkGhostType: another piece owns the point or cell.
+/// Bit in an entry of vtkGhostType: another piece owns the point or cell.
 constexpr std::int64_t kOfAnotherPiece = 1;
 
 /// The rows of points or cells that are kept, in their order.
@@ -67,7 +67,7 @@ class PieceJoiner {
     });
   }
 
-  /// Clears that mark in the rows that stayed, and removes the array if all its values are then 0.
+  /// Clears kOfAnotherPiece in vtkGhostType for the rows that stayed; removes the array if it is 0 then.
   void forget_other_pieces(Association association) {
     bool says_more = false;
     for (DataArray& array : pieces_.arrays) {
@@ -102,7 +102,7 @@ class PieceJoiner {
     return association == Association::vertices ? "GlobalPointIds" : "GlobalCellIds";
   }
 
-  /// Returns the global ids of all rows; none if there are none.
+  /// Returns the global ids of all rows; an empty list if there are none.
   [[nodiscard]] std::vector<std::int64_t> ids_of(Association association) const {
     std::vector<std::int64_t> ids = integers(association, name_of_ids(association));
     const auto negative = std::find_if(ids.begin(), ids.end(), [](std::int64_t id) { return id < 0; });
@@ -226,7 +226,7 @@ class PieceJoiner {
   const Pieces& pieces_;
   const ErrorAt& error_;
   Notes& notes_;
-  std::vector<Index> new_points_;  // of all points; −1 for those that go
+  std::vector<Index> new_points_;  // of all points; −1 for those left out
 };
 
 }  // namespace

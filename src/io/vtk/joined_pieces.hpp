@@ -8,7 +8,7 @@
 
 namespace meshorder::vtk {
 
-/// What the pieces of a mesh hold, one after another. Borrowed from a reader.
+/// The contents of the pieces of a mesh, one piece after another. Refers to members of a reader.
 struct Pieces {
   std::vector<Point>& points;
   FileCells& cells;
@@ -16,15 +16,15 @@ struct Pieces {
   std::vector<ArrayRole>& roles;
 };
 
-/// Makes one mesh of its pieces, in place. Cells that `vtkGhostType` marks as another piece's are left out,
-/// and points that only these use; `vtkGhostType` is left out itself where it says nothing else. Points and
-/// cells with global ids, an array of that role or of the name that VTK gives it, are sorted by them, and a
-/// point that several pieces have is one, with the values of the piece that owns it; the ids are left out
-/// where they are 0, 1, 2 …
+/// Makes one mesh of its pieces, in place. Leaves out cells that `vtkGhostType` marks as another
+/// piece's, points that only these use, and `vtkGhostType` itself if it marks nothing else. Sorts points
+/// and cells by their global ids, which are in the array of that role or of VTK's name for it. A point
+/// of several pieces becomes one, with the values of the piece that owns it. Leaves out ids that are 0,
+/// 1, 2 …
 ///
-/// Without ids of the points those on the borders of pieces stay several, which is noted. Throws `error` for
-/// ids below 0, points of one id that differ in place, and two cells of one id. O(points + cells, times their
-/// logarithms).
+/// Points on the borders of pieces stay several if points have no ids, which is noted. Throws `error` for ids
+/// below 0, for points with one id but different coordinates, and for two cells with one id. O(points +
+/// cells, times their logarithms).
 void join_pieces(const Pieces& pieces, const ErrorAt& error, Notes& notes);
 
 }  // namespace meshorder::vtk

@@ -131,7 +131,7 @@ Number LegacyInput::number(const std::string& what) {
   }
 }
 
-/// Reads numbers of a text as far as they are regular, and finite where they must be. Returns how many.
+/// Reads numbers of text up to an irregular one; returns how many, 0 if one is not finite but must be.
 template <class Number>
 std::size_t LegacyInput::regular_numbers(std::span<Number> values) {
   if constexpr (std::is_floating_point_v<Number>) {
@@ -221,7 +221,7 @@ DataArray LegacyInput::array(const std::string& name, std::optional<Association>
   const std::string lower = lower_case(given_type);
   std::optional<TypeName> type = number_type(lower);
   if (!type) {
-    // some writers glue the number of components to the type; VTK reads the beginning of a type alone
+    // some writers append the number of components to the type; VTK reads only the type's beginning
     type = number_type(without_digits(lower));
     if (type) {
       notes.push_back(

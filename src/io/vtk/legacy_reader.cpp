@@ -195,7 +195,7 @@ class LegacyReader {
                "its size counts all numbers that follow");
   }
 
-  /// The same of cells without a fault, on all threads. Otherwise returns false and takes nothing.
+  /// Reads such cells fast if they have no fault; otherwise returns false and takes nothing.
   bool read_sound_cells(FileCells& cells, std::int64_t count, std::int64_t size) {
     Scanner at = in_.scanner;
     std::vector<std::int32_t> numbers;
@@ -211,7 +211,7 @@ class LegacyReader {
       Offset place = offsets[c];
       for (++next; next < end; ++next, ++place) {
         if (numbers[next] < 0 || numbers[next] >= limit) return false;
-        numbers[place] = numbers[next];  // over the counts before
+        numbers[place] = numbers[next];  // overwrites numbers that were read before
       }
       offsets[c + 1] = place;
     }
@@ -223,7 +223,7 @@ class LegacyReader {
     return true;
   }
 
-  /// Fills `numbers` from where `at` is; returns whether all are regular.
+  /// Fills `numbers` from the position of `at`; returns whether all are regular.
   bool read_int32s(Scanner& at, std::vector<std::int32_t>& numbers) const {
     if (!in_.binary) return read_regular_numbers<std::int32_t>(at, numbers) == numbers.size();
     constexpr auto kBytes = static_cast<std::int64_t>(sizeof(std::int32_t));
@@ -235,7 +235,7 @@ class LegacyReader {
     return true;
   }
 
-  /// One more than the last point that a cell may name, as far as that is known.
+  /// Returns one more than the last point that a cell may name, as far as that is known.
   [[nodiscard]] std::int64_t point_limit() const {
     return has_points_ ? mesh_.vertex_count() : std::int64_t{kMaxIndex};
   }
@@ -245,7 +245,7 @@ class LegacyReader {
     return static_cast<Index>(vertex);
   }
 
-  /// Keeps the first fault: the numbers of a polyhedron are not all points, and types come later.
+  /// Keeps the first fault until types are known: not all numbers of a polyhedron are points.
   void keep_fault_at_vertex(std::int64_t vertex, std::int64_t cell) {
     if (vertex_fault_) return;
     vertex_fault_ = InputError(
@@ -285,7 +285,7 @@ class LegacyReader {
         [&](const auto& numbers) {
           using Number = typename std::decay_t<decltype(numbers)>::value_type;
           if constexpr (std::is_integral_v<Number>) {
-            // without a jump out of the loop, which would keep it from being vectorised
+            // no early exit, so that the loop can be vectorised
             resize_large(cells.vertices, numbers.size());
             const std::int64_t limit = point_limit();
             std::size_t missing = 0;
@@ -349,7 +349,7 @@ class LegacyReader {
     return cells;
   }
 
-  /// Returns a name for an array of points or cells that no other of them has: VTK keeps one of several.
+  /// Returns a name that no other array of points or cells has; VTK keeps only one array of each name.
   std::string own_name(const std::string& wanted) {
     std::string name = names_.take(*on_, wanted);
     if (name != wanted) {
@@ -385,7 +385,7 @@ class LegacyReader {
     return true;
   }
 
-  /// Reads arrays of points or cells; before both, arrays of the whole mesh.
+  /// Reads a FIELD: arrays of points or cells or, before POINT_DATA and CELL_DATA, of the whole mesh.
   void read_field() {
     in_.word("the name of the FIELD");
     const std::int64_t arrays = in_.count("the number of arrays of the FIELD");
@@ -462,7 +462,7 @@ class LegacyReader {
     mesh_.format_metadata = metadata_;
   }
 
-  /// Gives polyhedra, whose numbers are those of their faces, their points, each at its first appearance.
+  /// Replaces the face numbers of polyhedra by their points, each at its first appearance; keeps the faces.
   void take_faces(FileCells& all) {
     if (std::find(all.types.begin(), all.types.end(), kPolyhedron) == all.types.end()) {
       if (vertex_fault_) throw InputError(*vertex_fault_);

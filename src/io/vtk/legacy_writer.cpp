@@ -60,7 +60,7 @@ int polydata_section(std::uint8_t type) {
   }
 }
 
-/// Returns whether the cells are in the order of the sections of a POLYDATA file, which imply their types.
+/// Returns whether the cells are in the order of POLYDATA's sections and of the types that these imply.
 bool fits_polydata(const Cells& cells, const std::vector<std::uint8_t>& types) {
   int last = 0;
   for (Index c = 0; c < cells.size(); ++c) {

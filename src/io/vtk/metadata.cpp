@@ -25,7 +25,7 @@ Index owner_count(const Mesh& mesh, Association association) {
   return association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
 }
 
-/// Returns the members of a set that an array of marks or ranks gives; nothing if the array is neither.
+/// Returns the members of a set from an array of marks or ranks; nothing if the array is neither.
 template <class Number>
 std::optional<std::vector<Index>> members_of(const std::vector<Number>& marks) {
   Index count = 0;
@@ -202,7 +202,7 @@ void WriteContext::add_made(DataArray array) {
 void WriteContext::collect_arrays(NamePlace place) {
   Names names(place);
   for (const DataArray& array : mesh.data) {
-    // what the reader kept is written as the cell types; an array that only has its name is one
+    // the types that the reader kept are written as cell types, any other array of that name as an array
     const auto* const kept = std::get_if<std::vector<std::uint8_t>>(&array.values);
     const bool holds_types = kept != nullptr && array.is_dense() && *kept == types;
     if (array.association == Association::cells && array.name == kCellTypes && holds_types) continue;

@@ -146,7 +146,7 @@ struct LegacyLayout {
 /// Facts of arrays by their association and name.
 using FactsOfArrays = std::map<std::pair<std::optional<Association>, std::string>, ArrayFacts>;
 
-/// Data of VTK's files beyond the mesh, kept by both readers for both writers.
+/// Data of VTK's files beyond the mesh, kept by the readers for the writers.
 struct Metadata : FormatMetadata {
   std::vector<DataArray> fields;  ///< arrays of the whole mesh; their association and indices mean nothing
   std::vector<ArrayRole> roles;
@@ -188,9 +188,9 @@ using ErrorAt = std::function<InputError(const std::string&, const std::string&)
 /// Throws `error` for types without a Shape, for cells with a wrong number of vertices and for polyhedra
 /// without faces on their vertices. Leaves nothing but the polyhedra in `cells`. O(vertex entries).
 ///
-/// The first triangle of a linear wedge faced outward up to VTK 9.6 and faces inward since, and files do not
-/// say which: the volumes of the file's cells at the mesh's points decide. Returns whether it faces inward,
-/// as in a Mesh.
+/// The first triangle of a linear wedge faces outward up to VTK 9.6 and inward since. Files do not say
+/// which; the volumes of their cells decide. Returns whether the file's wedges face inward, as those of a
+/// Mesh do.
 bool take_cells(Mesh& mesh, FileCells& cells, const ErrorAt& error, Notes& notes);
 
 /// Returns whether the mesh was read from one of VTK's formats.
@@ -207,8 +207,8 @@ bool has_polyhedra(const Mesh& mesh);
 /// Returns VTK's type number of every cell; VTK `holds` them.
 std::vector<std::uint8_t> cell_types(const Mesh& mesh);
 
-/// Returns the first polyhedron among the cells that has no faces, or one with a corner that is none of its
-/// vertices; −1 if there is none. O(vertex entries + numbers of the faces).
+/// Returns the first polyhedron among the cells that has no faces, or a face with a corner that is not one of
+/// its vertices; −1 if there is none. O(vertex entries + numbers of the faces).
 Index first_unfit_polyhedron(const Cells& cells, const std::vector<std::uint8_t>& types,
                              const Polyhedra& polyhedra, Index vertex_count);
 
@@ -225,8 +225,8 @@ void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& ty
 
 // ---- reading
 
-/// Adds an array of a file to the mesh. Integers named "set:NAME" that mark members (by 1, or by their rank
-/// from 1) become the set NAME.
+/// Adds an array of a file to the mesh. An array of integers named "set:NAME" that marks members by 1, or by
+/// their rank from 1, becomes the set NAME.
 void add_array(Mesh& mesh, DataArray array);
 
 Mesh read_legacy(const FilePath& path, Notes& notes);
@@ -238,13 +238,13 @@ Mesh read_vtu(const FilePath& path, Notes& notes);
 /// their order. `count` is the number of all vertices or cells.
 Values marks_of(const EntitySet& set, Index count);
 
-/// Returns an array with a row for each of `count` vertices or cells: of NaN or 0 where it has none.
+/// Returns an array with a row for each of `count` vertices or cells; rows that it lacked are NaN or 0.
 DataArray full_array(const DataArray& array, Index count);
 
-/// Where a file has the names of its arrays, which decides what characters they may have.
+/// Where a file stores the names of its arrays; this decides which characters they may have.
 enum class NamePlace : std::uint8_t { legacy, xml, hdf5 };
 
-/// Returns a name that is one of a dataset of HDF5: there a slash parts groups, a dot is the group itself,
+/// Returns a name that HDF5 accepts for a dataset: there a slash separates groups, a dot is the group itself,
 /// and a zero byte ends a name.
 std::string name_in_hdf5(std::string name);
 
@@ -253,8 +253,8 @@ std::string name_in_hdf5(std::string name);
 /// VTK's formats hold full arrays only: partial arrays are filled up, sets become arrays "set:NAME" and ids
 /// arrays "vertex_id" and "cell_id"; all of it noted. O(size of the arrays that are made).
 struct WriteContext {
-  /// Of a mesh whose cells VTK's formats hold. Throws InvalidArgument where the faces of polyhedra, which the
-  /// metadata keep, are not on their vertices: somebody changed the mesh.
+  /// `written`: a mesh whose cells VTK's formats hold. Throws InvalidArgument if the faces of polyhedra in
+  /// the metadata are not on their vertices, because the mesh was changed.
   WriteContext(const Mesh& written, Notes& warnings, NamePlace names);
 
   /// Returns the cells in VTK's order of vertices; of VTK before version 9 if `old_hexahedra`. The result
@@ -267,7 +267,7 @@ struct WriteContext {
   /// Returns the array that is written with that role, null if there is none.
   [[nodiscard]] const ArrayRole* role(Association association, Role role) const;
 
-  /// Whether the points were floats in their file and still can be written so without loss.
+  /// Returns whether the points were floats in their file and can still be written so without loss.
   [[nodiscard]] bool points_are_floats() const;
 
   const Mesh& mesh;

@@ -22,9 +22,9 @@ namespace {
 struct Codec {
   /// Returns an upper bound on the compressed size of that number of bytes.
   std::size_t (*bound)(std::size_t bytes) = nullptr;
-  /// Compresses into `room`; returns the bytes that took, 0 on failure.
+  /// Compresses into `room`; returns the compressed size in bytes, 0 on failure.
   std::size_t (*compress)(std::span<const char> bytes, std::span<char> room) = nullptr;
-  /// Fills `target`; returns false if `bytes` do not hold exactly that many.
+  /// Fills `target`; returns false if `bytes` do not uncompress to exactly its size.
   bool (*uncompress)(std::span<const char> bytes, std::span<char> target) = nullptr;
 };
 

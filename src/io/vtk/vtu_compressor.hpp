@@ -21,19 +21,19 @@ class VtuCompressor {
   /// `kind` is not `none`, and available.
   explicit VtuCompressor(VtuEncoding::Compressor kind) : kind_(kind) {}
 
-  /// Returns whether this build can compress and uncompress so; true for `none`.
+  /// Returns whether this build has the library of the compressor; true for `none`.
   static bool available(VtuEncoding::Compressor kind);
 
   /// Returns the name of the library and that of the CMake option that brings it; empty for `none`.
   static std::string_view library(VtuEncoding::Compressor kind);
   static std::string_view option(VtuEncoding::Compressor kind);
 
-  /// Returns an upper bound on the number of bytes that one compressed byte can hold.
+  /// Returns an upper bound on the ratio of the uncompressed size to the compressed one.
   static std::uint64_t greatest_ratio(VtuEncoding::Compressor kind);
 
   [[nodiscard]] std::string compress(std::span<const char> bytes) const;
 
-  /// Fills `target`; returns false if `bytes` do not hold exactly that many.
+  /// Fills `target`; returns false if `bytes` do not uncompress to exactly its size.
   [[nodiscard]] bool uncompress(std::span<const char> bytes, std::span<char> target) const;
 
  private:

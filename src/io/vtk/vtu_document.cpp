@@ -55,7 +55,7 @@ std::string unescaped(std::string_view text) {
     const std::string character =
         semicolon == std::string_view::npos ? "" : entity(text.substr(i + 1, semicolon - 1));
     if (character.empty()) {
-      result += text[i] == '\n' || text[i] == '\r' || text[i] == '\t' ? ' ' : text[i];  // as XML wants it
+      result += text[i] == '\n' || text[i] == '\r' || text[i] == '\t' ? ' ' : text[i];  // as XML requires
     } else {
       result += character;
       i += semicolon;

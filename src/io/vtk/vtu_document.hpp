@@ -22,7 +22,7 @@ struct VtuElement {
   std::string name;
   std::vector<std::pair<std::string, std::string>> attributes;
   std::size_t at = 0;     ///< byte of its <
-  std::size_t end = 0;    ///< byte after it
+  std::size_t end = 0;    ///< byte after its end tag, or after its start tag while open
   std::string_view text;  ///< its first text that is not blank, up to the next child or comment
   std::vector<VtuElement> children;
 
@@ -39,7 +39,7 @@ class VtuDocument {
   /// PUnstructuredGrid.
   explicit VtuDocument(const FilePath& path);
 
-  /// Whether it is a .pvtu file, which lists pieces.
+  /// Returns whether it is a .pvtu file, which lists pieces.
   [[nodiscard]] bool lists_pieces() const { return *root_.attribute("type") == "PUnstructuredGrid"; }
 
   [[nodiscard]] const VtuElement& root() const noexcept { return root_; }
@@ -63,7 +63,7 @@ class VtuDocument {
   /// Returns a count in an attribute, 0 … kMaxIndex.
   [[nodiscard]] std::int64_t count(const VtuElement& element, std::string_view name) const;
 
-  /// Throws Error if so many bytes for an array are beyond the limit on what the file may claim.
+  /// Throws Error if allocating `bytes` for an array would exceed the limit on memory.
   void claim(const VtuElement& array, std::uint64_t bytes) const;
   /// Returns the `count` values of an array in its number type. Throws Error if there are more or fewer;
   /// allocates no more than the size of the file allows.

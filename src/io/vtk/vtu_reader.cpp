@@ -104,7 +104,7 @@ class VtuReader {
       read_grid(file, *piece);
     }
     if (!any) throw list.error(grid, "the file lists no pieces", "it may be cut short");
-    // of what several pieces have, once
+    // a note of several pieces appears once
     Notes of_pieces(notes_.begin() + static_cast<std::ptrdiff_t>(notes_before), notes_.end());
     notes_.resize(notes_before);
     for (std::string& note : of_pieces) {
@@ -122,7 +122,7 @@ class VtuReader {
         notes_);
   }
 
-  /// Throws unless all arrays are of all points, or of so many cells.
+  /// Throws unless every array has a row for each point, or for each of `cells` cells.
   void check_arrays(const VtuElement& grid, Index cells) const {
     for (const DataArray& array : arrays_) {
       const Index needed = array.association == Association::vertices ? mesh_.vertex_count() : cells;
@@ -140,7 +140,7 @@ class VtuReader {
     return element.name == "DataArray" || element.name == "Array";
   }
 
-  /// Returns false for an empty piece.
+  /// Reads a piece; returns false if it is empty.
   bool read_piece(const VtuElement& piece) {
     const std::int64_t points = file_->count(piece, "NumberOfPoints");
     const std::int64_t cells = file_->count(piece, "NumberOfCells");
@@ -249,7 +249,7 @@ class VtuReader {
     read_polyhedra(*cells, count, first_point);
   }
 
-  /// Appends where each of `count` things ends, counted on from the last entry of `ends`; returns the last.
+  /// Appends the ends of `count` things to `ends`, counted from its last entry; returns the array's last end.
   Offset append_ends(const VtuElement& array, std::int64_t count, const char* thing,
                      std::vector<Offset>& ends) {
     const Offset first = ends.back();
@@ -457,7 +457,7 @@ class VtuReader {
       facts.type = "vtkIdType";
     for (const VtuElement& key : element.children) {
       const std::string* name = key.attribute("name");
-      if (name != nullptr && name->starts_with("L2_NORM")) continue;  // VTK finds it
+      if (name != nullptr && name->starts_with("L2_NORM")) continue;  // VTK computes it
       facts.xml_information += file_->source(key) + "\n";
     }
     if (!facts.type.empty() || !facts.xml_information.empty())
@@ -531,12 +531,12 @@ class VtuReader {
     mesh_.format_metadata = metadata_;
   }
 
-  /// Version, times ten, since which nodes of hexahedra of higher order are numbered otherwise.
+  /// Ten times the version since which VTK numbers the nodes of higher-order hexahedra differently.
   static constexpr int kNewOrder = 21;
 
   const FilePath& path_;
   Notes& notes_;
-  const VtuDocument* file_ = nullptr;          ///< that is read
+  const VtuDocument* file_ = nullptr;          ///< the file that is being read
   int version_ = 0;                            ///< of the first file, times ten
   std::map<std::string, std::size_t> fields_;  ///< places of the fields, by name
   int pieces_ = 0;                             ///< that are not empty

@@ -27,9 +27,9 @@ namespace meshorder::vtk {
 
 /// Location of the bytes of an array.
 struct VtuDocument::Stored {
-  std::uint64_t size = 0;                 // when uncompressed
-  std::string decoded;                    // of base64
-  std::string_view bytes;                 // plain, or all blocks
+  std::uint64_t size = 0;                 // uncompressed, in bytes
+  std::string decoded;                    // the bytes, if they are in base64
+  std::string_view bytes;                 // all blocks, or the plain bytes
   std::vector<std::uint64_t> compressed;  // bytes of each block
   std::vector<std::uint64_t> uncompressed;
 };
@@ -125,8 +125,8 @@ VtuDocument::Stored VtuDocument::locate(const VtuElement& array) const {
   return stored;
 }
 
-/// Locates compressed blocks. Words give the number of blocks, the bytes of each and of the last, and the
-/// compressed bytes of each; the blocks follow.
+/// Locates compressed blocks. Words of the header give the number of blocks, the size of each block and of
+/// the last, and the compressed size of each; the blocks follow.
 void VtuDocument::locate_blocks(const VtuElement& array, std::string_view data, bool coded,
                                 Stored& stored) const {
   const auto early = [&] { return error(array, "the array's bytes end early", "the file may be cut short"); };

@@ -38,7 +38,7 @@ using Numbers =
                  std::span<const std::int32_t>, std::span<const std::uint32_t>, std::span<const std::int64_t>,
                  std::span<const std::uint64_t>, std::span<const char>>;
 
-/// An array of the file: its tag and its numbers; strings as their characters.
+/// An array of the file: its tag and its numbers; for strings, the codes of their characters.
 struct Array {
   std::string tag;  // without format and end
   Numbers numbers;
@@ -230,7 +230,7 @@ class VtuWriter {
     cells.push_back(integers("faceoffsets", face_numbers_[1]));
   }
 
-  /// Adds them as VTK does since, with the faces of each polyhedron for itself.
+  /// Adds the faces of polyhedra as VTK writes them since 9.4; polyhedra do not share faces.
   void add_polyhedra_by_face(std::vector<Array>& cells) {
     auto& [corners, corner_ends, faces, face_ends] = face_numbers_;
     for (Index c = 0; c < from_.mesh.cell_count(); ++c) {
@@ -259,8 +259,8 @@ class VtuWriter {
     return (byte_count(array) + VtuCompressor::kBlock - 1) / VtuCompressor::kBlock;
   }
 
-  /// Returns the bytes of a block of an array, in the byte order of the file; `room` holds them where memory
-  /// has another one.
+  /// Returns the bytes of a block of an array, in the byte order of the file; `room` stores them if memory
+  /// has another byte order.
   std::span<const char> block_of(const Array& array, std::uint64_t block, std::vector<char>& room) const {
     return std::visit(
         [&](const auto& numbers) {
@@ -300,8 +300,8 @@ class VtuWriter {
     return result;
   }
 
-  /// Returns the header of compressed blocks: their number, the bytes of each and of a shorter last one, and
-  /// the compressed bytes of each.
+  /// Returns the header of compressed blocks: their number, the size of a full block, the size of a shorter
+  /// last one or 0, and the compressed size of each.
   [[nodiscard]] std::string block_header(const Array& array, const std::vector<std::string>& blocks) const {
     std::vector<std::uint64_t> values{blocks.size(), VtuCompressor::kBlock,
                                       byte_count(array) % VtuCompressor::kBlock};

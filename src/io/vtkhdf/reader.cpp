@@ -79,7 +79,7 @@ class VtkHdfReader {
 
   // ---- datasets by their places
 
-  /// Adds a dataset of the mesh; returns false where its values are not stored as they are.
+  /// Adds a dataset of the mesh; returns false if its values cannot be read by their bytes.
   bool add(RawDataset::Role role, std::string_view name, std::int64_t rows, Index width = 1) {
     const std::string path = path_of(name);
     const hdf5::DatasetInfo info = check_rows(path, rows, static_cast<std::uint64_t>(width));
@@ -92,7 +92,7 @@ class VtkHdfReader {
     return true;
   }
 
-  /// Adds the arrays on points or cells; returns false where the values of one are not stored so.
+  /// Adds the arrays on points or cells; returns false if the values of one cannot be read by their bytes.
   bool add_data(Association association) {
     const std::string group = data_group(association);
     read_roles(association);
@@ -187,7 +187,7 @@ class VtkHdfReader {
 
   // ---- the mesh
 
-  /// Throws unless a dataset has so many rows of so many numbers.
+  /// Throws unless a dataset has `rows` rows of `width` numbers; else returns its shape and type.
   [[nodiscard]] hdf5::DatasetInfo check_rows(const std::string& path, std::int64_t rows,
                                              std::uint64_t width) const {
     hdf5::DatasetInfo info = file_.info(path);
@@ -230,8 +230,8 @@ class VtkHdfReader {
         values);
   }
 
-  /// Calls `take(partition, i, number)` for every number of a dataset of integers, of which a partition has
-  /// `count(partition)`, after it has made room for all of them in `target`.
+  /// Reserves `all` entries in `target`, then calls `take(partition, i, number)` for every number of a
+  /// dataset of integers, which has `count(partition)` of them for each partition.
   template <class Target, class Count, class Take>
   void for_integers(const std::string& path, std::int64_t all, std::vector<Target>& target,
                     const Count& count, const Take& take) const {
@@ -323,7 +323,7 @@ class VtkHdfReader {
 
   // ---- arrays
 
-  /// Returns the numbers of a row.
+  /// Returns how many numbers a row has.
   [[nodiscard]] Index components_of(const std::string& path, const hdf5::DatasetInfo& info) const {
     constexpr std::uint64_t kMost = kMaxIndex;
     std::uint64_t components = 1;
@@ -344,7 +344,7 @@ class VtkHdfReader {
     }
   }
 
-  /// Reads an array of a group; nothing, with a note, for what is none of numbers or texts.
+  /// Reads an array of a group; returns nothing, with a note, if it holds neither numbers nor texts.
   std::optional<DataArray> read_array(const std::string& group, const std::string& name) {
     const std::string path = path_in(group, name);
     DataArray array;
@@ -401,7 +401,7 @@ class VtkHdfReader {
     }
   }
 
-  /// Notes what is not kept.
+  /// Notes the datasets and groups of the file that are not read.
   void note_others() {
     constexpr std::array<std::string_view, 10> kKnown{
         "NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds",
@@ -425,8 +425,8 @@ class VtkHdfReader {
   Mesh mesh_;
   std::shared_ptr<vtk::Metadata> metadata_ = std::make_shared<vtk::Metadata>();
   std::vector<Partition> partitions_;
-  std::int64_t full_partitions_ = 0;  ///< that have points or cells
-  vtk::FileCells cells_;              ///< of all partitions, as the arrays
+  std::int64_t full_partitions_ = 0;  ///< partitions that have points or cells
+  vtk::FileCells cells_;              ///< of all partitions, like the arrays
   std::vector<DataArray> arrays_;
   Partition all_;
   RawGrid grid_;

@@ -4,8 +4,8 @@
 // Declarations shared by the reader and the writer of VTKHDF's unstructured grids.
 //
 // Format: "VTKHDF File Format",
-// https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format/index.html. Written is version 1.0,
-// which VTK 9.1 and all later ones read; of 2.x what has the same layout is read.
+// https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format/index.html. Files of version 1.0 are
+// written, which VTK 9.1 and later read; files of 2.x are read if they have the same layout.
 
 #include "io/format.hpp"
 #include "io/vtk/vtk.hpp"
@@ -30,50 +30,50 @@ inline std::string data_group(Association association) {
   return std::string(kRoot) + (association == Association::vertices ? "/PointData" : "/CellData");
 }
 
-/// What the datasets of counts say of a partition.
+/// The counts of a partition.
 struct Partition {
   std::int64_t points = 0;
   std::int64_t cells = 0;
   std::int64_t entries = 0;  ///< of the connectivity
 };
 
-/// A dataset whose values are in the file as they are in memory, one after another.
+/// A dataset that stores its values one after another, as they are in memory.
 struct RawDataset {
   enum class Role : std::uint8_t { points, connectivity, offsets, types, data };
 
   Role role;
   std::string name;         ///< of an array on points or cells
-  Association association;  ///< of what has its rows
+  Association association;  ///< whether a row is that of a vertex or of a cell
   std::size_t type;         ///< number type, as an alternative of Values
   Index components;
   std::int64_t rows;
   std::uint64_t place;  ///< first byte in the file
 };
 
-/// What there is to know of a file of one partition to read it by its bytes.
+/// What is needed to read a file of one partition by its bytes.
 struct RawGrid {
   std::int64_t vertices = 0;
   std::int64_t cells = 0;
   std::int64_t entries = 0;          ///< of the connectivity
-  std::vector<RawDataset> datasets;  ///< one of each role, and those of data by their associations and names
+  std::vector<RawDataset> datasets;  ///< one of each role, but of `data` one for each array
   vtk::Metadata metadata;            ///< fields and roles
 };
 
-/// Finds where the values of a file on disk are. Returns nothing for one that can only be read by libhdf5, or
-/// of which `read` would note something: of several partitions, chunks or another order of bytes, with texts
-/// on points or cells, or with more than the format has. O(datasets + size of the fields).
+/// Finds the bytes of the values in a file on disk. Returns nothing if only libhdf5 can read the file, or if
+/// `read` would note something: for several partitions, chunks or another byte order, for texts on points or
+/// cells, and for contents that the format does not define. O(datasets + size of the fields).
 ///
 /// @throws InputError as `read` for faults of counts and shapes; values are not looked at
 std::optional<RawGrid> find_raw(const FilePath& path);
 
-/// Writes a file of several partitions over one on disk, with fields, roles and counts, but without the
-/// values of its datasets: these have room, and whoever writes them has to fill it.
+/// Writes a file of several partitions to a path on disk, with fields, roles and counts. Allocates space for
+/// the values of its datasets, which the caller must then write.
 ///
 /// @param path      of the file
 /// @param name      of the file in messages
-/// @param datasets  one of each role but `data`; receive their places
+/// @param datasets  one of each role, any number of `data`; receive the places of their values
 /// @param metadata  fields and roles of arrays that are among the datasets; others are left out
-/// @param notes     receives what has another name in the file
+/// @param notes     receives notes on arrays and fields that have another name in the file
 /// @throws InputError if it cannot be written
 void write_without_values(const std::filesystem::path& path, const std::string& name,
                           const std::vector<Partition>& partitions, std::vector<RawDataset>& datasets,
@@ -82,8 +82,8 @@ void write_without_values(const std::filesystem::path& path, const std::string& 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
-/// Notes the parts of a mesh of another format that VTKHDF has no place for: texts on vertices and cells,
-/// which VTK's reader stops at, names of components, information, lookup tables.
+/// Notes the parts of a mesh of another format that VTKHDF has no place for: texts on vertices and cells, at
+/// which VTK's reader fails, names of components, information, lookup tables.
 void note_lacking(const vtk::WriteContext& from, Notes& notes);
 
 }  // namespace meshorder::vtkhdf

@@ -23,7 +23,7 @@
 #include <variant>
 #include <vector>
 
-// Writes a file of one partition.
+// Writes files of one partition, and files of several without their values.
 
 namespace meshorder::vtkhdf {
 namespace {
@@ -87,7 +87,7 @@ class VtkHdfWriter {
     const Cells& cells = from_.cells();
     write_counts(file_, {{from_.mesh.vertex_count(), from_.mesh.cell_count(), cells.offsets.back()}});
     write_points();
-    // VTK's own writer has 64 bits here, too, and one type for both
+    // 64 bits and one type for both, as in the files of VTK's own writer
     put("Offsets", std::vector<std::int64_t>(cells.offsets.begin(), cells.offsets.end()));
     put("Connectivity", std::vector<std::int64_t>(cells.vertices.begin(), cells.vertices.end()));
     put("Types", from_.types);
@@ -118,7 +118,7 @@ class VtkHdfWriter {
     }
   }
 
-  /// VTK reads rows of one number from one dimension only.
+  /// Writes an array. VTK reads rows of one number from one dimension only.
   void put_rows(const std::string& path, const DataArray& array) {
     std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(row_count(array))};
     if (array.components != 1) shape.push_back(static_cast<std::uint64_t>(array.components));
@@ -140,8 +140,8 @@ class VtkHdfWriter {
 /// Names of the datasets of a mesh, in the order of RawDataset::Role.
 constexpr std::array<std::string_view, 4> kDatasets{"Points", "Connectivity", "Offsets", "Types"};
 
-/// Returns the path of an array on points or cells under a name that no other has. `held` knows the arrays by
-/// the names that are taken.
+/// Returns the path of an array on points or cells, under a name that no other has. `held` maps the names
+/// that are taken to their arrays.
 std::string place_array(const RawDataset& dataset,
                         std::map<std::pair<Association, std::string>, std::string>& held,
                         std::map<Association, NameNumbers>& numbers, Notes& notes) {
@@ -182,7 +182,7 @@ void write_without_values(const std::filesystem::path& path, const std::string& 
   std::ofstream(path, std::ios::binary).write(bytes.data(), std::ssize(bytes));
   hdf5::File file = hdf5::File::change(path, name);
   write_counts(file, partitions);
-  std::map<std::pair<Association, std::string>, std::string> held;  // names that are taken, of which arrays
+  std::map<std::pair<Association, std::string>, std::string> held;  // taken names and their arrays
   std::map<Association, NameNumbers> numbers;
   std::vector<std::string> paths;
   for (const RawDataset& dataset : datasets) {

@@ -30,7 +30,7 @@ using Format = DataPlace::Format;
 constexpr std::string_view kBlanksOfXml = " \t\r\n";
 constexpr bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }
 
-/// Names of number types as VTK's readers want them: one of a byte is no Int to them.
+/// Number types by the names that VTK's readers accept: one byte is Char or UChar to them, not Int.
 struct NumberType {
   std::string_view name;
   int precision;  ///< bytes
@@ -52,7 +52,7 @@ std::string_view trimmed_blanks(std::string_view text) {
 
 std::uint64_t product(const std::vector<std::uint64_t>& shape) { return hdf5::DatasetInfo{shape, 0}.size(); }
 
-/// All text of an element, which is not copied where it is in one piece.
+/// All text of an element; it is copied only if it is in several pieces.
 class ElementText {
  public:
   explicit ElementText(pugi::xml_node element) {
@@ -228,7 +228,7 @@ const hdf5::File& DataReader::file(pugi::xml_node item, const std::string& name)
   if (known != files_.end()) return known->second;
   hdf5::File opened = hdf5::File::open(path_of(item, name));
   const std::string mark = opened.text_attribute("/", kMark).value_or("");
-  // the .xdmf file is put in place first: of files of two runs it is the new one, which has a mark
+  // the .xdmf file is put in place first, so of files of two runs it is the newer one, which has a mark
   if (!document_.mark().empty() && mark != document_.mark()) {
     throw NotTogether(document_.error(
         item, fmt::format("'{}' was not written together with this file: their marks differ", name),
@@ -309,7 +309,7 @@ Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const 
   });
 }
 
-/// Throws InputError unless the values of a plain binary file are those that the file was written with.
+/// Throws InputError unless the values of a plain binary file have the checksum that the XML gives, if any.
 template <class Number>
 void DataReader::check_sum(const DataPlace& place, pugi::xml_node item,
                            const std::vector<Number>& numbers) const {

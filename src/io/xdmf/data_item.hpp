@@ -31,10 +31,10 @@ struct DataPlace {
   std::endian order = std::endian::native;  ///< in a binary file
   std::uint64_t seek = 0;                   ///< first byte in a binary file
   std::vector<std::uint64_t> shape = {};
-  /// Number of the DataItem in the Topology, Geometry, Attribute or Set: the same, or one that refers to it.
+  /// Number of the DataItem in the Topology, Geometry, Attribute or Set: `item`, or one that refers to it.
   std::size_t named_by = 0;
 
-  /// `item` and `named_by` where the file says the same once more, in another time step for example.
+  /// Another DataItem, in another time step for example, that names the same values.
   struct Repeat {
     std::size_t item;
     std::size_t named_by;
@@ -45,13 +45,13 @@ struct DataPlace {
   void repeat(const DataPlace& other);
 };
 
-/// Names an array: two DataItems with one key have the same values.
+/// Returns a key of an array: DataItems with one key have the same values.
 std::string key_of(const DataPlace& place);
 
-/// Returns the attributes NumberType and Precision of numbers of an alternative of Values.
+/// Returns the attributes NumberType and Precision for the number type of an alternative of Values.
 std::pair<std::string, int> number_type_of(std::size_t alternative);
 
-/// Calls `work` with no values of the number type of that alternative, and returns the Values that it made.
+/// Calls `work` with an empty vector of the number type of that alternative; returns the vector as Values.
 template <class Work>
 Values values_as(std::size_t alternative, const Work& work) {
   Values values;
@@ -63,7 +63,7 @@ Values values_as(std::size_t alternative, const Work& work) {
   return values;
 }
 
-/// Splits "mesh.h5:/Mesh/topology".
+/// Splits "mesh.h5:/Mesh/topology" into the file and the path in it.
 std::pair<std::string, std::string> split_hdf5_name(std::string_view text);
 
 /// Reads the arrays that a document names; each HDF5 file is opened once.
@@ -75,7 +75,7 @@ class DataReader {
   [[nodiscard]] DataPlace place_of(pugi::xml_node item);
   /// Returns the values, as many as its shape says.
   [[nodiscard]] Values read(const DataPlace& place);
-  /// Returns whole numbers as indices, those out of range as the limit that they exceed, which no index is.
+  /// Returns whole numbers as indices; those out of range become the limit that they exceed, never an index.
   [[nodiscard]] std::vector<Index> read_indices(const DataPlace& place);
 
   /// Returns the path of a file that a DataItem names. Throws where it is missing or may not be read.
@@ -89,7 +89,7 @@ class DataReader {
   [[nodiscard]] Values read_binary(const DataPlace& place, pugi::xml_node item);
   template <class Number>
   void check_sum(const DataPlace& place, pugi::xml_node item, const std::vector<Number>& numbers) const;
-  /// Throws for values beyond the limit on what the file may claim.
+  /// Throws if allocating `bytes` for values would exceed the limit on memory.
   void claim(pugi::xml_node item, std::uint64_t bytes) const;
 
   const Document& document_;

@@ -33,14 +33,14 @@ bool is_include(pugi::xml_node element) {
   return name == "include" || name.ends_with(":include");
 }
 
-/// Returns a path that begins with the root's name as one that XPath understands.
+/// Returns a path without the blanks at its ends.
 std::string trimmed_path(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
-/// Returns an XPath without its texts in quotes.
+/// Returns an XPath without its quoted texts.
 std::string without_texts(std::string_view path) {
   std::string result;
   char quote = '\0';
@@ -126,7 +126,7 @@ void print_indented(const pugi::xml_document& xml, const TakeText& take) {
 
 Document::Document(const FilePath& path)
     : file_(path.string()), source_(with_entities_expanded(path.read(), file_)) {
-  // parsed in a copy on large pages, as `source_` is needed for the lines of errors
+  // parses a copy on large pages: error messages need `source_` for their lines
   auto* const text = static_cast<char*>(pugi::get_memory_allocation_function()(source_.size()));
   if (text == nullptr) throw std::bad_alloc();
   ask_for_large_pages(text, source_.size());
@@ -230,7 +230,7 @@ std::vector<pugi::xml_node> Document::children(pugi::xml_node grid) const {
 }
 
 std::string Document::take_values_out(std::vector<std::size_t> items) {
-  // those within an element before it
+  // inner elements, which have the higher numbers, before those around them
   std::sort(items.begin(), items.end(), std::greater());
   for (const std::size_t item : items) items_[item].remove_children();
   std::string text;

@@ -51,11 +51,11 @@ class Document {
   /// Returns the DataItem of that number.
   [[nodiscard]] pugi::xml_node item(std::size_t number) const { return items_[number]; }
 
-  /// Takes the values out of the given DataItems, which must not be read after that, and returns the XML.
+  /// Removes the values from the given DataItems, which must not be read afterwards; returns the XML.
   [[nodiscard]] std::string take_values_out(std::vector<std::size_t> items);
 
  private:
-  /// Returns the text before the root element; a plain declaration if it names an encoding but UTF-8.
+  /// Returns the text before the root element; a plain declaration if it names an encoding other than UTF-8.
   [[nodiscard]] std::string_view prolog() const;
   [[nodiscard]] const std::vector<pugi::xml_node>& selected(pugi::xml_node from, std::string path) const;
 
@@ -74,20 +74,20 @@ std::vector<pugi::xml_node> elements_named(const pugi::xml_document& xml, std::s
 /// Parses XML that `Document::take_values_out` made. Throws std::bad_alloc without memory.
 void parse(pugi::xml_document& xml, const std::string& text);
 
-/// Sets the text of an element; adds an attribute, or sets it. Throw std::bad_alloc without memory, for an
-/// element, too, that could not be added.
+/// Sets the text of an element, or adds or sets an attribute. Both throw std::bad_alloc without memory, also
+/// for a null element, which could not be added before.
 void set_text(pugi::xml_node element, const std::string& text);
 void set_attribute(pugi::xml_node element, const char* name, const std::string& value);
 
 /// Takes the next part of a text.
 using TakeText = std::function<void(std::string_view part)>;
 
-/// Writes XML as text: as it was parsed, after `prolog`, the text before its root; or with a line for each
-/// element.
+/// Writes XML as text: `print` as it was parsed, after `prolog`, the text before its root element;
+/// `print_indented` with a line for each element.
 void print(const pugi::xml_document& xml, std::string_view prolog, const TakeText& take);
 void print_indented(const pugi::xml_document& xml, const TakeText& take);
 
-/// Returns the first of two attributes that is there; an empty text without.
+/// Returns the value of the attribute `name` or, without it, of `other_name`; empty without both.
 std::string attribute(pugi::xml_node element, const char* name, const char* other_name = "");
 
 }  // namespace meshorder::xdmf

@@ -14,9 +14,9 @@
 #include <string_view>
 #include <utility>
 
-// Extensible Markup Language (XML) 1.0, fifth edition (W3C, 2008), sections 2.8 and 4. pugixml leaves
-// entities alone. Each entity is expanded once and its text kept, so that nested entities take no more time
-// than they add text, which has a limit.
+// Extensible Markup Language (XML) 1.0, fifth edition (W3C, 2008), sections 2.8 and 4. pugixml does not
+// replace entities. Each entity is expanded once and its text is kept, so the time grows only with the added
+// text, which is limited.
 
 namespace meshorder::xdmf {
 namespace {
@@ -193,8 +193,8 @@ class Expansion {
     }
   }
 
-  /// Returns markup with its entities replaced; errors in the text of an entity are reported at `origin`, and
-  /// those of the file, where `depth` is 0, at their own place.
+  /// Returns markup with its entities replaced. At depth 0 `text` is that of the file from byte `origin` on;
+  /// else it is that of an entity, whose errors are reported at byte `origin`.
   std::string expanded(std::string_view text, std::size_t origin, int depth) {
     std::string result;
     std::size_t at = 0;
@@ -231,14 +231,14 @@ class Expansion {
     return result;
   }
 
-  /// Appends what replaces the reference at the beginning of `text`; returns the length of the reference.
+  /// Appends the replacement of the reference at the beginning of `text`; returns the reference's length.
   std::size_t append_reference(std::string& result, std::string_view text, bool in_attribute,
                                std::size_t place, int depth) {
     const std::size_t end = end_of_name(text, 1);
     const std::string name(text.substr(1, end - 1));
     const bool is_plain = name.empty() || end == text.size() || text[end] != ';' ||
                           std::find(kPredefined.begin(), kPredefined.end(), name) != kPredefined.end();
-    if (is_plain) {  // pugixml's
+    if (is_plain) {  // pugixml replaces it
       result += '&';
       return 1;
     }

@@ -5,11 +5,11 @@
 
 namespace meshorder::xdmf {
 
-/// Returns an XML text with the entities that its DOCTYPE declares put in place of `&NAME;`, and without the
-/// declarations; its lines keep their numbers. A text that declares none is returned as it is. Opens no
-/// file. Throws InputError, which names `file`, for references to external, undeclared and circular entities,
-/// for parameter entities, for attributes with defaults, and for entities that add more than 16 MiB. O(length
-/// of the result).
+/// Returns an XML text in which each `&NAME;` is replaced by the entity that the DOCTYPE declares under that
+/// name, and which has no declarations; lines keep their numbers. Returns a text that declares no entities as
+/// it is. Opens no file. Throws InputError, which names `file`, for references to external, undeclared and
+/// circular entities, for parameter entities, for attributes with defaults, and for entities that add more
+/// than 16 MiB. O(length of the result).
 std::string with_entities_expanded(std::string text, const std::string& file);
 
 }  // namespace meshorder::xdmf

@@ -15,7 +15,7 @@
 namespace meshorder::xdmf {
 namespace {
 
-/// Returns what is written in place of a value that an array does not give.
+/// Returns the value that is written for rows that an array lacks: NaN or 0.
 template <class Number>
 Number nothing() {
   if constexpr (std::is_floating_point_v<Number>) return std::numeric_limits<Number>::quiet_NaN();
@@ -223,7 +223,7 @@ void Writer::remove_gone() {
     remove(field->place.item, field->place.named_by);
     for (const DataPlace::Repeat& repeat : field->place.repeats) remove(repeat.item, repeat.named_by);
   }
-  std::erase_if(elements, [&](pugi::xml_node element) {  // goes with another one
+  std::erase_if(elements, [&](pugi::xml_node element) {  // is removed with an element around it
     while ((element = element.parent()) && !elements.contains(element)) {
     }
     return static_cast<bool>(element);

@@ -14,7 +14,7 @@
 namespace meshorder::xdmf {
 namespace {
 
-/// Names of Grids by how many dimensions their cells have less than those of the mesh.
+/// Names of Grids, by the highest dimension of the mesh's cells minus that of the Grid's cells.
 constexpr std::array<std::string_view, 4> kGridNames{"mesh", "facet_tags", "ridge_tags", "peak_tags"};
 
 /// Returns the cells by dimension, highest first; dimensions without cells are left out.

@@ -18,7 +18,7 @@
 #include <type_traits>
 #include <utility>
 
-// Reads Grids and their points, and keeps what the files have beside the mesh.
+// Reads Grids and their points, and keeps what the files have besides the mesh.
 
 namespace meshorder::xdmf {
 
@@ -208,7 +208,7 @@ class XdmfReader {
       return false;
     }
     const pugi::xml_node item = reading_.item_of(element);
-    if (same_but_for_case(center, "Grid"))  // is not moved
+    if (same_but_for_case(center, "Grid"))  // is kept as it is
       return reading_.data.place_of(item).format != DataPlace::Format::binary;
     const bool on_vertices = same_but_for_case(center, "Node");
     if (!on_vertices && !same_but_for_case(center, "Cell")) return false;
@@ -216,9 +216,9 @@ class XdmfReader {
                        on_vertices ? Association::vertices : Association::cells, 0);
   }
 
-  /// Adds the dataset of a DataItem in rows of so many components; 0: as many as fit the mesh. Points come
-  /// first, then the topology; that of another Grid is the same. Returns false where it cannot be read by
-  /// its bytes.
+  /// Adds the dataset of a DataItem as rows of `components` numbers; 0: as many as fit the points or cells.
+  /// The first call must be for the points, the second for the topology; other Grids must name the same
+  /// datasets. Returns false if the dataset cannot be read by its bytes.
   bool find_values(pugi::xml_node item, RawDataset::Role role, Association association, Index components) {
     constexpr std::size_t kLastReal = 1;
     constexpr std::size_t kInt32 = 6;
@@ -234,7 +234,7 @@ class XdmfReader {
     const auto known = std::find_if(raw_.datasets.begin(), raw_.datasets.end(),
                                     [&](const RawDataset& dataset) { return dataset.name == place.dataset; });
     if (known != raw_.datasets.end()) return known->role == role && known->association == association;
-    // of an only mesh, in a number type that is not too narrow for any
+    // only one mesh, of real coordinates and of indices that have 32 bits or more
     if (role == RawDataset::Role::points && (!raw_.datasets.empty() || place.alternative > kLastReal))
       return false;
     if (role == RawDataset::Role::topology && (raw_.datasets.size() != 1 || place.alternative < kInt32))
@@ -384,7 +384,7 @@ class XdmfReader {
     reading_.mesh.format_metadata = reading_.layout;
   }
 
-  /// Throws where a reference makes one element that of two Grids with different cells.
+  /// Throws if references make one element part of two Grids with different cells.
   void check_elements() const {
     std::set<std::size_t> items;
     const auto check = [&](std::size_t named_by) {
@@ -400,7 +400,7 @@ class XdmfReader {
     }
   }
 
-  /// Keeps what the files have beside the mesh for the writer.
+  /// Keeps for the writer what the files have besides the mesh.
   void keep_rest(std::int64_t vertices, std::int64_t cells) {
     std::vector<std::size_t> items;
     std::map<std::string, std::set<std::string>> datasets;
@@ -444,7 +444,7 @@ class XdmfReader {
   RawGrid raw_;
   TopologyReader topologies_{reading_};
   ArrayReader arrays_{reading_};
-  std::map<std::string, std::size_t> known_geometries_;  // places of their first fields in the layout, by key
+  std::map<std::string, std::size_t> known_geometries_;  // index of their first field in the layout, by key
 };
 
 }  // namespace

@@ -26,7 +26,7 @@ struct GridElement {
   int step = 0;
 };
 
-/// A file that is being read, and what has been found so far.
+/// The file that is being read, and what has been read so far.
 struct Reading {
   Reading(const FilePath& path, Notes& warnings) : document(path), data(document, path), notes(warnings) {}
 
@@ -34,7 +34,7 @@ struct Reading {
   [[nodiscard]] pugi::xml_node item_of(pugi::xml_node element) const;
   /// Adds the set of the cells of a Grid; returns the name that it gets.
   std::string add_set_of_grid(const std::string& wanted, const std::vector<Index>& cells_of_grid);
-  /// Returns the set that a field is a part of; renames the field if another one of its part has that name.
+  /// Returns the set that a field belongs to; renames the field if its part has a field of that name already.
   EntitySet& set_of(Field& field);
 
   Document document;
@@ -49,13 +49,13 @@ struct Reading {
  private:
   struct KnownSet {
     std::size_t place;    // in the mesh
-    bool is_grid;         // all cells of a Grid
-    std::set<int> parts;  // of which it has members
+    bool is_grid;         // whether it has all cells of a Grid
+    std::set<int> parts;  // parts that have members in it
   };
   std::string next_set_name(Association association, const std::string& wanted, int part);
 
   std::map<std::pair<Association, std::string>, KnownSet> known_sets_;
-  /// The number of the name given last, by the wanted name and the part (−1 for sets of Grids).
+  /// The last number given to a name, by the wanted name and the part (−1 for sets of Grids).
   std::map<std::tuple<Association, std::string, int>, int> set_numbers_;
 };
 
@@ -82,12 +82,12 @@ class TopologyReader {
   Piece piece_of(pugi::xml_node topology, pugi::xml_node item, const DataPlace& place, int base);
   /// Returns the number of cells that a Topology announces, −1 if it does not.
   [[nodiscard]] std::int64_t claimed_cells(pugi::xml_node topology) const;
-  /// Appends the cells of a mixed Topology; `counted`: points have a count, too. Returns false for a fault,
-  /// at `fault_at_`.
+  /// Appends the cells of a mixed Topology; `counted`: cells of Polyvertex have a count of points, too.
+  /// Returns false for a fault, at `fault_at_`.
   bool read_mixed(const std::vector<Index>& numbers, std::int64_t claimed, bool counted,
                   vtk::FileCells& cells);
   void check_vertices(pugi::xml_node item, vtk::FileCells& cells, int base) const;
-  /// Returns the cells before that have the same types and vertices as those of a piece; none if one is new.
+  /// Returns those of the cells read before that equal the cells of a piece; none if one of these is new.
   [[nodiscard]] std::optional<std::vector<Index>> known_cells(const Piece& piece) const;
   /// Adds the cells of a piece as a part, or finds the part that has them; returns its number.
   int part_of(const GridElement& grid, pugi::xml_node topology, Piece piece);
@@ -105,7 +105,7 @@ class ArrayReader {
  public:
   explicit ArrayReader(Reading& reading) : reading_(reading) {}
 
-  /// Keeps the points of a time step in which they have moved as an array.
+  /// Keeps the points of a time step as an array, because they differ from those of the mesh.
   void add_moved_points(const GridElement& grid, std::vector<Field>& fields, std::vector<Point> points,
                         int dimension);
   void read_attribute(const GridElement& grid, int part, pugi::xml_node element);
@@ -114,34 +114,34 @@ class ArrayReader {
   void finish();
 
  private:
-  /// An array that waits for its name: with the step of its series where there are several.
+  /// An array without its final name, which ends with the step if its series has several of that name.
   struct Pending {
     Field field;
     DataArray array;
     GridElement grid;
   };
 
-  /// An array as it is put together from the parts of a mesh.
+  /// An array to which the rows of several parts may be appended.
   struct GrowingArray {
     DataArray array;
-    std::vector<bool> has_row;  ///< cells: once there are several parts
+    std::vector<bool> has_row;  ///< by cell; empty before rows are appended
   };
 
-  /// Adds an array under its name or, where that is taken, another one; returns the name that it gets.
+  /// Adds an array under a name that is free, its own if possible; returns that name.
   std::string add_growing(DataArray array);
   [[nodiscard]] GrowingArray* array_named(const std::string& name, Association association);
   [[nodiscard]] std::string name_of(pugi::xml_node element) const;
   void read_of_grid(pugi::xml_node item, const std::string& name);
-  /// Whether an array is the labels of cells: tags of FEniCSx or FEniCS, or an array of that name.
+  /// Returns whether an array holds labels of cells: tags of FEniCSx or FEniCS, or an array called kLabel.
   [[nodiscard]] bool is_label(const Field& field, const DataArray& array) const;
-  /// Makes an array the labels of its cells, unless one of them has a label.
+  /// Renames an array to kLabel, unless one of its cells has a label already.
   void take_label(const Field& field, DataArray& array);
   void name_pending();
-  /// Adds an array, or the rows of a part to the array of its name; returns the name that it gets.
+  /// Adds an array, or appends its rows to the array of that name if they fit; returns the array's name.
   std::string add(DataArray array, int part);
-  /// Appends the rows of an array of the same type for cells that have none; else returns false.
+  /// Appends rows if their type fits and their cells have none yet; else returns false.
   bool append_rows(GrowingArray& growing, DataArray& array, const std::vector<Index>& rows) const;
-  /// Makes an array that has a row for every cell a full one.
+  /// Makes an array dense if it has a row for every cell.
   void finish_array(GrowingArray& growing) const;
 
   Reading& reading_;

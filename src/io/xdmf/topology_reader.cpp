@@ -42,7 +42,7 @@ std::size_t hash_of(const std::vector<Index>& vertices) {
   return hash;
 }
 
-/// Names the cells of a Topology: two whose values are one array may take them for cells of different types.
+/// Returns a key of a Topology's cells: Topologies may read one array as cells of different types.
 std::string key_of_cells(pugi::xml_node topology, const DataPlace& place, int base) {
   const TopologyType* const type = topology_type(attribute(topology, "TopologyType", "Type"));
   std::string key = fmt::format("{} {} {}", key_of(place), type == nullptr ? kMixed : type->number, base);
@@ -152,7 +152,7 @@ std::int64_t TopologyReader::claimed_cells(pugi::xml_node topology) const {
       throw reading_.document.error(topology, fmt::format("NumberOfElements is '{}'", shortened(text)),
                                     "a whole number up to 2147483647 is needed");
     }
-    cells = cells < 0 ? size : cells;  // the first of several is that of the cells
+    cells = cells < 0 ? size : cells;  // the first of several numbers is that of the cells
   }
   return cells;
 }

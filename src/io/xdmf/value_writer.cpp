@@ -16,7 +16,7 @@
 namespace meshorder::xdmf {
 namespace {
 
-/// The shape of so many values in rows of so many components.
+/// Returns the shape of `count` values in rows of `components`.
 std::vector<std::uint64_t> shape_of(std::size_t count, std::size_t components) {
   std::vector<std::uint64_t> shape{count / components};
   if (components > 1) shape.push_back(components);
@@ -152,7 +152,7 @@ void Writer::put_binary(pugi::xml_node item, const DataPlace& place, const Value
 }
 
 std::string Writer::text_of_values(const Values& values, std::size_t components) {
-  constexpr std::size_t kMostCharacters = 32;  // of a number and what follows it
+  constexpr std::size_t kMostCharacters = 32;  // of a number and the blank after it
   constexpr std::size_t kUsualCharacters = 20;
   std::string text;
   std::visit(

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// Writes .xdmf files and the files of values that they name: what the layout has a place for goes there, the
-// rest is added.
+// Writes .xdmf files and the files of values that they name. Parts of the mesh go to their places in the
+// layout; what has no place there is added.
 
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/named_parts.hpp"
@@ -34,7 +34,7 @@ struct Hdf5Output {
   std::unique_ptr<OutputFile> out;
   std::unique_ptr<hdf5::File> file;
   std::set<std::string> datasets;
-  std::set<std::string> written;  ///< those that have values of the mesh by now
+  std::set<std::string> written;  ///< those that have values of the mesh already
   int next_array = 0;             ///< lowest number that an array without a name of its own may have
 };
 
@@ -48,7 +48,7 @@ class Writer {
   void write();
   /// See the function of that name.
   std::string write_without_values(const std::filesystem::path& data, const std::string& mark);
-  /// Returns the name of the file that takes the place of one of the old XML: both named after their .xdmf.
+  /// Returns the new name of an HDF5 file of the old XML: it follows the name of the new .xdmf file.
   [[nodiscard]] std::string new_name(const std::string& old_name) const;
 
  private:
@@ -66,11 +66,11 @@ class Writer {
   static void set_number_type(pugi::xml_node item, std::size_t alternative);
   /// Returns the shape of values at a place, in rows of so many components: the old one if it fits.
   std::vector<std::uint64_t> shape_at(const DataPlace& place, std::size_t count, std::size_t components);
-  /// Whether another field, such as an array of cells where this is one of vertices, has written other values
-  /// to the dataset of a place. From the first call on, the dataset counts as written.
+  /// Returns whether another field has written other values to the dataset of a place, such as an array of
+  /// cells if this is one of vertices. From the first call on, the dataset counts as written.
   bool is_taken(const DataPlace& place, const Values& values);
-  /// Gives a DataItem the shape, which is returned, and the number type of values in rows of so many
-  /// components.
+  /// Sets the shape and the number type of a DataItem for values in rows of `components`; returns the
+  /// shape.
   static std::vector<std::uint64_t> describe(pugi::xml_node item, const Values& values,
                                              std::size_t components);
   /// Writes values to a dataset that no other field has, and names it in the DataItem. `file`: the name in
@@ -83,26 +83,26 @@ class Writer {
   void put(const DataPlace& place, const Values& values, std::size_t components);
   /// Writes indices to a place in the number type that it has, unless that is too narrow.
   void put_indices(const DataPlace& place, std::span<const Index> indices, std::size_t components);
-  /// Writes the name of a dataset that a made layout does not have yet; `rename_files` replaces its file.
+  /// Writes the name of a dataset to the XML of a made layout; `rename_files` replaces the file in it.
   void name_dataset(const DataPlace& place);
   void put_binary(pugi::xml_node item, const DataPlace& place, const Values& values);
   static std::string text_of_values(const Values& values, std::size_t components);
 
   // fields of the layout: field_writer.cpp
-  /// Gives each field DataItems of its own where references make one the values of several.
+  /// Gives each field its own DataItems if references make several fields share one.
   void part_references();
-  /// Returns the Topology, Geometry, Attribute or Set whose values a field is.
+  /// Returns the Topology, Geometry, Attribute or Set that has the values of a field.
   [[nodiscard]] pugi::xml_node element_of(const Field& field) const;
   void write_field(const Field& field);
   void write_points(const Field& field);
   [[nodiscard]] int dimension_of(const Field& field) const;
   [[nodiscard]] bool are_floats() const;
   void write_topology(const Field& field);
-  /// Says how many cells, of a type with so many nodes, the Topology of a field has.
+  /// Writes to the Topology of a field the number of cells that follows from the field's shape.
   void announce_cells_of(const Field& field) const;
-  /// Says how many cells a Topology has.
+  /// Writes the number of cells to a Topology.
   void announce_cells(pugi::xml_node topology, std::uint64_t cells) const;
-  /// Whether the cell is a linear wedge that the file has the other way round.
+  /// Returns whether the cell is a linear wedge whose first triangle faces outward in the file.
   [[nodiscard]] bool is_turned(Index c) const;
   /// Returns the type of all these cells, null if they have several.
   [[nodiscard]] const TopologyType* common_type(const std::vector<Index>& rows) const;
@@ -110,23 +110,23 @@ class Writer {
   [[nodiscard]] std::vector<Index> numbers_of(const std::vector<Index>& rows, bool mixed, int base) const;
   void write_array(const Field& field);
   void write_set(const Field& field);
-  /// Marks the Attribute or the Set of a field that the mesh has no longer; see `remove_gone`.
+  /// Marks the Attribute or Set of a field that the mesh no longer has; see `remove_gone`.
   void remove_element(const Field& field);
-  /// Removes what the mesh has no longer, also where several time steps name one dataset.
+  /// Removes marked elements, and their datasets unless other elements name them.
   void remove_gone();
   /// Returns the row of each cell in a part, −1 for those of other parts.
   [[nodiscard]] std::vector<Index> places_in(const std::vector<Index>& rows) const;
-  /// Returns the values of an array for all vertices or for the cells of a part; none if they are those of
-  /// the array. Rows that the array does not give are noted.
+  /// Returns the values of an array for all vertices or for the cells of a part; none if these are the values
+  /// that the array has. Notes rows that the array lacks.
   std::optional<Values> values_of(const DataArray& array, Association association, int part);
   void note_filled(const DataArray& array);
 
   // what the layout has no place for: attribute_writer.cpp
-  /// Returns the array of marks that represents a set, by the name of the array.
+  /// Returns the array of marks of the set that "set:NAME" names; none if there is no such set.
   [[nodiscard]] std::optional<DataArray> marks_named(const std::string& name, Association association) const;
   [[nodiscard]] DataArray marks_of(const EntitySet& set) const;
   void add_others();
-  /// Returns the sets that the layout has a place for.
+  /// Returns the sets that have a place in the layout.
   [[nodiscard]] std::set<std::pair<Association, std::string>> placed_sets() const;
   void add_ids(const std::vector<std::int64_t>& ids, const char* name, Association association);
   /// Returns a name that no other attribute has.
@@ -158,7 +158,7 @@ class Writer {
   std::map<Association, NameNumbers> numbers_;
 };
 
-/// Sets the one of two attributes that is there, else adds the first.
+/// Sets `other` if the element has it but not `name`; else sets or adds `name`.
 void set_either(pugi::xml_node element, const char* name, const char* other, const std::string& value);
 
 }  // namespace meshorder::xdmf

@@ -59,15 +59,15 @@ struct Part {
   std::size_t grid = 0;       ///< number of its Grid; see `Document::number`
 };
 
-/// What the values of a DataItem are.
+/// The meaning of a DataItem's values.
 struct Field {
   enum class Role : std::uint8_t { points, topology, array, set };
   Role role;
   DataPlace place;
-  int part = 0;  ///< of cells
+  int part = 0;  ///< number of the part, for cells
   Association association = Association::vertices;
   std::string name = {};  ///< of the array or the set
-  int axis = -1;          ///< of points in separate arrays
+  int axis = -1;          ///< of points whose coordinates are separate arrays; −1: none
   int base = 0;           ///< number of the first point in a topology
 };
 
@@ -80,7 +80,7 @@ struct Layout final : FormatMetadata {
   std::vector<Field> fields;
   std::vector<std::string> words;  ///< see `contents`
   bool inward_wedges = false;      ///< linear wedges in the order of VTK 9.7
-  bool is_made = false;            ///< by `layout_of`
+  bool is_made = false;            ///< whether `layout_of` made it
 
   [[nodiscard]] std::vector<std::string> contents() const override { return words; }
 };
