@@ -18,7 +18,7 @@ struct MeshRange {
 
   [[nodiscard]] Index size() const noexcept { return end - first; }
   [[nodiscard]] bool contains(Index number) const noexcept { return number >= first && number < end; }
-  /// Returns what two ranges have in common; an empty range, within this one, if nothing.
+  /// Returns the common part of two ranges; an empty range within this one if there is none.
   [[nodiscard]] MeshRange common(MeshRange other) const {
     const Index begin = std::clamp(other.first, first, end);
     return {begin, std::clamp(other.end, begin, end)};

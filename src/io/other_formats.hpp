@@ -12,7 +12,7 @@ struct OtherFormat {
   std::string_view advice;     ///< how to make a mesh of it that meshorder reads
 };
 
-/// Returns the format of files with this extension in lower case, null for one that is not known.
+/// Returns the format of files with this extension in lower case, null if it is not known.
 const OtherFormat* other_format(std::string_view extension);
 
 }  // namespace meshorder

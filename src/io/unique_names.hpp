@@ -50,7 +50,7 @@ class UniqueNames {
 
 /// Adds an array to a mesh under a name that no other has; returns that name.
 std::string add_named(Mesh& mesh, DataArray array, UniqueNames& names);
-/// Adds a set likewise.
+/// Adds a set to a mesh under a name that no other has; returns that name.
 std::string add_named(Mesh& mesh, EntitySet set, UniqueNames& names);
 
 }  // namespace meshorder

@@ -21,7 +21,7 @@
 namespace meshorder::unv {
 namespace {
 
-/// Most nodes of an element that is a cell.
+/// Greatest number of nodes of an element that is a cell.
 constexpr std::size_t kMostNodes = 20;
 
 /// Returns whether a line begins or ends a dataset: −1 in its first six columns.
@@ -577,8 +577,8 @@ class UnvReader {
   int dataset_ = 0;  // being read
   bool is_binary_ = false;
   std::string binary_fields_;
-  std::int64_t begin_ = 0;  // its first byte
-  std::int64_t line_ = 0;   // and line
+  std::int64_t begin_ = 0;  // first byte of the dataset
+  std::int64_t line_ = 0;   // first line of the dataset
   std::vector<UnresolvedNode> unresolved_;
   std::set<std::int64_t> other_elements_;  // that are no cells
   std::set<std::string> other_types_;

@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view kNoText = "NONE";
 constexpr std::int64_t kMostComponents = 1000;
 
-/// Returns the whole numbers of a line up to the first word that is none.
+/// Returns the whole numbers at the beginning of a line.
 std::vector<std::int64_t> integers_of(std::string_view line) {
   std::vector<std::int64_t> numbers;
   for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {

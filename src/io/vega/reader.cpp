@@ -300,7 +300,7 @@ class Reader {
     lines_.take();
     (void)data_line("the set and material of a region");
     std::string_view line;
-    lines_.peek(line);  // with the text after any #, which names may have
+    lines_.peek(line);  // the whole line, as names may have a #
     const std::size_t comma = line.find(',');
     if (comma == std::string_view::npos) lines_.at().fail("a region without a comma", "write SET, MATERIAL");
     section.region_set = trimmed(line.substr(0, comma));

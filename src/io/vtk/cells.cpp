@@ -195,7 +195,7 @@ bool take_cells(Mesh& mesh, FileCells& cells, const ErrorAt& error, Notes& notes
   const bool inward_wedges = wedges_face_inward(mesh.points, cells);
   DefaultTypes defaults;
   Index converted = 0;
-  bool plain = true;  // shapes and vertices determine all types
+  bool plain = true;  // whether shapes and vertices determine all types
   const Index count = index_size(cells.types);
   mesh.cells.shapes.resize(count);
   const CellType* usual_type = nullptr;  // of the last cell, if it needs no work: neighbours are mostly alike

@@ -188,7 +188,7 @@ class PieceJoiner {
     return kept;
   }
 
-  /// Keeps only those cells.
+  /// Keeps only the cells of these rows.
   void take_cells_of(const RowsKept& rows) {
     const FileCells all = std::move(pieces_.cells);
     FileCells& cells = pieces_.cells = {};
@@ -205,7 +205,7 @@ class PieceJoiner {
     }
   }
 
-  /// Keeps only those rows in all arrays of points or of cells.
+  /// Keeps only these rows in all arrays of points or in all of cells.
   void take_rows(Association association, const RowsKept& rows) {
     for (DataArray& array : pieces_.arrays) {
       if (array.association != association) continue;

@@ -22,8 +22,8 @@ struct Pieces {
 /// of several pieces becomes one, with the values of the piece that owns it. Leaves out ids that are 0,
 /// 1, 2 …
 ///
-/// Points on the borders of pieces stay several if points have no ids, which is noted. Throws `error` for ids
-/// below 0, for points with one id but different coordinates, and for two cells with one id. O(points +
+/// Points without ids on the borders of pieces stay once for each piece, which is noted. Throws `error` for
+/// ids below 0, for points with one id but different coordinates, and for two cells with one id. O(points +
 /// cells, times their logarithms).
 void join_pieces(const Pieces& pieces, const ErrorAt& error, Notes& notes);
 

@@ -34,7 +34,7 @@ inline constexpr std::array<std::string_view, std::variant_size_v<Values>> kLega
     "double", "float",        "char",         "unsigned_char", "short", "unsigned_short",
     "int",    "unsigned_int", "vtktypeint64", "vtktypeuint64", "string"};
 
-/// Returns no values of the number type with that index.
+/// Returns an empty vector of the number type with that index in Values.
 inline Values values_of_type(std::size_t alternative) {
   Values result;
   [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -219,8 +219,8 @@ bool is_higher_order_hexahedron(std::uint8_t type);
 /// Returns whether the nodes of a cell of that type may be in another order in a file than in a Mesh.
 bool may_be_reordered(std::uint8_t type);
 
-/// Swaps the two edges that VTK 9 numbers differently in all higher-order hexahedra of `cells`; its own
-/// inverse. Degrees come from the array HigherOrderDegrees of the mesh, if any.
+/// Swaps, in all higher-order hexahedra of `cells`, the two edges that VTK 9 numbers differently; a second
+/// call undoes it. Degrees come from the array HigherOrderDegrees of the mesh, if any.
 void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& types, Cells& cells);
 
 // ---- reading
@@ -244,8 +244,8 @@ DataArray full_array(const DataArray& array, Index count);
 /// Where a file stores the names of its arrays; this decides which characters they may have.
 enum class NamePlace : std::uint8_t { legacy, xml, hdf5 };
 
-/// Returns a name that HDF5 accepts for a dataset: there a slash separates groups, a dot is the group itself,
-/// and a zero byte ends a name.
+/// Makes a name valid for a dataset of HDF5, where a slash separates groups, a dot is the group itself, and a
+/// zero byte ends a name.
 std::string name_in_hdf5(std::string name);
 
 /// The input of the writers, made from a mesh. Borrows the mesh and the notes.

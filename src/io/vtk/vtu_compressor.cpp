@@ -18,7 +18,7 @@
 namespace meshorder::vtk {
 namespace {
 
-/// The functions of a library. A library that the build lacks has none.
+/// The functions of a library; all are null if the build lacks it.
 struct Codec {
   /// Returns an upper bound on the compressed size of that number of bytes.
   std::size_t (*bound)(std::size_t bytes) = nullptr;

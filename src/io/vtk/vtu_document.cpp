@@ -21,7 +21,7 @@ bool is_name_character(char c) {
 
 bool is_blank(std::string_view text) { return text.find_first_not_of(kXmlBlanks) == std::string_view::npos; }
 
-/// Decodes one entity of XML, "lt" or "#65"; empty if it is none.
+/// Decodes one entity of XML, "lt" or "#65"; returns an empty text if it is not one.
 std::string entity(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, char>, 5> kNamed{
       {{"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}}};

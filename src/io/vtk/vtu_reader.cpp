@@ -49,7 +49,7 @@ class VtuReader {
     if (file.lists_pieces()) {
       read_listed(file, *grid);
       file_ = &file;
-      types_ = nullptr;  // of a file that is closed
+      types_ = nullptr;  // it points into a file that is closed
       join(*grid);
     } else {
       read_grid(file, *grid);
@@ -376,7 +376,7 @@ class VtuReader {
       size += static_cast<std::uint64_t>(1 + corner_starts[f + 1] - corner_starts[f]);
       return static_cast<Index>(face);
     });
-    file_->claim(faces_of_cells, bytes_for(size, sizeof(Index)));  // a face may be that of many cells
+    file_->claim(faces_of_cells, bytes_for(size, sizeof(Index)));  // many cells may share a face
 
     Polyhedra& polyhedra = cells_.polyhedra;
     polyhedra.numbers.reserve(polyhedra.numbers.size() + size);

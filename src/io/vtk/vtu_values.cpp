@@ -301,7 +301,7 @@ std::vector<std::string> VtuDocument::strings(const VtuElement& array, std::int6
   return result;
 }
 
-/// Returns no values of the array's number type.
+/// Returns an empty vector of the array's number type.
 Values VtuDocument::no_values(const VtuElement& array) const {
   const std::string& type = required(array, "type");
   const auto found = std::find(kXmlTypeNames.begin(), kXmlTypeNames.end(), type);

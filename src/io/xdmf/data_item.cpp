@@ -74,8 +74,8 @@ class ElementText {
   std::string joined_;  // of several pieces
 };
 
-/// Reads the number at the beginning of a text, up to a blank or the end; returns where it ends, null if it
-/// is none of the type.
+/// Reads the number at the beginning of a text, up to a blank or the end; returns where it ends, or null if
+/// it is not a number of the type.
 template <class Number>
 const char* number_in(const char* p, const char* end, Number& number) {
   if constexpr (std::is_integral_v<Number>) {

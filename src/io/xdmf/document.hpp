@@ -16,9 +16,9 @@
 
 namespace meshorder::xdmf {
 
-/// Name of what marks an .xdmf file and its HDF5 files as written together: a processing instruction in the
-/// root element, and an attribute of each HDF5 file's root. Both have the same 16 digits; the reader refuses
-/// files with different ones.
+/// Name of the mark of an .xdmf file and its HDF5 files that were written together: a processing instruction
+/// in the root element, and an attribute of the root of each HDF5 file. All have the same 16 digits; the
+/// reader refuses files with different ones.
 inline constexpr const char* kMark = "meshorder";
 /// A plain binary file has no room for a mark. The DataItem that names it has a checksum of the values
 /// instead, as an attribute of this name.
@@ -44,7 +44,7 @@ class Document {
 
   /// Returns the element that one refers to by Reference="…", or itself.
   [[nodiscard]] pugi::xml_node resolved(pugi::xml_node element) const;
-  /// Returns the child elements of a Grid, with those that xi:include and references name in their place.
+  /// Returns the child elements of a Grid; xi:include and references are replaced by what they name.
   [[nodiscard]] std::vector<pugi::xml_node> children(pugi::xml_node grid) const;
   /// Returns the number of a DataItem or a Grid among those of its name, in the order of the file.
   [[nodiscard]] std::size_t number(pugi::xml_node element) const { return numbers_.at(element.hash_value()); }

@@ -110,7 +110,7 @@ void collect(const Document& document, pugi::xml_node grid, int depth, int& seri
   }
   collect(document, inner.front(), depth - 1, series, grids);
 }
-/// Returns the uniform Grids of a file, in its order; throws likewise.
+/// Returns the uniform Grids of a file, in its order. Throws as `collect`.
 std::vector<GridElement> grids_of(const Document& document) {
   const pugi::xml_node root = document.root();
   const pugi::xml_node domain = root.child("Domain");

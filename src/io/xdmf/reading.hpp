@@ -68,7 +68,7 @@ class TopologyReader {
  public:
   explicit TopologyReader(Reading& reading) : reading_(reading) {}
 
-  /// Returns the number of the part that a Topology is.
+  /// Reads a Topology; returns the number of its part.
   int read(const GridElement& grid, pugi::xml_node topology);
 
  private:
@@ -114,7 +114,7 @@ class ArrayReader {
   void finish();
 
  private:
-  /// An array without its final name, which ends with the step if its series has several of that name.
+  /// An array without its final name, which may need the number of its time step.
   struct Pending {
     Field field;
     DataArray array;

@@ -64,7 +64,7 @@ class Writer {
   // values of one DataItem: value_writer.cpp
   static void set_shape(pugi::xml_node item, const std::vector<std::uint64_t>& shape);
   static void set_number_type(pugi::xml_node item, std::size_t alternative);
-  /// Returns the shape of values at a place, in rows of so many components: the old one if it fits.
+  /// Returns the shape of values at a place in rows of `components`; the old shape if it fits.
   std::vector<std::uint64_t> shape_at(const DataPlace& place, std::size_t count, std::size_t components);
   /// Returns whether another field has written other values to the dataset of a place, such as an array of
   /// cells if this is one of vertices. From the first call on, the dataset counts as written.
@@ -79,7 +79,7 @@ class Writer {
                  const Values& values, const std::vector<std::uint64_t>& shape);
   /// Returns the DataItems that have the values of a place.
   [[nodiscard]] std::vector<pugi::xml_node> items_at(const DataPlace& place) const;
-  /// Writes values to a place in their own number type: rows of so many components.
+  /// Writes values to a place in their own number type, in rows of `components` values.
   void put(const DataPlace& place, const Values& values, std::size_t components);
   /// Writes indices to a place in the number type that it has, unless that is too narrow.
   void put_indices(const DataPlace& place, std::span<const Index> indices, std::size_t components);

@@ -53,7 +53,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices);
 /// The cells of one Topology.
 struct Part {
   std::string name;           ///< of its Grid
-  std::string set;            ///< of the cells, in the order of the file; empty for the first part
+  std::string set;            ///< set of its cells, in the order of the file; empty for the first part
   bool has_own_cells = true;  ///< false: its cells are those of parts before it
   bool is_ascending = true;   ///< whether its cells are in the order of the mesh
   std::size_t grid = 0;       ///< number of its Grid; see `Document::number`
