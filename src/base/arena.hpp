@@ -29,8 +29,8 @@ auto in_arena(const Run& run, const Work& work) {
   }
 }
 
-/// Does the work of a public function as `run` wants it: in an arena of its own, with progress and time
-/// limit. Returns what `work()` returns.
+/// Runs the body of a public function with the threads, progress function and time limit of `run`. Returns
+/// what `work()` returns.
 ///
 /// @throws InvalidArgument for a negative number of threads or time limit, Stopped, and what `work` throws
 template <class Work>

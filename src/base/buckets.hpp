@@ -11,19 +11,19 @@
 
 namespace meshorder {
 
-/// Entries in buckets of neighbouring keys, those of a bucket as they came: the first step of a sort of more
-/// entries than caches hold. The second step sorts each bucket by itself. Each thread puts a part of the
-/// entries into buckets of its own, so that it writes within its caches in whatever order the keys come. The
-/// same for any number of threads. O(entries + parts · buckets) time and memory.
+/// Puts entries into buckets of adjacent keys, in their given order within a bucket: the first step of a
+/// sort of more entries than caches hold. The second step sorts each bucket by itself. Each thread fills
+/// its own buckets with a part of the entries, so that its writes stay in its caches whatever the order of
+/// the keys. The result is the same for any number of threads. O(entries + parts · buckets) time and memory.
 template <class Entry>
 class Buckets {
  public:
-  /// @param rows         that the entries come from
-  /// @param rows_of_part  that a thread takes together, with about 10⁵ entries
-  /// @param keys         how many there are: 0 … keys − 1
-  /// @param entries_of   `entries_of(part, begin, end)` returns what calls its argument for each entry of the
-  ///                     part's rows; it is called twice. On all threads.
-  /// @param key          `key(entry)`
+  /// @param rows         number of rows that the entries come from
+  /// @param rows_of_part  rows that a thread takes at a time; they should have about 10⁵ entries
+  /// @param keys         number of keys: 0 … keys − 1
+  /// @param entries_of   `entries_of(part, begin, end)` returns a function that calls its argument for each
+  ///                     entry of the part's rows. That function is called twice. On all threads.
+  /// @param key          `key(entry)` returns the key of an entry
   template <class EntriesOf, class Key>
   Buckets(Index rows, Index rows_of_part, Index keys, const EntriesOf& entries_of, const Key& key)
       : keys_(keys), parts_(chunk_count(rows, rows_of_part)) {
@@ -47,16 +47,16 @@ class Buckets {
     std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
   }
 
-  /// How many buckets there are.
+  /// Returns the number of buckets.
   [[nodiscard]] Index size() const { return chunk_count(keys_, width()); }
 
-  /// How many entries come before the bucket.
+  /// Returns the number of entries before the bucket.
   [[nodiscard]] Offset start(Index bucket) const { return starts_[bucket]; }
 
-  /// The smallest key that the bucket may have.
+  /// Returns the smallest key that the bucket may have.
   [[nodiscard]] Index first_key(Index bucket) const { return bucket << log2_width_; }
 
-  /// Returns how many entries come before those of each key of the bucket, and of its end.
+  /// Returns where the entries of each key of the bucket begin among all sorted entries, and the last end.
   template <class Key>
   [[nodiscard]] std::vector<Offset> key_starts(Index bucket, const Key& key) const {
     std::vector<Offset> starts(std::size_t(std::min(width(), keys_ - first_key(bucket))) + 1, 0);
@@ -77,7 +77,7 @@ class Buckets {
 
   struct Part {
     std::vector<Entry> entries;
-    std::vector<Offset> starts;  ///< of each bucket, and the end
+    std::vector<Offset> starts;  ///< where each bucket begins, and the end
 
     std::span<const Entry> operator[](Index bucket) const {
       return {entries.data() + starts[bucket], entries.data() + starts[bucket + 1]};
@@ -88,9 +88,9 @@ class Buckets {
   [[nodiscard]] Index bucket_of(Index key) const { return key >> log2_width_; }
 
   Index keys_;
-  int log2_width_ = 10;  ///< of the keys of a bucket
+  int log2_width_ = 10;  ///< of the number of keys in a bucket
   std::vector<Part> parts_;
-  std::vector<Offset> starts_;  ///< of each bucket, and the end
+  std::vector<Offset> starts_;  ///< where each bucket begins in all parts together, and the end
 };
 
 }  // namespace meshorder

@@ -10,8 +10,8 @@
 
 namespace meshorder {
 
-/// Returns whether all numbers are 0 … limit − 1, limit ≥ 0. O(numbers), in vectors of any width: it neither
-/// branches nor compares, but gathers the sign bits of each number and of its distance to the last one.
+/// Returns whether all numbers are in 0 … limit − 1, limit ≥ 0. O(numbers). The loop has no branches, so that
+/// compilers vectorise it: it combines the sign bits of each number and of (limit − 1) − number.
 inline bool all_below(std::span<const Index> numbers, Index limit) noexcept {
   const std::uint32_t last = static_cast<std::uint32_t>(limit) - 1;
   std::uint32_t signs = 0;

@@ -61,7 +61,7 @@ bool is_below(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// Returns "is a folder" and the like for what cannot be read, nullptr for a file or a pipe.
+/// Returns "is a folder" and the like for what cannot be read; nullptr for a file or an allowed pipe.
 const char* kind_of_unreadable(mode_t mode, bool may_be_pipe) {
   if (S_ISDIR(mode)) return "is a folder";
   if (S_ISSOCK(mode)) return "is a socket";
@@ -127,7 +127,7 @@ void InputFile::fail(int error) const {
                    "check the path and the disk");
 }
 
-/// Checks what has been opened, which others may have put there meanwhile, and takes its size.
+/// Checks the type of the opened file again, since others may have replaced it meanwhile, and takes its size.
 void InputFile::require_readable() {
   struct stat status {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) fail(errno);
@@ -141,7 +141,7 @@ void InputFile::require_readable() {
 }
 
 /// Waits up to three seconds for a writer of a pipe: a byte, an end or EAGAIN shows that there is or was one.
-/// Reading blocks from there on.
+/// Later reads block.
 void InputFile::wait_for_writer() {
   constexpr int kTurns = 300;
   constexpr int kMilliseconds = 10;
@@ -163,7 +163,7 @@ void InputFile::wait_for_writer() {
 
 namespace {
 
-/// Calls `read` until it has given all bytes or none. Returns their number, −1 with errno for a failure.
+/// Calls `read` until `into` is full or no byte is left. Returns the bytes read; −1 and errno on errors.
 template <class Read>
 ssize_t transferred(std::span<char> into, const Read& read) {
   std::size_t done = 0;

@@ -10,13 +10,13 @@
 
 namespace meshorder {
 
-/// Returns the path without links, "." and ".." if it then lies below one of the folders, which are resolved
-/// likewise ("" is the current one). The file itself need not exist.
+/// Returns the path with links, "." and ".." resolved if it lies below one of the folders, else nothing. The
+/// folders are resolved likewise ("" is the current one). The file itself need not exist.
 std::optional<std::filesystem::path> real_path_below(const std::filesystem::path& path,
                                                      std::span<const std::filesystem::path> folders);
 
-/// A file that is open for reading. All files that are read are opened here, except those in which the
-/// system describes itself (/proc, /sys).
+/// A file that is open for reading. All files that are read are opened here, except those of the system that
+/// describe the machine (/proc, /sys).
 ///
 /// It does not wait for long: a pipe that the user named needs a writer within three seconds; other pipes are
 /// refused like devices, sockets and folders. Throws InputError for these, for a file that is missing or may
@@ -40,10 +40,10 @@ class InputFile {
 
   /// Reads the next bytes. Returns their number, less than asked for only at the end.
   std::size_t read(std::span<char> into);
-  /// Reads bytes at a place, which a pipe does not have. Returns their number, less than asked for at the end
-  /// only.
+  /// Reads bytes from offset `at`; not for pipes. Returns their number, which is less than asked for only at
+  /// the end of the file.
   [[nodiscard]] std::size_t read_at(std::uint64_t at, std::span<char> into) const;
-  /// Returns the rest of a file that is small. Throws InputError if it has more than `most` bytes.
+  /// Returns the rest of a small file. Throws InputError if it has more than `most` bytes.
   std::string text(std::size_t most);
 
   /// Returns a path by which libraries open this very file while this object lives, even if others put

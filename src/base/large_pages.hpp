@@ -14,8 +14,8 @@ void ask_for_large_pages(void* memory, std::size_t bytes) noexcept;
 /// would do so on one. Polls. A hint, without effect on smaller blocks and other systems than Linux.
 void clear_pages(void* memory, std::size_t bytes);
 
-/// As `container.reserve(size)`, on large pages where that allocates. What grows part by part at least
-/// doubles.
+/// Like `container.reserve(size)`, and asks for large pages if it allocates. It then reserves at least twice
+/// the container's size, so that growing in many steps takes linear time.
 template <class Container>
 void reserve_large(Container& container, std::size_t size) {
   if (size <= container.capacity()) return;
@@ -23,7 +23,7 @@ void reserve_large(Container& container, std::size_t size) {
   ask_for_large_pages(container.data(), container.capacity() * sizeof(*container.data()));
 }
 
-/// As `container.resize(size)`, likewise, with pages that all threads clear. Polls.
+/// Like `container.resize(size)`, by `reserve_large` and `clear_pages`. Polls.
 template <class Container>
 void resize_large(Container& container, std::size_t size) {
   reserve_large(container, size);

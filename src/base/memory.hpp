@@ -13,7 +13,7 @@ namespace meshorder {
 /// space or one of its control groups allows if that is less. Found once.
 std::uint64_t usable_memory();
 
-/// The most bytes that work may take whose size the input decides.
+/// A limit on the memory of work whose size depends on the input.
 struct MemoryLimit {
   std::uint64_t bytes = 0;
   bool is_given = false;  ///< by `set_memory_limit`
@@ -22,22 +22,22 @@ struct MemoryLimit {
 /// Returns the limit of this process; three quarters of `usable_memory` where none is given.
 MemoryLimit memory_limit();
 
-/// Sets the limit for the rest of the process; not while other threads read or order.
+/// Sets the limit for the rest of the process. Must not be called while other threads read or order.
 void set_memory_limit(std::uint64_t bytes);
 
-/// Returns the product, or the largest number where that is too small for it.
+/// Returns the product, or UINT64_MAX if it overflows.
 constexpr std::uint64_t bytes_for(std::uint64_t count, std::uint64_t bytes_each) {
   return bytes_each != 0 && count > UINT64_MAX / bytes_each ? UINT64_MAX : count * bytes_each;
 }
 
-/// Letters of sizes in text, the largest first.
+/// A unit of sizes in text, with its letter.
 struct SizeUnit {
   char letter;
-  int bits;  ///< of a shift
+  int bits;  ///< the unit is 2^bits bytes
 };
 inline constexpr std::array kSizeUnits{SizeUnit{'G', 30}, SizeUnit{'M', 20}, SizeUnit{'K', 10}};
 
-/// Returns the bytes of "48K", "32M", "4g" or "12"; nothing for other texts and what needs 64 bits or more.
+/// Returns the bytes of "48K", "32M", "4g" or "12"; nothing for other texts and for 2⁶³ bytes or more.
 std::optional<std::uint64_t> parse_size(std::string_view text);
 
 /// Returns "64 GiB", "1.5 MiB" or "555 bytes".

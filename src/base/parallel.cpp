@@ -15,7 +15,7 @@
 namespace meshorder {
 namespace {
 
-/// TBB warns on stderr of a wish for more threads than it may start, and sets aside memory for all of them.
+/// Returns how many threads TBB may start. Asked for more, it warns on stderr and reserves memory for all.
 std::size_t allowed_threads() {
   return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }

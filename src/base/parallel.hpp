@@ -12,21 +12,21 @@
 
 namespace meshorder {
 
-/// How many threads work at most: those of the machine, or the limit that is set (tbb::global_control).
+/// Returns how many threads work at most: those of the current arena, as tbb::global_control allows.
 [[nodiscard]] Index thread_count();
 
-/// How many chunks of `size` make up 0 … n−1, the last one perhaps shorter.
+/// Returns the number of chunks of `size` that make up 0 … n−1; the last one may be shorter.
 constexpr Index chunk_count(Index n, Index size) { return static_cast<Index>((Offset{n} + size - 1) / size); }
 
-/// Which thread takes which turns of a loop: whichever has none left, or as far as possible the one that took
-/// them the last time, whose caches still hold what they work on.
+/// How threads share the turns of a loop. balanced: a thread without work takes some from another. repeated:
+/// if possible, each thread takes the same turns as last time, whose data its caches may still hold.
 enum class Sharing { balanced, repeated };
 
 /// Calls `work(begin, end)` for ranges that make up 0 … n−1, on all threads. The ranges vary from call to
 /// call.
 ///
-/// A loop within a turn of another loop is cancelled with it, and TBB then returns from the inner one as if
-/// it were done: here it throws, so that nothing goes on with what was left out.
+/// TBB cancels a loop within a turn of another loop together with the outer one; the inner loop then returns
+/// as if it were done. This function throws Stopped instead, so that nothing uses the incomplete results.
 ///
 /// @throws what `work` throws; Stopped within a loop that another thread has cancelled
 void share_turns(Offset n, Sharing sharing, const std::function<void(Offset begin, Offset end)>& work);
@@ -81,8 +81,8 @@ void take_turns(Index n, const Work& work) {
   });
 }
 
-/// The sum of `part(begin, end)` over the chunks, added up in their order, so that the result is the same for
-/// any number of threads. `Sum` needs a zero by `Sum{}` and +=.
+/// Returns the sum of `part(begin, end)` over the chunks, added in their order, so that it is the same
+/// for any number of threads. `Sum` needs a zero by `Sum{}` and +=.
 template <class Sum, class Part>
 Sum sum_over_chunks(Index n, Index size, Part part) {
   std::vector<Sum> parts(chunk_count(n, size));
@@ -92,8 +92,8 @@ Sum sum_over_chunks(Index n, Index size, Part part) {
   return sum;
 }
 
-/// Calls `work(part)` for 0 … parts−1, each on a thread of its own as far as there are threads, and as far as
-/// possible the same as the last time.
+/// Calls `work(part)` for 0 … parts−1, each on a thread of its own if there are enough threads, and if
+/// possible on the same thread as last time.
 template <class Work>
 void for_each_part(Index parts, Work work) {
   parallel_loop(parts, work, Sharing::repeated);

@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns what Linux's /proc/cpuinfo says first about each subject.
+/// Returns the keys and values of the first processor in Linux's /proc/cpuinfo.
 std::map<std::string, std::string> facts_of_first_processor(std::istream& cpuinfo) {
   std::map<std::string, std::string> facts;
   for (std::string line; std::getline(cpuinfo, line);) {

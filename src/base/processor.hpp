@@ -26,7 +26,7 @@ ProcessorFamily processor_family(std::istream& cpuinfo);
 /// Returns the family of this machine's processor.
 ProcessorFamily family_of_this_machine();
 
-/// By the models of Linux: init_amd in arch/x86/kernel/cpu/amd.c.
+/// Returns whether the family is AMD's Zen 4, as Linux does (init_amd in arch/x86/kernel/cpu/amd.c).
 bool is_zen4(const ProcessorFamily& family);
 
 }  // namespace meshorder

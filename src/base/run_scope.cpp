@@ -17,8 +17,8 @@ constexpr auto kBetweenReports = std::chrono::milliseconds(50);
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the state of each thread
 thread_local RunScope* innermost = nullptr;
 
-/// While the user's progress function runs: what it asks of the library is no part of the call that it
-/// watches, and does not call it again.
+/// Active while the user's progress function runs: library calls that the function makes are no part of the
+/// call that it watches, and do not call it again.
 class OutsideOfCalls {
  public:
   OutsideOfCalls() : scope_(std::exchange(innermost, nullptr)) {}
@@ -64,14 +64,14 @@ void report(std::string_view stage, double fraction) {
 
 void poll() {
   if (innermost != nullptr) return innermost->tell();
-  // a helping thread: does the call's own thread, or another, want the end?
+  // no scope on this thread: it may help in a loop that another thread has cancelled
   if (tbb::is_current_task_group_canceling()) throw Stopped();
 }
 
 TimeLimit::TimeLimit() {
   if (innermost == nullptr || std::isinf(innermost->run_.time_limit)) return;
   limited_ = true;
-  // a limit beyond the clock's range is none
+  // a longer limit could overflow the clock and is as good as none
   constexpr double kLongest = 1e9;
   const std::chrono::duration<double> limit(std::min(innermost->run_.time_limit, kLongest));
   end_ = innermost->start_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit);

@@ -9,12 +9,12 @@
 namespace meshorder {
 
 /// The call into the library that the current thread is in: reports its progress and ends it when the caller
-/// wants that.
+/// asks for that.
 ///
-/// The scope belongs to the thread that made the call. `poll` does nothing on other threads, so the loops of
-/// base/parallel.hpp call it from every chunk: the calling thread works on chunks too, and an exception there
-/// cancels the loop on all threads. A call within a call (a user's own method) with a run that asks for
-/// nothing belongs to the outer one.
+/// The scope belongs to the thread that made the call. On other threads `poll` only checks whether their loop
+/// is cancelled, so the loops of base/parallel.hpp call it in every turn: the calling thread takes turns too,
+/// and an exception there cancels the loop on all threads. A call within a call (a user's own method) belongs
+/// to the outer one if its run asks for nothing.
 class RunScope {
  public:
   explicit RunScope(const Run& run);
@@ -38,17 +38,17 @@ class RunScope {
   double fraction_ = -1;
 };
 
-/// Says what the calling thread's call does now, and how much of the call is done: 0 … 1, or −1 where that is
-/// unknown. A smaller fraction than before is raised to that. Calls the user's progress function if 50 ms
-/// have passed since it was last called.
+/// Reports what the calling thread's call does now and the fraction of the call that is done: 0 … 1, or −1 if
+/// unknown. The fraction never falls: a smaller one is replaced by the last. Calls the user's progress
+/// function if 50 ms have passed since it was last called.
 ///
 /// @throws Stopped if the progress function returns false, and what it throws itself
 void report(std::string_view stage, double fraction = -1);
 
-/// Calls the user's progress function if 50 ms have passed since it was last called. Costs a nanosecond where
-/// there is none to call, otherwise a look at the clock: to be called every 10 µs … 10 ms of work.
+/// Calls the user's progress function if 50 ms have passed since it was last called. Costs a nanosecond if
+/// there is none, otherwise a look at the clock: call it every 10 µs … 10 ms of work.
 ///
-/// @throws as `report`
+/// @throws as `report`; Stopped on a helping thread whose loop is cancelled
 void poll();
 
 /// As `poll`, in every 1024th turn of a loop of short turns.
@@ -57,7 +57,7 @@ void poll_in_loop(Turn turn) {
   if (turn % 1024 == 0) poll();
 }
 
-/// The moment at which the time limit of the calling thread's call ends. Copies may be asked on any thread.
+/// The moment at which the time limit of the calling thread's call ends. Copies may be used on any thread.
 class TimeLimit {
  public:
   /// The limit of the call that the current thread is in; none outside calls.

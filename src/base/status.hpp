@@ -21,8 +21,8 @@ static_assert(static_cast<int>(Code::stopped) == MO_STOPPED);
 static_assert(static_cast<int>(Code::io) == MO_IO);
 static_assert(static_cast<int>(Code::internal) == MO_INTERNAL);
 
-/// Calls `work()` for a caller in C. Returns MO_OK, or the status of the exception that `work` throws, whose
-/// sentence then replaces `message`, on one line and without what a terminal acts on.
+/// Calls `work()` for a caller in C. Returns MO_OK, or the status of the exception that `work` throws. Its
+/// text then replaces `message`, with control characters escaped (see `visible`).
 template <class Work>
 mo_status status_of(const Work& work, std::string& message) noexcept {
   const auto failure = [&](mo_status status, const char* sentence) noexcept {

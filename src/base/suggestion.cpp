@@ -19,8 +19,8 @@ std::string bare(const std::string& word) {
   return letters;
 }
 
-/// Returns the number of letters to insert, delete, replace or exchange with the next one that turn one word
-/// into the other (Damerau and Levenshtein; no letter is changed twice).
+/// Returns the least number of insertions, deletions, replacements and exchanges of adjacent letters that
+/// turn one word into the other (Damerau and Levenshtein; no letter is changed twice).
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> rows(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) rows[i][0] = i;
@@ -36,7 +36,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return rows[a.size()][b.size()];
 }
 
-/// Returns whether the words are the same at their beginning, but for at most two letters of `word`.
+/// Returns whether the words begin with the same letters: three or more, and all but at most two of `word`.
 bool begin_alike(const std::string& word, const std::string& name) {
   constexpr std::size_t kShortestBeginning = 3;
   const auto differ = std::mismatch(word.begin(), word.end(), name.begin(), name.end()).first;

@@ -122,7 +122,7 @@ std::string xml_escaped(std::string_view text) {
       case '\t':
       case '\n':
       case '\r':
-        // readers make blanks of others in an attribute
+        // readers replace these by blanks in an attribute unless they are escaped
         result += "&#" + std::to_string(static_cast<int>(c)) + ";";
         break;
       default:

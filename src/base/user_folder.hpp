@@ -5,8 +5,8 @@
 
 namespace meshorder {
 
-/// Returns the folder for what can be made anew: `$MESHORDER_CACHE`, else `$XDG_CACHE_HOME/meshorder`, else
-/// `~/.cache/meshorder`; empty if none of the variables is set. It need not exist.
+/// Returns the folder for files that can be remade: `$MESHORDER_CACHE`, `$XDG_CACHE_HOME/meshorder` or
+/// `~/.cache/meshorder`, the first that is set; empty if none of the variables is. It need not exist.
 std::filesystem::path user_cache_folder();
 
 }  // namespace meshorder

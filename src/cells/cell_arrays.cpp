@@ -15,10 +15,10 @@
 namespace meshorder {
 namespace {
 
-constexpr Offset kEntriesPerRange = 262144;  // that a thread converts together
+constexpr Offset kEntriesPerRange = 262144;  // converted by a thread at a time
 
-/// Types whose corners VTK numbers along the axes: two pairs of them change places to become quads and
-/// hexahedra.
+/// VTK types that number their corners along the axes. Swapping two corners makes a pixel a quad, swapping
+/// two pairs makes a voxel a hexahedron.
 constexpr std::uint8_t kPixel = 8;
 constexpr std::uint8_t kVoxel = 11;
 
@@ -29,8 +29,8 @@ Index checked_size(std::size_t size, const char* what) {
   return static_cast<Index>(size);
 }
 
-/// Returns the numbers of a view, less `base`, as spans or in `own`. Numbers outside the range of Index
-/// become −1.
+/// Returns the numbers of a view, less `base`: a span of the view if no conversion is needed, else of `own`.
+/// Numbers outside the range of Index become −1.
 std::span<const Index> narrowed(const IndexView& numbers, int base, std::vector<Index>& own) {
   if (numbers.bytes() == 4 && base == 0) {
     return {static_cast<const Index*>(numbers.data()), numbers.size()};
@@ -74,7 +74,7 @@ void check_vertices(const CellArrays& cells, int base) {
   }
 }
 
-/// Throws InvalidArgument for a shape that is none of the enumeration's.
+/// Throws InvalidArgument for a shape that is not in the enumeration.
 void check_shapes(const CellArrays& cells) {
   const auto unknown = std::find_if(cells.shapes.begin(), cells.shapes.end(),
                                     [](Shape shape) { return static_cast<int>(shape) >= kShapes; });
@@ -103,7 +103,7 @@ void take_mixed(const CellsView& view, bool trusted, CellArrays& cells) {
   } else {
     cells.own_offsets.resize(offsets.size());
     for (std::size_t c = 0; c < offsets.size(); ++c) {
-      // a faulty offset may be the least number that there is
+      // unsigned: a faulty offset may be the least int64, which would overflow
       cells.own_offsets[c] = static_cast<Offset>(static_cast<std::uint64_t>(offsets[c]) -
                                                  static_cast<std::uint64_t>(view.base()));
     }

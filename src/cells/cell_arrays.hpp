@@ -40,7 +40,7 @@ struct CellArrays {
   [[nodiscard]] int dimension_of(Index cell) const { return shapes.empty() ? 3 : dimension(shapes[cell]); }
 };
 
-/// Returns the shape of a VTK type (vtkCellType.h), none for types that are no cell of a mesh here. O(1).
+/// Returns the shape of a VTK type (vtkCellType.h), nothing for types that are not supported. O(1).
 std::optional<Shape> shape_of_vtk_type(int type);
 
 /// Converts a view of cells, and checks it unless `check` is none: sizes that match, ascending offsets, known
@@ -54,8 +54,8 @@ CellArrays cell_arrays(const CellsView& view, std::size_t vertex_count, Check ch
 /// Some cells, and the vertices that each joins.
 class CellSelection {
  public:
-  /// The cells of the highest dimension: the elements that are simulated. Refers to the arrays where these
-  /// are all cells, which need not be copied then. O(entries).
+  /// The cells of the highest dimension: the elements that are simulated. If these are all cells, refers to
+  /// the arrays without a copy. O(entries).
   static CellSelection elements(const CellArrays& cells);
   /// The cells of lower dimension: boundary faces, edges, points. O(entries).
   static CellSelection lower_dimensional(const CellArrays& cells);

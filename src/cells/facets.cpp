@@ -62,7 +62,7 @@ std::vector<ElementFacet> matched_facets(const CellArrays& cells, const CellSele
 
 namespace {
 
-/// Adds the joins of polyhedra with all elements that have three of their vertices.
+/// Adds the joins of polyhedra with all elements that share at least three vertices with them.
 void join_polyhedra(const CellArrays& cells, const CellSelection& elements, std::vector<Edge>& joins) {
   constexpr int kFaceCorners = 3;
   constexpr std::size_t kMostElements = 1024;
@@ -70,7 +70,7 @@ void join_polyhedra(const CellArrays& cells, const CellSelection& elements, std:
   if (std::find(cells.shapes.begin(), cells.shapes.end(), Shape::polyhedron) == cells.shapes.end()) return;
   const IncidenceRef vertices = elements.incidence();
   const Incidence elements_at = transposed(vertices);
-  std::vector<int> common(static_cast<std::size_t>(elements.size()), 0);  // vertices, with each element
+  std::vector<int> common(static_cast<std::size_t>(elements.size()), 0);  // shared vertices, by element
   std::vector<Index> near;
   for (Index e = 0; e < elements.size(); ++e) {
     poll_in_loop(e);

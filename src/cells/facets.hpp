@@ -39,9 +39,9 @@ std::vector<ElementFacet> matched_facets(const std::vector<ElementFacet>& facets
 std::vector<ElementFacet> matched_facets(const CellArrays& cells, const CellSelection& elements);
 
 /// Joins elements that share a facet, numbered as in `elements`: a face for volumes, an edge for surfaces, an
-/// end for lines. Facets are the same when their corners are, in any order; of more than two elements at a
-/// facet each is joined to the next. A polyhedron, whose faces are not known, is joined to the elements that
-/// have three of its vertices; vertices of more than 1,024 elements do not count. O(facets · log facets at a
+/// end for lines. Facets are the same if their corners are, in any order. If more than two elements share a
+/// facet, each is joined to the next. A polyhedron, whose faces are not known, is joined to the elements that
+/// share three vertices with it; vertices of over 1,024 elements do not count. O(facets · log facets at a
 /// vertex), for polyhedra O(Σ elements at their vertices).
 ///
 /// @throws InvalidArgument if the shapes of cells are not known

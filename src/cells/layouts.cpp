@@ -18,7 +18,7 @@ inline namespace v0_3 {
 namespace {
 
 constexpr Index kCellsInChunk = 1 << 14;
-constexpr Index kFirstColours = 256;  ///< those of which each vertex knows which are taken
+constexpr Index kFirstColours = 256;  ///< each vertex records which of these colours are taken
 
 /// Returns how many vertices each cell has; 0 without cells. Throws InvalidArgument where they differ.
 int uniform_width(const CellArrays& cells, const char* caller) {
@@ -33,21 +33,21 @@ int uniform_width(const CellArrays& cells, const char* caller) {
   return static_cast<int>(width);
 }
 
-/// Calls `work(cell)` for the cells begin … end − 1, dealt out: each thread of the warps takes a run of
-/// adjacent ones, of which warp w has the w-th. The last warp may have fewer threads.
+/// Calls `work(cell)` for the cells begin … end − 1, in the order of a patch: each thread of a warp takes a
+/// run of adjacent cells, and warp w has the w-th cell of each run. The last warp may have fewer threads.
 template <class Work>
 void deal_out(Index begin, Index end, const Work& work) {
   const Index warps = chunk_count(end - begin, kWarp);
   const Index in_last = end - begin - (warps - 1) * kWarp;
   for (Index warp = 0; warp < warps; ++warp) {
     const Index threads = warp + 1 < warps ? kWarp : in_last;
-    // threads that the last warp lacks have runs that are shorter by one
+    // the runs of threads that the last warp lacks are one cell shorter
     for (Index thread = 0; thread < threads; ++thread)
       work(begin + thread * warps - std::max(thread - in_last, 0) + warp);
   }
 }
 
-/// Which colours cells at a vertex have.
+/// The colours that the cells at a vertex have.
 class ColoursAtVertex {
  public:
   void take(Index colour) {
@@ -72,7 +72,7 @@ class ColoursAtVertex {
   static constexpr Index kBits = 64;
 
   std::array<std::uint64_t, kFirstColours / kBits> taken_{};
-  Index next_ = kFirstColours;  ///< the first colour after all that are taken
+  Index next_ = kFirstColours;  ///< the first colour after all taken ones
 };
 
 /// Finds the vertices of patches and their local numbers.
@@ -165,7 +165,7 @@ GatherLists gather_lists(const CellsView& cells, std::size_t vertex_count, const
     std::partial_sum(lists.offsets.begin(), lists.offsets.end(), lists.offsets.begin());
     lists.cells.resize(arrays.vertices.size());
     lists.corners.resize(arrays.vertices.size());
-    // `transposed` has the cells; to look for the corners in them takes three times as long as this
+    // faster than `transposed`: to look for the corners in its cells takes three times as long
     std::vector<Offset> next(lists.offsets.begin(), lists.offsets.end() - 1);
     for (Index c = 0; c < arrays.size(); ++c) {
       const std::span<const Index> corners = arrays.incidence()[c];

@@ -19,12 +19,12 @@ struct FaceEdge {
   std::size_t twin = kNoTwin;  ///< the same edge of another face
 };
 
-/// A standard shape by its faces.
+/// A standard shape, described by its faces.
 struct FacePattern {
   std::size_t triangles;
   std::size_t quads;
   Shape shape;
-  std::size_t base;  ///< corners of the face that the cell begins with
+  std::size_t base;  ///< number of corners of the cell's first face
   int size;
 };
 constexpr std::array kPatterns{FacePattern{4, 0, Shape::tetrahedron, 3, 4},
@@ -35,7 +35,7 @@ bool holds_corner(std::span<const Index> corners, Index corner) {
   return std::find(corners.begin(), corners.end(), corner) != corners.end();
 }
 
-/// The faces of a polyhedron that are few enough for a standard shape.
+/// A polyhedron with few enough faces to be a standard shape.
 class FewFaces {
  public:
   explicit FewFaces(std::span<const PolyhedronFace> faces) : faces_(faces) {
@@ -89,7 +89,7 @@ class FewFaces {
     return true;
   }
 
-  /// Turns all faces as the first one; returns false if they do not hang together or have no two sides.
+  /// Orients all faces like the first one; returns false if they are not connected or not orientable.
   bool orient() {
     std::array<bool, kMostFaces> is_known{};
     is_known[0] = true;
@@ -112,7 +112,7 @@ class FewFaces {
     return true;
   }
 
-  /// Returns the corner that an edge joins with `corner`, which is none of `base`; −1 unless there is one.
+  /// Returns the corner outside `base` that an edge joins with `corner`; −1 unless there is exactly one.
   [[nodiscard]] Index corner_above(Index corner, std::span<const Index> base) const {
     Index above = -1;
     for (std::size_t i = 0; i < edge_count_; ++i) {
@@ -125,7 +125,7 @@ class FewFaces {
     return above;
   }
 
-  /// Gives the corners of a cell; returns false if the faces are joined in another way than those of the
+  /// Fills in the corners of a cell; returns false if the faces are not connected like those of the
   /// shape.
   bool build(const FacePattern& pattern, CellOfFaces& cell) const {
     const auto first = static_cast<std::size_t>(
@@ -145,7 +145,7 @@ class FewFaces {
       }
       if (!has_apex || k == 0) cell.corners[n + k] = above[k];
     }
-    // each side has an edge of the first face and what is above its ends
+    // each side has an edge of the first face and the corners above the ends of that edge
     for (std::size_t k = 0; k < n; ++k) {
       const Index from = cell.corners[k];
       const Index to = cell.corners[(k + 1) % n];

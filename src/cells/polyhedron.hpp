@@ -13,11 +13,11 @@ namespace meshorder {
 
 /// A face of a polyhedron.
 struct PolyhedronFace {
-  std::span<const Index> corners;  ///< in turn
+  std::span<const Index> corners;  ///< in order around the face
   bool is_inward = false;          ///< the corners turn around a normal that points into the polyhedron
 };
 
-/// The cell that a polyhedron is.
+/// The cell that the faces of a polyhedron form.
 struct CellOfFaces {
   enum class Kind : std::uint8_t {
     standard,  ///< a tetrahedron, pyramid, wedge or hexahedron
@@ -36,8 +36,8 @@ struct CellOfFaces {
 };
 
 /// Returns the cell that these faces enclose, whatever their order. Its orientation is that of the first
-/// face; the others count by `signs_agree` alone. O(faces² + edges²) for up to six faces of up to four
-/// corners, O(faces) for others, which are `other` without a look at their edges.
+/// face; those of the others only affect `signs_agree`. O(faces² + edges²) for up to six faces of up to four
+/// corners; O(faces) for others, which are `other`: their edges are not read.
 CellOfFaces cell_of_faces(std::span<const PolyhedronFace> faces);
 
 /// Turns a linear tetrahedron, pyramid, wedge or hexahedron inside out.

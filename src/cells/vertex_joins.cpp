@@ -6,7 +6,7 @@
 namespace meshorder {
 namespace {
 
-/// The pieces of all elements.
+/// Returns the pieces of all elements.
 Incidence pieces_of(const CellArrays& cells, const CellSelection& elements) {
   Incidence pieces;
   pieces.vertex_count = cells.vertex_count;

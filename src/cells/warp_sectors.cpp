@@ -15,11 +15,11 @@ constexpr int kSectorBytes = 32;
 constexpr int kNumberBytes = 4;
 constexpr Index kWarpsInChunk = 512;
 
-/// The additions that a warp makes for each vertex at once.
+/// How the additions of a thread to a vertex lie in memory.
 struct Additions {
-  int record_bytes;  ///< from one vertex to the next
-  int count;         ///< additions, one after another in the record
-  int arrays;        ///< that they are made to
+  int record_bytes;  ///< distance from one vertex to the next
+  int count;         ///< number of additions, one after another in the record
+  int arrays;        ///< number of arrays that have these additions
 };
 
 Additions additions_of(GpuLayout layout) {
@@ -33,7 +33,7 @@ Additions additions_of(GpuLayout layout) {
   }
 }
 
-/// Returns the sectors of one addition to ascending vertices: of each sector the most threads at one vertex.
+/// Returns the sectors of one addition to ascending vertices: per sector, the most threads at one vertex.
 Offset sectors_of_addition(std::span<const Index> ascending, int record_bytes, int first_byte) {
   Offset sectors = 0;
   Offset sector = -1;
@@ -53,7 +53,7 @@ Offset sectors_of_addition(std::span<const Index> ascending, int record_bytes, i
   return sectors + most;
 }
 
-/// The same of all additions that are made for a vertex.
+/// Returns the same for all additions to a vertex.
 Offset sectors_of_additions(std::span<const Index> ascending, const Additions& additions) {
   Offset sectors = 0;
   for (int k = 0; k < additions.count; ++k) {
@@ -62,7 +62,7 @@ Offset sectors_of_additions(std::span<const Index> ascending, const Additions& a
   return sectors;
 }
 
-/// What the threads of a warp touch at one step.
+/// The vertices or sectors that the threads of a warp touch at one step.
 class Touched {
  public:
   void clear() { size_ = 0; }
@@ -78,7 +78,7 @@ class Touched {
   std::size_t size_ = 0;
 };
 
-/// Calls `count(begin, end)` for the places of every stride-th warp of `size` threads, and adds up.
+/// Calls `count(begin, end)` for the places of every stride-th warp of `size` threads; returns the sum.
 template <class Count>
 Offset sum_over_warps(Index size, Index stride, const Count& count) {
   const Index looked_at = chunk_count(chunk_count(size, kWarp), stride);

@@ -11,8 +11,8 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace {
 
-/// Throws unless a graph whose entries are in range is symmetric, repeats and loops aside. The hash of a
-/// graph whose repeats are asymmetric differs from 0 too, so the rows decide.
+/// Throws if a graph, whose entries are in range, is asymmetric after repeats and loops are removed.
+/// Asymmetric repeats alone make the hash nonzero too, so the clean rows decide.
 void refuse_asymmetry_of(const GraphView& view, const GraphArrays& graph, const GraphFindings& findings) {
   if (findings.asymmetry == 0) return;
   if (findings.is_clean()) {

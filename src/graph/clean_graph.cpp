@@ -46,7 +46,7 @@ Offset clean_row(OwnedGraph& rows, Index v, std::vector<std::pair<Index, double>
 
 /// Cleans all rows and closes the gaps.
 OwnedGraph cleaned_rows(OwnedGraph rows) {
-  constexpr Index kRows = 4096;  // that a thread sorts together
+  constexpr Index kRows = 4096;  // sorted by a thread at a time
   std::vector<Offset> offsets(rows.offsets.size(), 0);
   for_each_chunk(rows.size(), kRows, [&](Index /*chunk*/, Index begin, Index end) {
     std::vector<std::pair<Index, double>> buffer;
@@ -117,7 +117,7 @@ GraphArrays clean_graph(const GraphView& graph, Check check, Symmetry symmetry) 
   const bool trusted = check == Check::none;
   GraphArrays arrays = graph_arrays(graph, trusted);
   if (trusted && symmetry == Symmetry::require) return arrays;
-  // Asymmetry is looked for even by Check::fast: the methods would leave their arrays on an asymmetric graph.
+  // Check::fast looks for asymmetry too: on an asymmetric graph the methods would write outside their arrays.
   const GraphFindings found = examine(arrays, true);
   refuse_faults(graph, arrays, found);
   const bool mirror = found.asymmetry != 0 && (symmetry == Symmetry::mirror || check == Check::fast);

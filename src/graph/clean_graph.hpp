@@ -20,8 +20,8 @@ struct OwnedGraph {
 /// Makes a caller's graph clean: ascending rows, no loops, no repeats, every edge in both rows. Makes
 /// no copy where it is clean already and has the library's types; otherwise `notes` say what was done.
 ///
-/// @param check     full, fast: as stated there; fast mirrors an asymmetric pattern. none: the arrays are
-///                  taken as they are, apart from their types
+/// @param check     full, fast: see `Check`; fast mirrors an asymmetric pattern. none: the arrays are taken
+///                  as they are, apart from their types, unless `symmetry` is mirror
 /// @param symmetry  mirror: the pattern of A + Aᵀ, weights of (A + Aᵀ) / 2
 /// @throws InvalidArgument, TooLarge as `meshorder::check`
 /// @note O(n + entries · log degree), on all threads of the arena.

@@ -24,8 +24,8 @@ struct CsrGraph {
   bool operator==(const CsrGraph&) const = default;
 };
 
-/// A view of a clean undirected graph: what the algorithms take. Converts from a `CsrGraph`, and refers to
-/// the caller's arrays where these already are as CsrGraph describes them. Costs four words to copy.
+/// A view of a clean undirected graph, which the algorithms take. Converts from a `CsrGraph`, or refers to a
+/// caller's arrays that have the form described for CsrGraph. Costs four words to copy.
 struct GraphRef {
   std::span<const Offset> offsets;    ///< n + 1, from 0
   std::span<const Index> neighbours;  ///< twice the number of edges
@@ -49,15 +49,15 @@ struct Edge {
   Index b;
 };
 
-/// The graph of 0 … n−1 with the given edges; loops are dropped and repeats merged. Throws InvalidArgument
-/// for an end outside 0 … n−1. O(n + edges · log degree).
+/// Returns the graph of 0 … n−1 with these edges; loops are dropped and repeats merged. Throws
+/// InvalidArgument for an end outside 0 … n−1. O(n + edges · log degree).
 CsrGraph graph_from_edges(Index n, std::span<const Edge> edges);
 
-/// The same graph with vertex v renamed `old_to_new[v]`, a bijection of 0 … n−1. O(n + edges · log degree).
+/// Returns the graph with vertex v renamed `old_to_new[v]`, a bijection. O(n + edges · log degree).
 CsrGraph renumbered(GraphRef graph, std::span<const Index> old_to_new);
 
-/// The subgraph of the listed vertices (each once): vertex k of the result is `vertices[k]`. Edges that leave
-/// the list are dropped. O(n of `graph` + entries of the listed rows · log degree).
+/// Returns the subgraph of the listed vertices (each once): vertex k of the result is `vertices[k]`. Edges
+/// that leave the list are dropped. O(n of `graph` + entries of the listed rows · log degree).
 CsrGraph induced_subgraph(GraphRef graph, std::span<const Index> vertices);
 
 }  // namespace meshorder

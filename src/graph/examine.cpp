@@ -23,7 +23,7 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31U);
 }
 
-/// The shortest decimal number that reads back as `value`, so that different numbers look different.
+/// Returns the shortest decimal number that reads back as `value`, so that different numbers look different.
 std::string text_of(double value) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
@@ -59,7 +59,7 @@ GraphFindings examine_rows(const GraphArrays& graph, Index begin, Index end) {
 
 template <bool Symmetry, bool Weighted>
 GraphFindings examine_all(const GraphArrays& graph) {
-  constexpr Index kRows = 8192;  // that a thread examines together
+  constexpr Index kRows = 8192;  // examined by a thread at a time
   return sum_over_chunks<GraphFindings>(graph.size(), kRows, [&](Index begin, Index end) {
     return examine_rows<Symmetry, Weighted>(graph, begin, end);
   });
@@ -116,7 +116,7 @@ void refuse_asymmetry(std::span<const Offset> offsets, std::span<const Index> ne
   // too.
   std::vector<Offset> cursor(offsets.begin(), offsets.end() - 1);
   for (Index v = 0; v < n; ++v) {
-    // lower neighbours that no row below has asked for
+    // a lower neighbour that no earlier row has matched
     if (cursor[v] < offsets[v + 1] && neighbours[cursor[v]] < v) refuse(neighbours[cursor[v]], v);
     for (Offset k = cursor[v]; k < offsets[v + 1]; ++k) {
       const Index u = neighbours[k];

@@ -12,7 +12,7 @@ struct GraphFindings {
   Offset out_of_range = 0;  ///< neighbours outside 0 … n−1
   Offset bad_weights = 0;   ///< not positive or not finite
   Offset loops = 0;
-  Offset unordered = 0;         ///< neighbours not above the one before in their row, repeats among them
+  Offset unordered = 0;         ///< neighbours not above the one before in their row, including repeats
   std::uint64_t asymmetry = 0;  ///< Σ h(u, v) for u < v, −h for u > v, modulo 2⁶⁴; 0 for a symmetric graph
 
   [[nodiscard]] bool is_clean() const noexcept { return loops == 0 && unordered == 0; }

@@ -26,8 +26,8 @@ struct Position {
   Index column;
 };
 
-/// Whether the columns of one row after another lie far from each other, so that whoever writes by columns
-/// waits for memory. Looks at some thousand rows.
+/// Returns whether the columns of consecutive rows lie far apart, so that writing by columns waits for
+/// memory. Looks at about a thousand rows.
 bool is_scattered(IncidenceRef incidence) {
   constexpr Index kLooks = 1000;
   constexpr Index kFar = 65536;  // columns, whose entries fill a cache of some megabytes
@@ -48,7 +48,7 @@ bool is_scattered(IncidenceRef incidence) {
 constexpr Index kRowsOfPart = 16384;
 
 // Both of the following return the rows of each column, ascending, one column after another.
-// `entries_of(part, begin, end)` returns what calls its argument for the positions in the rows of a part.
+// `entries_of(part, begin, end)` returns a function that calls its argument for each position of a part.
 
 /// @param offsets  where each column begins, and the end
 template <class EntriesOf>
@@ -69,7 +69,7 @@ std::vector<Index> by_columns(Index row_count, const EntriesOf& entries_of,
   return rows;
 }
 
-/// For scattered columns, on all threads.
+/// Like `by_columns`, for scattered columns, on all threads.
 ///
 /// @param offsets  are written: where each column begins, and the end
 template <class EntriesOf>
@@ -131,11 +131,11 @@ namespace {
 /// Rows of a graph one after another, entries within a row in any order.
 struct Rows {
   std::vector<Index> neighbours;
-  Offset end = 0;  ///< of what is used
+  Offset end = 0;  ///< of the neighbours in use
 };
 
-/// Where the vertices of each element lie in the list of all. `Size` is the size of every element, which
-/// spares reading the offsets, or 0 where they differ.
+/// Where the vertices of each element lie in the list of all. `Size` is the size of every element, so that
+/// the offsets need not be read, or 0 if sizes differ.
 template <int Size>
 struct Elements {
   IncidenceRef incidence;
@@ -179,7 +179,7 @@ void append_row(Elements<Size> elements, const Incidence& at_vertex, Index v, st
   rows.end = end;
 }
 
-/// All rows, kRowsOfPart in each part, and the degrees: `degrees[v + 1]` is that of v.
+/// Returns all rows, kRowsOfPart in each part, and the degrees: `degrees[v + 1]` is that of v.
 template <int Size>
 std::vector<Rows> find_rows(Elements<Size> elements, std::vector<Offset>& degrees) {
   const Incidence at_vertex = transposed(elements.incidence);
@@ -200,7 +200,7 @@ std::vector<Rows> find_rows(Elements<Size> elements, std::vector<Offset>& degree
   return parts;
 }
 
-/// The same for elements whose size is known only now.
+/// Does the same for elements whose size is known only at run time.
 std::vector<Rows> find_rows(IncidenceRef elements, std::vector<Offset>& degrees) {
   switch (common_size(elements)) {
     case 3:
@@ -212,8 +212,8 @@ std::vector<Rows> find_rows(IncidenceRef elements, std::vector<Offset>& degrees)
   }
 }
 
-/// The symmetric graph with these rows, kRowsOfPart in each of `parts`, each sorted: the rows of each
-/// column of a symmetric matrix are its own row, sorted. Parts are freed once they are read.
+/// Returns the symmetric graph with these rows, kRowsOfPart in each of `parts`, and sorts each row: writing a
+/// symmetric matrix by columns gives its rows in ascending order. Parts are freed once they are read.
 CsrGraph with_sorted_rows(std::vector<Offset> offsets, std::vector<Rows> parts, bool scattered) {
   CsrGraph graph;
   graph.offsets = std::move(offsets);
@@ -240,7 +240,7 @@ struct LimitOnJoins {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process
 LimitOnJoins limit_on_joins;
 
-/// The most entries that long rows give the graph: a member has no more neighbours than there are others.
+/// Returns a bound on the graph's entries from long rows: a member has at most all others as neighbours.
 std::uint64_t entries_of_long_rows(IncidenceRef rows) {
   std::vector<Offset> neighbours(static_cast<std::size_t>(rows.vertex_count), 0);
   for (Index e = 0; e < rows.size(); ++e) {

@@ -22,7 +22,7 @@ struct Incidence {
   }
 };
 
-/// A view of an incidence, its arrays owned by somebody else. Costs five words to copy.
+/// A view of an incidence that does not own its arrays. Costs five words to copy.
 struct IncidenceRef {
   Index vertex_count = 0;
   std::span<const Offset> offsets;  ///< elements + 1, from 0

@@ -13,23 +13,23 @@ namespace meshorder {
 /// Rows of more members than this count towards the limit on a graph that joins all of them.
 inline constexpr std::size_t kManyJoined = 64;
 
-/// The most bytes that an order takes for an entry of a graph of long rows, the graph and its copies
-/// included.
+/// The most bytes that ordering takes for an entry of a graph made of long rows, including the graph and its
+/// copies.
 inline constexpr std::uint64_t kBytesToOrder = 24;
 
-/// Limits the memory of all graphs that this process makes from long rows, with what is computed from them;
-/// without a call it is `memory_limit`. Not while other threads order.
+/// Limits the memory of each graph that this process makes from long rows and of what is computed from it.
+/// `memory_limit` holds in any case. Must not be called while other threads order.
 ///
-/// @param bytes           of a graph and all that is computed from it
-/// @param bytes_of_entry  that this takes for each entry of the graph
+/// @param bytes           for a graph and all that is computed from it
+/// @param bytes_of_entry  estimated bytes for each entry of the graph
 void limit_joins(std::uint64_t bytes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
-/// How messages call the rows of a graph that joins the members of each.
+/// Words for messages about a graph that joins the members of each row.
 struct JoinNames {
   const char* row = "cell";
   const char* members = "vertices";
   const char* remedy = "cut such cells";
-  std::function<Index(Index)> number_of = {};  ///< the number of a row; none: its place
+  std::function<Index(Index)> number_of = {};  ///< returns the number of a row; none: its place
 };
 
 /// Throws TooLarge where rows of more than `kManyJoined` members would make a graph beyond the limit; names

@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// `M` real vectors of n entries stored together: entry v of all of them side by side, so that one pass over
-/// a graph serves all.
+/// `M` real vectors of n entries stored together: entry v of all of them is side by side, so that one pass
+/// over a graph serves all.
 template <int M>
 using VectorBlock = std::vector<std::array<double, M>>;
 
@@ -26,7 +26,7 @@ struct Laplacian {
   [[nodiscard]] bool is_weighted() const noexcept { return !weights.empty(); }
   [[nodiscard]] double weight(Offset k) const { return is_weighted() ? weights[k] : 1.0; }
 
-  /// Σ weight · x over the neighbours of v: minus the off-diagonal part of row v of L x.
+  /// Returns Σ weight · x over the neighbours of v: minus the off-diagonal part of row v of L x.
   template <int M>
   [[nodiscard]] std::array<double, M> neighbour_sum(Index v, const VectorBlock<M>& x) const {
     std::array<double, M> sum{};
@@ -45,8 +45,8 @@ struct Laplacian {
     return sum;
   }
 
-  /// y = L x, from differences along edges: where x hardly varies, as eigenvectors along heavy edges, nothing
-  /// cancels. O(n + edges), on all threads.
+  /// Computes y = L x from differences along edges, which avoids cancellation where x hardly varies, as
+  /// eigenvectors do along heavy edges. O(n + edges), on all threads.
   template <int M>
   void apply(const VectorBlock<M>& x, VectorBlock<M>& y) const {
     constexpr Index kRows = 4096;

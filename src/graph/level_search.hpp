@@ -9,11 +9,11 @@
 
 namespace meshorder {
 
-/// Breadth-first searches of one graph, level after level. Large levels are shared by all threads; the order
-/// is the same as on one: by the place of the first vertex that finds each, and as that one's row lists them.
+/// Breadth-first searches of one graph, level after level. All threads share large levels. Vertices of a
+/// level are in the order of the first vertex that finds them, then of its row, for any number of threads.
 ///
-/// On several threads each vertex of a level offers itself to its neighbours, the smallest place wins, and
-/// those who lost leave out what they had found.
+/// On several threads each vertex of a level claims its neighbours. The smallest place wins, and the others
+/// drop the neighbours that they lost.
 class LevelSearch {
  public:
   /// Sorts what one vertex has found, in place.
@@ -24,24 +24,24 @@ class LevelSearch {
 
   /// Finds the component of a vertex that was not found before. O(component).
   ///
-  /// @param places   receives its vertices in their order; one longer than the component, at least
-  /// @param arrange  none: the order of the rows stays
+  /// @param places   receives the vertices in their order; at least one longer than the component
+  /// @param arrange  none: keeps the order of the rows
   /// @return how many vertices there are
   Index run(Index start, std::span<Index> places, Arrange arrange = nullptr);
 
-  /// Where each level of the last search begins in its places, and the number of places.
+  /// Returns where each level of the last search begins in its places, and the number of places.
   [[nodiscard]] std::span<const Index> level_start() const noexcept { return level_start_; }
-  /// How many levels come after the first.
+  /// Returns how many levels come after the first.
   [[nodiscard]] Index depth() const noexcept { return index_size(level_start_) - 2; }
 
   [[nodiscard]] bool has_found(Index v) const { return found_by_[v] != kNobody; }
-  /// Makes the vertices first … end − 1, which are whole components, to be found again.
+  /// Lets the vertices first … end − 1, which must be whole components, be found again.
   void forget(Index first, Index end);
 
  private:
   static constexpr Index kNobody = std::numeric_limits<Index>::max();
 
-  /// A vertex, and the place of one that finds it.
+  /// A vertex, and the place of a vertex that finds it.
   struct Finding {
     Index vertex;
     Index by;

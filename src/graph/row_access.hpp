@@ -7,8 +7,8 @@
 
 namespace meshorder {
 
-// Loops over vertices of all kinds come to rows that lie anywhere in memory, and search them for entries that
-// nobody can foresee: they ask for rows a few steps ahead, and search without branches.
+// Loops over vertices visit rows anywhere in memory and search them for unpredictable entries. These
+// functions prefetch rows a few steps ahead, and search without branches.
 
 /// Prefetches the row of the vertex that comes a few places after `k` in the order.
 inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {
@@ -18,12 +18,12 @@ inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) 
   }
 }
 
-/// Asks for the places where rows begin, for `prefetch_rows` to find them in the cache a step later.
+/// Prefetches the offsets of rows, so that `prefetch_rows` finds them in the cache a step later.
 inline void prefetch_offsets(std::span<const Offset> offsets, std::span<const Index> rows) {
   for (const Index row : rows) __builtin_prefetch(offsets.data() + row);
 }
 
-/// Asks for the first two cache lines of the rows, which hold at least 17 entries.
+/// Prefetches the first two cache lines of the rows, which hold at least 17 entries.
 inline void prefetch_rows(std::span<const Offset> offsets, std::span<const Index> entries,
                           std::span<const Index> rows) {
   if (entries.empty()) return;

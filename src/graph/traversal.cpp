@@ -14,7 +14,7 @@ namespace meshorder {
 
 namespace {
 
-/// A forest in which every vertex is below a smaller one of its component or the root of a tree.
+/// A forest: the parent of each vertex is a smaller one of its component, or itself if it is a root.
 class Forest {
  public:
   explicit Forest(Index vertices) : parents_(static_cast<std::size_t>(vertices)) {
@@ -30,7 +30,7 @@ class Forest {
   }
 
  private:
-  /// Halves the way on the way (Tarjan and van Leeuwen 1984).
+  /// Returns the root of a tree and halves the path to it (Tarjan and van Leeuwen 1984).
   Index root_of(Index v) {
     while (parents_[v] != v) v = parents_[v] = parents_[parents_[v]];
     return v;
@@ -39,7 +39,7 @@ class Forest {
   std::vector<Index> parents_;
 };
 
-/// Returns a tree for each component.
+/// Returns a forest with one tree for each component.
 Forest forest_of(GraphRef graph) {
   Forest forest(graph.size());
   for (Index v = 0; v < graph.size(); ++v) {
