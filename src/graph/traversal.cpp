@@ -79,7 +79,7 @@ std::vector<std::vector<Index>> connected_components(GraphRef graph) {
 
 namespace {
 
-/// Reads each row once, and copies it as it searches.
+/// Reads each row once: copies it while the search visits it.
 BreadthFirstCopy copy_in_one_pass(GraphRef graph) {
   const Index n = graph.size();
   BreadthFirstCopy copy;
@@ -164,7 +164,7 @@ BreadthFirstCopy copy_on_threads(GraphRef graph) {
 
 BreadthFirstCopy breadth_first_copy(GraphRef graph) {
   constexpr Index kSmall = 1 << 15;
-  // two threads take as long for the rows that they read again as they save
+  // two threads lose as much by reading the rows twice as they save
   const bool is_shared = thread_count() > 2 && graph.size() >= kSmall;
   BreadthFirstCopy copy = is_shared ? copy_on_threads(graph) : copy_in_one_pass(graph);
   std::stable_sort(copy.components.begin(), copy.components.end(),
@@ -175,7 +175,7 @@ BreadthFirstCopy breadth_first_copy(GraphRef graph) {
 std::vector<Index> search_from_rim(const BreadthFirstCopy& copy, const BreadthFirstCopy::Component& component,
                                    LevelSearch& search) {
   const Index size = component.end - component.first;
-  std::vector<Index> order = index_range(component.first, size);  // of the copy's own search
+  std::vector<Index> order = index_range(component.first, size);  // first the order of the copy's own search
   std::vector<Index> next(static_cast<std::size_t>(size) + 1);
   Index depth = component.depth;
   std::span<const Index> last_level = std::span(order).subspan(component.last_level - component.first);

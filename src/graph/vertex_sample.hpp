@@ -9,9 +9,9 @@
 
 namespace meshorder {
 
-/// All of fewer than 262,144 vertices; of more one of each 2, 4, 8 … that follow each other, 131,072 to
-/// 262,144 in all. Which one is decided by a hash, so that no lattice keeps step with the sample. The same on
-/// every run.
+/// A sample of the vertices: all if there are fewer than 262,144, else one of every 2, 4, 8 … consecutive
+/// ones, 131,072 to 262,144 in all. A hash chooses which one, so that the sample is not in step with a
+/// lattice. The same on every run.
 class VertexSample {
  public:
   explicit VertexSample(Index vertices)
@@ -21,7 +21,7 @@ class VertexSample {
   [[nodiscard]] bool is_all() const { return bits_ == 0; }
   /// Returns how many vertices are in the sample.
   [[nodiscard]] Index size() const { return chunk_count(vertices_, Index{1} << bits_); }
-  /// Returns vertex k of the sample, 0 … size() − 1; they rise.
+  /// Returns vertex k of the sample, k in 0 … size() − 1; ascending in k.
   [[nodiscard]] Index operator[](Index k) const {
     const std::uint64_t hash = static_cast<std::uint64_t>(k) * 0x9e3779b97f4a7c15U >> 32U;
     const auto place = static_cast<Index>(hash & ((std::uint64_t{1} << bits_) - 1));

@@ -23,7 +23,7 @@ void for_elements(const Mesh& mesh, Visit visit) {
   }
 }
 
-/// Keeps the facets of exactly one element, in ascending order of their elements.
+/// Keeps the facets that exactly one element has, in ascending order of their elements.
 void keep_unmatched(std::vector<ElementFacet>& facets) {
   auto kept = facets.begin();
   for (auto begin = facets.begin(); begin != facets.end();) {

@@ -9,10 +9,10 @@
 namespace meshorder {
 
 /// Returns the visible surface of a mesh as triangles on its corners. For volumes: the faces of exactly one
-/// cell, those of cavities included, counterclockwise as seen from outside whichever way the cell's corners
-/// turn (a cell without volume leaves its faces as they are). For a surface mesh: its cells. Quadrilaterals
-/// and polygons are cut into fans. In the order of cells. Throws InputError for a mesh without cells of two
-/// or three dimensions. O(facets · log facets at a vertex).
+/// cell, including those of cavities, counterclockwise as seen from outside for either orientation of the
+/// cell (a cell without volume leaves its faces as they are). For a surface mesh: its cells. Quadrilaterals
+/// and polygons are cut into fans. Faces of polyhedra are not known. In the order of cells. Throws InputError
+/// for a mesh without cells of two or three dimensions. O(facets · log facets at a vertex).
 std::vector<std::array<Index, 3>> boundary_triangles(const Mesh& mesh);
 
 /// Returns the faces that exactly one tetrahedron has, ascending, as 4 · tetrahedron + k; face k is opposite

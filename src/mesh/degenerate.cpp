@@ -10,10 +10,10 @@
 namespace meshorder {
 namespace {
 
-/// Returns whether a number occurs twice. `sorted` is room to work in.
+/// Returns whether a number occurs twice. `sorted` is working memory.
 bool repeats(std::span<const Index> numbers, std::vector<Index>& sorted) {
   constexpr std::size_t kComparedInPairs = 10;
-  if (numbers.size() == 4) {  // tetrahedra, of which large meshes are
+  if (numbers.size() == 4) {  // the most frequent cells of large meshes
     const Index* const n = numbers.data();
     return (n[0] == n[1]) | (n[0] == n[2]) | (n[0] == n[3]) | (n[1] == n[2]) | (n[1] == n[3]) |
            (n[2] == n[3]);

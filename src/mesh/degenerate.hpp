@@ -12,9 +12,9 @@ namespace meshorder {
 /// Returns the cells that name a vertex twice, ascending. O(vertex entries).
 std::vector<Index> degenerate_cells(const Cells& cells);
 
-/// Returns the note on so many such cells.
+/// Returns a note that reports `count` such cells.
 ///
-/// @param first  the smallest one
+/// @param first  number of the first such cell
 std::string note_of_degenerate(std::int64_t count, std::int64_t first);
 
 }  // namespace meshorder

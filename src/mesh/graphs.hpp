@@ -6,7 +6,7 @@
 
 namespace meshorder {
 
-/// Returns the cells of a mesh as the orderings take them. Refers to the mesh. O(blocks).
+/// Returns the cells of a mesh in the form that the orderings take. Refers to the mesh. O(blocks).
 CellArrays cell_arrays(const Mesh& mesh);
 
 /// Returns the graph that joins any two vertices of a common element, or of a piece of it (vertex_joins.hpp).

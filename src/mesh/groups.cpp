@@ -25,7 +25,7 @@ std::optional<std::int64_t> whole(const Value& value) {
   return std::nullopt;
 }
 
-/// Returns the values of an array of one integer a row; nothing for other arrays.
+/// Returns the values of an array with one integer in each row; nothing for other arrays.
 std::optional<std::vector<std::int64_t>> whole_numbers(const DataArray& array) {
   if (array.components != 1) return std::nullopt;
   return std::visit(
@@ -96,7 +96,7 @@ std::vector<Index> smallest_at_vertices(const Mesh& mesh, const std::vector<Inde
   return groups;
 }
 
-/// Makes a group for each set of cells that is the smallest set of some cell.
+/// Makes a group for each set of cells that is the smallest set of at least one cell.
 Grouping grouping_by_sets(const Mesh& mesh) {
   std::vector<const EntitySet*> set_of(mesh.cells.shapes.size(), nullptr);
   for (const EntitySet& set : mesh.sets) {

@@ -18,7 +18,7 @@ struct Grouping {
   Association association = Association::cells;  ///< of that array
   std::vector<std::int64_t> values;              ///< distinct, ascending: group g has values[g]
   std::vector<std::string> names;                ///< for sets: the name of each group's set; else empty
-  std::vector<Index> of_vertices;                ///< the group of each vertex; values.size() for none
+  std::vector<Index> of_vertices;                ///< the group of each vertex; values.size() if it has none
   std::vector<Index> of_cells;  ///< likewise for each cell; empty if the array is on vertices
 
   /// Returns the number of groups, including the one without value.
@@ -28,9 +28,9 @@ struct Grouping {
 /// Groups a mesh by an array of one integer each (of an integer type, or real numbers without fractions, as
 /// TetGen writes regions).
 ///
-/// An array on cells groups the cells, and with them the vertices: a vertex belongs to the smallest value
+/// An array on cells groups the cells, and through them the vertices: a vertex belongs to the smallest value
 /// among its elements, the cells of the highest dimension. An array on vertices groups the vertices alone. If
-/// both have an array of that name, that of the cells counts; "cells:NAME" and "vertices:NAME" choose one.
+/// both have an array of that name, the one on cells is used; "cells:NAME" and "vertices:NAME" choose one.
 ///
 /// "sets", if no array has that name, groups the cells by the mesh's sets of cells, such as Vega's regions
 /// and Gmsh's named physical groups. A cell in several sets belongs to the smallest one (ties: the first in

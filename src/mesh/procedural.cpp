@@ -41,7 +41,7 @@ void check_options(const ProceduralOptions& options, double vertices) {
   if (!(options.jitter >= 0 && options.jitter <= 0.15))
     throw InvalidArgument("model: jitter must be 0 … 0.15");
   if (6 * vertices > kMaxIndex) throw InvalidArgument("model: too large, more than 2,147,483,647 tetrahedra");
-  // of a point and six tetrahedra
+  // bytes of a point and six tetrahedra
   constexpr std::uint64_t kBytesEach =
       sizeof(Point) + 6 * (4 * sizeof(Index) + sizeof(Offset) + sizeof(Shape));
   const std::uint64_t bytes = bytes_for(static_cast<std::uint64_t>(vertices), kBytesEach);
@@ -51,7 +51,7 @@ void check_options(const ProceduralOptions& options, double vertices) {
   }
 }
 
-/// Vertices at lattice coordinates in [0, 1]³, jittered inside, and the six tetrahedra of each cube.
+/// Returns vertices at lattice positions in [0, 1]³, jittered inside, and six tetrahedra for each cube.
 Mesh cut_lattice(const Lattice& lattice, const ProceduralOptions& options) {
   Mesh mesh;
   Random random(options.seed);
@@ -108,7 +108,7 @@ double volume(const std::array<Point, 4>& p) {
 }
 
 /// Applies `map` to every vertex. Where the map flattens cubes, at the rim and along diagonals, jitter could
-/// invert tetrahedra: vertices of those with less than a tenth of their unjittered volume lose their jitter.
+/// invert tetrahedra: if one has less than a tenth of its regular volume, its vertices lose their jitter.
 template <class Map>
 void bend(Mesh& mesh, const Lattice& lattice, Map map) {
   constexpr double kMinShare = 0.1;
@@ -165,7 +165,7 @@ Mesh make_torus(const ProceduralOptions& options) {
   const Lattice lattice{{8 * options.size, options.size, options.size}, true};
   Mesh mesh = cut_lattice(lattice, options);
   bend(mesh, lattice, [](const Point& p) -> Point {
-    const double angle = -2 * std::numbers::pi * p[0];  // this turn keeps volumes positive
+    const double angle = -2 * std::numbers::pi * p[0];  // the negative sign keeps volumes positive
     const auto disc = drawn_into_ball<2>({2 * p[1] - 1, 2 * p[2] - 1});
     const double radius = 1 + kTube * disc[0];
     return {radius * std::cos(angle), radius * std::sin(angle), kTube * disc[1]};

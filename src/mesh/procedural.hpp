@@ -9,7 +9,7 @@ namespace meshorder {
 
 /// Options of a procedural tetrahedral mesh. Cubes of a lattice are cut into six tetrahedra each around a
 /// diagonal (Kuhn 1960); inner vertices are moved at random by up to `jitter` of a lattice step along each
-/// axis. All tetrahedra have positive volume, for which a few vertices of ball and torus have no jitter.
+/// axis. All tetrahedra have positive volume; for that, a few vertices of ball and torus have no jitter.
 struct ProceduralOptions {
   Index size = 20;         ///< lattice cubes across the shape, at least 1
   double jitter = 0.15;    ///< 0 … 0.15

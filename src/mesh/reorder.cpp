@@ -68,7 +68,7 @@ void reorder_data(DataArray& array, const Permutation& order) {
   }
 }
 
-/// Sorts the ids of each class, ascending along the positions of that class; no classes: of all cells.
+/// Sorts the ids of each class and puts them at the positions of that class; without classes, sorts all.
 void sort_ids_within_classes(std::vector<std::int64_t>& ids, const std::vector<Index>& classes, Index count) {
   if (classes.empty()) return std::sort(ids.begin(), ids.end());
   std::vector<std::vector<std::int64_t>> by_class(count);
@@ -98,7 +98,7 @@ void move_ids(std::vector<std::int64_t>& ids, const Permutation& order) {
   if (!ids.empty()) ids = moved(order, ids);
 }
 
-/// Attaches the ids, or the positions where there are none, as the arrays `kOriginal`.
+/// Attaches the ids, or the positions if there are none, as the arrays `kOriginal`.
 void attach_ids(Mesh& mesh) {
   for (const Association association : {Association::vertices, Association::cells}) {
     if (find_array(mesh, kOriginal, association) != nullptr) {
@@ -144,7 +144,7 @@ MeshOrder compute_reordering(const Mesh& mesh, const CsrGraph& graph, const Reor
   result.vertices = order_vertices_by_options(options.methods.vertices, {graph, mesh.points}, ordering);
   result.vertices.seconds = vertices.seconds();
   const Stopwatch cells;
-  // products with a matrix go by its rows: where its file has an entry does not matter to them
+  // the speed of a product depends on the order of rows, not on where the file has an entry
   const bool stay = options.methods.elements == "auto" && stored_matrix(mesh) != nullptr;
   result.cells = order_cells(stay ? "original" : options.methods.elements, cell_arrays(mesh),
                              result.vertices.permutation, mesh.points, ordering.cell_groups, ordering);
@@ -183,13 +183,13 @@ void move_mesh(Mesh& mesh, const Permutation& vertices, const Permutation& cells
 
 namespace {
 
-/// What two cells of one type have in common; sorts by falling dimension.
+/// Returns what cells of one type share: dimension, shape and size. Sorts by falling dimension.
 std::array<int, 3> type_of(const Cells& cells, Index c) {
   const Shape shape = cells.shapes[c];
   return {-dimension(shape), static_cast<int>(shape), cells.vertex_count(c)};
 }
 
-/// Moves the cells with their arrays, sets and ids, whatever their blocks.
+/// Moves the cells with their arrays, sets and ids, across blocks too.
 void move_cells(Mesh& mesh, const Permutation& places) {
   if (places.is_identity()) return;
   move_all(mesh, Permutation::identity(mesh.vertex_count()), places);

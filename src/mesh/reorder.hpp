@@ -19,15 +19,15 @@ struct EnumNames<Ids> {
                                     std::pair{Ids::attach, "attach"}};
 };
 
-/// Computes the order that `reorder` gives a mesh, and leaves the mesh unchanged. `graph` is the mesh's
+/// Computes the order that the public `reorder` gives a mesh, which stays unchanged. `graph` is the mesh's
 /// vertex graph; `options.ids` and `options.format` are not used. Throws InvalidArgument for unknown methods
 /// and arrays.
 MeshOrder compute_reordering(const Mesh& mesh, const CsrGraph& graph, const ReorderOptions& options);
 
-/// As the public function, by what `compute_reordering` returned.
+/// Like `move_mesh`, with the order that `compute_reordering` returned.
 void apply_reordering(Mesh& mesh, const MeshOrder& order, Ids ids = Ids::renumber);
 
-/// As the public `apply_reordering`, for a mesh whose ids are there where `Ids::keep` wants to keep them.
+/// Like the public `apply_reordering`, but does not check the mesh; for `Ids::keep` it must have its ids.
 void move_mesh(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids);
 
 /// Returns the places of cells sorted by dimension, highest first, then by type, in their old order within a

@@ -12,7 +12,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the corners of a cell's simplices as positions in the cell, D + 1 for each.
+/// Returns the corners of a cell's simplices as positions in the cell, D + 1 for each simplex.
 std::vector<int> pieces(Shape shape, int vertices) {
   switch (shape) {
     case Shape::line:
@@ -54,7 +54,7 @@ std::vector<int> pieces(Shape shape, int vertices) {
   return {};
 }
 
-/// Whether every cell is a simplex of that dimension, without mid-side nodes.
+/// Returns whether every cell is a simplex of that dimension, without mid-side nodes.
 bool are_simplices(const Cells& cells, int dimension) {
   constexpr std::array kShapes{Shape::vertex, Shape::line, Shape::triangle, Shape::tetrahedron};
   const auto of_shape = [&](Shape shape) { return shape == kShapes[dimension]; };

@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// Simplices of one dimension D, each on D + 1 vertices: lines, triangles or tetrahedra. A view, its array
-/// owned by somebody else.
+/// Simplices of one dimension D, each on D + 1 vertices: lines, triangles or tetrahedra. A view that does not
+/// own its array.
 struct SimplicesRef {
   int dimension = 0;                ///< 0 if there are none
   std::span<const Index> vertices;  ///< simplex s has `vertices[(D + 1) s] … vertices[(D + 1) s + D]`
@@ -20,11 +20,11 @@ struct SimplicesRef {
   }
 };
 
-/// Simplices of one dimension, as SimplicesRef has them, and where they come from.
+/// Simplices of one dimension in the form of SimplicesRef, and the cells that they come from.
 struct Simplices {
   int dimension = 0;
   std::vector<Index> vertices;
-  std::vector<Index> cells;  ///< the cell that each was cut out of
+  std::vector<Index> cells;  ///< the cell that each simplex was cut from
 
   operator SimplicesRef() const { return {dimension, vertices}; }  // NOLINT(google-explicit-constructor)
   [[nodiscard]] Offset size() const noexcept { return SimplicesRef(*this).size(); }
@@ -33,18 +33,18 @@ struct Simplices {
 /// Cuts the mesh's elements, in their order, into simplices on their corners: a hexahedron into six
 /// tetrahedra, a wedge into three, a pyramid into two, a polygon into a fan of triangles. Ignores mid-side
 /// nodes and cells of lower dimension. A polyhedron, whose faces are not known, becomes a chain of
-/// tetrahedra, each on four successive corners: they touch what its cut would touch, but do not fill it. The
-/// pieces of a cell depend on the order of its corners alone, so that reordering the mesh reorders the
+/// tetrahedra, each on four successive corners: they touch the same vertices as a true cut, but do not fill
+/// it. The pieces of a cell depend only on the order of its corners, so that reordering the mesh reorders the
 /// simplices and changes none. O(cells).
 Simplices cut_into_simplices(const Mesh& mesh);
 
-/// The simplices that the elements of a mesh are cut into, as cut_into_simplices has them. Where every cell
-/// is a simplex on its corners alone, they are the mesh's own array and take no memory.
+/// The simplices that `cut_into_simplices` makes of a mesh. If every cell is a simplex on its corners alone,
+/// they are the mesh's own array and take no memory.
 class CellSimplices {
  public:
-  /// Of no mesh.
+  /// No simplices.
   CellSimplices() = default;
-  /// Of a mesh that stays as it is while this is used. O(cells).
+  /// Cuts a mesh, which must not change while this is used. O(cells).
   explicit CellSimplices(const Mesh& mesh);
   CellSimplices(CellSimplices&&) = default;
   CellSimplices& operator=(CellSimplices&&) = default;
@@ -55,13 +55,13 @@ class CellSimplices {
   operator SimplicesRef() const { return ref_; }  // NOLINT(google-explicit-constructor)
   [[nodiscard]] Offset size() const noexcept { return ref_.size(); }
 
-  /// Returns those of the mesh after move_mesh with these permutations. O(simplices), on all threads.
+  /// Returns the simplices of the mesh after move_mesh with these permutations. O(simplices), on all threads.
   [[nodiscard]] CellSimplices moved(const Permutation& vertices, const Permutation& cells) const;
 
  private:
   SimplicesRef ref_;
   std::vector<Index> own_;
-  std::vector<Offset> starts_;  ///< of each cell, its first simplex; empty where each cell is one
+  std::vector<Offset> starts_;  ///< the first simplex of each cell; empty if each cell is one simplex
 };
 
 }  // namespace meshorder

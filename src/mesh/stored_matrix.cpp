@@ -19,8 +19,8 @@
 namespace meshorder {
 namespace {
 
-/// Whether each entry has one at the transposed place: as rows rise, those that name a column do so in the
-/// order in which its own row lists them.
+/// Returns whether each entry has one at the transposed place. The rows are visited in ascending order, so
+/// the rows with an entry in a column come in the order in which that column's own row lists them.
 bool is_symmetric_pattern(const EntryPattern& pattern) {
   std::vector<Offset> next(pattern.starts.begin(), pattern.starts.end() - 1);
   for (Index row = 0; row < pattern.rows(); ++row) {
@@ -32,9 +32,9 @@ bool is_symmetric_pattern(const EntryPattern& pattern) {
   return true;
 }
 
-/// Returns the share of the b × b blocks with an entry that are entries.
+/// Returns the number of entries divided by the size of all b × b blocks that have an entry.
 double fill_of_blocks(const EntryPattern& pattern, Index b) {
-  std::vector<Index> seen_by(pattern.rows() / b, -1);  // of each block of columns, the last block of rows
+  std::vector<Index> seen_by(pattern.rows() / b, -1);  // for each block of columns, the last block of rows
   Offset blocks = 0;
   for (Index row = 0; row < pattern.rows(); ++row) {
     for (const Index column : pattern[row]) {
@@ -103,7 +103,7 @@ EntryPattern entry_pattern(const Mesh& mesh) {
 }
 
 EntryPattern moved(const Permutation& rows, const EntryPattern& pattern) {
-  // a row and its columns move as those of a graph do
+  // rows and columns move like the vertices of a graph
   CsrGraph graph = renumbered(GraphRef(pattern.starts, pattern.columns), rows.old_to_new());
   return {std::move(graph.offsets), std::move(graph.neighbours)};
 }

@@ -13,10 +13,10 @@
 
 namespace meshorder {
 
-/// What the readers of matrices and graphs say of a mesh: its vertices are the rows of a square matrix, its
-/// lines and vertex cells the stored entries, each from row to column.
+/// The facts that readers of matrices and graphs attach to a mesh. Its vertices are the rows of a square
+/// matrix, its lines and vertex cells are the stored entries, each from row to column.
 struct StoredMatrix : FormatMetadata {
-  bool is_graph = false;           ///< of vertices and edges; there are no entries on the diagonal
+  bool is_graph = false;           ///< a graph of vertices and edges, without entries on the diagonal
   bool is_half = false;            ///< each line represents two entries, (i, j) and (j, i)
   std::string_view field = {};     ///< "real", as the file names it; empty for a graph
   std::string_view symmetry = {};  ///< "general", likewise
@@ -24,7 +24,7 @@ struct StoredMatrix : FormatMetadata {
   [[nodiscard]] std::vector<std::string> contents() const override { return {}; }
 };
 
-/// Returns what the mesh's reader says of the matrix or graph; null for other meshes. Valid as long as
+/// Returns the facts that the reader attached to the matrix or graph; null for other meshes. Valid as long as
 /// `mesh.format_metadata`.
 const StoredMatrix* stored_matrix(const Mesh& mesh);
 
@@ -32,10 +32,10 @@ const StoredMatrix* stored_matrix(const Mesh& mesh);
 /// their order. Throws InvalidArgument, TooLarge as `check`; a pattern need not be symmetric. O(n + entries).
 Mesh matrix_mesh(const GraphView& matrix);
 
-/// Whether the points of a mesh differ: those of a matrix are all at the origin unless they were given apart.
+/// Returns whether the points of a mesh differ. All points of a matrix are 0 unless given separately.
 bool has_places(const Mesh& mesh);
 
-/// Where the entries of a matrix are, whichever half of them is stored: row i has entries in the columns
+/// The places of all entries of a matrix, even if one half is stored: row i has entries in the columns
 /// `columns[starts[i]] … columns[starts[i + 1] − 1]`, rising, each once.
 struct EntryPattern {
   std::vector<Offset> starts{0};  ///< rows + 1
@@ -49,28 +49,28 @@ struct EntryPattern {
   bool operator==(const EntryPattern&) const = default;
 };
 
-/// Returns the pattern of the matrix that a mesh is; of other meshes each line is one entry. O(entries · log
-/// row length).
+/// Returns the pattern of the matrix that a mesh represents; in other meshes each line is one entry.
+/// O(entries · log row length).
 EntryPattern entry_pattern(const Mesh& mesh);
 
 /// Returns the pattern of P A P′: row and column i become `rows.old_to_new()[i]`. O(entries · log row
 /// length).
 EntryPattern moved(const Permutation& rows, const EntryPattern& pattern);
 
-/// What the pattern of a matrix is like.
+/// Facts about the pattern of a matrix.
 struct PatternFacts {
   Index most_in_row = 0;
   bool is_symmetric = true;
   Index missing_diagonal = 0;  ///< rows without an entry on the diagonal
-  /// The largest b of 2 … 8 such that the rows are whole blocks of b and the blocks of b × b that have an
-  /// entry are full by `kFullBlocks` at least; 1 if there is none.
+  /// The largest b of 2 … 8 that divides the number of rows and for which the b × b blocks with an entry are
+  /// filled at least to the share `kFullBlocks`; 1 if there is none.
   int block = 1;
-  double block_fill = 0;                    ///< share of these blocks that are entries
+  double block_fill = 0;                    ///< share of the places in these blocks that are entries
   std::vector<Offset> histogram_log2 = {};  ///< entry k: entries 2^k … 2^(k+1) − 1 places off the diagonal
 };
 inline constexpr double kFullBlocks = 0.8;
 
-/// O(entries).
+/// Returns the facts of a pattern. O(entries).
 PatternFacts facts_of(const EntryPattern& pattern);
 
 }  // namespace meshorder

@@ -10,7 +10,7 @@
 
 namespace meshorder {
 
-/// Returns the number of values, of whichever type.
+/// Returns the number of values, whatever their type.
 inline std::size_t size_of(const Values& values) {
   return std::visit([](const auto& numbers) { return numbers.size(); }, values);
 }

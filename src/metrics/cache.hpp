@@ -30,8 +30,8 @@ Caches parse_cache_sizes(std::string_view text);
 /// Returns the sizes as text that parse_cache_sizes reads, "48K,1M,32M".
 std::string to_string(const Caches& caches);
 
-/// Returns the misses of each level. Of a `Reuse`'s `all` these are all misses; of its `jumps`, those that no
-/// hardware prefetcher of streams foresees.
+/// Returns the misses of each level. From a `Reuse`'s `all` these are all misses; from its `jumps`, those
+/// that no hardware prefetcher of streams avoids.
 std::vector<Offset> misses(const ReuseHistogram& histogram, const Caches& caches);
 
 }  // namespace meshorder

@@ -19,7 +19,7 @@ constexpr double kOfDegree = 0.01;
 constexpr double kResidual = 1e-8;
 constexpr int kMostIterations = 1000;
 
-/// A sweep of Gauss and Seidel forward and one backward, for Eigen's solvers.
+/// One forward and one backward sweep of Gauss and Seidel, as a preconditioner for Eigen's solvers.
 class SymmetricGaussSeidel {
  public:
   using StorageIndex = Matrix::StorageIndex;
@@ -29,7 +29,7 @@ class SymmetricGaussSeidel {
   SymmetricGaussSeidel& analyzePattern(const Matrix& /*matrix*/) { return *this; }
   SymmetricGaussSeidel& factorize(const Matrix& matrix) { return compute(matrix); }
   SymmetricGaussSeidel& compute(const Matrix& matrix) {
-    matrix_ = matrix;  // the solver may give a temporary
+    matrix_ = matrix;  // a copy: the solver may pass a temporary
     diagonal_ = matrix.diagonal();
     return *this;
   }
@@ -45,7 +45,7 @@ class SymmetricGaussSeidel {
   Vector diagonal_;
 };
 
-/// The shifted Laplacian in a new order; columns ascend.
+/// Returns the shifted Laplacian in a new order; the entries of a column ascend.
 Matrix laplacian(GraphRef graph, const Permutation& order) {
   const CsrGraph moved = renumbered(graph, order.old_to_new());
   const Index n = moved.size();
@@ -75,7 +75,7 @@ int iterations(const Matrix& matrix, const Vector& right) {
 }  // namespace
 
 Iterations iterations_in(GraphRef graph, const Permutation& order) {
-  if (graph.size() == 0) return {};  // Eigen reads beyond the end of a matrix of nothing
+  if (graph.size() == 0) return {};  // Eigen reads beyond the end of an empty matrix
   const Matrix matrix = laplacian(graph, order);
   Vector right(matrix.rows());
   Random random(1);

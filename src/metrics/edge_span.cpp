@@ -14,7 +14,7 @@
 namespace meshorder {
 namespace {
 
-/// Calls `visit(span)` for every edge from a vertex begin … end−1 to one of a smaller number.
+/// Calls `visit(span)` for every edge from one of the vertices begin … end−1 to a smaller vertex.
 template <class Visit>
 void for_each_span(GraphRef graph, const Permutation& order, Index begin, Index end, Visit visit) {
   for (Index v = begin; v < end; ++v) {
@@ -30,7 +30,7 @@ void for_each_span(GraphRef graph, const Permutation& order, Visit visit) {
   for_each_span(graph, order, 0, graph.size(), visit);
 }
 
-/// How many edges fall into each bin, to the last one that has any.
+/// Returns the number of edges in each bin, up to the last bin that has any.
 template <class BinOf>
 std::vector<Offset> histogram(GraphRef graph, const Permutation& order, BinOf bin_of) {
   std::vector<Offset> bins;
@@ -47,7 +47,7 @@ std::vector<Offset> histogram(GraphRef graph, const Permutation& order, BinOf bi
 EdgeSpan edge_span(GraphRef graph, const Permutation& order) {
   EdgeSpan result;
   if (graph.neighbours.empty()) return result;
-  // sums over spans, not over edges, do not depend on how the vertices are numbered
+  // sums by span, not by edge, do not depend on how the vertices are numbered
   std::vector<Offset> edges_of_span(graph.size(), 0);
   for_each_span(graph, order, [&](Index span) { ++edges_of_span[span]; });
   double sum = 0;
@@ -70,9 +70,9 @@ namespace {
 /// @param place_of  `place_of(v)` returns the new number of a vertex
 template <class PlaceOf>
 EdgeSpan span_of_sample(GraphRef graph, PlaceOf place_of) {
-  constexpr Index kAtOnce = 4096;  // vertices that a thread takes together
+  constexpr Index kAtOnce = 4096;  // taken by a thread at a time
   constexpr Index kAhead = 8;
-  constexpr double kLargeProduct = 0x1p+960;  // which another span leaves below the largest double
+  constexpr double kLargeProduct = 0x1p+960;  // times another span, still below the largest double
   const VertexSample sample(graph.size());
   const auto sums = sum_over_chunks<SpanSums<Offset>>(sample.size(), kAtOnce, [&](Index begin, Index end) {
     SpanSums<Offset> part;

@@ -11,28 +11,28 @@
 
 namespace meshorder {
 
-/// How far apart the ends of edges are in an order: the span of edge ij is |rank i − rank j| (the paper,
+/// The distances of the ends of edges in an order: the span of edge ij is |rank i − rank j| (the paper,
 /// section 4.3). All 0 for a graph without edges.
 struct EdgeSpan {
   double mean = 0;       ///< 1 at best; n/3 for a random order
   Index max = 0;         ///< the bandwidth of the matrix with this pattern
-  double mean_log2 = 0;  ///< mean of log₂ span: counts what stays near, where the mean counts what is far
+  double mean_log2 = 0;  ///< mean of log₂ span: weighs near neighbours, where the mean weighs far ones
 
   bool operator==(const EdgeSpan&) const = default;
 };
 
-/// Spans of the graph's vertices in the given order. O(n + edges).
+/// Returns the spans of the graph's edges in the given order. O(n + edges).
 EdgeSpan edge_span(GraphRef graph, const Permutation& order);
 
-/// As `edge_span`, of the edges at a `VertexSample`, on all threads. On tetrahedral meshes means are within 5
-/// % of the exact ones, mean_log2 within 0.05, and `max` is at most the exact one; of fewer than 262,144
+/// Like `edge_span`, for the edges at a `VertexSample`, on all threads. On tetrahedral meshes means are
+/// within 5 % of the exact ones, mean_log2 within 0.05, and `max` at most the exact one. Below 262,144
 /// vertices all are exact but for rounding. Does not depend on the number of threads. O(vertices and edges of
 /// the sample).
 ///
-/// @param place_of  the new number of each vertex; none: as they are
+/// @param place_of  the new number of each vertex; empty: as they are numbered
 EdgeSpan sampled_edge_span(GraphRef graph, std::span<const Index> place_of);
 
-/// Sums over the entries of a graph, of which each edge has two.
+/// Sums over the entries of a graph; each edge has two entries.
 template <class Number>
 struct SpanSums {
   Number entries = 0;
@@ -49,7 +49,7 @@ struct SpanSums {
   }
 };
 
-/// The part of an EdgeSpan that takes no logarithms.
+/// The part of an EdgeSpan that needs no logarithms.
 struct SpanSize {
   Offset sum = 0;
   Index max = 0;
@@ -60,21 +60,21 @@ struct SpanSize {
 /// Adds up the spans of all edges, on all threads; polls. O(n + edges).
 SpanSize span_size(GraphRef graph, const Permutation& order);
 
-/// As `edge_span`, but of 262,144 vertices and more on all threads, and `mean_log2` is that of
+/// Like `edge_span`. From 262,144 vertices on it uses all threads, and `mean_log2` comes from
 /// `sampled_edge_span`. Does not depend on the number of threads. O(n + edges).
 EdgeSpan quick_edge_span(GraphRef graph, const Permutation& order);
 
-/// Σ over vertices of the distance to the first neighbour before them in the order: the size of the envelope
-/// of a matrix with this pattern (diagonal not counted). O(n + edges).
+/// Returns the size of the envelope of a matrix with this pattern, without the diagonal: the sum, over all
+/// vertices, of the distance to their first neighbour, if that comes before them in the order. O(n + edges).
 Offset profile(GraphRef graph, const Permutation& order);
 
-/// All of them, as the public `quality` returns them. O(n + edges).
+/// Returns all measures, as the public `quality` does. O(n + edges).
 Quality quality_of(GraphRef graph, const Permutation& order);
 
-/// The number of edges whose span is in [2^k, 2^(k+1)), for k from 0 to that of the largest. O(n + edges).
+/// Returns the number of edges with a span in [2^k, 2^(k+1)), for k from 0 to the largest one. O(n + edges).
 std::vector<Offset> span_histogram_log2(GraphRef graph, const Permutation& order);
 
-/// The number of edges whose span is in [k·width, (k + 1)·width), for k from 0 to that of the largest (the
+/// Returns the number of edges with a span in [k·width, (k + 1)·width), for k from 0 to the largest one (the
 /// paper's Figure 10 has a width of 50). Throws InvalidArgument unless `width` ≥ 1. O(n + edges).
 std::vector<Offset> span_histogram(GraphRef graph, const Permutation& order, Index width);
 

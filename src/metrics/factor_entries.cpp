@@ -11,11 +11,11 @@ namespace {
 
 constexpr Index kNoPlace = -1;
 
-/// The elimination tree: for each place of the order the first place after it whose row of the factor has an
-/// entry there, kNoPlace for roots (Liu 1990, The role of elimination trees in sparse factorization).
+/// Returns the elimination tree: for each place of the order the first later place whose row of the factor
+/// has an entry there, kNoPlace for roots (Liu 1990, The role of elimination trees in sparse factorization).
 std::vector<Index> elimination_tree(GraphRef graph, const Permutation& order) {
   std::vector<Index> parent(static_cast<std::size_t>(graph.size()), kNoPlace);
-  std::vector<Index> ancestor(parent);  // as far as the tree is known, with shortened paths
+  std::vector<Index> ancestor(parent);  // in the tree found so far, with shortened paths
   for (Index row = 0; row < graph.size(); ++row) {
     poll_in_loop(row);
     for (const Index neighbour : graph[order.new_to_old()[row]]) {
@@ -30,7 +30,7 @@ std::vector<Index> elimination_tree(GraphRef graph, const Permutation& order) {
   return parent;
 }
 
-/// A tree whose nodes are numbered after all of their descendants, which are numbered one after another.
+/// A tree in which each node has a larger number than its descendants, which are numbered consecutively.
 struct Postordered {
   std::vector<Index> number;            ///< of each node of the given tree
   std::vector<Index> parent;            ///< by number
@@ -38,7 +38,7 @@ struct Postordered {
   std::vector<Index> depth;             ///< by number; 0 for roots
 };
 
-/// `parent` names for each node a later one, or kNoPlace.
+/// Numbers a tree in postorder. `parent` has a later node for each node, or kNoPlace.
 Postordered postordered(std::span<const Index> parent) {
   const Index n = index_size(parent);
   std::vector<Index> size(parent.size(), 1);
@@ -50,7 +50,7 @@ Postordered postordered(std::span<const Index> parent) {
   tree.parent.resize(parent.size());
   tree.first_descendant.resize(parent.size());
   tree.depth.resize(parent.size());
-  std::vector<Index> next(parent.size());  // number for the first descendant of a node's next child
+  std::vector<Index> next(parent.size());  // the first number in the subtree of a node's next child
   Index next_of_roots = 0;
   for (Index k = n - 1; k >= 0; --k) {
     Index& first = parent[k] == kNoPlace ? next_of_roots : next[parent[k]];
@@ -80,7 +80,7 @@ class DisjointSets {
     return k;
   }
 
-  /// Joins the set called `k` to that of `name`.
+  /// Joins the set named `k` to the set named `name`.
   void join(Index k, Index name) { towards_[k] = name; }
 
  private:
@@ -95,8 +95,8 @@ Offset factor_entries(GraphRef graph, const Permutation& order) {
   std::vector<Index> vertex(static_cast<std::size_t>(n));
   for (Index k = 0; k < n; ++k) vertex[tree.number[k]] = order.new_to_old()[k];
 
-  // The entries of a row are the nodes of a subtree below it: of the paths to the row from the subtree's
-  // leaves, each counted down to where it meets the path before.
+  // The entries of a row are the nodes of a subtree below it. They are counted as paths from the leaves of
+  // the subtree to the row, each only as far as the node where it meets the path before.
   Offset entries = 0;
   std::vector<Index> last_neighbour(static_cast<std::size_t>(n), kNoPlace);
   std::vector<Index> last_leaf(static_cast<std::size_t>(n), kNoPlace);

@@ -7,8 +7,8 @@
 namespace meshorder {
 
 /// Returns the entries below the diagonal of the Cholesky factor of a matrix with this pattern, whose rows
-/// and columns are in the given order: what a sparse direct solver stores, if no entry cancels. Those of the
-/// matrix are among them. O(n + entries · α(n)), without the factor's pattern (Gilbert, Ng and Peyton 1994,
+/// and columns are in the given order: what a sparse direct solver stores, if no entry cancels. They include
+/// the entries of the matrix. O(n + entries · α(n)), without the factor's pattern (Gilbert, Ng, Peyton 1994,
 /// An efficient algorithm to compute row and column counts for sparse Cholesky factorization).
 Offset factor_entries(GraphRef graph, const Permutation& order);
 

@@ -15,17 +15,17 @@ constexpr Index kEntriesInLine = 8;  // doubles
 constexpr Index kLinesBefore = 3;
 constexpr Index kRecent = 32;        // first touches
 constexpr Index kWindow = 8192;      // rows
-constexpr Index kWindowsForOne = 8;  // at least
-constexpr Index kWindows = 8;        // at least, of large graphs
+constexpr Index kWindowsForOne = 8;  // step between windows of small graphs
+constexpr Index kWindows = 8;        // number of windows of large graphs, or one more
 
-/// Counts first touches and those that are jumps, window by window.
+/// Counts the first touches of lines, and how many of them are jumps, window by window.
 class FirstTouches {
  public:
   FirstTouches(GraphRef graph, const Permutation& order)
       : graph_(graph), order_(order), touched_((std::size_t(graph.size()) + 7) / kEntriesInLine, -1) {}
 
   void sweep(Index begin, Index end) {
-    const Index before = time_;  // lines that rows before the window have touched get this time
+    const Index before = time_;  // lines that were touched by rows before the window get this time
     time_ += kRecent + 1;
     for (Index row = begin; row < end; ++row) {
       poll_in_loop(row);
@@ -52,7 +52,7 @@ class FirstTouches {
   [[nodiscard]] double share() const { return lines_ > 0 ? static_cast<double>(jumps_) / lines_ : 0; }
 
  private:
-  /// Whether a row before `begin` reads a line.
+  /// Returns whether a row before `begin` reads a line.
   [[nodiscard]] bool is_read_before(Index line, Index begin) const {
     if (begin == 0) return false;
     const Index first = line * kEntriesInLine;
@@ -73,7 +73,7 @@ class FirstTouches {
 
   GraphRef graph_;
   const Permutation& order_;
-  std::vector<Index> touched_;  ///< of each line: when, −1 for never
+  std::vector<Index> touched_;  ///< time when each line was first touched, −1 for never
   Index time_ = 0;
   Index lines_ = 0;
   Index jumps_ = 0;

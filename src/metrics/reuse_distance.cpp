@@ -11,14 +11,14 @@
 namespace meshorder {
 namespace {
 
-// bins to a power of two
+// number of bins for each power of two
 constexpr Index kFine = 128;
 constexpr int kFineBits = 7;
 
 constexpr std::uint32_t kWord = 64;
 constexpr std::uint32_t kSisters = 16;
 
-/// Entry i of row k is 1 where i < k: adding a row in vector registers avoids a loop to k, whose end would be
+/// Entry i of row k is 1 if i < k. Adding a row in vector registers avoids a loop to k, whose end would be
 /// mispredicted.
 constexpr auto kOneBefore = [] {
   std::array<std::array<std::uint32_t, kSisters>, kSisters> rows{};
@@ -35,7 +35,7 @@ void subtract(const std::array<std::uint32_t, kSisters>& what, std::array<std::u
   from = rest;
 }
 
-/// std::popcount calls a function where the instruction set does not promise the instruction.
+/// Counts ones without std::popcount, which calls a function if the instruction may be missing.
 std::uint32_t count_ones(std::uint64_t word) {
   word -= word >> 1 & 0x5555555555555555U;
   word = (word & 0x3333333333333333U) + (word >> 2 & 0x3333333333333333U);
@@ -69,7 +69,7 @@ ReuseHistogram ReuseHistogram::scaled(int halvings, double times) const {
   ReuseHistogram result;
   for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
     if (bins_[bin] == 0) continue;
-    // one sampled line more means 2^halvings lines more: take the middle
+    // one sampled line more means 2^halvings lines more: take the middle of that range
     const double distance = std::ldexp(middle_of(bin) + 0.5, halvings) - 0.5;
     const auto in_range = static_cast<Index>(std::min<double>(distance, kMaxIndex));
     result.bins_[bin_of(in_range)] += std::llround(times * static_cast<double>(bins_[bin]));
@@ -90,7 +90,7 @@ double ReuseHistogram::mean_log2() const {
 }
 
 ReuseDistance::ReuseDistance(Index lines, int halvings) : halvings_(halvings), last_access_of_line_(lines) {
-  // closing the gaps then leaves at least half of the slots free
+  // at least half of the slots are free after the gaps are closed
   constexpr Slot kFewest = 2 * kWord;
   slot_count_ = std::max(kFewest, 2 * static_cast<Slot>(lines));
   std::size_t nodes = slot_count_ / kWord + 1;
@@ -176,7 +176,7 @@ void ReuseDistance::mark_first(Slot slot) {
   for (std::uint32_t& marks : marks_in_open_) ++marks;
 }
 
-/// Moves the mark at `from` to `to`, which comes after all marks; returns the number of marks between.
+/// Moves the mark at `from` to `to`, which comes after all marks; returns the number of marks between them.
 Index ReuseDistance::move_mark(Slot from, Slot to) {
   std::uint32_t a = from / kWord;
   std::uint32_t b = to / kWord;
@@ -197,7 +197,7 @@ Index ReuseDistance::move_mark(Slot from, Slot to) {
   return static_cast<Index>(between + in_open);
 }
 
-/// The next slot comes after this word, and so after every node that the word completes.
+/// Completes a word, and each node that ends with it: from now on the next slot comes after them.
 void ReuseDistance::close_word(std::size_t word) {
   std::size_t node = word;
   for (std::size_t level = 0; level < levels_.size(); ++level) {
@@ -233,8 +233,8 @@ void ReuseDistance::close_gaps() {
 }
 
 Reuse ReuseDistance::repeated() && {
-  // within a run distances are the same in every run; across its start, a line that has been accessed in the
-  // new run counts once, however often it was
+  // within a run distances are the same in every run; across its start, each line that the new run has
+  // accessed counts once, however often it was accessed
   reuse_.all.forget_cold();
   reuse_.jumps.forget_cold();
   for (std::size_t k = 0; k < first_accesses_.size(); ++k) {

@@ -10,32 +10,32 @@
 
 namespace meshorder {
 
-/// How often each reuse distance, the number of other lines accessed since a line's last access, occurs
-/// in a stream of accesses to cache lines. A fully associative cache of c lines that drops the least recently
-/// used one misses the accesses of distance c and more, and the cold ones, the first to a line (Mattson,
-/// Gecsei, Slutz and Traiger 1970: Evaluation techniques for storage hierarchies).
+/// Counts how often each reuse distance occurs in a stream of accesses to cache lines. The reuse distance is
+/// the number of other lines accessed since a line's last access. A fully associative cache of c lines that
+/// drops the least recently used one misses the accesses of distance c and more, and the cold ones, the first
+/// to a line (Mattson, Gecsei, Slutz and Traiger 1970: Evaluation techniques for storage hierarchies).
 ///
 /// Distances below 256 are counted one by one, larger ones in 128 bins to each power of two.
 class ReuseHistogram {
  public:
-  /// `distance` ≥ 0. O(1).
+  /// Counts an access of that distance, ≥ 0. O(1).
   void add(Index distance) { ++bins_[bin_of(distance)]; }
   void add_cold() noexcept { ++cold_; }
   void forget_cold() noexcept { cold_ = 0; }
 
-  /// As if every distance were 2^`halvings` times as long and had occurred `times` times. O(bins).
+  /// Returns the histogram with every distance times 2^`halvings` and every count times `times`. O(bins).
   [[nodiscard]] ReuseHistogram scaled(int halvings, double times) const;
 
-  /// All accesses, cold ones among them. O(bins).
+  /// Returns the number of all accesses, including cold ones. O(bins).
   [[nodiscard]] Offset accesses() const;
   [[nodiscard]] Offset cold() const noexcept { return cold_; }
 
-  /// The misses of a cache of that many lines, ≥ 0: exact where the number has at most 8 significant bits, as
-  /// those of caches have; else it is rounded down to such a number, by less than 1 %. O(bins).
+  /// Returns the misses of a cache of that many lines, ≥ 0. Exact if the number has at most 8 significant
+  /// bits, as those of caches have; else it is rounded down to such a number, by less than 1 %. O(bins).
   [[nodiscard]] Offset misses(Offset lines) const;
 
-  /// The mean of log₂(distance + 1) over the accesses that are not cold; 0 when there is none. Every factor
-  /// of two in distance counts the same, whatever the caches. O(bins).
+  /// Returns the mean of log₂(distance + 1) over the accesses that are not cold; 0 if there are none. Every
+  /// factor of two in distance counts the same, whatever the caches. O(bins).
   [[nodiscard]] double mean_log2() const;
 
   bool operator==(const ReuseHistogram&) const = default;
@@ -48,14 +48,14 @@ class ReuseHistogram {
   Offset cold_ = 0;
 };
 
-/// How a program comes to a cache line: as the next one of an array that it goes through from front to back,
-/// or at a place that the mesh names.
+/// How a program reaches a cache line. streamed: as the next one of an array that it reads from front to
+/// back; gathered: at a place that the mesh names.
 enum class Access : bool { streamed, gathered };
 
-/// What a processor's caches see of a stream of accesses.
+/// The accesses of a stream, as a processor's caches see them.
 struct Reuse {
   ReuseHistogram all;
-  /// Gathered accesses of distance 512 (an L1 cache of 32 KB) or more that no stream leads to: neither of
+  /// Gathered accesses of distance 512 (an L1 cache of 32 KB) or more that continue no stream: neither of
   /// the two lines before was among the last 64 accesses of such a distance. Processors prefetch the lines
   /// that follow such accesses; a jump waits for the memory.
   ReuseHistogram jumps;
@@ -65,21 +65,21 @@ struct Reuse {
 
 /// Measures the reuse distances of a stream, access by access, without storing the stream.
 ///
-/// Each access takes a slot, marked as long as it is the last access to its line, so that a distance is the
-/// number of marks after a line's own (Bennett and Kruskal 1975, LRU stack processing). The marks are bits,
-/// counted by a tree of 16 children a node; an access goes up the tree only until its line's old and new
-/// slots meet, and so costs O(log distance) steps. When the slots run out, the marks are moved together.
+/// Each access takes a slot, which is marked as long as it is the last access to its line. A distance is then
+/// the number of marks after a line's own (Bennett and Kruskal 1975, LRU stack processing). The marks are
+/// bits, counted by a tree with 16 children a node. An access goes up the tree only until its line's old and
+/// new slots meet: O(log distance) steps. When the slots run out, the marks are moved together.
 /// Memory: 13 bytes for each line.
 class ReuseDistance {
  public:
-  /// For accesses to lines 0 … lines − 1. With `halvings` > 0 these are a sample of 2^-halvings of the lines,
-  /// as ReuseSample draws it: the last nine of eleven lines count, and accesses are far from a distance that
-  /// is 2^halvings times shorter.
+  /// For accesses to lines 0 … lines − 1. If `halvings` > 0, these are a sample of 2^-halvings of the lines,
+  /// as drawn by ReuseSample: the last nine of each eleven lines count, and an access is far at a distance
+  /// that is 2^halvings times shorter.
   explicit ReuseDistance(Index lines, int halvings = 0);
 
   /// Returns the distance, −1 for a cold access. Amortised O(1 + log distance).
   ///
-  /// @param streamed  of a sample: number of streamed accesses so far, those to other lines included
+  /// @param streamed  in a sample: number of streamed accesses so far, including those to other lines
   Index access(Index line, Access how = Access::gathered, std::uint32_t streamed = 0);
 
   /// Prefetches what `access` needs of a line in a sample.
@@ -89,13 +89,13 @@ class ReuseDistance {
     __builtin_prefetch(&far_of_block_[line / kSampledBlock]);
   }
 
-  /// The accesses so far. Every line's first one is cold.
+  /// Returns the accesses so far. Every line's first one is cold.
   [[nodiscard]] const Reuse& reuse() const noexcept { return reuse_; }
 
-  /// Lines accessed so far.
+  /// Returns the number of lines accessed so far.
   [[nodiscard]] Index distinct() const noexcept { return index_size(first_accesses_); }
 
-  /// The accesses of every run but the first if the stream so far is repeated for ever: none is cold, since
+  /// Returns the accesses of every run but the first if the stream so far is repeated for ever. None is cold:
   /// the first access to a line in a run reuses it from the run before. Such an access is a jump if it is
   /// far and the line's cold access was a jump. Ends the measurement.
   /// O(distinct lines · log distance).
@@ -107,24 +107,24 @@ class ReuseDistance {
   static constexpr Index kFar = 512;
   static constexpr std::uint32_t kFollowing = 64;
   static constexpr Index kSampledBlock = 11;
-  static constexpr Index kUncounted = 2;  ///< the first of a block
+  static constexpr Index kUncounted = 2;  ///< the first lines of a block
 
-  /// Side by side, since both are needed together and are seldom in this machine's caches.
+  /// Both are needed together and are seldom in this machine's caches, so they are side by side.
   struct LastAccess {
     Slot slot = kNever;
     std::uint32_t far = 0;  ///< number of the last far access, cold ones included
   };
 
-  /// Far accesses before a line's last one, in a sample. A line's block is sampled as a whole, so accesses
-  /// to the block are counted exactly; gathered ones to other blocks are a sample. Streamed accesses
-  /// count as far.
+  /// Numbers of far accesses before a line's last one, in a sample. A block is sampled as a whole, so
+  /// gathered accesses to the line's own block are counted exactly; those to other blocks are a sample.
+  /// Streamed accesses count as far.
   struct FarOfSample {
     std::uint32_t gathered = 0;
-    std::uint32_t own = 0;  ///< those gathered in the line's block
+    std::uint32_t own = 0;  ///< gathered ones in the line's block
     std::uint32_t streamed = 0;
   };
 
-  /// For each of 16 sister nodes the number of marks in the sisters after it.
+  /// For each of 16 sister nodes, the number of marks in the sisters after it.
   struct alignas(64) Sisters {
     std::array<std::uint32_t, 16> marks_after{};
   };
@@ -145,15 +145,15 @@ class ReuseDistance {
   std::vector<LastAccess> last_access_of_line_;
   std::vector<Index> first_accesses_;  ///< lines in the order of their first accesses
   std::vector<std::uint64_t> marks_;   ///< a bit for each slot
-  /// From the words of marks_ up; the nodes that hold the next slot count as empty here.
+  /// One for each level above the words of marks_; the nodes that hold the next slot count as empty here.
   std::vector<std::vector<Sisters>> levels_;
-  std::vector<std::uint32_t> marks_in_open_;  ///< at each level, in the node that holds the next slot
+  std::vector<std::uint32_t> marks_in_open_;  ///< for each level, marks in the node that holds the next slot
   Slot slot_count_ = 0;
   Slot next_ = 0;
   std::uint32_t far_accesses_ = kFollowing;  ///< in a sample only the gathered ones
-  std::vector<FarOfSample> far_of_line_;     ///< of a sample
-  std::vector<std::uint32_t> far_of_block_;  ///< of a sample: gathered ones
-  std::vector<bool> first_access_jumps_;     ///< as first_accesses_
+  std::vector<FarOfSample> far_of_line_;     ///< only in a sample
+  std::vector<std::uint32_t> far_of_block_;  ///< only in a sample: gathered accesses
+  std::vector<bool> first_access_jumps_;     ///< for each of first_accesses_, whether it is a jump
   Reuse reuse_;
   friend class ReuseSample;
 };

@@ -16,13 +16,13 @@ namespace meshorder {
 /// (Waldspurger, Park, Garthwaite and Ahmad 2015: Efficient MRC construction with SHARDS).
 ///
 /// The sample consists of blocks of eleven lines, chosen by a hash of their number. The last nine count; the
-/// first two show whether a stream leads to those. Eleven divides no period of a kernel's arrays, such as the
-/// 9 lines of 8 matrix blocks. Other accesses cost a hash each. The same stream gives the same estimate on
-/// every run. Its error falls with the root of the lines sampled and of the cache's size: estimates for
-/// caches below about 100 · 2^halvings lines are unreliable.
+/// first two show whether a stream continues in those. Eleven divides no period of a kernel's arrays, such as
+/// the 9 lines of 8 matrix blocks. An access to another block costs a hash. The same stream gives the same
+/// estimate on every run. Its error falls with the root of the lines sampled and of the cache's size:
+/// estimates for caches below about 100 · 2^halvings lines are unreliable.
 class ReuseSample {
  public:
-  /// For accesses to lines 0 … lines − 1, of which 2^-halvings are sampled; 0 halvings measure exactly.
+  /// For accesses to lines 0 … lines − 1, of which 2^-halvings are sampled. With 0 halvings it is exact.
   ReuseSample(Index lines, int halvings);
 
   void access(Index line, Access how = Access::gathered) {
@@ -35,7 +35,7 @@ class ReuseSample {
     }
   }
 
-  /// Streamed accesses to lines first … end − 1, one after another. O(those lines).
+  /// Reports streamed accesses to the lines first … end − 1, one after another. O(those lines).
   void stream(Index first, Index end) {
     while (first < end) {
       const Index block = first / kBlock;
@@ -49,7 +49,7 @@ class ReuseSample {
     }
   }
 
-  /// Whether one of the lines first … last is sampled; other accesses need not be reported. O(lines).
+  /// Returns whether one of the lines first … last is sampled; other accesses need not be reported. O(lines).
   [[nodiscard]] bool samples(Index first, Index last) const noexcept {
     if (place_of_block_.empty()) return true;
     for (Index block = first / kBlock; block <= last / kBlock; ++block) {
@@ -58,19 +58,19 @@ class ReuseSample {
     return false;
   }
 
-  /// As ReuseDistance::repeated, estimated for all lines.
+  /// Like ReuseDistance::repeated, estimated for all lines.
   [[nodiscard]] Reuse repeated() &&;
 
  private:
   static constexpr Index kBlock = ReuseDistance::kSampledBlock;
 
-  /// A sampled access. It waits for 32 others, while the cache fetches what measuring it needs: first the
-  /// place of its block among the sampled ones; after 16 accesses what is known of its line, which by then is
-  /// numbered among the lines of those blocks.
+  /// A sampled access. It waits for 32 others while the cache fetches what measuring it needs: first the
+  /// place of its block among the sampled ones; after 16 accesses, when its line has its number among the
+  /// sampled lines, the data of that line.
   struct Waiting {
     Index line = 0;
     Access how = Access::gathered;
-    std::uint32_t streamed = 0;  ///< accesses that were streamed before
+    std::uint32_t streamed = 0;  ///< number of streamed accesses before it
   };
   static constexpr std::size_t kWaiting = 32;
 
@@ -104,7 +104,7 @@ class ReuseSample {
   [[nodiscard]] Index tracked_lines() const;
 
   int halvings_;
-  std::vector<Index> place_of_block_;        ///< among the sampled ones; empty when all are
+  std::vector<Index> place_of_block_;        ///< place among the sampled blocks; empty if all are sampled
   std::array<Waiting, kWaiting> waiting_{};  ///< the last accesses, number k at k % kWaiting
   std::size_t sampled_accesses_ = 0;
   std::uint32_t streamed_ = 0;

@@ -13,7 +13,7 @@ SparsityPattern pattern_of(GraphRef graph, const Permutation& order, int side) {
   for (Index v = 0; v < graph.size(); ++v) {
     const Index row = order.old_to_new()[v];
     const Offset first = tile(row) * pattern.side;
-    ++pattern.counts[first + tile(row)];  // of the diagonal
+    ++pattern.counts[first + tile(row)];  // the diagonal entry
     for (const Index neighbour : graph[v]) ++pattern.counts[first + tile(order.old_to_new()[neighbour])];
   }
   return pattern;

@@ -7,7 +7,7 @@
 
 namespace meshorder {
 
-/// The public `sparsity_pattern` of a clean graph. O(n + edges).
+/// Computes the public `sparsity_pattern` of a clean graph. O(n + edges).
 SparsityPattern pattern_of(GraphRef graph, const Permutation& order, int side);
 
 }  // namespace meshorder

@@ -8,16 +8,16 @@
 
 namespace meshorder {
 
-/// How many consecutive elements a working set is counted for: powers of two, ascending.
+/// Numbers of consecutive elements for which working sets are counted: powers of two, ascending.
 inline constexpr std::array<Index, 3> kElementsAtOnce{64, 512, 4096};
 
-/// Returns for each of `kElementsAtOnce` the mean number of distinct vertices that so many elements use, one
-/// after another in that order (Denning 1968: The working set model for program behavior). The data of these
-/// vertices, and of what is stored for pairs of them, pass through the caches in this time.
+/// Returns for each of `kElementsAtOnce` the mean number of distinct vertices that so many consecutive
+/// elements use in that order (Denning 1968: The working set model for program behavior). The data of these
+/// vertices, and of pairs of them, pass through the caches in this time.
 ///
-/// Counted at up to 8 places, evenly spread. O(vertices + 32,768 elements).
+/// Counted at up to 15 places, evenly spread. O(vertices + 61,440 elements).
 ///
-/// @param new_to_old  the order of all elements; none: as they are numbered
+/// @param new_to_old  the order of all elements; empty: as they are numbered
 std::array<double, kElementsAtOnce.size()> working_sets(IncidenceRef elements,
                                                         std::span<const Index> new_to_old);
 

@@ -11,11 +11,11 @@ namespace {
 constexpr Index kNone = -1;
 constexpr Index kMaxGroup = 8;
 
-/// Sets `group_of` of all vertices and yields the number of groups.
+/// Sets `group_of` of all vertices and returns the number of groups.
 Index group(const ArrangementGraph& graph, const std::vector<Index>& order, std::vector<Index>& group_of) {
   const std::vector<Offset> middle = middles(graph, order);
   group_of.assign(graph.size(), kNone);
-  std::vector<Index> members;  // of each group
+  std::vector<Index> members;  // number of members of each group
   for (const Index v : order) {
     poll_in_loop(v);
     if (group_of[v] != kNone) continue;
@@ -64,7 +64,7 @@ Offset total_span(const ArrangementGraph& graph, const std::vector<Index>& order
       sum += graph.weight(k) * std::abs(middle[v] - middle[graph.neighbours[k]]);
     }
   }
-  return sum / 2;  // every edge was met at both ends
+  return sum / 2;  // every edge was counted at both ends
 }
 
 CoarseArrangement coarsen(const ArrangementGraph& graph, const std::vector<Index>& order) {
@@ -84,7 +84,7 @@ CoarseArrangement coarsen(const ArrangementGraph& graph, const std::vector<Index
   ArrangementGraph& coarse = result.graph;
   coarse.volumes.assign(count, 0);
   coarse.offsets.reserve(Offset{count} + 1);
-  std::vector<Offset> entry_of(count, -1);  // in the row at hand, or before it
+  std::vector<Offset> entry_of(count, -1);  // the last entry of each group, in this row or an earlier one
   for (Index g = 0; g < count; ++g) {
     poll_in_loop(g);
     const Offset row = coarse.offsets.back();

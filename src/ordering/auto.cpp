@@ -20,13 +20,13 @@
 namespace meshorder {
 namespace {
 
-/// A lattice, cut into whatever cells; else a graph with or without coordinates.
+/// A lattice, cut into cells of any shape; else a graph with or without coordinates.
 enum class Kind : std::uint8_t { lattice, placed, bare };
 
-/// When a method is taken: the first rule that fits decides.
+/// A condition for a method; the first rule that fits decides.
 struct Rule {
-  std::span<const Workload> workloads = {};  ///< none: any
-  Index least_vertices = 0;                  ///< from so many on
+  std::span<const Workload> workloads = {};  ///< empty: any
+  Index least_vertices = 0;                  ///< smallest number of vertices
   std::optional<Kind> kind = {};             ///< none: any
   std::string_view method;
   std::string_view reason;
@@ -77,9 +77,9 @@ bool fits(const Rule& rule, Index vertices, Kind kind, Workload workload) {
          vertices >= rule.least_vertices && (!rule.kind || *rule.kind == kind);
 }
 
-/// Whether most vertices have one number of neighbours, as those within a lattice do: 14 where its cubes are
-/// cut into tetrahedra, 26 where they are cells. Of meshes by TetGen a sixth at most have, of good
-/// triangulations of surfaces a half. O(n).
+/// Returns whether most vertices have the same number of neighbours, as inside a lattice: 14 if its cubes are
+/// cut into tetrahedra, 26 if they are cells. The most frequent number occurs at no more than a sixth of the
+/// vertices in meshes by TetGen, and at half in good triangulations of surfaces. O(n).
 bool is_lattice(const GraphRef& graph) {
   constexpr double kMost = 0.6;
   std::vector<Index> with_degree;
@@ -109,8 +109,8 @@ Kind kind_of(const VertexInput& input) {
   return has_places(input.points, input.graph.size()) ? Kind::placed : Kind::bare;
 }
 
-/// Whether the graph is a lattice whose vertices are numbered about as well as by `order`: a sweep reads
-/// few lines out of order, and spans are at most half as long again.
+/// Returns whether the graph is a lattice whose vertices are numbered about as well as by `order`: a sweep
+/// reads few lines out of order, and the mean span is at most half as long again.
 bool is_well_numbered_lattice(const VertexInput& input, const Permutation& order) {
   constexpr double kFew = 0.1;
   constexpr double kAlike = 1.5;

@@ -5,8 +5,8 @@
 
 namespace meshorder {
 
-/// Returns the vertex method that measurements favour for that graph and workload: never `auto` itself, and
-/// none that needs coordinates unless coordinates tell the vertices apart. docs/auto.md has the evidence.
+/// Returns the vertex method that measurements favour for this graph and workload: never `auto` itself, and a
+/// method that needs coordinates only if coordinates distinguish the vertices. docs/auto.md has the evidence.
 /// O(n).
 MethodChoice choose_vertex_method(const VertexInput& input, Workload workload);
 

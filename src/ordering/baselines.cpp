@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// The orders that others are measured against: the file's, and a random one.
+// The reference orders: the file's, and a random one.
 #include "base/random.hpp"
 #include "base/run_scope.hpp"
 #include "ordering/all_methods.hpp"
@@ -10,7 +10,7 @@
 namespace meshorder {
 namespace {
 
-/// Fisher and Yates' shuffle.
+/// Returns a random order by the shuffle of Fisher and Yates.
 Permutation shuffled(Index n, std::uint64_t seed) {
   std::vector<Index> order(n);
   std::iota(order.begin(), order.end(), Index{0});

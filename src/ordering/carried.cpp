@@ -21,7 +21,7 @@ struct Insertion {
   Index vertex;
 };
 
-/// Returns the vertices that were there, in their order.
+/// Returns the vertices that have a place, in the order of their places.
 std::vector<Index> survivors(std::span<const Index> places, Index count) {
   std::vector<Index> at(static_cast<std::size_t>(count), kUnranked);
   for (std::size_t v = 0; v < places.size(); ++v) {
@@ -31,7 +31,7 @@ std::vector<Index> survivors(std::span<const Index> places, Index count) {
   return at;
 }
 
-/// Returns the median of the ranks of the neighbours that have one; kUnranked where none has.
+/// Returns the median rank of the neighbours that have a rank; kUnranked if none has.
 Index median_rank(std::span<const Index> neighbours, std::span<const Index> rank_of,
                   std::vector<Index>& ranks) {
   ranks.clear();
@@ -45,9 +45,9 @@ Index median_rank(std::span<const Index> neighbours, std::span<const Index> rank
   return *middle;
 }
 
-/// Finds a rank for the new vertices, wave after wave: those of a wave have neighbours with one.
+/// Finds a rank for the new vertices in waves: the vertices of a wave have neighbours with a rank.
 ///
-/// @param rank_of  of each vertex, kUnranked of new ones; those found are added
+/// @param rank_of  rank of each vertex, kUnranked for new ones; the ranks found are added
 std::vector<Insertion> found_places(std::span<const Index> added, const NeighbourRows& rows,
                                     std::vector<Index>& rank_of) {
   const auto row_of = [&](Index k) {
@@ -55,7 +55,7 @@ std::vector<Insertion> found_places(std::span<const Index> added, const Neighbou
     const Offset end = rows.offsets[static_cast<std::size_t>(k) + 1];
     return std::span(rows.neighbours.data() + begin, static_cast<std::size_t>(end - begin));
   };
-  std::vector<Index> number_of(rank_of.size(), kUnranked);  // among the new ones
+  std::vector<Index> number_of(rank_of.size(), kUnranked);  // number among the new vertices
   std::vector<Index> wave(added.size());
   for (std::size_t k = 0; k < added.size(); ++k) {
     wave[k] = static_cast<Index>(k);
@@ -73,7 +73,7 @@ std::vector<Insertion> found_places(std::span<const Index> added, const Neighbou
       found.push_back({after, added[static_cast<std::size_t>(k)]});
       for (const Index u : row_of(k)) next.push_back(number_of[static_cast<std::size_t>(u)]);
     }
-    // known from the next wave on, whatever their numbers
+    // ranks count from the next wave on, so that the numbers of vertices do not matter
     for (std::size_t i = first; i < found.size(); ++i) {
       rank_of[static_cast<std::size_t>(found[i].vertex)] = found[i].after;
       number_of[static_cast<std::size_t>(found[i].vertex)] = kUnranked;

@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// The vertices of an update beside those of the last one.
+/// The vertices of an update compared with those of the last one.
 struct VertexChanges {
   std::vector<Index>
       places;  ///< of each vertex after the last update, −1 for new ones; empty: nothing changed
@@ -29,11 +29,11 @@ struct NeighbourRows {
   std::vector<Index> neighbours;
 };
 
-/// Returns the vertices in the order that they had, new ones next to their neighbours: the first one after
-/// the median of those that were there, from neighbour to neighbour breadth first, those that reach none
-/// last.
+/// Returns the vertices in their old order, with new ones next to their neighbours: each comes after the
+/// median of its neighbours that have a place. New vertices are placed in waves, from neighbour to neighbour;
+/// those that reach no placed vertex come last.
 ///
-/// @param places  for each vertex its place in the old order, of which none comes twice, −1 for a new one
+/// @param places  each vertex's place in the old order, −1 for a new one; no place occurs twice
 /// @param count   number of places in the old order
 /// @param added   the new vertices, ascending
 /// @param rows    a row for each of them

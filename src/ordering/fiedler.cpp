@@ -13,13 +13,13 @@
 namespace meshorder {
 namespace {
 
-/// Appends the vertices of a component, which ascend, by their values, ties by number.
+/// Appends the vertices of a component, given in ascending order, sorted by their values, ties by number.
 void append_sorted(const std::vector<Index>& component, const std::vector<double>& values,
                    std::vector<Index>& new_to_old) {
   const Index n = index_size(component);
-  if (n == 1) return new_to_old.push_back(component[0]);  // there may be millions
+  if (n == 1) return new_to_old.push_back(component[0]);  // there may be millions of such components
   const auto value = [&](Index k) { return values[component[k]]; };
-  double low = 0;  // values sum to 0
+  double low = 0;  // values sum to 0, so 0 lies between low and high
   double high = 0;
   for (const Index v : component) {
     low = std::min(low, values[v]);
@@ -46,7 +46,7 @@ Order by_fiedler_vector(GraphRef graph, std::span<const double> weights, const O
           .complete = fiedler.complete};
 }
 
-/// Returns the options for the dual graph: a start vector belongs to the vertices.
+/// Returns the options for the dual graph, without the start vector, which belongs to the vertices.
 OrderOptions without_start(OrderOptions options) {
   options.start = {};
   return options;

@@ -14,16 +14,16 @@ namespace meshorder {
 namespace {
 
 constexpr Index kInChunk = 2048;  // vertices: fewer cost springs 2 %, four times as many cost products 3 %
-constexpr Index kInSection = 32 * kInChunk;  // vertices that one thread takes
+constexpr Index kInSection = 32 * kInChunk;  // vertices taken by a thread at a time
 constexpr Index kAheadOfOffset = 24;
 constexpr Index kAheadOfRow = 8;
 constexpr Index kAheadOfPlaces = 4;
 
-/// Renumbers the chunks of a section one after the other. Loops over neighbours write without a branch, which
+/// Renumbers the chunks of a section one after the other. Loops over neighbours write without branches, which
 /// would be unpredictable.
 class Section {
  public:
-  /// @param places  of each place in the order the new one, where it is known
+  /// @param places  maps each place in the old order to the new one, where that is known
   Section(GraphRef graph, const Permutation& order, Index begin, std::span<Index> places)
       : graph_(graph), order_(order), begin_(begin), places_(places) {}
 
@@ -38,7 +38,7 @@ class Section {
       is_queued_[vertex] = 1;
     };
     for (const auto& [earliest, vertex] : seeds_) enqueue(vertex);
-    Index first = 0;  // that may not have been reached
+    Index first = 0;  // no vertex before this one is unreached
     for (Index next = 0; next < end - begin;) {
       if (next == queued) {
         enqueue(first++);
@@ -51,7 +51,7 @@ class Section {
   }
 
  private:
-  /// Finds the neighbours of the chunk's vertices among themselves, and of each the earliest before the
+  /// Finds the edges within the chunk, and for each of its vertices the earliest neighbour before the
   /// chunk.
   void find_neighbours(Index begin, Index end) {
     const std::span<const Index> vertices = order_.new_to_old();
@@ -59,7 +59,7 @@ class Section {
     Index found = 0;
     seeds_.clear();
     for (Index place = begin; place < end; ++place) {
-      // what later places need; in a function of its own GCC 12 takes it for code without effect
+      // prefetches for later places; not a function, since GCC 12 drops its calls as code without effect
       if (place + kAheadOfOffset < index_size(vertices)) {
         prefetch_offsets(graph_.offsets, vertices.subspan(place + kAheadOfOffset, 1));
         prefetch_rows(graph_.offsets, graph_.neighbours, vertices.subspan(place + kAheadOfRow, 1));
@@ -86,17 +86,17 @@ class Section {
     starts_[end - begin] = found;
   }
 
-  /// Returns the new number of a place before the chunk; of one before the section, which another thread
-  /// may renumber now, the place itself, which is less than a chunk away.
+  /// Returns the new number of a place before the chunk. Another thread may be renumbering places before the
+  /// section: for these it returns the place itself, which is less than a chunk away.
   [[nodiscard]] Index number_at(Index place) const { return place < begin_ ? place : places_[place]; }
 
   GraphRef graph_;
   const Permutation& order_;
   Index begin_;
   std::span<Index> places_;
-  std::vector<Index> earlier_;                  ///< neighbours of one vertex before the chunk
+  std::vector<Index> earlier_;                  ///< new places of a vertex's neighbours before the chunk
   std::vector<std::pair<Index, Index>> seeds_;  ///< earliest neighbour before the chunk, vertex
-  std::array<Index, kInChunk + 1> starts_;      ///< of each vertex of the chunk in `neighbours_`
+  std::array<Index, kInChunk + 1> starts_;      ///< where each vertex's row begins in `neighbours_`
   std::vector<Index> neighbours_;
   std::array<Index, kInChunk + 1> queue_;
   std::array<char, kInChunk> is_queued_;

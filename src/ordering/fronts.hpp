@@ -6,12 +6,12 @@
 
 namespace meshorder {
 
-/// Renumbers each chunk of 2,048 vertices of an order breadth first, from the vertices that have neighbours
-/// in earlier chunks on, those of the earliest neighbour first.
+/// Renumbers each chunk of 2,048 vertices of an order breadth first. The search starts from the vertices with
+/// neighbours in earlier chunks, those with the earliest neighbour first.
 ///
-/// A sweep over rows or edges then touches new vertices nearly in the order of their numbers. Where vectors
-/// exceed the last cache it reads memory forward, which processors prefetch, as they do after breadth-first
-/// numbering of the whole graph; and each chunk stays the compact region that the order made it. Vertices
+/// A sweep over rows or edges then touches new vertices nearly in the order of their numbers. If vectors
+/// exceed the last cache, it reads memory forward, which processors prefetch, as after breadth-first
+/// numbering of the whole graph; but each chunk is still the compact region that the order made it. Vertices
 /// move within their chunk only.
 ///
 /// O(n + edges · log degree) on all threads; the result does not depend on their number.

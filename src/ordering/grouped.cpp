@@ -14,11 +14,11 @@
 namespace meshorder {
 namespace {
 
-/// The vertices group after group, in old order within each.
+/// The vertices group after group, in their old order within each.
 struct Sorted {
   std::vector<Index> vertices;
   std::vector<Index> starts;  ///< groups + 1
-  std::vector<Index> places;  ///< of each vertex in `vertices`
+  std::vector<Index> places;  ///< the place of each vertex in `vertices`
 };
 
 Sorted sorted_into_groups(std::span<const Index> group_of, Index groups) {
@@ -37,16 +37,16 @@ Sorted sorted_into_groups(std::span<const Index> group_of, Index groups) {
   return sorted;
 }
 
-/// The part of the input that belongs to a group.
+/// The part of the input that belongs to one group.
 struct GroupInput {
   CsrGraph graph;
   std::vector<double> weights;
   std::vector<Point> points;
-  std::vector<double> start;  ///< of the eigensolver
+  std::vector<double> start;  ///< for the eigensolver
 };
 
-/// The graph of one group's vertices among themselves, and what else is known of them. Unlike
-/// induced_subgraph it takes time for the group alone, since there may be as many groups as vertices.
+/// Returns the graph of one group's vertices among themselves, with their weights, points and start. Its cost
+/// depends on the group alone, unlike that of induced_subgraph: there may be as many groups as vertices.
 GroupInput input_of_group(const VertexInput& input, RealView start, const Sorted& sorted, Index group) {
   const Index begin = sorted.starts[group];
   const Index end = sorted.starts[group + 1];

@@ -10,16 +10,16 @@
 
 namespace meshorder {
 
-/// Returns the numbers of groups as ranks of their values, 0 … `count` − 1. O(size · log size).
+/// Numbers groups by the ranks of their values, 0 … `count` − 1. O(size · log size).
 ///
 /// @param what   "vertices" or "cells", for the message
-/// @param count  receives how many groups there are
+/// @param count  receives the number of groups
 /// @throws InvalidArgument unless there are `size` numbers
 std::vector<Index> dense_groups(const IndexView& groups, Index size, const char* what, Index& count);
 
 /// Orders the vertices group after group, each group by the method on the graph of its own vertices, so that
-/// neighbours within a group stay neighbours in memory. `auto` chooses once, for the whole graph; reports of
-/// eigensolvers follow each other as the groups do. O(n + edges) and what the method costs.
+/// neighbours within a group stay near each other in memory. `auto` chooses once, for the whole graph.
+/// Reports of eigensolvers are in the order of the groups. O(n + edges) and the cost of the method.
 ///
 /// @param group_of  for each vertex the number of its group, 0 … groups − 1
 /// @throws as `order_graph`, and InvalidArgument if `group_of` does not fit

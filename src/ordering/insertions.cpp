@@ -11,8 +11,8 @@ namespace meshorder {
 namespace {
 
 constexpr Index kChunk = 4096;
-constexpr Index kReach = 64;  // places that a slide goes for each edge of the vertex
-constexpr Offset kSlack = 2;  // times what the edges of the vertex weigh, times its volume
+constexpr Index kReach = 64;  // places that a slide may pass for each edge of the vertex
+constexpr Offset kSlack = 2;  // times the weight of the vertex's edges, times its volume
 
 /// The places begin … end−1 of the line.
 struct Places {
@@ -21,7 +21,7 @@ struct Places {
 };
 
 /// The state of the search. Each thread touches only the vertices of its own chunk. `chunk_of_` gives the
-/// chunk of a vertex without a look at its place, which another thread may be writing.
+/// chunk of a vertex without reading its place, which another thread may be writing.
 class InsertionSearch {
  public:
   InsertionSearch(const ArrangementGraph& graph, std::vector<Index>& order)
@@ -43,7 +43,7 @@ class InsertionSearch {
     }
   }
 
-  /// Takes every vertex out and puts it back, chunk by chunk, the first one shorter by `shift`. Yields
+  /// Takes every vertex out and puts it back, chunk by chunk; the first chunk is shorter by `shift`. Returns
   /// whether anything moved.
   bool pass(Index shift) {
     const Index n = graph_.size();
@@ -72,16 +72,16 @@ class InsertionSearch {
 
  private:
   struct Slide {
-    Index place;        ///< the best of the slide
-    Offset change = 0;  ///< of the total span, there
+    Index place;        ///< the best place of the slide
+    Offset change = 0;  ///< change of the total span at that place
   };
 
-  /// The best place on one side of `from`, where `step` of 1 or −1 leads; `weight_at_` holds the edges of the
-  /// vertex.
+  /// Returns the best place on one side of `from`: later places for a `step` of 1, earlier ones for −1.
+  /// `weight_at_` has the weights of the vertex's edges.
   [[nodiscard]] Slide slide(Index from, Index step, Index last, Offset allowance) const {
     Slide best{from};
     const Offset volume = volume_at_[from];
-    Offset ahead = step * balance_at_[from];  // weight of the edges ahead minus that of those behind
+    Offset ahead = step * balance_at_[from];  // weight of the edges ahead minus that of the other edges
     Offset change = 0;
     for (Index k = from + step; k != last + step; k += step) {
       const Offset weight = weight_at_[k];
@@ -93,7 +93,7 @@ class InsertionSearch {
     return best;
   }
 
-  /// Puts v where the total span is least within reach. Yields whether it moved.
+  /// Puts v at the place within reach where the total span is least. Returns whether it moved.
   bool reinsert(Index v, Index chunk, const Places& places) {
     const Index from = place_[v];
     Offset degree = 0;
@@ -119,7 +119,7 @@ class InsertionSearch {
     return true;
   }
 
-  /// Moves v to the place `to`, on the side of `step`; those between move up by one.
+  /// Moves v to the place `to`, which lies in the direction of `step`; those between move by one.
   void move(Index v, Index chunk, Index to, Index step) {
     const Index from = place_[v];
     const Index volume = volume_at_[from];
@@ -149,9 +149,9 @@ class InsertionSearch {
   std::vector<Index> place_;
   // by place, since slides read them in a row
   std::vector<Index> volume_at_;
-  std::vector<Offset> balance_at_;  // weight of the edges to later vertices minus that to earlier ones
-  std::vector<Offset> weight_at_;   // of the edge to the vertex at hand
-  std::vector<Index> chunk_of_;     // of each vertex
+  std::vector<Offset> balance_at_;  // weight of edges to later vertices minus that to earlier ones
+  std::vector<Offset> weight_at_;   // weight of the edge to the vertex being moved
+  std::vector<Index> chunk_of_;     // the chunk of each vertex
 };
 
 }  // namespace

@@ -15,13 +15,13 @@
 namespace meshorder {
 namespace {
 
-constexpr double kGain = 0.98;            // of the old figure, at most, to be worth a new order
+constexpr double kGain = 0.98;            // largest share of the old figure at which a new order is worth it
 constexpr double kTolerated = 1.05;       // of the old figure
 constexpr Index kBeyondCaches = 100'000;  // vertices: on smaller meshes all good orders are within 3 %
-constexpr double kNotable = 0.1;          // of the lines, 2 to 4 % of the time of a product
+constexpr double kNotable = 0.1;          // share of the lines, worth 2 to 4 % of the time of a product
 constexpr double kGainOnGpu =
-    0.9;  // of the old sectors, at most: repeats of a kernel differ by a few per cent
-constexpr Index kWarpsToLookAt = 4096;  // of each 32 threads; counts of more differ by less than 1 %
+    0.9;  // largest share of the old sectors: repeats of a kernel differ by a few per cent
+constexpr Index kWarpsToLookAt = 4096;  // warps of 32 threads; counts of more differ by less than 1 %
 
 std::string with_digits(double number, int digits) {
   std::array<char, 32> text{};
@@ -38,10 +38,10 @@ std::string sentence(const std::string& what, const std::string& old_figure, std
          new_figure + " by " + std::string(method);
 }
 
-/// Returns which warps of `threads` threads to look at: every warp of few, every stride-th of many.
+/// Returns the stride at which warps of `threads` threads are counted: 1 if they are few.
 Index stride_of_warps(Index threads) { return std::max<Index>(1, threads / kWarp / kWarpsToLookAt); }
 
-/// Whether a workload reads vectors along the rows or edges of the graph.
+/// Returns whether a workload reads vectors along the rows or edges of the graph.
 bool sweeps_over_rows(Workload workload) {
   return workload == Workload::all || workload == Workload::spmv || workload == Workload::springs;
 }
@@ -114,7 +114,7 @@ std::string reason_to_keep_on_gpu(IncidenceRef elements, const Permutation& vert
   const ElementOrder as_is{.elements = elements, .vertex_old_to_new = vertices.old_to_new()};
   const ElementOrder moved{
       .elements = elements, .new_to_old = order, .vertex_old_to_new = vertices.old_to_new()};
-  double before = 0;  // logarithms
+  double before = 0;  // sums of logarithms
   double after = 0;
   for (const GpuLayout layout : kLayouts) {
     before += std::log(std::max<Offset>(1, sectors_of_additions(as_is, layout, stride) * stride));

@@ -12,31 +12,31 @@
 
 namespace meshorder {
 
-/// Returns what a method asked for by name is to be judged by.
+/// Returns the workload by which to judge a method that was asked for by name.
 Workload made_for(std::string_view method);
 
-/// Judges an order by what the workload asks for: the bandwidth, the entries of the Cholesky factor, the
-/// sectors that a product reads on a graphics processor, and else the edge spans. Sectors must fall by 10 %
-/// at least. Spans must fall, in the mean or in the geometric mean, by 2 % at least, and the mean must not
-/// grow by more than 5 %. Large graphs are sampled.
+/// Judges an order by the figure for the workload: the bandwidth, the entries of the Cholesky factor, the
+/// sectors that a product reads on a graphics processor, or else the edge spans. Sectors must fall by at
+/// least 10 %. Spans must fall, in the mean or in the geometric mean, by at least 2 %, and the mean must not
+/// grow by more than 5 %. On large graphs the share of jumps may decide alone. They are sampled.
 ///
-/// Returns why the vertices are better left where they are, a sentence with the method's name and both
-/// figures; empty if the order is better. O(n + entries).
+/// Returns why the vertices should stay where they are, a sentence with the method's name and both figures;
+/// empty if the order is better. O(n + entries).
 std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string_view method,
                            Workload workload);
 
 /// Judges an order of elements by the working sets of `kElementsAtOnce` elements: one of these must fall by
-/// 2 % at least, and none may grow by more than 5 %. Returns why the elements are better left where they are,
-/// as above. O(vertices + elements).
+/// at least 2 %, and none may grow by more than 5 %. Returns why the elements should stay where they are, as
+/// above. O(vertices + elements).
 ///
-/// @param as_is  the elements in their old order; none: as they are numbered
+/// @param as_is  the elements in their old order; empty: as they are numbered
 /// @param order  the elements in the order to be judged
 std::string reason_to_keep_elements(IncidenceRef elements, std::span<const Index> as_is,
                                     std::span<const Index> order, std::string_view method);
 
 /// Judges an order of elements by the sectors of their additions on a graphics processor, which must fall by
-/// 10 % at least in the geometric mean of the three layouts. Returns why the elements are better left where
-/// they are, as above. Many elements are sampled.
+/// at least 10 % in the geometric mean of the three layouts. Returns why the elements should stay where they
+/// are, as above. Many elements are sampled.
 ///
 /// @param vertices  the order of the vertices
 /// @param order     the elements in the order to be judged

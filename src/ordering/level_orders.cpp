@@ -13,9 +13,9 @@
 namespace meshorder {
 namespace {
 
-/// Sorts vertices by rising degree, those of one degree as they come.
+/// Sorts vertices by rising degree, stably.
 void sort_by_degree(GraphRef graph, std::span<Index> vertices) {
-  constexpr std::size_t kFew = 32;  // std::stable_sort asks for memory even to sort two
+  constexpr std::size_t kFew = 32;  // std::stable_sort allocates memory even to sort two
   const auto less = [&](Index a, Index b) { return graph.degree(a) < graph.degree(b); };
   if (vertices.size() > kFew) return std::stable_sort(vertices.begin(), vertices.end(), less);
   for (std::size_t k = 1; k < vertices.size(); ++k) {
@@ -26,9 +26,9 @@ void sort_by_degree(GraphRef graph, std::span<Index> vertices) {
   }
 }
 
-/// Orders the components of a graph one after the other by `place(search, component, found, places)`, which
-/// fills `places`, but for the last one, with the vertices of a component. `found` has them in the order of a
-/// search from a vertex at the rim.
+/// Orders the components of a graph one after the other. `place(search, component, found, places)` fills
+/// `places`, except the last one, with the vertices of a component. `found` has them in breadth-first order
+/// from a vertex at the rim.
 template <class Place>
 Order by_components(GraphRef graph, const Place& place) {
   const BreadthFirstCopy copy = breadth_first_copy(graph);

@@ -31,7 +31,7 @@ struct BuiltInElementMethod {
   bool needs_points = false;
 };
 
-/// A method, then fronts within its chunks.
+/// Orders by a method, then breadth first within its chunks.
 template <Order (*Method)(const VertexInput&, const OrderOptions&)>
 Order then_fronts(const VertexInput& input, const OrderOptions& options) {
   Order result = Method(input, options);
@@ -128,7 +128,7 @@ Permutation with_isolated_last(Permutation order, GraphRef graph) {
   return Permutation::from_new_to_old(std::move(new_to_old));
 }
 
-/// The caller's Permutation of a registered method, checked.
+/// Checks the permutation that a registered method returned.
 Order result_of(Permutation permutation, Index size, std::string_view method) {
   if (permutation.size() != size) {
     throw InvalidArgument("the registered order '" + std::string(method) + "' returned " +

@@ -17,8 +17,8 @@ struct VertexInput {
   GraphRef graph;
   PointsView points = {};                ///< one for each vertex, or none
   std::span<const double> weights = {};  ///< one for each neighbour, or none
-  /// Where the graph is a part of a larger one: how many neighbours each vertex has in parts that come before
-  /// this one, less those in parts that come after; or none. `spectral` turns its cuts by it, the other
+  /// If the graph is a part of a larger one: for each vertex, the number of its neighbours in earlier parts
+  /// minus those in later parts; or none. `spectral` chooses the direction of its cuts by it, the other
   /// methods ignore it.
   std::span<const float> pull = {};
 };

@@ -18,7 +18,7 @@ inline std::optional<MethodInfo> method_named(const std::vector<MethodInfo>& met
   return found == methods.end() ? std::nullopt : std::optional(*found);
 }
 
-/// Returns whether that method for vertices, or for elements, needs coordinates.
+/// Returns whether the method of that name in the list needs coordinates.
 inline bool needs_points(const std::vector<MethodInfo>& methods, std::string_view name) {
   const std::optional<MethodInfo> method = method_named(methods, name);
   return method && method->needs_points;

@@ -22,7 +22,7 @@ struct MetisGraph {
   std::vector<idx_t> neighbours;
   idx_t options[METIS_NOPTIONS] = {};
 
-  /// Throws TooLarge for a graph with more entries than METIS's integers count.
+  /// Throws TooLarge for a graph with more entries than METIS's integers can count.
   MetisGraph(GraphRef graph, std::uint64_t seed);
 };
 
@@ -45,7 +45,7 @@ void check_metis(int status, const char* call) {
 
 constexpr Index kLeaf = 8;  // smaller leaves cost METIS more and no longer shorten spans
 
-/// Which half each vertex belongs to, 0 or 1.
+/// Returns the half, 0 or 1, of each vertex.
 std::vector<idx_t> halves(GraphRef graph, std::uint64_t seed) {
   report("metis");
   MetisGraph metis(graph, seed);
@@ -60,7 +60,7 @@ std::vector<idx_t> halves(GraphRef graph, std::uint64_t seed) {
   return half_of;
 }
 
-/// Appends `vertices`, which `graph` joins under their positions, half after half.
+/// Appends `vertices`, half after half. Vertex k of `graph` is `vertices[k]`.
 void append_bisected(GraphRef graph, const std::vector<Index>& vertices, std::uint64_t seed,
                      std::vector<Index>& order) {
   std::array<std::vector<Index>, 2> sides;
@@ -95,7 +95,7 @@ Order metis_nd_vertices(const VertexInput& input, const OrderOptions& options) {
 }
 
 // One half of the mesh comes before the other, and so on within each half. METIS's own recursion into many
-// parts prints to stdout and fails where a part becomes empty, so it is asked for one bisection at a time.
+// parts prints to stdout and fails if a part becomes empty, so each call asks it for one bisection.
 Order metis_rb_vertices(const VertexInput& input, const OrderOptions& options) {
   std::vector<Index> all(input.graph.size());
   std::iota(all.begin(), all.end(), Index{0});

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// Minimum linear arrangement, to which the Fiedler vector is a relaxation: Juvan, Mohar, Optimal Linear
+// Minimum linear arrangement, whose relaxation the Fiedler vector solves: Juvan, Mohar, Optimal Linear
 // Labelings and Eigenvalues of Graphs (1992). Multilevel search: Safro, Ron, Brandt, Graph Minimum Linear
 // Arrangement by Multilevel Weighted Edge Contractions (2006).
 #include "base/run_scope.hpp"
@@ -19,8 +19,8 @@ constexpr Index kCoarsest = 40;  // graphs up to this size are not coarsened
 constexpr int kPasses = 2;
 constexpr int kVisits = 2;
 
-/// The subgraph of the vertices at places first … first + count − 1, a union of components; its
-/// vertices are numbered in their order.
+/// Returns the subgraph of the vertices at places first … first + count − 1, which are whole components,
+/// numbered in that order.
 ArrangementGraph local_graph(GraphRef graph, const Permutation& order, Index first, Index count) {
   ArrangementGraph local;
   local.offsets.reserve(Offset{count} + 1);
@@ -41,7 +41,7 @@ std::vector<Index> identity(Index n) {
   return order;
 }
 
-/// Returns the vertices group by group along `coarse_order`, those of a group in the sequence of `order`.
+/// Returns the vertices group by group along `coarse_order`, those of a group in the order of `order`.
 std::vector<Index> expanded(const std::vector<Index>& coarse_order, const std::vector<Index>& group_of,
                             const std::vector<Index>& order) {
   std::vector<Index> next(coarse_order.size(), 0);  // first the sizes of groups, then their next free places
@@ -53,10 +53,10 @@ std::vector<Index> expanded(const std::vector<Index>& coarse_order, const std::v
   return result;
 }
 
-/// Replaces the order by a better one, found on the coarser graph, where large parts move at once, and then
-/// by moving single vertices. What is better on the coarser graph need not be so here; so this goes twice,
-/// the second time with groups that follow the new order, and keeps the better outcome, which may have a
-/// larger span than what it began with.
+/// Replaces the order by one found on the coarser graph, where large parts move at once, and then improved by
+/// moving single vertices. What is better on the coarser graph may be worse here, so this is done twice, the
+/// second time with groups that follow the new order. Keeps the better of the two, which may have a larger
+/// span than the order at the beginning.
 void search(const ArrangementGraph& graph, TimeLimit limit, std::vector<Index>& order) {
   Offset least = std::numeric_limits<Offset>::max();
   for (int visit = 0; visit < kVisits; ++visit) {
@@ -71,7 +71,7 @@ void search(const ArrangementGraph& graph, TimeLimit limit, std::vector<Index>& 
         search(coarse.graph, limit, coarse_order);
         candidate = expanded(coarse_order, coarse.group_of, order);
       }
-      // else the visits would take more than O(edges · log n) in all
+      // a second visit of a larger coarse graph would make the cost exceed O(edges · log n) in all
       twice = 2 * coarse.graph.neighbours.size() <= graph.neighbours.size();
     }
     const Offset span = improve_by_insertions(graph, candidate, kPasses);

@@ -23,11 +23,11 @@ namespace meshorder {
 namespace {
 
 constexpr Index kOneOf = 16;
-/// Graphs and meshes of fewer are looked at whole.
+/// Smaller graphs and meshes are examined whole.
 constexpr Index kAllOf = 4096;
 
-/// One of each 16 numbers below n, rising; which one a hash decides, so that no lattice keeps step with the
-/// sample.
+/// Returns one of every 16 numbers below n, ascending. A hash chooses which one, so that the sample is not in
+/// step with a lattice.
 std::vector<Index> sample_of(Index n) {
   std::vector<Index> sample(static_cast<std::size_t>(n < kAllOf ? n : chunk_count(n, kOneOf)));
   for (Index k = 0; k < index_size(sample); ++k) {
@@ -66,7 +66,7 @@ Index place(std::span<const Index> place_of, Index v) {
 }
 
 bool reads_forward(const GraphRef& graph) {
-  constexpr double kFew = 0.1;  // of the lines
+  constexpr double kFew = 0.1;  // share of the lines
   return sampled_jump_share(graph, Permutation::identity(graph.size())) < kFew;
 }
 
@@ -197,7 +197,7 @@ NeighbourRows PointNeighbourhood::rows_of(std::span<const Index> vertices) const
 }
 
 Order PointNeighbourhood::order_by(std::string_view method, const OrderOptions& options) {
-  // without a graph no point is without neighbours
+  // there is no graph to tell which points have no neighbours
   const std::vector<Offset> offsets(points_.size() + 1);
   const VertexInput input{{offsets, {}}, points_};
   const bool by_morton = method == "morton";

@@ -12,7 +12,7 @@
 
 namespace meshorder {
 
-/// What an update of a `Reorderer` knows of the vertices and of which belong together.
+/// The vertices of an update of a `Reorderer`, and which of them belong together.
 class Neighbourhood {
  public:
   Neighbourhood() = default;
@@ -25,20 +25,20 @@ class Neighbourhood {
   [[nodiscard]] virtual Index size() const = 0;
   /// Returns `Update::span_log2` of an order.
   ///
-  /// @param place_of  the new place of each vertex; none: as they are
+  /// @param place_of  the new place of each vertex; empty: as they are
   [[nodiscard]] virtual double span_log2(std::span<const Index> place_of) const = 0;
-  /// Returns the largest `span_log2` that does not ask for a new order.
+  /// Returns the largest `span_log2` at which an order is still kept.
   [[nodiscard]] virtual double most_span(double fresh, double slack) const { return fresh * (1 + slack); }
-  /// Returns the neighbours of some vertices, which ascend.
+  /// Returns the neighbours of the given vertices, which must ascend.
   [[nodiscard]] virtual NeighbourRows rows_of(std::span<const Index> vertices) const = 0;
   /// Orders the vertices by that method.
   [[nodiscard]] virtual Order order_by(std::string_view method, const OrderOptions& options) = 0;
   /// Returns whether a sweep over the vertices as they are numbered reads memory forward, so that a new order
-  /// has nothing to win (see `jump_share`). Of points alone that is not known.
+  /// would gain nothing (see `jump_share`). False if only points are known.
   [[nodiscard]] virtual bool is_read_forward() { return false; }
 };
 
-/// Of a graph. Refers to it.
+/// The vertices of a graph. Refers to it.
 class GraphNeighbourhood : public Neighbourhood {
  public:
   GraphNeighbourhood(const GraphArrays& graph, const PointsView& points) : graph_(graph), points_(points) {}
@@ -54,7 +54,7 @@ class GraphNeighbourhood : public Neighbourhood {
   const PointsView& points_;
 };
 
-/// Of a mesh. Refers to it, and builds its graph when an order is computed.
+/// The vertices of a mesh. Refers to it, and builds its graph when an order is computed.
 class CellNeighbourhood : public Neighbourhood {
  public:
   CellNeighbourhood(const CellArrays& cells, const PointsView& points) : cells_(cells), points_(points) {}
@@ -74,14 +74,14 @@ class CellNeighbourhood : public Neighbourhood {
   std::optional<CsrGraph> graph_;
 };
 
-/// Of points alone, whose place is that on a curve.
+/// Points alone, whose ideal place is their place on a curve.
 class PointNeighbourhood : public Neighbourhood {
  public:
   explicit PointNeighbourhood(const PointsView& points) : points_(points) {}
 
   [[nodiscard]] Index size() const override { return static_cast<Index>(points_.size()); }
   [[nodiscard]] double span_log2(std::span<const Index> place_of) const override;
-  /// On the curve itself nothing is away from its place, so that the slack is one of log₂ n.
+  /// Returns `fresh` plus `slack` times log₂ n, since `fresh` is 0 for the order along the curve itself.
   [[nodiscard]] double most_span(double fresh, double slack) const override;
   [[nodiscard]] NeighbourRows rows_of(std::span<const Index> vertices) const override;
   [[nodiscard]] Order order_by(std::string_view method, const OrderOptions& options) override;

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// The public functions: they check what the caller gave, bring it into the library's types, and call the
+// The public functions: they check the caller's input, convert it to the library's types, and call the
 // method.
 #include "base/arena.hpp"
 #include "base/stopwatch.hpp"
@@ -27,7 +27,7 @@ void append(std::vector<std::string>& notes, const std::vector<std::string>& mor
   notes.insert(notes.end(), more.begin(), more.end());
 }
 
-/// Returns the points; notes where they do not fit, and then keeps them from `auto`, which would go by them.
+/// Returns the points. If the method uses them and they do not fit, adds a note; `auto` then gets none.
 PointsView points_to_go_by(const PointsView& points, GraphRef graph, std::string_view method,
                            std::vector<std::string>& notes) {
   if (points.empty()) return points;

@@ -64,7 +64,7 @@ Permutation permutation_within_classes(std::span<const Index> classes, std::vect
   std::vector<Index> next(start.begin(), start.end() - 1);
   for (Index c = 0; c < index_size(classes); ++c) places[next[classes[c]]++] = c;
 
-  // hand them out
+  // give them to the cells in order
   std::copy(start.begin(), start.end() - 1, next.begin());
   std::vector<Index> old_to_new(classes.size(), -1);
   for (const Index c : cells_in_order) old_to_new[c] = places[next[classes[c]]++];
@@ -77,7 +77,7 @@ Order order_cells(std::string_view method, const CellArrays& cells, const Permut
   const auto facet_graph = [&] { return joined_by_facet(cells, elements); };
   const ElementInput input{elements.incidence(), vertices, points, facet_graph};
   MethodChoice choice{std::string(method), {}};
-  // in groups the old order is no alternative, and `auto` has nothing to judge
+  // in groups the old order is no alternative, so `auto` need not judge it
   if (method == "auto" && !(groups.empty() && options.groups.empty()))
     choice = choose_element_method(input, options.workload);
   Order result = order_incidence(choice.name, input, options);

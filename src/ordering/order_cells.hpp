@@ -10,15 +10,15 @@
 
 namespace meshorder {
 
-/// Whether all cells may change places with each other, as in most meshes: one block of one dimension.
-/// O(cells).
+/// Returns whether all cells may change places with each other, as in most meshes: one block of one
+/// dimension. O(cells).
 bool has_one_slot_class(const CellArrays& cells);
 
 /// Cells that may change places with each other have the same slot class: block × dimension. Returns the
 /// class of each cell, 4 · block + dimension. O(cells).
 std::vector<Index> slot_classes(const CellArrays& cells);
 
-/// Hands the places of each class to its cells in the order in which `cells_in_order` lists them.
+/// Gives the places of each class to its cells in the order in which `cells_in_order` lists them.
 ///
 /// @throws InvalidArgument unless there are as many cells as classes
 Permutation permutation_within_classes(std::span<const Index> classes, std::vector<Index>&& cells_in_order);

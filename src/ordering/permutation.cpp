@@ -23,7 +23,7 @@ namespace {
                         std::to_string(n - 1));
 }
 
-/// Throws, naming the first entry that keeps `map` from being a bijection of 0 … n−1.
+/// Throws InvalidArgument with the first entry that keeps `map` from being a bijection of 0 … n−1.
 [[noreturn]] void fail(std::span<const Index> map) {
   const auto n = static_cast<Offset>(map.size());
   std::vector<Index> inverse(map.size(), -1);
@@ -40,7 +40,7 @@ namespace {
   throw InvalidArgument("permutation: not a bijection");
 }
 
-/// Throws TooLarge if numbers of places would not fit Index.
+/// Throws TooLarge if the number of places does not fit Index.
 void check_count(std::size_t n) {
   if (n > static_cast<std::size_t>(std::numeric_limits<Index>::max())) {
     throw TooLarge("permutation: " + std::to_string(n) + " entries; at most 2,147,483,647 are possible");
@@ -49,7 +49,7 @@ void check_count(std::size_t n) {
 
 /// Returns the inverse of `map`, which is checked to be a bijection of 0 … n−1.
 std::vector<Index> inverted(std::span<const Index> map) {
-  constexpr Offset kEntries = 65536;  // that a thread inverts together
+  constexpr Offset kEntries = 65536;  // inverted by a thread at a time
   check_count(map.size());
   const auto n = static_cast<Offset>(map.size());
   std::vector<Index> inverse(map.size(), -1);
@@ -66,7 +66,7 @@ std::vector<Index> inverted(std::span<const Index> map) {
       }
     });
     if (!bijection) return;
-    for_each_range(n, kEntries, [&](Offset begin, Offset end) {  // finds all but one of equal entries
+    for_each_range(n, kEntries, [&](Offset begin, Offset end) {  // of equal entries, all but one differ
       for (Offset i = begin; i < end; ++i) {
         if (inverse[map[i]] != i) {
           bijection = false;
@@ -79,7 +79,7 @@ std::vector<Index> inverted(std::span<const Index> map) {
   return inverse;
 }
 
-/// Copies a map of any integer type. Throws for the first entry that Index cannot hold.
+/// Copies a map of any integer type. Throws for the first entry that does not fit Index.
 std::vector<Index> copied(const IndexView& map) {
   check_count(map.size());
   std::vector<Index> result(map.size());

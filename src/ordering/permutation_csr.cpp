@@ -47,12 +47,12 @@ std::vector<Offset> moved_offsets(const GraphArrays& matrix, std::span<const Ind
   return offsets;
 }
 
-/// Calls `take(begin, entries)` for every moved row, on all threads: its entries by ascending column, the
-/// first of which is entry `begin` of the moved matrix.
+/// Calls `take(begin, entries)` for every moved row, on all threads. `entries` has the row's entries by
+/// ascending column; the first of them is entry `begin` of the moved matrix.
 template <class Take>
 void for_each_moved_row(const GraphArrays& matrix, const Permutation& order, std::span<const Offset> offsets,
                         const Take& take) {
-  constexpr Offset kRows = 4096;  // that a thread moves together
+  constexpr Offset kRows = 4096;  // moved by a thread at a time
   const std::span<const Index> new_to_old = order.new_to_old();
   const std::span<const Index> old_to_new = order.old_to_new();
   for_each_range(order.size(), kRows, [&](Offset first, Offset last) {

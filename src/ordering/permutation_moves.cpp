@@ -17,13 +17,13 @@
 namespace meshorder {
 namespace {
 
-constexpr Offset kNumbers = 262144;  // that a thread renumbers together
+constexpr Offset kNumbers = 262144;  // renumbered by a thread at a time
 
 template <std::size_t Bytes>
 using Constant = std::integral_constant<std::size_t, Bytes>;
 
-/// Calls `work` with the size of a row: as a constant for usual sizes, since copies of a constant size need
-/// no call.
+/// Calls `work` with the size of a row, for usual sizes as a constant: copies of a constant size need no
+/// function call.
 template <class Work>
 void with_row_size(std::size_t bytes, const Work& work) {
   switch (bytes) {
@@ -56,7 +56,7 @@ void Permutation::check_apart(const void* from, const void* to, std::size_t byte
 
 void Permutation::move_rows(const void* from, Offset from_stride, void* to, Offset to_stride,
                             std::size_t row_bytes, const Run& run) const {
-  constexpr Offset kRows = 16384;  // that a thread moves together
+  constexpr Offset kRows = 16384;  // moved by a thread at a time
   const Offset n = size();
   if (n == 0 || row_bytes == 0) return;
   if (from == nullptr || to == nullptr)
@@ -85,8 +85,8 @@ void Permutation::move_bytes_in_place(void* rows, std::size_t row_bytes) const {
   with_row_size(row_bytes, [&](auto bytes) {
     for (std::size_t first = 0; first < n; ++first) {
       if (moved[first] || static_cast<std::size_t>(new_to_old_[first]) == first) continue;
-      // along the cycle every place takes the row that belongs there; the last one takes what was at the
-      // first
+      // along the cycle every place gets the row that belongs there; the last one gets the row that was at
+      // the first
       std::memcpy(first_row.data(), base + first * bytes, bytes);
       std::size_t place = first;
       for (std::size_t old = new_to_old_[first]; old != first; old = new_to_old_[old]) {

@@ -21,7 +21,7 @@ namespace {
 
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): a plug-in's function has no other context
 thread_local std::string source_of_methods;
-thread_local std::string fault_of_method;  // the last sentence about a method that could not be registered
+thread_local std::string fault_of_method;  // why the last method was not registered
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 /// Registers a method of a plug-in for the rest of the program.
@@ -39,7 +39,7 @@ inline namespace v0_3 {
 
 void load_methods(const std::filesystem::path& shared_library) {
 #if defined(__unix__) || defined(__APPLE__)
-  // a name without a folder would be looked for among the system's libraries only
+  // dlopen would look for a name without a folder only among the system's libraries
   std::error_code failed_to_look;
   const std::filesystem::path file = std::filesystem::exists(shared_library, failed_to_look)
                                          ? std::filesystem::absolute(shared_library)

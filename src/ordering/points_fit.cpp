@@ -24,7 +24,7 @@ double distance(const PointsView& points, std::size_t a, std::size_t b) {
 bool points_fit(GraphRef graph, const PointsView& points) {
   constexpr Index kFewest = 256;
   constexpr int kSamples = 256;
-  // neighbours in meshes of 256 vertices are half as far apart as any two, in larger ones nearer
+  // in meshes of 256 vertices neighbours are half as far apart as any two vertices, in larger ones nearer
   constexpr double kAsFar = 0.8;
   const Index n = graph.size();
   if (n < kFewest || points.empty() || graph.neighbours.empty()) return true;

@@ -7,9 +7,9 @@
 namespace meshorder {
 
 /// Returns whether neighbours are nearer to each other than any two points are, as they are in a mesh: false
-/// says that an array is transposed, or of another mesh. True for graphs of fewer than 256 vertices, without
-/// edges or without points, and where all points coincide. Looks at 256 edges and as many pairs; the same
-/// ones on every call. O(log n).
+/// suggests that an array is transposed, or of another mesh. True for graphs of fewer than 256 vertices,
+/// without edges or without points, and if all points coincide. Samples 256 edges and as many pairs, the same
+/// ones in every call. O(log n).
 bool points_fit(GraphRef graph, const PointsView& points);
 
 }  // namespace meshorder

@@ -22,7 +22,7 @@ struct Registered {
   Method method;
 };
 
-/// The registered methods of a program, in the order in which they came.
+/// The registered methods of a program, in the order of their registration.
 struct Registry {
   std::shared_mutex mutex;
   std::uint64_t next_id = 1;
@@ -30,7 +30,7 @@ struct Registry {
   std::vector<Registered<ElementMethod>> element_methods;
 };
 
-/// Never destroyed: registrations of other static objects may outlive any order of destruction.
+/// Returns the registry. It is never destroyed, since static objects may hold registrations until the end.
 Registry& registry() {
   // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): all threads share it
   static auto* const registry = new Registry;
@@ -84,7 +84,7 @@ Method method_of_name(std::string_view name, std::vector<Registered<Method>> Reg
   return {};
 }
 
-/// Takes the entry of that number, if there is one, out of the list and its function into `method`.
+/// Moves the method with that number, if there is one, out of the list into `method`.
 template <class Method>
 void take_out(std::vector<Registered<Method>>& list, std::uint64_t id, Method& method) {
   const auto found =
@@ -97,7 +97,7 @@ void take_out(std::vector<Registered<Method>>& list, std::uint64_t id, Method& m
 void remove(std::uint64_t id) {
   if (id == 0) return;
   Registry& all = registry();
-  // destroyed without the lock: what the user's functions own may come back here
+  // destroyed after the lock is released: the user's objects may call these functions again
   VertexMethod vertex_method;
   ElementMethod element_method;
   const std::unique_lock lock(all.mutex);
@@ -105,8 +105,8 @@ void remove(std::uint64_t id) {
   take_out(all.element_methods, id, element_method);
 }
 
-/// A method that refuses to work without the coordinates of all vertices. `vertices(problem)` is their
-/// number.
+/// Returns the method; if it needs points, one that refuses to work without the coordinates of all vertices.
+/// `vertices(problem)` returns their number.
 template <class Problem, class Method, class Vertices>
 Method with_points(const MethodInfo& info, Method method, Vertices vertices) {
   if (!info.needs_points || !method) return method;

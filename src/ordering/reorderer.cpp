@@ -20,11 +20,11 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace {
 
-/// Of a warm order, in tolerances of a fresh one: the best mix of the last vector and of what coarser graphs
-/// show makes neighbours as near, without an iteration on the whole graph.
+/// The tolerance of a warm order, in tolerances of a fresh one. At this tolerance the best mix of the last
+/// vector and those of coarser graphs puts neighbours as near, without an iteration on the whole graph.
 constexpr double kWarmTolerance = 30;
 
-/// Returns the start vector by the vertices of this update; 0 for new ones.
+/// Returns the start vector in the numbering of this update; 0 for new vertices.
 std::vector<double> carried_vector(const std::vector<double>& vector, const VertexChanges& changes) {
   if (vector.empty() || changes.places.empty()) return vector;
   std::vector<double> result(changes.places.size());
@@ -59,7 +59,7 @@ class Reorderer::Inside {
  public:
   explicit Inside(ReordererOptions options) : options_(std::move(options)) {
     if (options_.method != "auto" && !method_named(vertex_methods(), options_.method)) {
-      // an order of nothing by it names the known ones
+      // ordering an empty graph throws for an unknown name, and lists the known ones
       (void)order_graph(options_.method, {CsrGraph()}, options_.order);
     }
     if (!(options_.slack >= 0))
@@ -143,7 +143,7 @@ class Reorderer::Inside {
     update.span_log2 = span;
   }
 
-  /// Keeps the order after a look that found no better one.
+  /// Keeps the order after an attempt that found no better one.
   static void pass(Update& update, ReordererState& next, bool is_first, Permutation carried, double span) {
     if (!is_first) next.interval = std::min(2 * next.interval, kMostInterval);
     next.since = 0;
@@ -152,8 +152,8 @@ class Reorderer::Inside {
     keep(update, std::move(carried), span);
   }
 
-  /// Returns after how many updates there is a new order: when what steps lose outweighs its cost, where that
-  /// is known.
+  /// Returns the number of updates between new orders: where the loss of speed outweighs the cost of an
+  /// order, if both are known.
   [[nodiscard]] static Index interval(const ReordererState& memory) {
     const double slope = memory.observed.slope();
     const double cost = memory.warm_seconds > 0 ? memory.warm_seconds : memory.fresh_seconds;
@@ -194,8 +194,8 @@ class Reorderer::Inside {
       options.start = next.vector;
       options.tolerance *= kWarmTolerance;
     }
-    // the first one is judged by `auto` as it judges any; where that keeps the numbering, so are the later
-    // ones
+    // `auto` judges the first order as it judges any; if it keeps the numbering, it judges the later ones
+    // too
     const std::string asked = is_first ? options_.method : next.method;
     Order order = hood.order_by(asked, options);
     last_seconds = stopwatch.seconds();

@@ -11,8 +11,8 @@
 
 namespace meshorder {
 
-/// The times of the steps since the last new order: their number k after it, and sums for a line through
-/// them.
+/// Sums for a line fitted through the times of steps since the last new order. k: the number of updates since
+/// then.
 struct Observed {
   double count = 0;
   double k = 0;
@@ -27,7 +27,7 @@ struct Observed {
     t += seconds;
     kt += number * seconds;
   }
-  /// Returns by how much a step takes longer than the one before; 0 where that is not known.
+  /// Returns by how much a step takes longer than the one before; 0 if that is not known.
   [[nodiscard]] double slope() const {
     constexpr double kFewest = 5;
     const double spread = count * kk - k * k;
@@ -41,20 +41,20 @@ inline constexpr Index kMostInterval = 1 << 20;  ///< updates from one new order
 struct ReordererState {
   std::uint8_t begun = 0;
   Index count = 0;      ///< vertices of the last update
-  Index since = 0;      ///< updates since the last order that was computed anew
-  Index interval = 10;  ///< after so many there is another one
+  Index since = 0;      ///< updates since the last new order
+  Index interval = 10;  ///< number of updates after which there is another one
   double fresh_span = 0;
   double fresh_seconds = 0;  ///< of the last order computed without a start vector; 0: none
-  double warm_seconds = 0;   ///< with one
+  double warm_seconds = 0;   ///< likewise with a start vector
   Observed observed;
-  std::string method;          ///< that the renewals take; "auto" where the first one was no better
+  std::string method;          ///< of later orders; "auto" if the first one was no better
   std::vector<double> vector;  ///< a start for the next Fiedler vector, by the places after the last update
 };
 
-/// Returns the state as bytes, with a mark and a checksum, in the order of bytes of this machine.
+/// Returns the state as bytes, with a mark and a checksum, in the byte order of this machine.
 std::vector<std::byte> to_bytes(const ReordererState& state);
 
-/// Returns the state that such bytes hold. Throws InvalidArgument unless they are whole.
+/// Returns the state that such bytes hold. Throws InvalidArgument if they are cut off, damaged or no state.
 ReordererState reorderer_state(std::span<const std::byte> bytes);
 
 }  // namespace meshorder

@@ -8,12 +8,12 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kSmallestPiece = 16;  // smaller pieces are sorted and left
+constexpr Index kSmallestPiece = 16;  // smaller pieces are sorted, not cut
 constexpr int kSmoothingSteps = 12;
 
 /// A connected part of a piece; its vertices are sorted_[begin … end − 1].
 struct Component {
-  float push;  ///< minus the mean pull of its vertices: what is pulled forward most comes first
+  float push;  ///< minus the mean pull of its vertices: the component with the largest pull comes first
   Index begin;
   Index end;
 };
@@ -70,7 +70,7 @@ class Bisection {
   }
 
   void add_component(Index start) {
-    // to a far end, from there to the end farthest from it, and back
+    // search to a far end, from there to the end farthest from it, and back
     search(start, mark_);
     search(queue_.back(), ++mark_);
     for (const Index v : queue_) value_[v] = static_cast<float>(distance_[v]);
@@ -90,8 +90,8 @@ class Bisection {
     components_.push_back({-pull / static_cast<float>(queue_.size()), begin, index_size(sorted_)});
   }
 
-  /// Breadth first over the component of `start`: into the queue with it, by rising distance. Marks rise from
-  /// search to search.
+  /// Searches the component of `start` breadth first, and puts it into the queue by rising distance. Each
+  /// search needs a larger mark than those before.
   void search(Index start, Index mark) {
     queue_.assign(1, start);
     reached_[start] = mark;
@@ -108,8 +108,8 @@ class Bisection {
     }
   }
 
-  /// Moves the value of each vertex in the queue half way to the mean of its neighbours, several times, and
-  /// keeps the mean over all edges' ends at 0.
+  /// Moves the value of each vertex in the queue half way to the mean of its neighbours, several times. Keeps
+  /// the mean, weighted by degree, at 0.
   void smooth() {
     if (queue_.size() < 3) return;
     float ends = 0;
@@ -128,7 +128,7 @@ class Bisection {
     }
   }
 
-  /// Takes the neighbours in the other half of its piece out of the row of v, and lets them pull.
+  /// Removes neighbours in the other half of the piece from the row of v, and adds them to its pull.
   void drop_neighbours_in_other_half(Index v) {
     Offset kept = graph_.offsets[v];
     for (Offset m = kept; m < row_end_[v]; ++m) {
@@ -142,7 +142,7 @@ class Bisection {
 
   CsrGraph graph_;
   std::vector<float> pull_;
-  std::vector<Offset> row_end_;  ///< where the neighbours of each vertex within its piece end
+  std::vector<Offset> row_end_;  ///< end of each vertex's neighbours within its piece
   std::vector<Index> sequence_;
   std::vector<char> in_first_half_;
   std::vector<Index> reached_;  ///< the mark of the last search that reached each vertex

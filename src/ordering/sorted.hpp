@@ -13,7 +13,7 @@
 namespace meshorder {
 
 /// Sorts values of which no two are equal. Runs are sorted and merged on all threads, with a poll between
-/// them. O(n log n) time, a copy of the values.
+/// runs. O(n log n) time, a copy of the values.
 template <class T>
 void sort_distinct(std::vector<T>& values) {
   constexpr Index kRun = 65536;
@@ -32,10 +32,10 @@ void sort_distinct(std::vector<T>& values) {
   }
 }
 
-/// Returns the items of all entries, bucket after bucket: those of a key one after another, sorted by
-/// `before`, by which no two are equal. On all threads. O(entries · log entries of a key).
+/// Returns the items of all entries, bucket after bucket, by ascending key. Entries of one key are sorted by
+/// `before`, under which no two are equal. On all threads. O(entries · log entries of a key).
 ///
-/// @param key  as the buckets were made by
+/// @param key  the same as for the buckets
 template <class Entry, class Key, class Before>
 std::vector<Index> sorted_items(const Buckets<Entry>& buckets, const Key& key, const Before& before) {
   std::vector<Index> items(std::size_t(buckets.start(buckets.size())));
@@ -56,14 +56,14 @@ std::vector<Index> sorted_items(const Buckets<Entry>& buckets, const Key& key, c
   return items;
 }
 
-/// The numbers 0 … n−1 by rising `value_of(i)`, ties by number. On all threads, each value is computed once.
-/// O(n log n) at worst, O(n) where values are spread over the places.
+/// Returns the numbers 0 … n−1 sorted by rising `value_of(i)`, ties by number. On all threads; each value is
+/// computed once. O(n log n) at worst, O(n) if values are evenly spread over the places.
 ///
-/// @param places    how many there are for values
+/// @param places    number of places for values
 /// @param place_of  `place_of(value)` returns the place of a value, 0 … places − 1, and never falls
 template <class ValueOf, class PlaceOf>
 Permutation sorted_by(Index n, const ValueOf& value_of, Index places, const PlaceOf& place_of) {
-  constexpr Index kPart = 65536;  // numbers that a thread takes together
+  constexpr Index kPart = 65536;  // numbers taken by a thread at a time
   struct Entry {
     decltype(value_of(n)) value;
     Index item;

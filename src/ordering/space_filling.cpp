@@ -43,7 +43,7 @@ std::array<std::uint32_t, 3> Lattice::cell_of(const Point& point) const {
     const double share = (shrink_ * point[a] - shrink_ * low_[a]) / extent_;
     return static_cast<std::uint32_t>(share > 0 ? std::min(share, 1.0) * last_ : 0);
   };
-  if (axes_ == 3) return {along(0), along(1), along(2)};  // without loads of `used_`
+  if (axes_ == 3) return {along(0), along(1), along(2)};  // a fast path without reads of `used_`
   std::array<std::uint32_t, 3> cell{0, 0, 0};
   for (int k = 0; k < axes_; ++k) cell[k] = along(used_[k]);
   return cell;
@@ -51,7 +51,7 @@ std::array<std::uint32_t, 3> Lattice::cell_of(const Point& point) const {
 
 namespace {
 
-constexpr Index kPointsAtOnce = 16384;  // that a thread looks at together
+constexpr Index kPointsAtOnce = 16384;  // examined by a thread at a time
 
 }  // namespace
 
@@ -66,7 +66,7 @@ Lattice lattice_of(const PointsView& points) {
 
 namespace {
 
-/// A mask of groups of `size` ones, each followed by Axes − 1 groups of zeros.
+/// Returns a mask with groups of `size` ones, each followed by Axes − 1 groups of zeros.
 template <int Axes>
 constexpr std::uint64_t spread_mask(unsigned size) {
   std::uint64_t mask = 0;
@@ -76,7 +76,7 @@ constexpr std::uint64_t spread_mask(unsigned size) {
   return mask;
 }
 
-/// Moves bit i to place Axes · i: halves groups of bits, and moves the upper halves up.
+/// Moves bit i to place Axes · i. Each step halves the groups of bits and moves the upper halves up.
 template <int Axes>
 constexpr std::uint64_t spread(std::uint64_t bits) {
   constexpr std::array kMasks{spread_mask<Axes>(16), spread_mask<Axes>(8), spread_mask<Axes>(4),
@@ -113,17 +113,17 @@ std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int a
 
 namespace {
 
-/// Where a cube of the lattice lies along Hilbert's curve, and how the curve runs through the cubes in it.
+/// How Hilbert's curve runs through a cube of the lattice: its axes, reflections and direction there.
 struct CurveState {
-  std::array<int, 3> axis{0, 1, 2};  ///< which one of the lattice each one of the curve is
+  std::array<int, 3> axis{0, 1, 2};  ///< the lattice's axis for each axis of the curve
   unsigned reflected = 0;            ///< a bit for each axis of the curve
-  bool backwards = false;            ///< a Gray code that began with an odd number
+  bool backwards = false;            ///< whether the Gray code began with an odd number
 
   constexpr bool operator==(const CurveState&) const = default;
 };
 
-/// One of the halves, quarters or eighths of a cube, or a part of such parts: its number along the curve in
-/// the cube, and the number of its state.
+/// A step into a part of a cube (a half, quarter or eighth, or a part of such a part): the part's number
+/// along the curve in the cube, and the number of its state.
 class CurveStep {
  public:
   static constexpr unsigned kNumberBits = 9;
@@ -134,11 +134,11 @@ class CurveStep {
   [[nodiscard]] constexpr std::size_t state() const { return packed_ >> kNumberBits; }
 
  private:
-  std::uint16_t packed_ = 0;  // half of the memory, for tables to stay in the caches
+  std::uint16_t packed_ = 0;  // 16 bits take half of the memory, so that tables stay in the caches
 };
 
-/// Enters the part of a cube that `halves` names by a bit for each axis of the lattice, the first the
-/// highest. Returns its number along the curve and its state: Skilling's transformation of one scale.
+/// Enters a part of a cube. `halves` names it by a bit for each axis of the lattice, the first axis the
+/// highest. Returns the part's number along the curve and its state: Skilling's transformation of one scale.
 template <int Axes>
 constexpr std::pair<unsigned, CurveState> enter(CurveState state, unsigned halves) {
   unsigned number = 0;
@@ -164,7 +164,7 @@ constexpr std::pair<unsigned, CurveState> enter(CurveState state, unsigned halve
 
 constexpr std::size_t kCurveStates = 48;  // 6 rotations, 4 reflections, 2 directions
 
-/// Returns the steps from each state into each part; states are numbered as they are found from the first.
+/// Returns the steps from each state into each part. States are numbered in the order of their discovery.
 template <int Axes>
 constexpr auto curve_steps() {
   constexpr unsigned kCubes = 1U << static_cast<unsigned>(Axes);
@@ -185,7 +185,7 @@ constexpr auto curve_steps() {
 
 constexpr unsigned kScalesAtOnce = 3;
 
-/// Returns the same for `kScalesAtOnce` steps one after the other.
+/// Returns the same steps for `kScalesAtOnce` scales at once.
 template <unsigned Axes>
 auto curve_strides() {
   constexpr auto kSteps = curve_steps<Axes>();
@@ -208,7 +208,7 @@ auto curve_strides() {
 template <unsigned Axes>
 std::uint64_t along_curve(const std::array<std::uint32_t, 3>& x, int bits) {
   static constexpr auto kSteps = curve_steps<Axes>();
-  static const auto strides = curve_strides<Axes>();  // more steps than compilers take for a constant
+  static const auto strides = curve_strides<Axes>();  // too many steps for a compile-time constant
   constexpr unsigned kStride = kScalesAtOnce * Axes;
   const std::uint64_t halves = interleaved_axes<Axes>(x);
   std::uint64_t key = 0;
@@ -246,12 +246,12 @@ std::uint64_t hilbert_key(const std::array<std::uint32_t, 3>& x, int axes, int b
 
 namespace {
 
-/// Sorts points by their numbers along the curve that `key(cell, lattice)` gives.
+/// Sorts points by the number that `key(cell, lattice)` gives each along the curve.
 template <class Key>
 Permutation sorted_along(const PointsView& points, const Key& key) {
   const Lattice lattice = lattice_of(points);
   const Index n = index_size(points);
-  // the first bits of the key, enough to tell most points apart
+  // the first bits of the key, enough to distinguish most points
   const int bits = std::min(static_cast<int>(std::bit_width(static_cast<unsigned>(n))) + 1, 30);
   const int shift = std::max(lattice.axes() * lattice.bits() - bits, 0);
   return sorted_by(

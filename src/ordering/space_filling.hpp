@@ -13,7 +13,7 @@
 
 namespace meshorder {
 
-/// A box along the axes, at first one of no points. Adding another encloses it, too.
+/// A box along the axes, at first without points. Adding another box extends it to enclose that one.
 struct Box {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Point low{kInfinity, kInfinity, kInfinity};
@@ -28,15 +28,15 @@ struct Box {
   }
 };
 
-/// The finest lattice of cubes that covers a box and whose cell number fits in 64 bits: 2^bits cells along
-/// each axis.
+/// A lattice of cubes that covers a box, with 2^bits cells along the longest axis: 2^21 if the box extends
+/// along three axes, else 2^31. A cell number has at most 63 bits.
 class Lattice {
  public:
   /// @param low   least coordinates of the box, finite
   /// @param high  largest ones; not below `low`
   Lattice(const Point& low, const Point& high);
 
-  /// Returns how many axes the box extends along; the others are left out.
+  /// Returns the number of axes that the box extends along; the others are left out.
   [[nodiscard]] int axes() const noexcept { return axes_; }
   /// Returns the bits of a coordinate; axes · bits ≤ 63.
   [[nodiscard]] int bits() const noexcept { return bits_; }
@@ -48,21 +48,21 @@ class Lattice {
   int bits_ = 31;
   std::array<int, 3> used_{};  ///< the axes along which the box extends
   Point low_;
-  double shrink_ = 1;  ///< a box whose extent no double holds is halved
-  double last_ = 0;    ///< cell along an axis
-  double extent_ = 0;  ///< of the longest axis: one scale for all, so that cells are cubes
+  double shrink_ = 1;  ///< 0.5 if the box's extent exceeds the largest double, else 1
+  double last_ = 0;    ///< the last cell along an axis
+  double extent_ = 0;  ///< length of the longest axis: one scale for all, so that cells are cubes
 };
 
 /// Throws InvalidArgument, naming `method`, unless there are `count` points.
 void check_points(const PointsView& points, std::size_t count, std::string_view method);
 
-/// The `Lattice` of the points' bounding box; without points of no axes. O(points).
+/// Returns the `Lattice` of the points' bounding box; without points, one without axes. O(points).
 Lattice lattice_of(const PointsView& points);
 
-/// One bit of each axis in turn, highest first: the number of a cell along Morton's curve.
+/// Returns the number of a cell along Morton's curve: one bit of each axis in turn, highest first.
 std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int axes);
 
-/// The number of the lattice cell x along Hilbert's curve, below 2^63. O(bits).
+/// Returns the number of the lattice cell x along Hilbert's curve, below 2^63. O(bits).
 std::uint64_t hilbert_key(const std::array<std::uint32_t, 3>& x, int axes, int bits);
 
 }  // namespace meshorder

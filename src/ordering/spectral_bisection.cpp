@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Recursive spectral bisection (Pothen, Simon, Liou: Partitioning Sparse Matrices with Eigenvectors of
-// Graphs, 1990) as a linear order. Of the two directions of each cut the one is taken that suits the
-// neighbours outside the piece (terminal propagation: Dunlop and Kernighan 1985).
+// Graphs, 1990) as a linear order. Each cut takes the one of two directions that suits the neighbours
+// outside the piece (terminal propagation: Dunlop and Kernighan 1985).
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
 #include "graph/traversal.hpp"
@@ -19,19 +19,19 @@ namespace meshorder {
 namespace {
 
 constexpr Index kSmall = 4000;  // up to here smoothed distances cut as well as Fiedler vectors, in less time
-constexpr double kTolerance = 1;  // the place of a cut is known long before the vector is
+constexpr double kTolerance = 1;  // a rough vector suffices for the place of a cut
 constexpr int kMaxIterations = 30;
-constexpr double kThickness = 0.8;  // of slabs: thinner ones cost less time and lengthen spans
+constexpr double kThickness = 0.8;  // of slabs: thinner ones take less time, but lengthen spans
 
-/// A part of a component, to be ordered by itself.
+/// A part of a component that is ordered by itself.
 struct Piece {
   CsrGraph graph;
-  std::vector<Index> names;  ///< of its vertices in the whole graph
-  std::vector<float> pull;   ///< neighbours of each in earlier pieces, less those in later ones
+  std::vector<Index> names;  ///< the number of each of its vertices in the whole graph
+  std::vector<float> pull;   ///< for each vertex, its neighbours in earlier pieces minus those in later ones
 };
 
-/// A component of the graph, its vertices rising. `number` has an entry for each vertex of the graph; those
-/// of the component are changed. O(component).
+/// Returns a component of the graph, whose vertices ascend, as a piece. `number` has an entry for each vertex
+/// of the graph; those of the component are changed. O(component).
 Piece whole_component(const VertexInput& input, std::vector<Index> component, std::vector<Index>& number) {
   Piece piece;
   for (Index k = 0; k < index_size(component); ++k) number[component[k]] = k;
@@ -49,8 +49,8 @@ Piece whole_component(const VertexInput& input, std::vector<Index> component, st
   return piece;
 }
 
-/// The piece's vertices along its Fiedler vector; where it has come apart, component by component, first the
-/// one that is pulled forward most.
+/// Returns the piece's vertices along its Fiedler vector. If the piece is not connected, they are ordered
+/// component by component, the one with the largest mean pull first.
 std::vector<Index> along_fiedler_vector(const Piece& piece, std::uint64_t seed) {
   const FiedlerVectors fiedler =
       fiedler_vectors(piece.graph, {.tolerance = kTolerance, .max_iterations = kMaxIterations, .seed = seed});
@@ -77,8 +77,8 @@ std::vector<Index> along_fiedler_vector(const Piece& piece, std::uint64_t seed) 
   return sequence;
 }
 
-/// The mean, over all places of the sequence, of the number of vertices before with neighbours after: the
-/// size of the piece's cross-section. At least 1.
+/// Returns the mean, over all places of the sequence, of the number of vertices before the place with
+/// neighbours after it: the size of the piece's cross-section. At least 1.
 double mean_front(GraphRef graph, const std::vector<Index>& sequence) {
   std::vector<Index> place(sequence.size());
   for (Index k = 0; k < graph.size(); ++k) place[sequence[k]] = k;
@@ -92,19 +92,19 @@ double mean_front(GraphRef graph, const std::vector<Index>& sequence) {
   return std::max(1.0, sum / graph.size());
 }
 
-/// A sequence cut into slabs of equal size, but for one vertex.
+/// A sequence cut into slabs of equal size, up to one vertex.
 struct Slabs {
   std::vector<Index> sequence;
   Index count = 2;
-  std::vector<Index> slab_of;  ///< by vertex
+  std::vector<Index> slab_of;  ///< the slab of each vertex
 
   [[nodiscard]] Index begin_of(Index slab) const {
     return static_cast<Index>(Offset{index_size(sequence)} * slab / count);
   }
 };
 
-/// Two halves, or as many slabs as keep them thicker than they are wide and high: one vector then does what
-/// several cuts in a row would do.
+/// Cuts into two halves, or into as many slabs as keep each thicker than it is wide and high: one vector then
+/// replaces several cuts in a row.
 Slabs cut(GraphRef graph, std::vector<Index> sequence) {
   Slabs slabs;
   const double least = std::pow(kThickness * mean_front(graph, sequence), 1.5);
@@ -117,7 +117,7 @@ Slabs cut(GraphRef graph, std::vector<Index> sequence) {
   return slabs;
 }
 
-/// A slab as a piece of its own, numbered along the sequence, which puts neighbours near each other.
+/// Returns a slab as a piece of its own, numbered along the sequence, which puts neighbours near each other.
 Piece piece_of(const Piece& whole, const Slabs& slabs, Index slab) {
   const std::span<const Index> vertices(slabs.sequence.data() + slabs.begin_of(slab),
                                         slabs.sequence.data() + slabs.begin_of(slab + 1));
@@ -138,8 +138,8 @@ Piece piece_of(const Piece& whole, const Slabs& slabs, Index slab) {
   return piece;
 }
 
-/// Writes the names of the piece's vertices in their new order to `out`. When the time limit is over, pieces
-/// stay in the order that the cuts before gave them.
+/// Writes the names of the piece's vertices in their new order to `out`. After the time limit, pieces
+/// stay in the order that earlier cuts gave them.
 void write_in_order(Piece piece, std::uint64_t seed, TimeLimit limit, Index* out) {
   poll();
   if (piece.graph.neighbours.empty() || limit.is_over()) {
@@ -158,8 +158,8 @@ void write_in_order(Piece piece, std::uint64_t seed, TimeLimit limit, Index* out
   });
 }
 
-/// The components of the graph; where it is a part of a larger one, first the one that is pulled forward
-/// most.
+/// Returns the components of the graph; if it is a part of a larger one, those with the largest mean pull
+/// first.
 std::vector<std::vector<Index>> components_in_order(const VertexInput& input) {
   std::vector<std::vector<Index>> components = connected_components(input.graph);
   if (input.pull.empty() || components.size() < 2) return components;

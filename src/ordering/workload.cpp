@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-// The names of what an order is for.
+// The names of workloads.
 
 namespace meshorder {
 

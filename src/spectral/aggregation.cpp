@@ -12,8 +12,8 @@ constexpr Index kFree = -1;
 
 struct Counts {
   Index alone = 0;
-  std::vector<Index> founders;  ///< of the aggregates
-  std::vector<double> slacks;   ///< of the aggregates
+  std::vector<Index> founders;  ///< one for each aggregate
+  std::vector<double> slacks;   ///< one for each aggregate
 };
 
 /// A vertex that joins an aggregate through an edge to a founding member.
@@ -24,9 +24,9 @@ struct Joining {
   double weight;
 };
 
-/// The slack of each aggregate of the rows from `begin` on, see `aggregate`.
+/// Returns the slack (see `aggregate`) of each aggregate of the rows from `begin` on.
 ///
-/// @param founding_weight  of the edge to the founder, for each row; 0: none
+/// @param founding_weight  for each row, the weight of its edge to the founder; 0 if there is none
 std::vector<double> slacks_of(const std::vector<Joining>& joinings, std::span<const double> founding_weight,
                               std::span<const double> masses, Index begin,
                               const std::vector<Index>& aggregate_of, Index count) {
@@ -46,7 +46,7 @@ std::vector<double> slacks_of(const std::vector<Joining>& joinings, std::span<co
   return slacks;
 }
 
-/// Aggregates the rows begin … end−1, numbers from 0.
+/// Aggregates the rows begin … end−1; the aggregates are numbered from 0.
 Counts aggregate_rows(const Laplacian& laplacian, std::span<const double> masses, Index begin, Index end,
                       double strength, std::vector<Index>& of) {
   Counts counts;
@@ -54,7 +54,7 @@ Counts aggregate_rows(const Laplacian& laplacian, std::span<const double> masses
   std::vector<Index>& founders = counts.founders;
   const auto inside = [&](Index u) { return u >= begin && u < end; };
 
-  // found aggregates where there is a neighbourhood and all of it is free
+  // a vertex founds an aggregate if it has strong neighbours and all of them are free
   for (Index v = begin; v < end; ++v) {
     poll_in_loop(v);
     if (of[v] != kFree) continue;
@@ -78,7 +78,7 @@ Counts aggregate_rows(const Laplacian& laplacian, std::span<const double> masses
     founders.push_back(v);
   }
 
-  // the rest joins the founded aggregate that pulls it most
+  // each other vertex joins the aggregate of its strongest neighbour
   std::vector<Index> alone;
   std::vector<Joining> joinings;
   for (Index v = begin; v < end; ++v) {

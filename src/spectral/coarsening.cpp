@@ -9,9 +9,9 @@
 namespace meshorder {
 namespace {
 
-constexpr double kSmoothing = 2.0 / 3.0;  // 4/3 over the bound 2 of the spectral radius of D⁻¹L
+constexpr double kSmoothing = 2.0 / 3.0;  // 4/3 divided by 2, a bound of the spectral radius of D⁻¹L
 
-/// Adds up the entries of one row by column. Reused for row after row.
+/// Adds up the entries of one row by column. Used for one row after another.
 class RowSum {
  public:
   explicit RowSum(Index columns)
@@ -25,7 +25,7 @@ class RowSum {
     sum_[column] += value;
   }
 
-  /// Calls `take(column, sum)` for every column in the order of their first entries, and clears the row.
+  /// Calls `take(column, sum)` for every column, in the order of their first entries, and clears the row.
   template <class Take>
   void take(Take take) {
     for (std::size_t k = 0; k < used_; ++k) {
@@ -39,8 +39,8 @@ class RowSum {
 
  private:
   std::vector<double> sum_;
-  std::vector<Index> last_row_;  ///< in which each column was last met
-  std::vector<Index> columns_;   ///< of this row, and room for one more
+  std::vector<Index> last_row_;  ///< the last row that had an entry in each column
+  std::vector<Index> columns_;   ///< the columns of this row, and room for one more
   std::size_t used_ = 0;
   Index row_ = 0;
 };
@@ -58,7 +58,7 @@ struct LaplacianRows {
   }
 };
 
-/// The rows of all parts, one part after the other. Consumes them.
+/// Joins the rows of all parts, one part after the other. Consumes them.
 Laplacian joined(std::vector<LaplacianRows> parts) {
   Laplacian result;
   Offset rows = 0;
@@ -186,7 +186,7 @@ std::optional<Laplacian> galerkin_product(const Laplacian& fine, const SparseRow
           row.add(prolongation.columns[k], value * prolongation.values[k]);
         }
       });
-      // the diagonal is what makes constants vanish
+      // the diagonal is chosen so that constants are in the null space
       double sum = 0;
       row.take([&](Index b, double value) {
         if (b == a) return;

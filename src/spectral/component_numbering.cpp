@@ -15,9 +15,9 @@ namespace meshorder {
 namespace {
 
 constexpr Index kUnseen = -1;
-constexpr Index kFound = -2;    // seen, not yet numbered
+constexpr Index kFound = -2;    // seen, not numbered yet
 constexpr Index kBatch = 256;   // vertices whose discoveries are sorted together
-constexpr Index kWave = 8;      // batches from which on threads share them
+constexpr Index kWave = 8;      // with at least so many batches, threads share them
 constexpr Index kDegrees = 64;  // larger degrees are rare and sorted as this one
 
 /// Numbers the components one after another.
@@ -50,8 +50,8 @@ class Search {
   Index component_start_ = 0;
   Index head_ = 0;  ///< place in the order of the first vertex whose row is still to be read
   Index tail_ = 0;  ///< vertices in the order
-  std::vector<std::vector<Index>> found_{1};  ///< by each batch, in the order of its rows
-  /// Of each batch: what it marked, and the marks.
+  std::vector<std::vector<Index>> found_{1};  ///< what each batch found, in the order of its rows
+  /// For each batch: the vertices that it marked, with their marks.
   std::vector<std::vector<std::pair<Index, Index>>> claims_;
 };
 
@@ -72,7 +72,7 @@ void Search::number_component(Index start) {
   }
 }
 
-/// Reads the next rows, and appends what is new in them.
+/// Reads the rows of the next batch, and appends the new vertices in them.
 void Search::go_through_batch() {
   std::vector<Index>& found = found_.front();
   found.clear();
@@ -88,8 +88,8 @@ void Search::go_through_batch() {
   tail_ += index_size(found);
 }
 
-/// Goes through several batches at once, with the result of one after another: a vertex belongs to the first
-/// row that contains it. It is marked with that row's place, counted from head_: kFound less it.
+/// Reads several batches at once, with the result of reading one after another: a vertex belongs to the first
+/// row that contains it. Its mark is kFound minus that row's place, counted from head_.
 void Search::go_through_wave(Index batches) {
   if (index_size(found_) < batches) {
     found_.resize(batches);
@@ -111,9 +111,9 @@ void Search::go_through_wave(Index batches) {
   tail_ = tails.back();
 }
 
-/// Marks what has no number and no mark of a row before in the rows from order[head_ + begin] on. Of two
-/// threads that mark a vertex at once the later one stays: both have it among their claims, see
-/// `settle_claims`. An exchange instead would keep the processor from waiting for several vertices at a time.
+/// Marks the vertices in the rows from order[head_ + begin] on that have no number and no mark of an earlier
+/// row. If two threads mark a vertex at once, the later mark stays; both have the vertex among their claims
+/// (see `settle_claims`). An atomic exchange would let the processor wait for one vertex at a time.
 void Search::claim_neighbours(Index batch, Index begin, Index end) {
   const std::span<const Index> order(numbering_.order.data() + head_, end);
   claims_[batch].clear();
@@ -130,7 +130,7 @@ void Search::claim_neighbours(Index batch, Index begin, Index end) {
   }
 }
 
-/// Marks vertices again that have the mark of a later row now.
+/// Restores the mark of the earliest row where a later row's mark has replaced it.
 void Search::settle_claims(Index batch) {
   for (const auto& [u, mark] : claims_[batch]) {
     const std::atomic_ref<Index> number(numbering_.number[u]);
@@ -140,8 +140,8 @@ void Search::settle_claims(Index batch) {
   }
 }
 
-/// Puts the vertices in the order from order[tail] on by rising degree, those of one degree as they come, and
-/// numbers them.
+/// Puts the vertices in the order from order[tail] on by rising degree, in their given order within a degree,
+/// and numbers them.
 void Search::put_by_degree(const std::vector<Index>& found, Index tail) {
   const auto degree = [&](Index v) { return std::min(graph_.degree(v), kDegrees); };
   std::array<Index, std::size_t{kDegrees} + 2> place{};

@@ -9,17 +9,17 @@
 
 namespace meshorder {
 
-/// Every component's vertices in a numbering of its own that makes passes over the graph fast, whatever the
-/// numbering that it came in.
+/// A numbering of each component's vertices that makes passes over the graph fast, whatever the numbering of
+/// the graph.
 ///
-/// The numbering is breadth first, so that neighbours are close, and what a batch of vertices discovers is
-/// sorted by degree: rows that follow one another then have the same length, and the processor predicts where
-/// their loops end. On tetrahedral meshes, whose degrees vary, that more than doubles the speed of a product
+/// The numbering is breadth first, so that neighbours are close, and the vertices that a batch finds are
+/// sorted by degree: consecutive rows then have the same length, and the processor predicts where their
+/// loops end. On tetrahedral meshes, whose degrees vary, that more than doubles the speed of a product
 /// with the graph's matrix.
 struct ComponentNumbering {
   std::vector<Index> order;      ///< n vertices, component after component
   std::vector<Index> number;     ///< n: the place of each vertex within its component
-  std::vector<Index> starts{0};  ///< of the components in `order`, and n at the end
+  std::vector<Index> starts{0};  ///< where each component begins in `order`, and n at the end
 
   [[nodiscard]] Index component_count() const noexcept { return index_size(starts) - 1; }
   [[nodiscard]] std::span<const Index> component(Index c) const {
@@ -30,8 +30,8 @@ struct ComponentNumbering {
 /// Numbers all components, in the order of their smallest vertices. O(n + edges).
 ComponentNumbering number_components(GraphRef graph);
 
-/// The Laplacian of component c in its numbering. `weights` has an entry for each of the graph's neighbours,
-/// or none when all are 1. O(component), on all threads.
+/// Returns the Laplacian of component c in its numbering. `weights` has an entry for each of the graph's
+/// neighbours, or none if all are 1. O(component), on all threads.
 Laplacian component_laplacian(GraphRef graph, std::span<const double> weights,
                               const ComponentNumbering& numbering, Index c);
 

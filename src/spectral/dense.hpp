@@ -11,10 +11,10 @@ struct Eigenpairs {
   Eigen::MatrixXd vectors;
 };
 
-/// The eigenpairs of a dense symmetric matrix, of which the lower triangle is read. O(n³).
+/// Returns the eigenpairs of a dense symmetric matrix, of which it reads the lower triangle. O(n³).
 [[nodiscard]] Eigenpairs eigenpairs(const Eigen::MatrixXd& symmetric);
 
-/// The inverse of a dense symmetric positive definite matrix. O(n³).
+/// Returns the inverse of a dense symmetric positive definite matrix. O(n³).
 [[nodiscard]] Eigen::MatrixXd inverse(const Eigen::MatrixXd& positive_definite);
 
 }  // namespace meshorder

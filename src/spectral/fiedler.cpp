@@ -59,7 +59,7 @@ FiedlerComponent solve_component(Laplacian laplacian, std::span<const Index> ver
   return {index_size(x), solved.eigenvalue, solved.residual, solved.iterations, solved.converged};
 }
 
-/// Scales to norm 1, sum 0 and the sign that FiedlerVectors promises. `vertices` are the component's,
+/// Scales to norm 1 and to the sign that FiedlerVectors promises. `vertices` are the component's,
 /// ascending.
 void normalise(std::vector<double>& values, const std::vector<Index>& vertices) {
   double norm_squared = 0;
@@ -79,7 +79,7 @@ void normalise(std::vector<double>& values, const std::vector<Index>& vertices) 
   for (const Index v : vertices) values[v] *= scale;
 }
 
-/// Returns the components, largest first, ties in the order in which they are numbered.
+/// Returns the components, largest first, ties in the order of their numbers.
 std::vector<Index> largest_first(const ComponentNumbering& numbering) {
   std::vector<Index> result(numbering.component_count());
   std::iota(result.begin(), result.end(), Index{0});
@@ -89,11 +89,11 @@ std::vector<Index> largest_first(const ComponentNumbering& numbering) {
   return result;
 }
 
-/// Returns the vertices of each of those components, ascending.
+/// Returns the vertices of each of these components, ascending.
 std::vector<std::vector<Index>> ascending_vertices(const ComponentNumbering& numbering,
                                                    const std::vector<Index>& components) {
   std::vector<std::vector<Index>> result(components.size());
-  std::vector<Index> rank_of(numbering.order.size());  // of each vertex's component
+  std::vector<Index> rank_of(numbering.order.size());  // the rank of each vertex's component
   for (std::size_t rank = 0; rank < components.size(); ++rank) {
     const auto vertices = numbering.component(components[rank]);
     result[rank].reserve(vertices.size());
@@ -135,8 +135,8 @@ void check_input(GraphRef graph, std::span<const double> weights, RealView start
   }
 }
 
-/// The power of two by which weights are multiplied, so that no sum or square of them leaves the range of
-/// numbers; 0 where none is near its ends.
+/// Returns the exponent of the power of two that weights are multiplied by, so that no sum or square of them
+/// leaves the range of doubles; 0 if none is near its ends.
 int exponent_of_scale(std::span<const double> weights) {
   constexpr int kOrdinary = 300;
   if (weights.empty()) return 0;
@@ -144,7 +144,7 @@ int exponent_of_scale(std::span<const double> weights) {
   return std::abs(exponent) <= kOrdinary ? 0 : -exponent;
 }
 
-/// Weights times a power of two; those that become too small are the smallest positive number.
+/// Returns the weights times a power of two; those that would be too small become the smallest normal number.
 std::vector<double> scaled(std::span<const double> weights, int exponent) {
   std::vector<double> result(weights.size());
   std::transform(weights.begin(), weights.end(), result.begin(), [&](double weight) {
@@ -153,7 +153,7 @@ std::vector<double> scaled(std::span<const double> weights, int exponent) {
   return result;
 }
 
-/// A figure of scaled weights for those that were given; the largest number where it is larger than that.
+/// Converts a result for scaled weights to the given ones; at most the largest double.
 double scaled_back(double figure, int exponent) {
   return std::min(std::ldexp(figure, -exponent), std::numeric_limits<double>::max());
 }

@@ -12,12 +12,12 @@ namespace meshorder {
 
 struct FiedlerOptions {
   double tolerance = 0.1;  ///< residual ‖L x − λ x‖ / ‖x‖ relative to λ₂; an order settles at 0.1
-  int max_iterations = 500;  ///< of LOBPCG on the whole graph
-  std::uint64_t seed = 0;    ///< of the start vector, where one is needed
+  int max_iterations = 500;  ///< limit on the iterations of LOBPCG on the whole graph
+  std::uint64_t seed = 0;    ///< for the start vector, if one is needed
   RealView start = {};       ///< n numbers near the Fiedler vector, or none
 };
 
-/// Returns what the eigensolver takes from the options of an order.
+/// Returns the options of the eigensolver that the options of an order give.
 FiedlerOptions solver_options(const OrderOptions& options);
 
 struct FiedlerVectors {
@@ -33,9 +33,9 @@ struct FiedlerVectors {
 /// a clean graph.
 ///
 /// Components of up to 60 vertices go to a dense eigensolver. Larger ones are numbered for speed (see
-/// ComponentNumbering), coarsened into a `Hierarchy`, solved exactly on the coarsest graph, and the vector is
-/// improved from graph to finer graph by `lobpcg` preconditioned with the hierarchy's cycle; a start vector
-/// takes the place of the coarser graphs' vectors.
+/// ComponentNumbering) and coarsened into a `Hierarchy`. The vector is solved exactly on the coarsest graph,
+/// and improved from graph to finer graph by `lobpcg`, preconditioned with the hierarchy's cycle. A start
+/// vector replaces the vectors of the coarser graphs.
 ///
 /// @param weights  one for each neighbour, > 0 and finite, the same in both rows of an edge; or none
 /// @throws InvalidArgument for another number of weights or of start entries, for a weight that is not

@@ -14,12 +14,12 @@
 namespace meshorder {
 namespace {
 
-/// Vertices of a graph cut out of it, by local numbers.
+/// A part of a graph, with local numbers for its vertices.
 class Part {
  public:
-  /// @param part_of   of each vertex of the graph
-  /// @param vertices  of one part, ascending
-  /// @param local     room for a number of each vertex of the graph; those of `vertices` are written
+  /// @param part_of   the part of each vertex of the graph
+  /// @param vertices  the vertices of this part, ascending
+  /// @param local     has a number for each vertex of the graph; those of `vertices` are written
   Part(const Laplacian& laplacian, std::span<const Index> part_of, std::span<const double> masses,
        std::span<const Index> vertices, std::span<Index> local)
       : laplacian_(laplacian), of_(part_of), masses_(masses), vertices_(vertices), local_(local) {
@@ -48,7 +48,7 @@ class Part {
   std::span<Index> local_;
 };
 
-/// The slack of an aggregate whose joining vertices spread their mass over all edges to founding members.
+/// Returns an aggregate's slack if joining vertices spread their mass over all edges to founding members.
 ///
 /// @param least  weight of a founding member's edge to the founder
 double spread_slack(const Part& part, Index founder, double least) {
@@ -76,11 +76,11 @@ double spread_slack(const Part& part, Index founder, double least) {
   return slack;
 }
 
-/// Whether more than one pivot of a symmetric matrix is negative, or the sign of one is uncertain.
+/// Returns whether more than one pivot of a symmetric matrix is negative, or the sign of one is uncertain.
 ///
-/// @param rows  its lower triangle, `size` entries a row; is overwritten
+/// @param rows  its lower triangle, `size` entries a row; overwritten
 bool has_two_negative_pivots(std::vector<double>& rows, Index size) {
-  constexpr double kTooSmall = 1e-12;  // of the diagonal: rounding may have turned its sign
+  constexpr double kTooSmall = 1e-12;  // share of the diagonal: rounding may have changed the sign
   const auto row = [&](Index v) { return rows.data() + std::ptrdiff_t{v} * size; };
   std::vector<double> diagonal(static_cast<std::size_t>(size));
   for (Index v = 0; v < size; ++v) diagonal[v] = std::abs(row(v)[v]);
@@ -99,7 +99,7 @@ bool has_two_negative_pivots(std::vector<double>& rows, Index size) {
   return false;
 }
 
-/// Whether L x = μ M x on the part has more than one eigenvalue below `bound`, as far as pivots say.
+/// Returns whether L x = μ M x on the part has more than one eigenvalue below `bound`; true if uncertain.
 bool has_two_below(const Part& part, double bound) {
   const Index size = part.size();
   std::vector<double> rows(static_cast<std::size_t>(size) * size);
@@ -118,7 +118,7 @@ bool has_two_below(const Part& part, double bound) {
 
 bool may_hide(const Laplacian& laplacian, const Aggregation& aggregation, std::span<const double> masses,
               double eigenvalue) {
-  constexpr Index kMostVertices = 300;  // of a part whose pivots are worth their time
+  constexpr Index kMostVertices = 300;  // in larger parts pivots take too long
   std::vector<Index> suspects;
   for (Index aggregate = 0; aggregate < index_size(aggregation.slacks); ++aggregate) {
     if (eigenvalue * aggregation.slacks[aggregate] > kDoubtful) suspects.push_back(aggregate);

@@ -19,7 +19,7 @@ constexpr Index kDenseSize = 60;     // a dense eigensolver takes half a millise
 constexpr Index kSmallGraph = 1024;  // a search takes less than a millisecond there
 constexpr Index kExactSize = 128;    // counting eigenvalues by pivots takes a tenth of a millisecond there
 
-/// Makes the next coarser level of `fine`, and in `fine` the way to it; false when that is not worth it.
+/// Makes the next coarser level of `fine`, and in `fine` the transfer to it; returns false if not worthwhile.
 bool coarsen(Level& fine, bool smoothed, Level& coarse) {
   constexpr Index kFewAlone = 50;  // one in so many
   const Index n = fine.laplacian.size();
@@ -31,7 +31,7 @@ bool coarsen(Level& fine, bool smoothed, Level& coarse) {
   if (aggregation.count() > kWorthwhile * n) return false;
   if (smoothed) {
     fine.prolongation = smoothed_prolongation(fine.laplacian, aggregation);
-    // where smoothing fills the coarse graph it is left out
+    // smoothing is left out if it makes the coarse graph too dense
     const Offset most = 2 * std::ssize(fine.laplacian.neighbours);
     std::optional<Laplacian> product = galerkin_product(fine.laplacian, fine.prolongation, most);
     smoothed = product.has_value();
@@ -67,13 +67,13 @@ Eigen::MatrixXd dense(const Laplacian& laplacian) {
   return 0.5 * (matrix + matrix.transpose());
 }
 
-/// The inverse of L on the vectors that sum to 0.
+/// Returns the inverse of L on the vectors that sum to 0.
 Eigen::MatrixXd dense_inverse(const Laplacian& laplacian) {
   const Index n = laplacian.size();
   Eigen::MatrixXd shifted = dense(laplacian);
   const double scale = shifted.diagonal().maxCoeff();
   if (!(scale > 0)) return Eigen::MatrixXd::Zero(n, n);  // one vertex
-  shifted.array() += scale / n;                          // lifts the constant vector out of the null space
+  shifted.array() += scale / n;                          // moves the constant vector out of the null space
   return inverse(shifted);
 }
 
@@ -84,7 +84,7 @@ void forward_gauss_seidel(const Level& level, RightSide b, VectorBlock<M>& x) {
   }));
 }
 
-/// Every row in the opposite order, so that the cycle is symmetric.
+/// Relaxes the rows in the opposite order, so that the cycle is symmetric.
 template <int M, class RightSide>
 void backward_gauss_seidel(const Level& level, RightSide b, VectorBlock<M>& x) {
   level.chunks.for_each_backwards(in_falling_pieces([&](Index begin, Index end) {
@@ -92,13 +92,13 @@ void backward_gauss_seidel(const Level& level, RightSide b, VectorBlock<M>& x) {
   }));
 }
 
-/// result = Pᵀ (b − L x)
+/// Computes result = Pᵀ (b − L x).
 template <int M>
 void restrict_residual(const Level& level, const VectorBlock<M>& b, const VectorBlock<M>& x,
                        VectorBlock<M>& result) {
   std::fill(result.begin(), result.end(), std::array<double, M>{});
   if (!level.is_smoothed()) {
-    level.chunks.for_each_piece([&](Index begin, Index end) {  // aggregates keep to their chunks
+    level.chunks.for_each_piece([&](Index begin, Index end) {  // no aggregate spans two chunks
       for (Index v = begin; v < end; ++v) {
         const auto residual = residual_of_row<M>(level.laplacian, v, b, x);
         for (int m = 0; m < M; ++m) result[level.aggregation.aggregate_of[v]][m] += residual[m];
@@ -130,7 +130,7 @@ Hierarchy::Hierarchy(Laplacian coarse, std::vector<double> masses) {
   coarsen_all(true);
 }
 
-/// Makes the levels below the finest one.
+/// Makes the levels coarser than the finest one.
 void Hierarchy::coarsen_all(bool smoothed) {
   levels_.back().chunks = RowChunks(levels_.back().laplacian);
   while (levels_.back().laplacian.size() > kDenseSize) {

@@ -11,12 +11,12 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kRows = 2048;       // in a chunk for threads; what a pass touches stays in the L2 cache
-constexpr double kCalm = 0.01;      // change of a Ritz value in an iteration
-constexpr int kLeastUntilCalm = 4;  // iterations, in which noise becomes smooth
-constexpr double kSettled = 0.2;    // residual by Ritz value; above it a value that rests falls on later
+constexpr Index kRows = 2048;       // rows of a chunk for threads; the data of a pass stay in the L2 cache
+constexpr double kCalm = 0.01;      // relative change of a Ritz value in an iteration
+constexpr int kLeastUntilCalm = 4;  // iterations until noise becomes smooth
+constexpr double kSettled = 0.2;    // residual / Ritz value; above it, a value at rest may still fall later
 
-/// Numbers that are added up entry by entry.
+/// Numbers that are added entry by entry.
 template <std::size_t N>
 struct Sums {
   std::array<double, N> values{};
@@ -39,8 +39,8 @@ struct WithImage {
   }
 };
 
-/// The blocks whose span an iteration searches: iterates, preconditioned residuals, last directions, and C
-/// companions that stay.
+/// The blocks whose span an iteration searches: iterates, preconditioned residuals, previous directions, and
+/// C companions that stay the same.
 template <int M, int C>
 struct SearchSpace {
   static constexpr int kSize = 3 * M + C;
@@ -52,7 +52,7 @@ struct SearchSpace {
       : x(std::move(start)), w(x.vectors.size()), p(x.vectors.size()), companions(std::move(fixed)) {}
 };
 
-/// Row v of all vectors of the space (or of their images) side by side.
+/// Returns row v of all vectors of the space (or of their images) side by side.
 template <int M, int C, class Part>
 std::array<double, SearchSpace<M, C>::kSize> row(const SearchSpace<M, C>& s, Index v, Part part) {
   std::array<double, SearchSpace<M, C>::kSize> result;
@@ -70,14 +70,14 @@ std::array<double, SearchSpace<M, C>::kSize> row(const SearchSpace<M, C>& s, Ind
 constexpr auto kVectors = [](auto& block) -> auto& { return block.vectors; };
 constexpr auto kImages = [](auto& block) -> auto& { return block.images; };
 
-/// Sᵀ B S and Sᵀ L S of the search space S.
+/// Computes Sᵀ B S and Sᵀ L S of the search space S.
 template <int M, int C, int N = SearchSpace<M, C>::kSize>
 void gram_matrices(const SearchSpace<M, C>& s, const EigenProblem& problem, Eigen::MatrixXd& gram,
                    Eigen::MatrixXd& energy) {
   using Squares = Sums<std::size_t{2} * N * N>;
   auto sums = sum_over_chunks<Squares>(problem.size(), kRows, [&](Index begin, Index end) {
     Squares part;
-    // one after the other: the sums of both at once do not fit in registers
+    // in two loops: the sums of both at once do not fit in registers
     for (Index v = begin; v < end; ++v) {
       const auto vectors = row(s, v, kVectors);
       for (int i = 0; i < N; ++i) {
@@ -105,14 +105,14 @@ void gram_matrices(const SearchSpace<M, C>& s, const EigenProblem& problem, Eige
   }
 }
 
-/// What a search in a subspace finds: column m of `coefficients` makes the m-th Ritz vector from the basis.
+/// The result of a search in a subspace: column m of `coefficients` gives the m-th Ritz vector in the basis.
 struct Ritz {
   Eigen::MatrixXd coefficients;
   Eigen::VectorXd values;
 };
 
-/// The `wanted` Ritz vectors with the smallest Ritz values. Directions of the basis that nearly depend on the
-/// others are left out; Ritz vectors that do not exist are 0.
+/// Returns the `wanted` Ritz vectors with the smallest Ritz values. Directions of the basis that nearly
+/// depend on others are left out; Ritz vectors that do not exist are 0.
 Ritz rayleigh_ritz(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& energy, int wanted) {
   constexpr double kDependent = 1e-12;
   const Eigen::Index size = gram.rows();
@@ -136,11 +136,11 @@ Ritz rayleigh_ritz(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& energy, i
   return ritz;
 }
 
-/// ‖r‖² of each column, and then ‖x‖².
+/// ‖r‖² of each column, then ‖x‖² of each.
 template <int M>
 using Norms = Sums<std::size_t{2} * M>;
 
-/// ‖r‖ / ‖x‖ of each column.
+/// Returns ‖r‖ / ‖x‖ of each column.
 template <int M>
 std::array<double, M> residuals_of(Norms<M>& norms) {
   std::array<double, M> result;
@@ -148,7 +148,7 @@ std::array<double, M> residuals_of(Norms<M>& norms) {
   return result;
 }
 
-/// r = L x − λ B x in row v, and its part in the norms.
+/// Computes r = L x − λ B x in row v, and adds its part of the norms.
 template <int M>
 void residual_of_row(const WithImage<M>& x, const std::array<double, M>& values, double mass, Index v,
                      VectorBlock<M>& r, Norms<M>& norms) {
@@ -159,8 +159,8 @@ void residual_of_row(const WithImage<M>& x, const std::array<double, M>& values,
   }
 }
 
-/// x ← S c, p ← the part of that which is not from x, the same for the images, and r = L x − λ B x. Returns
-/// ‖r‖ / ‖x‖ of each column.
+/// Sets x ← S c, p ← the part of S c that does not come from x, their images likewise, and r = L x − λ B x.
+/// Returns ‖r‖ / ‖x‖ of each column.
 template <int M, int C, int N = SearchSpace<M, C>::kSize>
 std::array<double, M> update(SearchSpace<M, C>& s, const Eigen::MatrixXd& coefficients,
                              const std::array<double, M>& values, const EigenProblem& problem,
@@ -193,8 +193,8 @@ std::array<double, M> update(SearchSpace<M, C>& s, const Eigen::MatrixXd& coeffi
   return residuals_of<M>(norms);
 }
 
-/// Computes L x afresh, since images that follow x by recurrence drift by rounding, and with it the Rayleigh
-/// quotients and r. Returns what `update` does.
+/// Computes L x anew, since images that are updated with x drift by rounding, and from it the Rayleigh
+/// quotients and r. Returns ‖r‖ / ‖x‖ of each column.
 template <int M>
 std::array<double, M> refresh(WithImage<M>& x, const EigenProblem& problem, std::array<double, M>& values,
                               VectorBlock<M>& r) {
@@ -221,7 +221,7 @@ std::array<double, M> refresh(WithImage<M>& x, const EigenProblem& problem, std:
   return residuals_of<M>(norms);
 }
 
-/// Makes the vectors B-orthogonal to constants, and their images.
+/// Makes the vectors B-orthogonal to constants, and computes their images.
 template <int M>
 void prepare(const EigenProblem& problem, double total_mass, WithImage<M>& block) {
   VectorBlock<M>& x = block.vectors;
@@ -285,7 +285,7 @@ LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorB
     report("eigenvector");
     const bool last = result.iterations >= options.max_iterations || options.limit.is_over();
     if (last || done()) {
-      if (result.iterations == 0) break;  // nothing has drifted
+      if (result.iterations == 0) break;  // no rounding errors have accumulated
       residuals = refresh<M>(s.x, problem, values, r);
       if (last || done()) break;
     }

@@ -11,9 +11,9 @@ namespace meshorder {
 
 struct LobpcgOptions {
   double tolerance = 0.1;    ///< on ‖L x − λ B x‖ / (λ ‖x‖) of the first column
-  int max_iterations = 500;  ///< more are not made; the result says whether it converged
-  TimeLimit limit = {};      ///< ends the iteration like max_iterations
-  bool until_calm = false;   ///< ends it where all columns settle, not by the tolerance
+  int max_iterations = 500;  ///< the result says whether it converged by then
+  TimeLimit limit = {};      ///< ends the iteration, like max_iterations
+  bool until_calm = false;   ///< ends when all columns have settled, whatever the tolerance
 };
 
 struct LobpcgResult {
@@ -23,12 +23,12 @@ struct LobpcgResult {
   bool converged = false;
 };
 
-/// A problem L x = λ B x whose L has the constants in its null space and whose B is diagonal, as `lobpcg`
-/// sees it: this process has some of the rows, or all.
+/// A problem L x = λ B x in the form that `lobpcg` needs: L has the constants in its null space and B is
+/// diagonal. This process has some of the rows, or all.
 class EigenProblem {
  public:
   /// @param size    rows of this process
-  /// @param masses  of them, the diagonal of B; none: all 1. Outlives this object
+  /// @param masses  the diagonal of B in these rows; empty: all 1. Outlives this object
   EigenProblem(Index size, std::span<const double> masses) : size_(size), masses_(masses) {}
   virtual ~EigenProblem() = default;
   EigenProblem(const EigenProblem&) = delete;
@@ -39,16 +39,16 @@ class EigenProblem {
   [[nodiscard]] Index size() const noexcept { return size_; }
   [[nodiscard]] double mass(Index v) const { return masses_.empty() ? 1.0 : masses_[v]; }
 
-  /// y = L x
+  /// Computes y = L x.
   virtual void apply(const VectorBlock<1>& x, VectorBlock<1>& y) const = 0;
   virtual void apply(const VectorBlock<2>& x, VectorBlock<2>& y) const = 0;
-  /// w ≈ L⁺ r
+  /// Computes w ≈ L⁺ r.
   virtual void precondition(const VectorBlock<1>& r, VectorBlock<1>& w) = 0;
   virtual void precondition(const VectorBlock<2>& r, VectorBlock<2>& w) = 0;
-  /// Whether an eigenvector with a smaller eigenvalue than this may be hidden from `precondition`, and so
-  /// from what was found by coarser graphs. The same on all processes.
+  /// Returns whether `precondition`, and so the vectors of coarser graphs, may hide an eigenvector with a
+  /// smaller eigenvalue than this. The same on all processes.
   [[nodiscard]] virtual bool may_hide(double eigenvalue) const = 0;
-  /// Adds up sums over the rows of each process, the same on all of them.
+  /// Adds up the sums of all processes, in place; all of them get the same result.
   virtual void add_up(std::span<double> sums) const = 0;
 
  private:
@@ -91,22 +91,22 @@ class LevelProblem : public EigenProblem {
 /// that of the constant vector.
 ///
 /// Locally optimal block preconditioned conjugate gradients (Knyazev 2001): each iteration minimises the
-/// Rayleigh quotient over the span of x, the preconditioned residuals, the previous
-/// directions, and `companions`, all kept orthogonal to constants. Companions are rough guesses of the next
-/// eigenvectors: a single column that is slow to part from a close λ₃ parts quickly when it may subtract what
-/// resembles that eigenvector, for far less than a second column costs. Columns end in ascending order of
-/// their eigenvalues, ‖x‖_B = 1. Columns of x that depend on others or are constant are replaced by the
+/// Rayleigh quotient over the span of x, the preconditioned residuals, the previous directions, and
+/// `companions`, all kept orthogonal to constants. Companions are rough guesses of the next eigenvectors. A
+/// single column converges slowly if λ₃ is close to λ₂; with a companion it can remove what resembles the
+/// next eigenvector, which costs far less than a second column. Columns end in ascending order of their
+/// eigenvalues, ‖x‖_B = 1. Columns of x that depend on others or are constant are replaced by the
 /// search itself. O(graph) an iteration.
 template <int M, int Companions>
 LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorBlock<M>& x,
                     VectorBlock<Companions> companions);
 
-/// The same on one level of a hierarchy (B its masses), preconditioned by the hierarchy's cycle.
+/// Does the same on one level of a hierarchy (B its masses), preconditioned by the hierarchy's cycle.
 template <int M, int Companions>
 LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x,
                     VectorBlock<Companions> companions);
 
-/// The same without companions.
+/// Does the same without companions.
 template <int M>
 LobpcgResult lobpcg(const Hierarchy& hierarchy, int level, const LobpcgOptions& options, VectorBlock<M>& x) {
   return lobpcg<M, 0>(hierarchy, level, options, x, {});

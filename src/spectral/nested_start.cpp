@@ -13,9 +13,9 @@ namespace meshorder {
 namespace {
 
 constexpr Index kFewVertices = 300;          // vertices on which a search takes a third of a millisecond
-constexpr Index kSmallShare = 50;            // of such a share of the graph, it costs nothing beside the rest
-constexpr double kSmoothedHides = 1.0 / 16;  // of what plain coarsening would hide
-constexpr double kNearlyEqual = 0.9;         // of an eigenvalue that is no other one
+constexpr Index kSmallShare = 50;            // one in so many: a search there costs little beside the rest
+constexpr double kSmoothedHides = 1.0 / 16;  // share of the eigenvalue: smoothed coarsening hides less
+constexpr double kNearlyEqual = 0.9;         // above this share of an eigenvalue it counts as the same
 
 }  // namespace
 
@@ -34,7 +34,7 @@ StartBlock nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimi
   const auto& levels = hierarchy.levels();
   int level = static_cast<int>(levels.size()) - 1;
   StartBlock x;
-  int known = 0;  // columns
+  int known = 0;  // number of columns
   if (hierarchy.has_exact_coarsest()) {
     x = hierarchy.coarsest_eigenvectors<kStartColumns>();
     known = std::min(kStartColumns, static_cast<int>(x.size()) - 1);

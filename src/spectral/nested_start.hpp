@@ -9,19 +9,19 @@
 
 namespace meshorder {
 
-/// Vectors from graph to finer graph: two columns keep λ₂ and λ₃ apart where they are close.
+/// Number of start vectors: two columns separate λ₂ and λ₃ if they are close.
 constexpr int kStartColumns = 2;
 using StartBlock = VectorBlock<kStartColumns>;
 
-/// How far vectors on a coarse graph are improved: the start on the next finer one is no better than
-/// prolongation makes it.
+/// Returns how far vectors on a coarse graph are improved: on the next finer graph, prolongation limits their
+/// accuracy anyway.
 [[nodiscard]] LobpcgOptions coarse_search(TimeLimit limit);
 
 /// Returns start vectors on the finest graph: exact on the coarsest, improved on every graph between.
-/// O(graph).
+/// Random if the coarsest graph is too large for a dense solver. O(graph).
 [[nodiscard]] StartBlock nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimit limit);
 
-/// Sets random entries between −1/2 and 1/2 in the columns from `first_column` on of a block.
+/// Sets the columns of a block from `first_column` on to random entries between −1/2 and 1/2.
 void fill_with_noise(StartBlock& x, int first_column, std::uint64_t seed);
 
 /// Returns a column of start vectors. O(n).

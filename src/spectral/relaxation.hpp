@@ -7,7 +7,7 @@
 
 namespace meshorder {
 
-/// Sets x in row v so that the row of L x = b holds. O(row).
+/// Changes x in row v so that this row of L x = b holds. O(row).
 template <int M, class RightSide>
 void relax_row(const Laplacian& laplacian, Index v, RightSide b, VectorBlock<M>& x) {
   const auto sum = laplacian.neighbour_sum<M>(v, x);

@@ -16,7 +16,7 @@ RowChunks::RowChunks(const Laplacian& laplacian, Index least_rows) : rows_(lapla
   const auto rows = static_cast<std::uint32_t>(std::max(least_rows, chunk_count(rows_, kChunks)));
   shift_ = static_cast<int>(std::bit_width(rows - 1));
 
-  // which chunks each chunk touches, as bits
+  // the chunks that each chunk has edges to, as bits
   std::vector<std::uint32_t> touched(count(), 0);
   for_each([&](Index chunk, Index begin, Index end) {
     for (Offset k = laplacian.offsets[begin]; k < laplacian.offsets[end]; ++k) {
@@ -24,7 +24,7 @@ RowChunks::RowChunks(const Laplacian& laplacian, Index least_rows) : rows_(lapla
     }
   });
 
-  std::vector<std::uint32_t> members;  // of each colour, as bits
+  std::vector<std::uint32_t> members;  // the chunks of each colour, as bits
   for (Index chunk = 0; chunk < count(); ++chunk) {
     std::size_t colour = 0;
     while (colour < members.size() && (members[colour] & touched[chunk]) != 0) ++colour;

@@ -10,8 +10,8 @@ namespace meshorder {
 
 constexpr Index kRowsOfPiece = 4096;
 
-/// Does `work(begin, end)` on pieces of a range of rows, the first one first, and polls between them: a chunk
-/// of a large graph is the work of a second.
+/// Returns a function that calls `work(begin, end)` for pieces of a range of rows, the first piece first, and
+/// polls between them: a chunk of a large graph may take a second.
 template <class Work>
 auto in_rising_pieces(Work work) {
   return [work](Index begin, Index end) {
@@ -23,7 +23,7 @@ auto in_rising_pieces(Work work) {
   };
 }
 
-/// The last piece first.
+/// Does the same with the last piece first.
 template <class Work>
 auto in_falling_pieces(Work work) {
   return [work](Index begin, Index end) {
@@ -36,27 +36,27 @@ auto in_falling_pieces(Work work) {
 }
 
 /// The rows of a Laplacian in contiguous chunks for threads, coloured so that no edge joins two chunks of one
-/// colour: a sweep that goes colour by colour gives the same numbers on any number of threads. Of a graph
-/// numbered breadth first, chunks touch only the next ones, and two colours do.
+/// colour: a sweep colour by colour gives the same numbers on any number of threads. If the graph is
+/// numbered breadth first, each chunk has edges only to adjacent ones, and two colours suffice.
 class RowChunks {
  public:
-  static constexpr Index kLeastRows = 8192;  ///< a chunk should outweigh the start of a thread's task
+  static constexpr Index kLeastRows = 8192;  ///< a chunk should take longer than starting a thread's task
 
   RowChunks() = default;
 
   /// Chunks the rows of a graph: up to 16 chunks of at least `least_rows` rows, whatever the number of
-  /// threads; one chunk of all rows where too many would touch one another to gain by threads. O(edges).
+  /// threads; one chunk of all rows if too many would touch one another for threads to gain. O(edges).
   explicit RowChunks(const Laplacian& laplacian, Index least_rows = kLeastRows);
 
-  /// One chunk of all rows.
+  /// Returns one chunk of all rows.
   static RowChunks whole(Index rows);
 
-  /// Rows in a chunk, a power of two; the last chunk may have fewer.
+  /// Returns the number of rows in a chunk, a power of two; the last chunk may have fewer.
   [[nodiscard]] Index size() const noexcept { return Index{1} << shift_; }
   [[nodiscard]] Index count() const noexcept { return chunk_count(rows_, size()); }
   [[nodiscard]] Index chunk_of(Index row) const noexcept { return row >> shift_; }
 
-  /// The chunks of each colour, rising.
+  /// Returns the chunks of each colour, rising.
   [[nodiscard]] const std::vector<std::vector<Index>>& colours() const noexcept { return colours_; }
 
   /// Calls `work(chunk, begin, end)` for every chunk, on all threads.
@@ -71,13 +71,13 @@ class RowChunks {
     for_each([rise = in_rising_pieces(work)](Index, Index begin, Index end) { rise(begin, end); });
   }
 
-  /// Calls `work(begin, end)` for every chunk, those of a colour at the same time, colour after colour.
+  /// Calls `work(begin, end)` for every chunk: colour after colour, those of one colour at the same time.
   template <class Work>
   void for_each_forwards(Work work) const {
     for (const std::vector<Index>& chunks : colours_) run(chunks, work);
   }
 
-  /// The same, last colour first.
+  /// Does the same with the last colour first.
   template <class Work>
   void for_each_backwards(Work work) const {
     for (std::size_t colour = colours_.size(); colour-- > 0;) run(colours_[colour], work);
