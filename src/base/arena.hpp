@@ -16,7 +16,7 @@ namespace meshorder {
 /// @throws InvalidArgument if run.threads is negative, and what `work` throws
 void enter_arena(const Run& run, const std::function<void()>& work);
 
-/// As `enter_arena`. Returns what `work()` returns.
+/// Like `enter_arena`, and returns what `work()` returns.
 template <class Work>
 auto in_arena(const Run& run, const Work& work) {
   using Result = std::invoke_result_t<const Work&>;

@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// Returns the bytes of memory that this process may have: those of the machine, or what its limit of address
-/// space or one of its control groups allows if that is less. Found once.
+/// Returns the bytes of memory that this process may use: the least of the machine's memory, the limit of its
+/// address space and the limits of its control groups. Found once.
 std::uint64_t usable_memory();
 
 /// A limit on the memory of work whose size depends on the input.

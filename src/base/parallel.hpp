@@ -46,7 +46,7 @@ void parallel_loop(Number n, const Work& work, Sharing sharing = Sharing::balanc
 }
 
 /// Calls `work(chunk, begin, end)` for the chunks of `size` that make up 0 … n−1, on all threads. The chunks
-/// do not depend on the number of threads, so neither does what is computed chunk by chunk.
+/// do not depend on the number of threads, so results that are computed chunk by chunk do not either.
 template <class Work>
 void for_each_chunk(Index n, Index size, Work work) {
   const Index chunks = chunk_count(n, size);

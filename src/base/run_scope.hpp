@@ -51,7 +51,7 @@ void report(std::string_view stage, double fraction = -1);
 /// @throws as `report`; Stopped on a helping thread whose loop is cancelled
 void poll();
 
-/// As `poll`, in every 1024th turn of a loop of short turns.
+/// Like `poll`, in every 1024th turn of a loop of short turns.
 template <class Turn>
 void poll_in_loop(Turn turn) {
   if (turn % 1024 == 0) poll();

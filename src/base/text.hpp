@@ -71,7 +71,7 @@ std::string visible(std::string_view text, std::string_view kept = {});
 /// Returns whether `text` is UTF-8. O(size).
 bool is_utf8(std::string_view text);
 
-/// Returns the longest prefix of at most `most` bytes that does not end within a UTF-8 character.
+/// Returns the longest prefix of `text` of at most `most` bytes that does not end within a UTF-8 character.
 std::string_view utf8_prefix(std::string_view text, std::size_t most);
 
 /// Returns `text` with escapes, like those of `visible`, for what XML cannot hold: control characters other

@@ -22,11 +22,11 @@ struct CellOfFaces {
   enum class Kind : std::uint8_t {
     standard,  ///< a tetrahedron, pyramid, wedge or hexahedron
     other,     ///< any other pattern of faces
-    open       ///< an edge is not that of exactly two faces
+    open       ///< fewer than four faces, or an edge that is not of exactly two
   };
   Kind kind = Kind::other;
   Shape shape = Shape::tetrahedron;  ///< of a standard one
-  std::array<Index, 8> corners{};    ///< likewise, in the order of `Cells`
+  std::array<Index, 8> corners{};    ///< of a standard one, in the order of `Cells`
   int size = 0;                      ///< number of corners
   bool signs_agree = false;          ///< whether `is_inward` of all faces fits one orientation
 

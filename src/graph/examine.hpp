@@ -7,7 +7,7 @@
 
 namespace meshorder {
 
-/// Counts of what deviates from a clean graph, and a hash of its asymmetry.
+/// Counts of deviations from a clean graph, and a hash of its asymmetry.
 struct GraphFindings {
   Offset out_of_range = 0;  ///< neighbours outside 0 … n−1
   Offset bad_weights = 0;   ///< not positive or not finite

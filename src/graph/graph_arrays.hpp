@@ -24,7 +24,7 @@ struct GraphArrays {
 
   std::span<const Offset> offsets;  ///< n + 1, ascending from 0 to the number of neighbours
   std::span<const Index>
-      neighbours;  ///< unchecked in the caller's array; −1 in a copy for what is out of range
+      neighbours;  ///< unchecked in the caller's array; −1 in a copy for numbers out of range
   std::span<const double> weights;  ///< unchecked; one for each neighbour, or none
   std::vector<Offset> own_offsets;
   std::vector<Index> own_neighbours;

@@ -19,7 +19,7 @@ struct StoredMatrix : FormatMetadata {
   bool is_graph = false;           ///< a graph of vertices and edges, without entries on the diagonal
   bool is_half = false;            ///< each line represents two entries, (i, j) and (j, i)
   std::string_view field = {};     ///< "real", as the file names it; empty for a graph
-  std::string_view symmetry = {};  ///< "general", likewise
+  std::string_view symmetry = {};  ///< "general", as the file names it; empty for a graph
 
   [[nodiscard]] std::vector<std::string> contents() const override { return {}; }
 };
@@ -35,7 +35,7 @@ Mesh matrix_mesh(const GraphView& matrix);
 /// Returns whether the points of a mesh differ. All points of a matrix are 0 unless given separately.
 bool has_places(const Mesh& mesh);
 
-/// The places of all entries of a matrix, even if one half is stored: row i has entries in the columns
+/// The places of all entries of a matrix, even if only one half is stored: row i has entries in the columns
 /// `columns[starts[i]] … columns[starts[i + 1] − 1]`, rising, each once.
 struct EntryPattern {
   std::vector<Offset> starts{0};  ///< rows + 1

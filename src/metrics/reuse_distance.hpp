@@ -82,7 +82,7 @@ class ReuseDistance {
   /// @param streamed  in a sample: number of streamed accesses so far, including those to other lines
   Index access(Index line, Access how = Access::gathered, std::uint32_t streamed = 0);
 
-  /// Prefetches what `access` needs of a line in a sample.
+  /// Prefetches the data of a line that `access` needs in a sample.
   void prefetch(Index line) const {
     __builtin_prefetch(&last_access_of_line_[line]);
     __builtin_prefetch(&far_of_line_[line]);

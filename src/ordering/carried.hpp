@@ -36,7 +36,7 @@ struct NeighbourRows {
 /// @param places  each vertex's place in the old order, −1 for a new one; no place occurs twice
 /// @param count   number of places in the old order
 /// @param added   the new vertices, ascending
-/// @param rows    a row for each of them
+/// @param rows    a row for each new vertex
 /// @note O(vertices + count + entries of the rows · log), on one thread.
 std::vector<Index> carried_order(std::span<const Index> places, Index count, std::span<const Index> added,
                                  const NeighbourRows& rows);

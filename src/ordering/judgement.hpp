@@ -18,7 +18,7 @@ Workload made_for(std::string_view method);
 /// Judges an order by the figure for the workload: the bandwidth, the entries of the Cholesky factor, the
 /// sectors that a product reads on a graphics processor, or else the edge spans. Sectors must fall by at
 /// least 10 %. Spans must fall, in the mean or in the geometric mean, by at least 2 %, and the mean must not
-/// grow by more than 5 %. On large graphs the share of jumps may decide alone. They are sampled.
+/// grow by more than 5 %. On large graphs, which are sampled, the share of jumps may decide alone.
 ///
 /// Returns why the vertices should stay where they are, a sentence with the method's name and both figures;
 /// empty if the order is better. O(n + entries).

@@ -31,12 +31,12 @@ struct ElementInput {
   std::function<CsrGraph()> facet_graph;  ///< joins elements that share a facet
 };
 
-/// Orders vertices by the method of that name, built in or registered. Vertices without neighbours come last,
-/// in their old order (but stay where they are under `original`). Polls the call's progress.
+/// Orders vertices by the method of that name, built in or registered. Built-in methods other than `original`
+/// put vertices without neighbours last, in their old order. Polls the call's progress.
 ///
-/// @throws InvalidArgument for an unknown name, which lists the known ones, and for a geometric method
-/// without
-///         coordinates
+/// @throws InvalidArgument for an unknown name (the message lists the known ones), for a geometric method
+///         without coordinates of all vertices, and for a registered method that returns an order of
+///         another size
 /// @throws Unavailable for a method that this build lacks
 Order order_graph(std::string_view method, const VertexInput& input, const OrderOptions& options = {});
 

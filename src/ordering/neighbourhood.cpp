@@ -197,7 +197,7 @@ NeighbourRows PointNeighbourhood::rows_of(std::span<const Index> vertices) const
 }
 
 Order PointNeighbourhood::order_by(std::string_view method, const OrderOptions& options) {
-  // there is no graph to tell which points have no neighbours
+  // calls the method itself: order_graph would take all points for isolated vertices
   const std::vector<Offset> offsets(points_.size() + 1);
   const VertexInput input{{offsets, {}}, points_};
   const bool by_morton = method == "morton";

@@ -33,9 +33,9 @@ struct FiedlerVectors {
 /// a clean graph.
 ///
 /// Components of up to 60 vertices go to a dense eigensolver. Larger ones are numbered for speed (see
-/// ComponentNumbering) and coarsened into a `Hierarchy`. The vector is solved exactly on the coarsest graph,
-/// and improved from graph to finer graph by `lobpcg`, preconditioned with the hierarchy's cycle. A start
-/// vector replaces the vectors of the coarser graphs.
+/// ComponentNumbering) and coarsened into a `Hierarchy`. The start is exact on a coarsest graph of up to 60
+/// vertices, else random. `lobpcg`, preconditioned with the hierarchy's cycle, improves it from graph to
+/// finer graph. A start vector replaces the vectors of the coarser graphs.
 ///
 /// @param weights  one for each neighbour, > 0 and finite, the same in both rows of an edge; or none
 /// @throws InvalidArgument for another number of weights or of start entries, for a weight that is not

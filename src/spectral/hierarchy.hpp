@@ -63,8 +63,8 @@ class Hierarchy {
   template <int M>
   void cycle(int level, const VectorBlock<M>& b, VectorBlock<M>& x, CycleWorkspace<M>& workspace) const;
 
-  /// Does the same by two cycles, as the next finer level needs it; on the coarsest level by one. Changes
-  /// b.
+  /// Does the same by two cycles, as the next finer level needs it; on the coarsest level, by one. Overwrites
+  /// b with another vector.
   template <int M>
   void two_cycles(int level, VectorBlock<M>& b, VectorBlock<M>& x, VectorBlock<M>& second_x,
                   CycleWorkspace<M>& workspace) const;
