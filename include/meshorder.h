@@ -4,12 +4,12 @@
 
 /**
  * @file
- * The C interface of meshorder (C99): orders of graphs and meshes, Fiedler vectors, methods of one's own. Its
- * binary interface is stable: structures only grow at their end, functions and numbers do not change.
+ * The C interface of meshorder (C99): orders graphs and meshes, computes Fiedler vectors, adds a user's own
+ * methods. Its binary interface is stable: structures only grow at their end, functions and numbers stay.
  *
- * Every function returns MO_OK or the status of its failure, unless stated otherwise; `mo_last_error` then
- * returns a sentence. Outputs are unspecified after a failure. All functions may be called by several threads
- * at once. None throws, and a callback must not throw or longjmp.
+ * Every function returns MO_OK or the status of its failure, unless stated otherwise. After a failure
+ * `mo_last_error` returns a sentence, and outputs are unspecified. Several threads may call all functions
+ * at once. No function throws, and a callback must not throw or longjmp.
  */
 
 #include <stddef.h>
@@ -43,8 +43,8 @@ enum {
   MO_TOO_LARGE = 3,        /**< 2^31 vertices or more, or a result that the output's type cannot hold */
   MO_UNAVAILABLE = 4,      /**< a method that this build lacks */
   MO_STOPPED = 5,          /**< the progress callback returned non-zero */
-  MO_IO = 6,               /**< the operating system refused */
-  MO_INTERNAL = 7,         /**< a failure of meshorder or a library that it uses, or of an own method */
+  MO_IO = 6,               /**< the operating system refused an operation on a file */
+  MO_INTERNAL = 7,         /**< a failure of meshorder, of a library that it uses, or of a user's method */
   MO_OUT_OF_MEMORY = 8
 };
 
@@ -60,11 +60,11 @@ typedef struct mo_in {
   mo_type type;
 } mo_in;
 
-/** An array that is written during the call, aligned as its type. A null pointer to this structure: the
- * result is not wanted. */
+/** An array that is written during the call, aligned as its type. A null pointer to this structure means
+ * that the result is not wanted. */
 typedef struct mo_out {
   void* data;
-  int64_t size; /**< numbers; must be that of the result */
+  int64_t size; /**< numbers; must be the size of the result */
   mo_type type;
 } mo_out;
 
@@ -75,45 +75,45 @@ enum {
   MO_CHECK_NONE = 2  /**< nothing: faulty input is undefined behaviour */
 };
 
-/** Options of a call. `mo_options_init` fills in the defaults; a null pointer stands for them. */
+/** Options of a call. `mo_options_init` fills in the defaults; a null pointer means the defaults. */
 typedef struct mo_options {
   size_t struct_size;         /**< sizeof(mo_options) of the caller */
   const char* method;         /**< vertex method; null: "auto" */
   const char* element_method; /**< element method; null: "auto" */
-  const char* workload; /**< what "auto" chooses for: "all" (null), "element", "spmv", "assembly", "springs",
+  const char* workload; /**< what "auto" optimises: "all" (null), "element", "spmv", "assembly", "springs",
                              "bandwidth", "fill", "gpu" */
   uint64_t seed;        /**< default 0 */
   double tolerance;     /**< of Fiedler vectors, relative to lambda2, > 0; default 0.1 */
-  double time_limit;    /**< seconds, then the best so far; default infinity */
-  int32_t threads;      /**< at most; 0 (default): all that TBB would take */
-  int32_t base;         /**< of offsets and numbers that are read, and of those written; 0 (default) or 1 */
+  double time_limit;    /**< seconds, after which the best order so far is returned; default infinity */
+  int32_t threads;      /**< most threads; 0 (default): as many as TBB would use */
+  int32_t base;         /**< first offset and first vertex number, of inputs and outputs; 0 (default) or 1 */
   int32_t check;        /**< MO_CHECK_...; default MO_CHECK_FULL */
   int32_t symmetrize;   /**< non-zero: take the pattern of A + A^T; default 0: refuse asymmetric input */
   mo_in start;          /**< n numbers near the Fiedler vector, or none */
-  mo_in groups;         /**< a group for each vertex, which stay together, ascending; or none */
-  /** Called now and then on the calling thread: stage in words, fraction 0 ... 1 or -1 for unknown. Non-zero
-   * stops. */
+  mo_in groups;         /**< group of each vertex, or none; groups stay together and ascend */
+  /** Called now and then on the calling thread, with the stage in words and the fraction done, 0 ... 1, or -1
+   * if unknown. A non-zero result stops the call. */
   int32_t (*progress)(void* user, const char* stage, double fraction);
   void* user;             /**< passed to `progress` */
   int32_t max_iterations; /**< of the eigensolver, >= 1; default 500 */
   int32_t reserved;       /**< 0 */
-  mo_in cell_groups;      /**< likewise for cells, within their block and dimension */
+  mo_in cell_groups;      /**< group of each cell, or none; used within each block and dimension */
 } mo_options;
 
-/** Report on a call. Set `struct_size` to sizeof(mo_result) before it; a null pointer: not wanted. */
+/** Report on a call. Set `struct_size` to sizeof(mo_result) before the call. Pass null for no report. */
 typedef struct mo_result {
   size_t struct_size;
-  int32_t complete;   /**< 0: the time limit ended it early */
+  int32_t complete;   /**< 0: the time limit ended the call early */
   int32_t components; /**< connected components where Fiedler vectors were computed, else 0 */
   double seconds;     /**< wall-clock time */
-  double lambda2;     /**< of the largest component where a Fiedler vector was computed, else 0 */
-  char method[32];    /**< the method taken, null-terminated; cut if longer */
+  double lambda2;     /**< of the largest component, where Fiedler vectors were computed; else 0 */
+  char method[32];    /**< the method that was used, null-terminated; cut if longer */
 } mo_result;
 
 /** Returns the version of the library: 10000 major + 100 minor + patch. Never fails. */
 MO_API uint32_t mo_version(void);
 
-/** Returns the message of this thread's last failure, one line, "" if there was none. Valid until this
+/** Returns the message of this thread's last failure, one line, or "" if there was none. Valid until this
  * thread's next call. */
 MO_API const char* mo_last_error(void);
 
@@ -125,7 +125,7 @@ MO_API void mo_options_init(mo_options* options, size_t struct_size);
  * Orders the vertices of an undirected graph or the rows of a matrix, given in compressed sparse rows.
  *
  * @param offsets     n + 1, ascending, the first is `base`
- * @param neighbours  offsets[n] - base numbers from `base` on; loops and repeats are ignored
+ * @param neighbours  offsets[n] - base vertex numbers, from `base` on; loops and repeats are ignored
  * @param weights     one positive number for each neighbour, or null; fiedler uses them
  * @param points      dimension * n coordinates x y z x y z ... for geometric methods, or null
  * @param dimension   1 to 3; not used without points
@@ -163,8 +163,8 @@ MO_API mo_status mo_order_mesh(const mo_in* cell_offsets, const mo_in* cell_vert
                                mo_result* cell_result);
 
 /**
- * Orders a list of edges by the places of their ends, the larger first: a loop over them then touches new
- * vertices nearly in their order. The ends are neither moved nor renumbered.
+ * Orders edges by the larger place of their two ends, then by the smaller one. A loop over them then touches
+ * new vertices nearly in their order. The ends are neither moved nor renumbered.
  *
  * @param ends               2 for each edge, from `base` on
  * @param vertex_new_to_old  the order of the vertices, a bijection from `base` on
@@ -174,31 +174,31 @@ MO_API mo_status mo_order_mesh(const mo_in* cell_offsets, const mo_in* cell_vert
 MO_API mo_status mo_order_edges(const mo_in* ends, const mo_in* vertex_new_to_old, int32_t base,
                                 const mo_out* new_to_old);
 
-/** Keeps the order of a graph, mesh or set of particles that changes fresh. One update at a time. */
+/** Keeps the order of a changing graph, mesh or set of particles up to date. One update at a time. */
 typedef struct mo_reorderer mo_reorderer;
 
-/** How an update came by its order, the cheapest first. */
+/** How an update found its order, the cheapest first. */
 enum {
   MO_REPAIR_NONE = 0,    /**< nothing moves */
   MO_REPAIR_CARRIED = 1, /**< vertices that stayed keep their order, new ones come next to their neighbours */
-  MO_REPAIR_WARM = 2,    /**< computed anew, from the last Fiedler vector */
-  MO_REPAIR_FRESH = 3    /**< computed anew */
+  MO_REPAIR_WARM = 2,    /**< computed again, from the last Fiedler vector */
+  MO_REPAIR_FRESH = 3    /**< computed again */
 };
 
 /**
- * Makes a reorderer, to be destroyed by `mo_reorderer_destroy`.
+ * Makes a reorderer. Destroy it by `mo_reorderer_destroy`.
  *
- * @param options         of its orders, or null; its arrays must be empty, `progress` and `user` must stay
- * valid
- * @param slack           share, >= 0, by which neighbours may be farther apart than in the last fresh order;
- * 0.02
- * @param budget_seconds  >= 0: no order is computed anew that took longer the last time; infinity: no limit
+ * @param options         options of its orders, or null; its arrays must be empty, and `progress` and `user`
+ * must stay valid
+ * @param slack           share, >= 0, by which the mean span of edges may exceed that of the last fresh
+ * order before a new one is computed; usual: 0.02
+ * @param budget_seconds  >= 0; no new order is computed if the last one took longer; infinity: no limit
  * @param reorderer       written; null after a failure
  */
 MO_API mo_status mo_reorderer_create(const mo_options* options, double slack, double budget_seconds,
                                      mo_reorderer** reorderer);
 
-/** Ends a reorderer; does nothing for a null pointer. */
+/** Destroys a reorderer; does nothing for a null pointer. */
 MO_API void mo_reorderer_destroy(mo_reorderer* reorderer);
 
 /**
@@ -206,31 +206,31 @@ MO_API void mo_reorderer_destroy(mo_reorderer* reorderer);
  * the result.
  *
  * @param reorderer   made by `mo_reorderer_create`
- * @param offsets     n + 1, ascending, the first is the base of the options; null where there are points
- * alone
+ * @param offsets     n + 1, ascending, the first is the base of the options; null if there are only points
+ *
  * @param neighbours  offsets[n] - base numbers from the base on, or null
  * @param points      dimension * n coordinates, or null
  * @param dimension   1 to 3; not used without points
- * @param previous    for each vertex its place after the last update, from the base on, base - 1 for a new
- * one, each at most once; null: the same vertices in the same places
+ * @param previous    place of each vertex after the last update, from the base on, no place twice; base - 1
+ * for a new vertex; null: the same vertices in the same places
  * @param new_to_old  n integers, or null: the present place of the vertex at each new place, from the base on
  * @param old_to_new  n integers, or null: the new place of each vertex, from the base on
- * @param repair      or null: MO_REPAIR_...
+ * @param repair      how the order was found, MO_REPAIR_...; or null
  */
 MO_API mo_status mo_reorderer_update(mo_reorderer* reorderer, const mo_in* offsets, const mo_in* neighbours,
                                      const mo_in* points, int32_t dimension, const mo_in* previous,
                                      const mo_out* new_to_old, const mo_out* old_to_new, int32_t* repair);
 
-/** Reports how long, >= 0, the step took that followed the last update. From the fifth report on a new order
- * comes when the time that slower steps lose exceeds its cost. Optional. */
+/** Reports the duration, >= 0, of the step after the last update. From the fifth report on, a new order is
+ * computed once slower steps have lost more time than it costs. Optional. */
 MO_API mo_status mo_reorderer_observe(mo_reorderer* reorderer, double step_seconds);
 
 /**
- * Computes the Fiedler vector of every connected component: norm 1 and sum 0 in each, but for
- * isolated vertices, which have 0.
+ * Computes the Fiedler vector of every connected component. It has norm 1 and sum 0 in each component;
+ * isolated vertices have 0.
  *
  * @param offsets     n + 1, ascending, the first is `base`
- * @param neighbours  offsets[n] - base numbers from `base` on; loops and repeats are ignored
+ * @param neighbours  offsets[n] - base vertex numbers, from `base` on; loops and repeats are ignored
  * @param weights     one positive number for each neighbour, or null
  * @param options     or null
  * @param values      n numbers of type MO_DOUBLE or MO_FLOAT
@@ -251,7 +251,7 @@ MO_API mo_status mo_fiedler(const mo_in* offsets, const mo_in* neighbours, const
 MO_API mo_status mo_move(const mo_in* new_to_old, int32_t base, const void* from, void* to,
                          int64_t row_bytes);
 
-/** Returns the number of vertex methods, registered ones among them. Never fails. */
+/** Returns the number of vertex methods, including registered ones. Never fails. */
 MO_API int32_t mo_method_count(void);
 
 /** Returns the name of a vertex method, 0 <= k < mo_method_count(), or null. Valid for the life of the
@@ -259,20 +259,20 @@ MO_API int32_t mo_method_count(void);
 MO_API const char* mo_method_name(int32_t k);
 
 /**
- * A vertex method of one's own.
+ * A vertex method that a user defines.
  *
  * @param user        as registered
  * @param n           number of vertices
  * @param offsets     n + 1, from 0
  * @param neighbours  ascending in each row, no loops, no repeats, symmetric
  * @param xyz         3 n coordinates, or null
- * @param new_to_old  n numbers to be written: a bijection of 0 ... n-1
- * @return 0, or another number, which makes the call that asked for the order fail with MO_INTERNAL
+ * @param new_to_old  n numbers, written by the method: a bijection of 0 ... n-1
+ * @return 0 for success; with any other number the call that asked for the order fails with MO_INTERNAL
  */
 typedef int32_t (*mo_method)(void* user, int64_t n, const int64_t* offsets, const int32_t* neighbours,
                              const double* xyz, int32_t* new_to_old);
 
-/** Type of `mo_register`, which a plug-in is handed. */
+/** Type of `mo_register`, which a plug-in receives as its argument. */
 typedef mo_status (*mo_register_fn)(const char* name, const char* description, int32_t needs_points,
                                     mo_method method, void* user);
 
@@ -289,8 +289,8 @@ MO_API mo_status mo_register(const char* name, const char* description, int32_t 
                              mo_method method, void* user);
 
 /**
- * The function that a plug-in defines: it registers its methods by `add` and returns MO_OK, or what `add`
- * returned. `meshorder --plugin FILE` and `load_methods` of the C++ interface call it.
+ * The function that a plug-in defines. It registers its methods by `add` and returns MO_OK, or the status
+ * that `add` returned. `meshorder --plugin FILE` and `load_methods` of the C++ interface call it.
  */
 MO_EXPORT mo_status meshorder_plugin_v1(mo_register_fn add);
 

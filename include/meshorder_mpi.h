@@ -5,15 +5,15 @@
 /**
  * @file
  * The C interface of meshorder for meshes that many ranks of MPI share (C99): new numbers of vertices, and
- * the order of each rank's elements. The library is libmeshorder_mpi; its binary interface is stable as that
- * of meshorder.h.
+ * the order of each rank's elements. The library is libmeshorder_mpi; its binary interface is as stable as
+ * that of meshorder.h.
  *
- * The functions are collective: every rank of the communicator has to call the same one. Where one rank
- * fails, all of them return its status. MPI has to be initialised. A communicator is passed by its Fortran
- * handle, `MPI_Comm_c2f(comm)`, in mpi4py `comm.py2f()`.
+ * The functions are collective: every rank of the communicator has to call the same one. If one rank fails,
+ * all of them return its status. MPI has to be initialised. A communicator is passed by its Fortran
+ * handle: `MPI_Comm_c2f(comm)`, in mpi4py `comm.py2f()`.
  *
- * Vertices are numbered across the ranks from 0 on: those that rank 0 owns, those of rank 1, and so on, as
- * PETSc and DOLFINx number theirs.
+ * Vertices are numbered across the ranks from 0 on, as in PETSc and DOLFINx: first those that rank 0 owns,
+ * then those of rank 1, and so on.
  */
 
 #include <meshorder.h>
@@ -22,31 +22,31 @@
 extern "C" {
 #endif
 
-/** What a rank has of a mesh. */
+/** One rank's share of a mesh. */
 typedef struct mo_mpi_mesh {
   size_t struct_size;           /**< sizeof(mo_mpi_mesh) of the caller */
   int64_t vertex_count;         /**< vertices that this rank owns; >= 0 */
   int64_t cell_count;           /**< elements that this rank has; >= 0 */
   const int64_t* cell_offsets;  /**< cell_count + 1, ascending from 0; null without elements */
   const int64_t* cell_vertices; /**< numbers of their vertices, whichever rank owns these */
-  const double* points;         /**< x y z of each own vertex; or null, on all ranks */
+  const double* points;         /**< x y z of each own vertex; or null on all ranks */
   int64_t cell_vertex_count;    /**< length of cell_vertices: where the offsets end */
   int64_t coordinate_count;     /**< length of points: 3 * vertex_count, 0 without points */
 } mo_mpi_mesh;
 
-/** Options of a call. `mo_mpi_options_init` fills in the defaults; a null pointer stands for them. The same
- * on all ranks. */
+/** Options of a call, the same on all ranks. `mo_mpi_options_init` fills in the defaults; a null pointer
+ * means the defaults. */
 typedef struct mo_mpi_options {
   size_t struct_size;     /**< sizeof(mo_mpi_options) of the caller */
   const char* method;     /**< vertex method of a part; null: "spectral" */
-  const char* partition;  /**< what makes parts: "ptscotch" (null), "hilbert", "rsb", or "order": equal ranges
-                             of one  order of the whole mesh, by the method "fiedler" only */
-  const char* balance;    /**< what parts have equally much of: "vertices" (null) or "cells" */
+  const char* partition;  /**< how to cut: "ptscotch" (null), "hilbert", "rsb", or "order": equal ranges
+                             of one order of the whole mesh, by the method "fiedler" only */
+  const char* balance;    /**< every part gets equally many "vertices" (null) or "cells" */
   uint64_t seed;          /**< of the method; default 0 */
   int32_t parts;          /**< number of parts; 0 (default): one for each rank */
   int32_t threads;        /**< of this rank; default 1 */
   int32_t interface_last; /**< non-zero: vertices that share an element with those of other ranks or parts
-                             come behind the others; default 0 */
+                             come after the others; default 0 */
   int32_t reserved;       /**< 0 */
 } mo_mpi_options;
 
@@ -55,36 +55,36 @@ typedef struct mo_mpi_options {
 MO_API void mo_mpi_options_init(mo_mpi_options* options, size_t struct_size);
 
 /**
- * Orders the vertices of every rank among themselves: each stays with its owner. The ends of a rank's order
- * turn towards the ranks before and after it.
+ * Orders the vertices of every rank among themselves: each stays with its owner. A rank's order begins near
+ * the rank before it and ends near the rank after it, if that can be.
  *
- * Elements may be on several ranks (ghost layers); all that a rank has are ordered.
+ * Elements may be on several ranks (ghost layers); each rank orders all of its own.
  *
  * @param communicator  Fortran handle of the ranks that share the mesh
  * @param mesh          of this rank
  * @param options       or null; `parts`, `partition` and `balance` are not used
  * @param new_numbers   vertex_count numbers: the new number of each own vertex, within the rank's own range
  * @param cell_order    cell_count numbers, or null: the elements in their new order, by `lexmax`: entry k is
- *                      the old place (from 0 on) of the element that comes k-th
+ *                      the old place (from 0 on) of the element at new place k
  */
 MO_API mo_status mo_mpi_order_ranks(int32_t communicator, const mo_mpi_mesh* mesh,
                                     const mo_mpi_options* options, int64_t* new_numbers, int64_t* cell_order);
 
 /**
- * Cuts the mesh into parts, orders each, and numbers them one after another, so that parts that touch are
- * near each other. Moving vertices and elements to their new owners is left to the caller.
+ * Cuts the mesh into parts, orders each, and numbers them one after another, so that touching parts are
+ * near each other. The caller has to move vertices and elements to their new owners.
  *
  * Needs coordinates, and each element on one rank. Without MPI_THREAD_MULTIPLE
- * "hilbert" takes the place of "ptscotch".
+ * "hilbert" replaces "ptscotch".
  *
  * @param communicator  Fortran handle of the ranks that share the mesh
  * @param mesh          of this rank
  * @param options       or null
  * @param new_numbers   vertex_count numbers: the new number of each own vertex
- * @param part_starts   parts + 1 numbers: the first new number of each part, and the end of the last one's;
- *                      vertices that no element uses have the numbers from there on
- * @param cell_parts    cell_count numbers, or null: the part of each element, that of its vertex with the
- *                      largest new number
+ * @param part_starts   parts + 1 numbers: the first new number of each part, then the end of the last part;
+ *                      vertices that no element uses have the numbers from that end on
+ * @param cell_parts    cell_count numbers, or null: the part of each element, which is that of its vertex
+ *                      with the largest new number
  */
 MO_API mo_status mo_mpi_order_parts(int32_t communicator, const mo_mpi_mesh* mesh,
                                     const mo_mpi_options* options, int64_t* new_numbers, int64_t* part_starts,

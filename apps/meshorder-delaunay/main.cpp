@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Triangulates points for `meshorder simulate splash`, again and again, until its input ends.
+// Triangulates sets of points for `meshorder simulate splash` until its input ends.
 //
 // Reads, in the machine's byte order: a number n (8 bytes), then n points of three doubles. Answers with a
-// number m (8 bytes), the corners of m tetrahedra (four numbers of 4 bytes each), and the neighbours of each
-// across the face that lies opposite each corner, −1 outside the hull. Points are numbered from 0.
+// number m (8 bytes), the corners of m tetrahedra (four numbers of 4 bytes each), and the four neighbours of
+// each, opposite its corners; −1 outside the hull. Points are numbered from 0.
 //
-// These parts of CGAL are under the GPL, so this is a program of its own: see README.md of meshorder-models.
+// These parts of CGAL are under the GPL, so this is a separate program: see README.md of meshorder-models.
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Delaunay_triangulation_cell_base_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -30,7 +30,7 @@ using Triangulation =
     CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 using Row = std::array<std::int32_t, 4>;
 
-constexpr std::int64_t kMostPoints = std::int64_t{1} << 26;  // their tetrahedra are counted in 32 bits
+constexpr std::int64_t kMostPoints = std::int64_t{1} << 26;  // the number of tetrahedra must fit 32 bits
 
 template <class T>
 bool read(T* to, std::size_t count) {
@@ -67,7 +67,7 @@ void triangulate(const std::vector<std::array<double, 3>>& points, std::vector<R
   }
 }
 
-/// Returns whether there was a question, which is answered.
+/// Reads points and writes their triangulation; returns false at the end of the input or after a fault.
 bool answer_next() {
   std::int64_t count = 0;
   if (!read(&count, 1) || count < 0 || count > kMostPoints) return false;

@@ -7,7 +7,7 @@ class App;
 
 namespace meshorder::command {
 
-// Each gives a subcommand its options; it runs once all arguments are parsed.
+// Each function adds the options of a subcommand, which runs once all arguments are parsed.
 void add_models(CLI::App& subcommand);
 void add_simulate(CLI::App& subcommand);
 void add_reproduce(CLI::App& subcommand);

@@ -35,10 +35,10 @@ namespace fs = std::filesystem;
 
 struct ReportArguments : Common {
   std::vector<std::string> inputs;
-  std::string output;  ///< empty: report.html, report.html in the study's folder, or comparison.html
+  std::string output;  ///< empty: report.html (in the study's folder, for a study), or comparison.html
   double budget_seconds = TimingOptions{}.budget_seconds;
   OrderOptions ordering;
-  std::string option_of_meshes;  ///< one that was given and is without effect on studies; empty: none
+  std::string option_of_meshes;  ///< an option that was given but does not apply to studies; empty: none
 };
 
 constexpr std::string_view kAsItIs = "original";
@@ -52,7 +52,7 @@ std::vector<OrderingSpec> orderings_of_report() {
           {"scrambled", "Scrambled", "scrambled", "scrambled"}};
 }
 
-/// Whether an order differs from another one by its elements alone, which a matrix has not.
+/// Returns whether an order differs from another one only in its elements, which a matrix lacks.
 bool orders_elements(const OrderingSpec& ordering) { return ordering.name == "vf-fiedler"; }
 
 /// Returns the predicted and measured times of an order, as `info` takes them.
@@ -70,7 +70,7 @@ OrderCosts costs_of(const MeshOrderRecord& order, std::size_t kernels) {
   return costs;
 }
 
-/// Adds the verdict of `info`, from the times of this record; none without the orders that it compares.
+/// Adds the verdict of `info` from the times in this record, if it has the orders that it compares.
 void add_verdict(MeshRecord& record, const Steadiness& steadiness, bool is_matrix) {
   const auto order = [&](std::string_view name) {
     return std::find_if(record.orders.begin(), record.orders.end(),
@@ -107,7 +107,7 @@ std::string unique_name(const std::string& file, const std::vector<MeshRecord>& 
 }
 
 /// Reads a mesh, measures it in the report's orders and adds it to the page; returns its size in words.
-/// `from` … `to` is its share of the progress.
+/// Its share of the progress is `from` … `to`.
 std::string add_mesh(Page& page, const std::string& file, const ReportArguments& arguments,
                      Progress& progress, double from, double to, Notes& notes) {
   progress.stage("reading " + file, from, from + 0.1 * (to - from));
@@ -121,7 +121,7 @@ std::string add_mesh(Page& page, const std::string& file, const ReportArguments&
   MeshStudyOptions options;
   options.ordering = arguments.ordering;
   options.timing.budget_seconds = arguments.budget_seconds;
-  options.hierarchies = {hierarchies_of_studies().front()};  // the paper's machine is not the user's
+  options.hierarchies = {hierarchies_of_studies().front()};  // without the paper's machine
   options.progress = [&](std::string_view what, double fraction) {
     progress.stage(fmt::format("{}: {}", name, what), from + (0.1 + 0.8 * fraction) * (to - from), to);
   };
@@ -155,8 +155,8 @@ std::string title_of(const Page& page) {
   return fmt::format("What the order of {} is worth", fmt::join(names, ", "));
 }
 
-/// Throws InvalidArgument for the name of another kind of file, a mesh say, over which the page would be
-/// written.
+/// Throws InvalidArgument for the name of another kind of file, such as a mesh, which the page would
+/// overwrite.
 void check_name_of_page(const std::string& output) {
   const std::string extension = fs::path(output).extension().string();
   if (extension.empty() || same_but_for_case(extension, ".html") || same_but_for_case(extension, ".htm"))
@@ -209,12 +209,12 @@ void report_on_meshes(Console& console, const ReportArguments& arguments) {
   console.print_json({{"page", output}, {"results", to_json(page.results)}});
 }
 
-/// Whether an argument names a study: its folder, or its results.json.
+/// Returns whether an argument names a study: its folder, or its results.json.
 bool is_study(const std::string& input) {
   return fs::is_directory(input) || fs::path(input).extension() == ".json";
 }
 
-/// Returns the results.json that an argument of a study names.
+/// Returns the results.json of an argument that names a study.
 FilePath results_of(const std::string& input) {
   if (!fs::is_directory(input)) return {input};
   const StudyFolder folder(input);

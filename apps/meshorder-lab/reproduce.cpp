@@ -25,12 +25,12 @@
 namespace meshorder::command {
 namespace {
 
-/// Seconds that a scenario may take with --quick, in all orders together.
+/// Seconds for each scenario with --quick, in all orders together.
 constexpr double kQuickSeconds = 20;
 
 struct ReproduceArguments : Common {
   std::string folder = "results";
-  bool is_folder_named = false;  ///< by the user
+  bool is_folder_named = false;  ///< the user named the folder
   bool quick = false;
   bool full = false;
   StudyPlan plan;
@@ -70,7 +70,7 @@ void report(Console& console, const StudyFolder& folder, Progress& progress) {
   const WrittenReport written = write_report(folder);
   progress.finish();
   console.warn_of(written.notes);
-  // a row for each order: the table of the page is too wide for a terminal
+  // one row for each order: the page's table is too wide for a terminal
   const Table speedups = speedup_table(written.results);
   if (!speedups.rows.empty()) console.print("{}", to_text(speedups));
   for (const std::string& finding : written.findings) console.print("{}\n", finding);

@@ -32,7 +32,7 @@ namespace {
 struct SimulateArguments : Common {
   bool list = false;
   std::string scenario;
-  // these replace the scenario's own
+  // the following options replace values of the scenario
   std::string mesh;
   std::string order;
   std::string vertices;
@@ -65,7 +65,7 @@ void list_scenarios(const Console& console) {
   console.print_json({{"scenarios", scenarios}});
 }
 
-/// Throws InvalidArgument for what is given and means nothing to a fluid.
+/// Throws InvalidArgument for options that do not apply to a fluid.
 void refuse_for_fluids(const SimulateArguments& arguments) {
   for (const auto& [name, value] :
        {std::pair("--mesh", &arguments.mesh), std::pair("--preconditioner", &arguments.preconditioner),
@@ -88,7 +88,7 @@ Scenario scenario_of(const SimulateArguments& arguments) {
     OrderNames order = order_named(arguments.order);
     scenario.vertex_order = std::move(order.vertices);
     scenario.element_order = std::move(order.elements);
-    // tetrahedra of water are sorted in each step, in the cheapest way
+    // the tetrahedra of water are sorted in each step, by the cheapest method
     if (scenario.is_fluid() && arguments.order.find('/') == std::string::npos)
       scenario.element_order = "auto";
   }
@@ -117,7 +117,7 @@ Scenario scenario_of(const SimulateArguments& arguments) {
   return scenario;
 }
 
-/// Returns the path of the scenario's mesh, and makes it if it is a model that is not made yet.
+/// Returns the path of the scenario's mesh. Makes the mesh first if it is a model that does not exist yet.
 std::string mesh_path(const Scenario& scenario, Progress& progress) {
   if (!names_a_model(scenario.mesh)) return scenario.mesh;
   MakeOptions options;
@@ -127,7 +127,7 @@ std::string mesh_path(const Scenario& scenario, Progress& progress) {
   return make_model(scenario.mesh, options).path.string();
 }
 
-/// Simulates to the scenario's end and writes frames and checkpoints as they are due.
+/// Simulates to the end of the scenario, and writes frames and checkpoints when they are due.
 class Run {
  public:
   Run(const SimulateArguments& arguments, Simulation& simulation)
@@ -210,7 +210,7 @@ void run(const SimulateArguments& arguments) {
     throw InvalidArgument("give the name or the file of a scenario; --list shows the names");
   Scenario scenario = scenario_of(arguments);
 
-  // of water no file is read that a library parses
+  // a fluid reads no file that a library parses
   if (!scenario.is_fluid() && !names_a_model(scenario.mesh)) {
     Files files{.meshes = {scenario.mesh}, .others = {arguments.resume}, .outputs = {arguments.checkpoint}};
     if (!arguments.frames.empty()) files.folders.push_back(arguments.frames);

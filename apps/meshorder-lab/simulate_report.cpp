@@ -31,13 +31,13 @@ StepReport sums(const MotionRecord& record) {
   return sum;
 }
 
-/// Returns the time that is in no part of a step.
+/// Returns the time of a step that belongs to none of its parts.
 double other(const StepReport::Seconds& seconds) {
   return seconds.total - seconds.assembly - seconds.solve - seconds.local - seconds.global -
          seconds.collision - seconds.triangulation - seconds.order - seconds.motion;
 }
 
-/// Returns the smallest and the largest of a number over the steps, of which there is at least one.
+/// Returns the smallest and the largest value of a number over the steps; there must be a step.
 template <class Number>
 std::pair<Number, Number> range(const MotionRecord& record, Number StepReport::*number) {
   Number lowest = record.steps.front().report.*number;
@@ -49,7 +49,7 @@ std::pair<Number, Number> range(const MotionRecord& record, Number StepReport::*
   return {lowest, highest};
 }
 
-/// Returns a number of every step.
+/// Returns a list with the value of a number in every step.
 template <class Number>
 nlohmann::ordered_json each(const MotionRecord& record, Number StepReport::*number) {
   auto list = nlohmann::ordered_json::array();
@@ -207,7 +207,7 @@ std::string contact_in_words(const ProjectiveScenario& options) {
   return words + ", by uzawa";
 }
 
-/// Prints where the time of a fluid went, and how often it was ordered.
+/// Prints the time of each part of a fluid's steps, and how often it was ordered.
 void print_fluid_steps(const Console& console, const Simulation& simulation, const MotionRecord& record) {
   const auto steps = static_cast<double>(record.steps.size());
   const StepReport sum = sums(record);
@@ -263,8 +263,8 @@ void print_steps(const Console& console, const Scenario& scenario, const MotionR
                   record.steps.back().report.vertices_in_itself);
 }
 
-/// Prints how far the body is from its shape at rest, and from which step on that is within 1 % of its
-/// height.
+/// Prints the distance of the body from its shape at rest, and the step from which on it is within 1 % of
+/// its height.
 void print_shape(const Console& console, const Simulation& simulation, const MotionRecord& record) {
   const BoundingBox box = bounding_box(simulation.mesh.points, simulation.vertices);
   const double near = 0.01 * (box.high[1] - box.low[1]);

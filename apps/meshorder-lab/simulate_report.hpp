@@ -11,13 +11,13 @@
 
 namespace meshorder::command {
 
-/// Prints what will be simulated.
+/// Prints the scenario, mesh, order, material and method.
 void print_header(const Console& console, const Simulation& simulation, const std::string& mesh);
 
 /// Prints times, iterations and the change of energy and momentum.
 void print_summary(Console& console, const Simulation& simulation, const MotionRecord& record);
 
-/// Returns the keys that docs/json.md lists, but for those of the run: the mesh's file, frames, checkpoints.
+/// Returns the keys that docs/json.md lists, without those of the run: the mesh's file, frames, checkpoints.
 nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord& record);
 
 }  // namespace meshorder::command

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // meshorder-models: makes the surfaces from which TetGen fills the study's models.
-// The only program of the project that uses CGAL's GPL parts; README.md has the recipes.
+// Like meshorder-delaunay, it uses CGAL's GPL parts; README.md has the recipes.
 #include "surface.hpp"
 #include "wrap.hpp"
 
@@ -18,7 +18,7 @@ namespace {
 using namespace meshorder::models;
 
 void run_wrap(const std::string& in, const std::string& out, const WrapOptions& options) {
-  if (std::isnan(options.alpha_ratio) || std::isnan(options.offset_ratio)) {  // CLI::Range lets it through
+  if (std::isnan(options.alpha_ratio) || std::isnan(options.offset_ratio)) {  // CLI::Range accepts NaN
     throw InputError("a ratio is not a number; a ratio should be 1 or more");
   }
   check_writable_place(out);
@@ -36,7 +36,7 @@ void run_wrap(const std::string& in, const std::string& out, const WrapOptions& 
 }
 
 int fail(int code, const char* what) {
-  // CGAL and CLI11 speak in paragraphs, a failure is one line
+  // CGAL and CLI11 give messages of several lines; a failure is reported in one
   std::string line = what;
   for (char& c : line) {
     if (c == '\n') c = ' ';

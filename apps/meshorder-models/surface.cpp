@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\v\f";
 
-/// Hands out the lines of a text that hold something, and the words of the current one.
+/// Yields the non-blank lines of a text, and the words of the current one.
 class Lines {
  public:
   Lines(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
@@ -39,7 +39,7 @@ class Lines {
     return false;
   }
 
-  /// True if the current line has another word.
+  /// Returns true if the current line has another word.
   bool at_word() {
     line_.remove_prefix(std::min(line_.find_first_not_of(blanks), line_.size()));
     return !line_.empty();
@@ -72,8 +72,8 @@ class Lines {
   }
 
  private:
-  std::string_view text_;  ///< what follows the current line
-  std::string_view line_;  ///< what is left of the current line
+  std::string_view text_;  ///< text after the current line
+  std::string_view line_;  ///< rest of the current line
   std::size_t number_ = 0;
   std::string file_;
 };
@@ -82,7 +82,7 @@ std::string read_text(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) {
     throw InputError(fmt::format("{}: no such file; give an OFF file of triangles", file.string()));
   }
-  std::ifstream in(file, std::ios::binary);  // the user's own file; this program has no part of the library
+  std::ifstream in(file, std::ios::binary);  // opened directly: this program does not link the library
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in.is_open() || in.bad()) {
     throw InputError(fmt::format("{}: cannot be read; make it readable", file.string()));
@@ -105,7 +105,7 @@ Surface read_off(const std::filesystem::path& file) {
   const auto n_faces = lines.number<std::uint32_t>("a number of faces");
   if (n_points < 3 || n_faces < 1) lines.fail("an empty surface", "it should have a triangle");
 
-  // a vertex or a face takes six bytes or more, so a lying count cannot make this large
+  // a vertex or a face takes six bytes or more, so a false count cannot make this large
   Surface surface;
   surface.points.reserve(std::min<std::size_t>(n_points, text.size() / 6));
   surface.triangles.reserve(std::min<std::size_t>(n_faces, text.size() / 6));
@@ -155,7 +155,7 @@ void write_off(const std::filesystem::path& file, const Surface& surface) {
   for (const auto& [a, b, c] : surface.triangles) fmt::format_to(out, "3 {} {} {}\n", a, b, c);
 
   const std::filesystem::path partial = fmt::format("{}.{}.partial", file.string(), ::getpid());
-  // a new file: whoever may write into the folder may have put a link there
+  // O_EXCL and O_NOFOLLOW: another user of the folder may have put a link there
   const int opened = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   std::string_view rest(text.data(), text.size());
   for (ssize_t written = 0; opened >= 0 && !rest.empty();

@@ -5,7 +5,7 @@
 
 namespace meshorder::models {
 
-/// Lengths of a wrap, as parts of the diagonal of the surface's bounding box: larger ratios are finer.
+/// Lengths of a wrap, as fractions of the diagonal of the surface's bounding box: larger ratios are finer.
 struct WrapOptions {
   double alpha_ratio = 200;  ///< diagonal / alpha; alpha bounds the size of the wrap's triangles
   double offset_ratio =
@@ -16,7 +16,7 @@ struct WrapOptions {
 /// which may intersect each other and leave holes smaller than alpha.
 ///
 /// The same input gives the same output in every run.
-/// Throws `InputError` if all triangles are degenerate, or their box is beyond 1e-100 … 1e100 in size.
+/// Throws `InputError` if all triangles are degenerate, or if the size of their box is not in 1e-100 … 1e100.
 /// CGAL's alpha wrap: Portaneri et al., "Alpha wrapping with an offset", ACM TOG 41(4), 2022.
 /// Time and memory grow with the square of `alpha_ratio`.
 Surface wrap(const Surface& surface, const WrapOptions& options);

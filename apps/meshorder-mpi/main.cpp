@@ -35,12 +35,12 @@ int status_of(const meshorder::Error& error) {
   return error.code() == meshorder::Code::internal ? kOwnFailure : kBadInput;
 }
 
-/// Prints why the command fails, where that is the first rank's part, and returns the status.
+/// Prints why the command fails, on the first rank only; returns the status.
 int tell(const Communicator& communicator, const std::string& message, int status) {
   return communicator.is_root() ? report_failure(message, status) : status;
 }
 
-/// Runs what the arguments ask for, which are the same on all ranks; returns the exit status.
+/// Runs the subcommand in the arguments, which are the same on all ranks; returns the exit status.
 int run(const Communicator& communicator, std::vector<std::string> arguments) {
   CLI::App app;
   app.description(
@@ -60,7 +60,7 @@ int run(const Communicator& communicator, std::vector<std::string> arguments) {
     return tell(communicator, *fault, kBadInput);
   arguments = meshorder::command::with_words_as_options(std::move(arguments));
   const std::string first = arguments.front();
-  std::reverse(arguments.begin(), arguments.end());  // as the parser takes them
+  std::reverse(arguments.begin(), arguments.end());  // the parser expects the arguments in reverse
   try {
     app.parse(std::move(arguments));
   } catch (const CLI::Success& asked_for_help) {
@@ -77,7 +77,7 @@ int run(const Communicator& communicator, std::vector<std::string> arguments) {
   return 0;
 }
 
-/// Says that MPI knows nothing of the others that were started with this process, and returns the status.
+/// Reports that MPI does not see the other processes started with this one; returns the status.
 int tell_of_launcher(bool is_first_process) {
   return is_first_process
              ? report_failure(
@@ -88,7 +88,7 @@ int tell_of_launcher(bool is_first_process) {
              : kBadInput;
 }
 
-/// Ends all ranks for a failure of this one that the others do not know of: they may wait for it.
+/// Ends all ranks after a failure of this one that the others do not know of, and might wait for.
 [[noreturn]] void abort_all(const std::string& message) noexcept {
   meshorder::remove_unfinished_outputs();
   meshorder::distributed::Session::abort(report_failure(message, kOwnFailure));
@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
 #ifdef MESHORDER_HAS_HDF5
   meshorder::hdf5::close_nothing_at_exit();
 #endif
-  // MPI changes these variables
+  // read before MPI changes the environment
   const bool is_one_of_several = meshorder::command::is_one_of_several();
   const bool is_first_process = meshorder::command::is_first_process();
   try {

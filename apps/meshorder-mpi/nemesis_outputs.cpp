@@ -18,7 +18,7 @@ namespace meshorder::command {
 namespace fs = std::filesystem;
 namespace {
 
-/// Takes a dot and digits from the beginning; returns whether they were there.
+/// Removes a dot and digits from the beginning; returns whether they were there.
 bool take_number(std::string_view& text) {
   const std::size_t end = std::min(text.find_first_not_of("0123456789", 1), text.size());
   if (!text.starts_with('.') || end < 2) return false;
@@ -26,7 +26,7 @@ bool take_number(std::string_view& text) {
   return true;
 }
 
-/// Returns whether a file is called as a piece: the name and two numbers.
+/// Returns whether a file has the name of a piece: `name` and two numbers.
 bool has_name_of_nemesis_piece(std::string_view file, std::string_view name) {
   if (!file.starts_with(name)) return false;
   file.remove_prefix(name.size());
@@ -39,8 +39,8 @@ bool has_name_of_nemesis_piece(std::string_view file, std::string_view name) {
 }  // namespace
 
 NemesisOutputs::NemesisOutputs(std::string name) : name_(std::move(name)) {
-  (void)format_of(name_);   // whether this build has it
-  (void)OutputFile(name_);  // whether something can be made there
+  (void)format_of(name_);   // throws if this build lacks the format
+  (void)OutputFile(name_);  // throws if no file can be made there
   (void)old_pieces();
 }
 
@@ -76,13 +76,13 @@ std::vector<std::string> NemesisOutputs::open(Index parts) {
 }
 
 void NemesisOutputs::add_to(OutputSet& set) {
-  // no other program notices pieces of two runs
+  // a reader would not notice pieces of two runs
   set.remove_first(FilePath::derived(names_.front()));
   for (const fs::path& old : old_pieces()) {
     if (std::find(names_.begin(), names_.end(), old.string()) == names_.end())
       set.remove(FilePath::derived(old));
   }
-  for (std::size_t k = 1; k <= files_.size(); ++k)  // the first one last
+  for (std::size_t k = 1; k <= files_.size(); ++k)  // the first piece last
     set.add(std::move(files_[k % files_.size()]));
   files_.clear();
 }

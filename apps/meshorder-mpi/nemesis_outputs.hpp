@@ -11,27 +11,27 @@
 
 namespace meshorder::command {
 
-/// The files of the pieces of a mesh in Nemesis, at the rank that puts them in place: NAME.e.PARTS.PART, for
+/// The files of a mesh's pieces in Nemesis, on the rank that puts them in place: NAME.e.PARTS.PART, for
 /// instance mesh.e.16.00 to mesh.e.16.15.
 class NemesisOutputs {
  public:
-  /// Looks, before the work, at what is there.
+  /// Checks, before the work, that the files can be written.
   ///
-  /// @param name  of the files, less the two numbers: mesh.e
-  /// @throws InputError if its folder is not there or cannot be written, or has a file of a piece's name that
-  ///         meshorder did not write as one; Unavailable in a build without netCDF
+  /// @param name  of the files, without the two numbers: mesh.e
+  /// @throws InputError if its folder does not exist or cannot be written, or has a file of a piece's name
+  ///         that meshorder did not write as one; Unavailable in a build without netCDF
   explicit NemesisOutputs(std::string name);
 
-  /// Makes the files of so many pieces, and returns the paths by which they are written.
+  /// Makes the files of `parts` pieces; returns the paths under which to write them.
   [[nodiscard]] std::vector<std::string> open(Index parts);
   /// Returns the names of the files that `open` made.
   [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
 
-  /// Has the set put the files, which are written by now, in place, and remove pieces of an earlier run that
-  /// are none of these.
+  /// Adds the files, which are written by now, to the set. The set also removes other pieces of an earlier
+  /// run.
   void add_to(OutputSet& set);
 
-  /// Returns the file of the first piece; without the numbers before `open`.
+  /// Returns the file of the first piece; before `open`, the name without numbers.
   [[nodiscard]] const std::string& first() const noexcept { return names_.empty() ? name_ : names_.front(); }
 
  private:
@@ -42,7 +42,7 @@ class NemesisOutputs {
   std::vector<OutputFile> files_;
 };
 
-/// Returns whether --pieces asks for pieces in Nemesis: the name is that of a file of Exodus II.
+/// Returns whether --pieces requests pieces in Nemesis: its name has an extension of Exodus II.
 [[nodiscard]] bool names_nemesis_pieces(const std::string& pieces);
 
 }  // namespace meshorder::command

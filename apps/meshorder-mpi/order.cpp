@@ -62,14 +62,14 @@ DistributedOptions options_of(const Arguments& arguments) {
   return options;
 }
 
-/// Whether rank 0 has to read and write: for old numbers and chosen cells, and where no loss is allowed.
+/// Returns whether rank 0 has to read and write: for --ids, --only and --strict.
 bool needs_root(const Arguments& arguments) {
   return arguments.ids != "renumber" || arguments.keeping.dimension >= 0 || arguments.keeping.strict;
 }
 
-/// Returns the input as all ranks read it; nothing where rank 0 has to, for files of other kinds, for maps of
-/// cells whose nodes a Mesh has in another order, for maps without a file, for pieces of .xdmf files, and for
-/// pieces in Nemesis.
+/// Returns the input if all ranks can read it, else nothing: for files of other kinds, for maps of
+/// cells whose nodes a Mesh has in another order, for maps without an output, for pieces of .xdmf files, and
+/// for pieces in Nemesis.
 std::optional<FileSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
   const auto extension = [](const std::string& name) { return std::filesystem::path(name).extension(); };
   const std::filesystem::path kind = extension(arguments.input);
@@ -85,7 +85,7 @@ std::optional<FileSlices> slices_of(const Communicator& communicator, const Argu
   return slices;
 }
 
-/// Returns an Exodus file as all ranks read it, where pieces alone are written, perhaps with maps.
+/// Returns an Exodus file if all ranks can read it: if only pieces, perhaps with maps, are written.
 std::optional<ExodusSlices> exodus_slices_of(const Communicator& communicator, const Arguments& arguments) {
   if (!arguments.output.empty() || needs_root(arguments)) return std::nullopt;
   std::optional<ExodusSlices> slices = ExodusSlices::open(communicator, arguments.input);
@@ -168,7 +168,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   });
 }
 
-/// Threads of this rank: its share of the machine's cores.
+/// Returns the threads of this rank: its share of the machine's cores.
 int share_of_cores(const Communicator& communicator) {
   return std::max(
       1, static_cast<int>(std::thread::hardware_concurrency()) / communicator.ranks_on_this_machine());

@@ -9,8 +9,8 @@ class App;
 
 namespace meshorder::command {
 
-/// Gives `order` its options; it runs on all ranks once all arguments are parsed, and throws SharedError on
-/// all of them where one fails.
+/// Adds the options of `order`. It runs on all ranks once all arguments are parsed, and throws SharedError on
+/// all of them if one fails.
 void add_distributed_order(CLI::App& subcommand, const distributed::Communicator& communicator);
 
 }  // namespace meshorder::command

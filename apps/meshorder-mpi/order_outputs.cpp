@@ -23,7 +23,7 @@ namespace {
 using distributed::Communicator;
 using distributed::GridRows;
 
-/// Adds notes that are not there yet: what a format holds in another way, two writers report alike.
+/// Adds notes that are not there yet: two writers may report the same loss.
 void add_new(const Notes& found, Notes& notes) {
   std::copy_if(found.begin(), found.end(), std::back_inserter(notes), [&](const std::string& note) {
     return std::find(notes.begin(), notes.end(), note) == notes.end();
@@ -62,7 +62,7 @@ OrderOutputs::OrderOutputs(const Communicator& communicator, const OrderFiles& f
     if (!files.output.empty()) (void)OutputFile(files.output);
     if (!files.maps.empty()) check_can_write_maps(files.maps);
     if (files.has_pieces_in_one_file()) {
-      (void)format_of(files.pieces);  // whether this build has it
+      (void)format_of(files.pieces);  // throws if this build lacks the format
       (void)OutputFile(files.pieces);
       if (!files.output.empty() &&
           std::filesystem::weakly_canonical(files.output) == std::filesystem::weakly_canonical(files.pieces))

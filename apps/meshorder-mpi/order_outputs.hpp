@@ -19,12 +19,12 @@
 
 namespace meshorder::command {
 
-/// Where a mesh comes from and goes to: to a file, to pieces, or both.
+/// The files of a mesh: input, and as output a file, pieces, or both.
 struct OrderFiles : MeshFiles {
-  std::string pieces;  ///< folder, a .vtkhdf file, or a name of Exodus II; empty: none are written
+  std::string pieces;  ///< folder, a .vtkhdf file, or a name of Exodus II; empty: no pieces
   int ghosts = 1;      ///< layers of ghost cells in pieces, 0 or 1
 
-  /// Returns the files with an output that gives the format, also where there are pieces only.
+  /// Returns the files with an output that sets the format, even if only pieces are written.
   [[nodiscard]] MeshFiles with_output() const;
   /// Returns whether the pieces are the partitions of one file.
   [[nodiscard]] bool has_pieces_in_one_file() const;
@@ -34,24 +34,24 @@ struct OrderFiles : MeshFiles {
   [[nodiscard]] std::string name_of_pieces() const;
 };
 
-/// What an order by all ranks writes. All files take their places at `commit`, or none does. All functions
-/// but the last three have to be called by every rank.
+/// Outputs of an order by all ranks. All files are put in place at `commit`, or none is. Every rank has to
+/// call all functions but the last three.
 class OrderOutputs {
  public:
-  /// Looks, before the work, whether the files can be written.
+  /// Checks, before the work, that the files can be written.
   ///
   /// @param files  outlives this object
-  /// @throws SharedError where they cannot
+  /// @throws SharedError if they cannot
   OrderOutputs(const distributed::Communicator& communicator, const OrderFiles& files);
 
-  /// Looks, before the work, whether pieces can hold the cells of a mesh that the root has read.
+  /// Checks, before the work, that pieces can hold the cells of a mesh that the root has read.
   ///
-  /// @throws SharedError where they cannot
+  /// @throws SharedError if they cannot
   void check(const Mesh& mesh) const;
 
-  /// Writes a mesh that all ranks read, in its new order, and its maps.
+  /// Writes a mesh that all ranks have read, in its new order, and its maps.
   ///
-  /// @param before  of the mesh in its old order; looked at for maps only
+  /// @param before  checksums of the mesh in its old order; used for maps only
   void write(const distributed::FileSlices& slices, const distributed::DistributedOrder& order,
              const MeshChecksums& before, Notes& notes);
 
@@ -59,7 +59,7 @@ class OrderOutputs {
   void write(const distributed::ExodusSlices& slices, const distributed::DistributedOrder& order,
              const MeshChecksums& before, Notes& notes);
 
-  /// Writes a mesh that the root has, and that is in its new order, and its maps.
+  /// Writes a mesh at the root, which is in its new order, and its maps.
   void write(const MeshToOrder& whole, const distributed::DistributedOrder& order, Notes& notes);
 
   /// Puts all files in place.
@@ -67,15 +67,15 @@ class OrderOutputs {
 
   /// Returns, at the root, the paths of all files but the output and the pieces.
   [[nodiscard]] const std::vector<std::string>& maps() const noexcept { return maps_; }
-  /// Returns the path of the file that names the pieces, or has them in it, or of the first piece in Nemesis,
-  /// at the root; empty without pieces.
+  /// Returns, at the root, the path of the file that lists or contains the pieces, or of the first piece in
+  /// Nemesis; empty without pieces.
   [[nodiscard]] std::string pieces_file() const {
     return pieces_                           ? pieces_->index().string()
            : nemesis_                        ? nemesis_->first()
            : files_.has_pieces_in_one_file() ? files_.pieces
                                              : "";
   }
-  /// Returns what is reported of the pieces.
+  /// Returns the counts and notes on the pieces.
   [[nodiscard]] const distributed::PiecesReport& pieces() const noexcept { return pieces_report_; }
 
  private:
@@ -83,12 +83,12 @@ class OrderOutputs {
                     Notes& notes);
   void write_nemesis(const MeshToOrder& whole, const distributed::DistributedReport& report, Notes& notes);
   void write_nemesis(const distributed::NemesisShare& share, const distributed::DistributedReport& report);
-  /// Throws InputError, at the root, for what pieces do not hold, where no loss is allowed.
+  /// Throws InputError, at the root, if there are losses but --strict forbids them.
   void refuse_losses(const Notes& losses) const;
 
   const distributed::Communicator& communicator_;
   const OrderFiles& files_;
-  std::optional<PieceOutputs> pieces_;  ///< at the root; its folder is removed after what the set left there
+  std::optional<PieceOutputs> pieces_;     ///< at the root; destroyed, with its folder, after the set
   std::optional<NemesisOutputs> nemesis_;  ///< at the root
   OutputSet set_;
   std::vector<std::string> maps_;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kDigits = 4;
 
-/// Returns whether a file is called as a piece: the name, an underscore and four digits or more.
+/// Returns whether a file has the name of a piece: `name`, an underscore and four digits or more.
 bool is_name_of_piece(std::string_view file, std::string_view name) {
   constexpr std::string_view kExtension = ".vtu";
   if (!file.starts_with(name) || !file.ends_with(kExtension) || file.size() < name.size() + kExtension.size())
@@ -31,7 +31,7 @@ bool is_name_of_piece(std::string_view file, std::string_view name) {
          file.find_first_not_of("0123456789", 1) == std::string_view::npos;
 }
 
-/// Returns the files that a .pvtu file names, as they are in it; none where it is not there.
+/// Returns the files that a .pvtu file names, as written in it; none if it does not exist.
 std::set<std::string> named_by(const fs::path& index) {
   constexpr std::string_view kAttribute = "Source=\"";
   constexpr std::size_t kMost = std::size_t{1} << 28;
@@ -52,7 +52,7 @@ PieceOutputs::PieceOutputs(fs::path folder, std::string name)
     : folder_(std::move(folder)), name_(std::move(name)) {
   std::error_code code;
   if (!fs::exists(folder_, code)) {
-    (void)OutputFile(folder_);  // that something can be made there
+    (void)OutputFile(folder_);  // throws if nothing can be made there
     return;
   }
   if (!fs::is_directory(folder_, code))
@@ -64,7 +64,7 @@ PieceOutputs::PieceOutputs(fs::path folder, std::string name)
 PieceOutputs::~PieceOutputs() {
   files_.clear();
   std::error_code ignored;
-  if (is_made_) fs::remove(folder_, ignored);  // which an output in it prevents
+  if (is_made_) fs::remove(folder_, ignored);  // does nothing if an output is in it
 }
 
 fs::path PieceOutputs::index() const { return folder_ / (name_ + ".pvtu"); }
@@ -103,7 +103,7 @@ std::vector<std::string> PieceOutputs::open(Index pieces) {
 }
 
 void PieceOutputs::add_to(OutputSet& set, const std::string& index_text) {
-  // no other program notices pieces of two runs
+  // a reader would not notice pieces of two runs
   set.remove_first(FilePath::derived(index()));
   for (const fs::path& old : old_pieces()) {
     if (std::find(names_.begin(), names_.end(), old.filename().string()) == names_.end())

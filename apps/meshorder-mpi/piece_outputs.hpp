@@ -11,28 +11,28 @@
 
 namespace meshorder::command {
 
-/// The files of the pieces of a mesh, at the rank that puts them in place: FOLDER/NAME.pvtu, which names the
+/// The files of a mesh's pieces, on the rank that puts them in place: FOLDER/NAME.pvtu, which names the
 /// others, FOLDER/NAME_0000.vtu and so on.
 class PieceOutputs {
  public:
-  /// Looks, before the work, at what is there.
+  /// Checks, before the work, that the files can be written.
   ///
-  /// @param folder  made by `open` where it is missing; the folder that it is in exists
-  /// @throws InputError if the folder cannot be written, or has a file of a piece's name that no NAME.pvtu
-  ///         there names: it is nobody's who would want it replaced
+  /// @param folder  made by `open` if it does not exist; its parent has to exist
+  /// @throws InputError if the folder cannot be written, or holds a piece's file that no NAME.pvtu
+  ///         there lists, as it may be another program's
   PieceOutputs(std::filesystem::path folder, std::string name);
-  /// Removes a folder that `open` has made and nothing was put into.
+  /// Removes the folder if `open` made it and it is empty.
   ~PieceOutputs();
   PieceOutputs(const PieceOutputs&) = delete;
   PieceOutputs(PieceOutputs&&) = delete;
   PieceOutputs& operator=(const PieceOutputs&) = delete;
   PieceOutputs& operator=(PieceOutputs&&) = delete;
 
-  /// Begins the files of so many pieces; returns the paths of the unfinished ones.
+  /// Makes the files of `pieces` pieces; returns the paths under which to write them.
   std::vector<std::string> open(Index pieces);
 
-  /// Adds the files, which are complete, and the one that names them to a set, which also removes pieces of
-  /// an earlier run beyond these.
+  /// Adds the files, which are complete, and NAME.pvtu to a set. The set also removes other pieces of an
+  /// earlier run.
   ///
   /// @param index  content of NAME.pvtu
   void add_to(OutputSet& set, const std::string& index);

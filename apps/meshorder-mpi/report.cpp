@@ -34,7 +34,7 @@ double share_of_edges(const DistributedReport& report) {
 std::int64_t peak_memory() {
   rusage usage{};
   if (::getrusage(RUSAGE_SELF, &usage) != 0) return 0;
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-union-access): how glibc declares it
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-union-access): glibc's declaration
   return std::int64_t{usage.ru_maxrss} * 1024;  // Linux counts in KiB
 }
 

@@ -11,10 +11,10 @@
 
 namespace meshorder::command {
 
-/// Returns the most memory that this process has had so far, in bytes; 0 where the system does not say.
+/// Returns the peak memory of this process so far, in bytes; 0 if the system does not report it.
 std::int64_t peak_memory();
 
-/// Prints what is reported of an order, besides the files.
+/// Prints the report on an order, without the files.
 void print_report(const Console& console, const distributed::DistributedOptions& options,
                   const distributed::DistributedReport& report, const std::vector<std::int64_t>& peaks);
 

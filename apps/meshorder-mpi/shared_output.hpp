@@ -11,16 +11,16 @@
 
 namespace meshorder::command {
 
-/// A file of a set that the root completes and that all ranks write, by its path while it is unfinished.
-/// Every rank has to call all functions; they throw SharedError where the root cannot.
+/// A file of a set that all ranks write, by its path while it is unfinished, and that the root completes.
+/// Every rank has to call all functions; they throw SharedError if the root fails.
 class SharedOutput {
  public:
-  /// @param outputs  the root's
-  /// @param start    first bytes, which the root writes
+  /// @param outputs  used at the root
+  /// @param start    first bytes, written by the root
   SharedOutput(const distributed::Communicator& communicator, OutputSet& outputs, const FilePath& target,
                std::string_view start = {});
 
-  /// Returns the path by which the ranks write.
+  /// Returns the path under which the ranks write.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
   /// Adds the file, which is closed by now, to the set.

@@ -28,7 +28,7 @@ using distributed::Layout;
 using distributed::MeshSlice;
 using distributed::SharedFile;
 
-/// Returns the checksum of a list that goes on from rank to rank.
+/// Returns the checksum of a list that is distributed over the ranks, in their order.
 std::uint64_t checksum_of(const Communicator& communicator, const Layout& layout,
                           const std::vector<GlobalIndex>& own) {
   Checksum checksum;
@@ -56,12 +56,12 @@ class MapWriter {
   MapWriter(const Communicator& communicator, OutputSet& outputs)
       : communicator_(communicator), outputs_(outputs) {}
 
-  /// Writes a list of places that goes on from rank to rank, as `write_npy` would.
+  /// Writes a list of places that is distributed over the ranks, in the format of `write_npy`.
   void write(const std::string& name, const Layout& layout, const std::vector<GlobalIndex>& own) {
     write(name, layout, own, layout.size() <= kMaxIndex);
   }
 
-  /// Writes a list of numbers, in 32 bits if they are narrow, else in 64.
+  /// Writes a list of numbers, in 32 bits if `is_narrow`, else in 64.
   void write(const std::string& name, const Layout& layout, const std::vector<GlobalIndex>& own,
              bool is_narrow) {
     const Offset width = is_narrow ? sizeof(std::int32_t) : sizeof(std::int64_t);

@@ -17,14 +17,14 @@ namespace {
 using distributed::Communicator;
 using distributed::GlobalIndex;
 
-/// Cells from which the memory of the rank that reads them is worth a warning.
+/// Number of cells above which a warning on the memory of rank 0 is due.
 constexpr Index kManyCells = 10'000'000;
 
 std::vector<Index> narrowed(const std::vector<GlobalIndex>& numbers) {
   return {numbers.begin(), numbers.end()};
 }
 
-/// Fills in the part of each vertex and of each cell. The mesh is in its new order.
+/// Fills in the part of each vertex and of each cell of a mesh in its new order.
 void note_parts(const Mesh& mesh, const std::vector<GlobalIndex>& starts, Maps& maps) {
   maps.vertex_parts.reserve(mesh.points.size());
   for (Index v = 0; v < mesh.vertex_count(); ++v)

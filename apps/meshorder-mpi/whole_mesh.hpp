@@ -10,19 +10,19 @@
 
 namespace meshorder::command {
 
-/// A mesh that rank 0 reads, moves and writes, its cells as the output keeps them.
+/// A mesh that rank 0 reads, moves and writes, with its cells in the order that the output's format needs.
 struct WholeMesh : MeshToOrder {
-  Permutation arranged;  ///< places of the cells as they were read
+  Permutation arranged;  ///< from the cells as they were read to this order
 };
 
-/// Reads a mesh at the root, whose memory it takes. Every rank has to call it.
+/// Reads a mesh into the memory of the root. Every rank has to call it.
 ///
-/// @param files  with an output, which gives the format
-/// @throws SharedError for a faulty file, cells that the output must hold and cannot, and ids likewise
+/// @param files  with an output, which sets the format
+/// @throws SharedError for a faulty file, and for cells or ids that the output would have to hold but cannot
 [[nodiscard]] WholeMesh read_at_root(const distributed::Communicator& communicator, const MeshFiles& files,
                                      Ids ids, Notes& notes);
 
-/// Puts the mesh at the root into its new order, and fills in its maps. Every rank has to call it.
+/// Moves the mesh at the root into its new order and fills in its maps. Every rank has to call it.
 void move_at_root(const distributed::Communicator& communicator, WholeMesh& whole,
                   const distributed::DistributedOrder& order, const MeshFiles& files, Ids ids);
 

@@ -36,7 +36,7 @@ void run(const ApplyArguments& arguments) {
   const Stopwatch total;
   const Ids ids = parse<Ids>(arguments.ids);
   check_holds_ids(output_format_of(arguments.output), ids);
-  (void)OutputFile(arguments.output);  // fail before the work if it cannot be written
+  (void)OutputFile(arguments.output);  // fail before the work if the file cannot be written
   confine({.meshes = {arguments.input}, .maps_read = arguments.prefix, .outputs = {arguments.output}});
 
   Progress progress(!console.quiet());
@@ -56,7 +56,7 @@ void run(const ApplyArguments& arguments) {
     throw InputError(arguments.input, error.what(), "give the maps that were written with this mesh");
   }
   if (arguments.inverse) {
-    // the ids that the file had before it was ordered
+    // restore the ids of the file before it was ordered
     if (!maps.vertex_ids.empty()) mesh.vertex_ids = maps.vertex_ids;
     if (!maps.cell_ids.empty()) mesh.cell_ids = maps.cell_ids;
   }

@@ -44,7 +44,7 @@ auto watched(const CalibrateArguments& arguments, const std::string& what, const
 std::string in_bytes(Offset bytes) { return to_string(Caches{{bytes}}); }
 
 std::string in_columns(const KernelCosts& costs) {
-  // a ten thousandth of a nanosecond is the least that is shown
+  // the smallest cost that is shown is a ten thousandth of a nanosecond
   const auto cell = [](double cost, int width) {
     return fmt::format(" {:>{}.3g}", std::round(1e4 * cost) / 1e4, width - 1);
   };
@@ -57,7 +57,7 @@ std::string in_columns(const KernelCosts& costs) {
   return cell(costs.access, 7) + misses + jumps + cell(costs.turn, 7);
 }
 
-/// Prints two lines for each kernel, of tetrahedra and of triangles.
+/// Prints two lines for each kernel: costs for tetrahedra, then for triangles.
 void print_costs(const Console& console, const CostModel& model, const FitQuality& quality) {
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     console.print("{:<14}{}{:>10.0f}{:>6.1f}%{:>6.1f}%", kKernelTitles[k], in_columns(model.solid[k]),

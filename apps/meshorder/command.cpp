@@ -25,7 +25,7 @@
 namespace meshorder::command {
 namespace {
 
-/// TBB allocates room for each thread that it may start.
+/// Largest number of threads that TBB is given: it allocates memory for each.
 constexpr int kMostThreads = 1024;
 
 const std::map<std::string, int> kDimensionsByName{{"volume", 3}, {"surface", 2}, {"curve", 1}, {"point", 0}};
@@ -39,8 +39,8 @@ bool is_digits(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Accepts whole numbers from `lowest` to `highest`; refuses smaller ones by the words `if_less`, larger ones
-/// by `if_more`.
+/// Accepts whole numbers from `lowest` to `highest`. Refuses smaller ones with the words `if_less`, larger
+/// ones with `if_more`.
 CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest, const std::string& if_less,
                             const std::string& if_more) {
   return {[=](const std::string& text) {

@@ -22,7 +22,7 @@ namespace meshorder::command {
 struct Common {
   bool json = false;
   bool quiet = false;
-  int threads = 0;  ///< 0: all that the machine has
+  int threads = 0;  ///< 0: as many as the machine has
 };
 
 /// Ends the command with a message and an exit status.
@@ -42,7 +42,7 @@ struct OrderNames {
 /// scrambled for `scrambled` and follow lexmax otherwise.
 OrderNames order_named(const std::string& name);
 
-// Each gives a subcommand its options; it runs once all arguments are parsed. main.cpp has their names.
+// Each function adds the options of a subcommand, which runs once all arguments are parsed.
 void add_order(CLI::App& subcommand);
 void add_apply(CLI::App& subcommand);
 void add_info(CLI::App& subcommand);
@@ -52,18 +52,18 @@ void add_openfoam(CLI::App& subcommand);
 void add_calibrate(CLI::App& subcommand);
 void add_methods(CLI::App& subcommand);
 
-/// Takes the words after `--` off the arguments of `try`: they are the program that it runs, and no options
-/// of this one.
+/// Removes the words after `--` from the arguments of `try`: they are the program that it runs, not options
+/// of `try`.
 void take_program_to_try(std::vector<std::string>& arguments);
 
-/// What --quiet leaves, in the words of the help; of a subcommand that does nothing but list something.
+/// Help of --quiet; the second text is for subcommands that only list something.
 inline constexpr const char* kQuiet = "Print nothing but errors, and the object of --json";
 inline constexpr const char* kQuietList = "No warnings; the list is printed all the same";
 
 /// Adds --json, --quiet and --threads.
 void add_common(CLI::App& subcommand, Common& common, const std::string& quiet = kQuiet);
 
-/// Adds --limit-memory, --allow-includes-from and --trust, which hold for the rest of the process.
+/// Adds --limit-memory, --allow-includes-from and --trust. They apply to the rest of the process.
 void add_reading_options(CLI::App& subcommand);
 
 /// Adds --seed.
@@ -75,29 +75,29 @@ void add_workload_option(CLI::App& subcommand, OrderOptions& options);
 /// Adds --for, --seed and --tolerance.
 void add_ordering_options(CLI::App& subcommand, OrderOptions& options);
 
-/// Adds --ids, whose value parse<Ids> reads.
+/// Adds --ids; parse<Ids> reads its value.
 CLI::Option* add_ids_option(CLI::App& subcommand, std::string& ids);
 
-/// What becomes of cells, arrays and sets that the output may lose.
+/// Which cells the output keeps, and whether it may lose anything.
 struct Keeping {
-  int dimension = -1;   ///< of the cells to keep, −1 for all
+  int dimension = -1;   ///< of the cells to keep; −1 for all
   bool strict = false;  ///< refuse any loss
 };
 
 /// Adds --only and --strict.
 void add_keeping_options(CLI::App& subcommand, Keeping& keeping);
 
-/// Adds --cache, whose value parse_caches reads.
+/// Adds --cache; parse_caches reads its value.
 void add_cache_option(CLI::App& subcommand, std::string& caches);
 
 /// Accepts finite numbers above 0.
 CLI::Validator positive();
-/// Accepts whole numbers from `lowest` to `highest`, which is the largest that the option's type holds.
+/// Accepts whole numbers from `lowest` to `highest`, by default the largest int.
 CLI::Validator whole_from(std::uint64_t lowest, std::uint64_t highest = std::numeric_limits<int>::max());
 /// Accepts whole numbers from `lowest` to `highest`.
 CLI::Validator in_range(int lowest, int highest);
 
-/// Runs `work` with at most `threads` threads (0: all). The limit stays for the rest of the process.
+/// Runs `work` with at most `threads` threads (0: all). The limit applies to the rest of the process.
 void with_threads(int threads, const std::function<void()>& work);
 
 }  // namespace meshorder::command

@@ -38,10 +38,10 @@ namespace {
 struct CompareArguments : Common {
   std::string input;
   std::string points;
-  std::vector<std::string> methods;  ///< empty: what auto takes, and all others
+  std::vector<std::string> methods;  ///< empty: the order of auto, and all others
   OrderOptions ordering;
   double budget_seconds = TimingOptions{}.budget_seconds;
-  std::string caches;  ///< empty: the machine's, unless that takes long
+  std::string caches;  ///< empty: the machine's, unless prediction takes long
   std::string machine;
   KernelSet kernels = KernelSet::plain;
   bool details = false;
@@ -64,7 +64,7 @@ ComparedOrder parsed(const std::string& name) {
   return order;
 }
 
-/// Returns the orders, first the file's own.
+/// Returns the orders, the file's own first.
 std::vector<ComparedOrder> orders_of(const std::vector<std::string>& names) {
   std::vector<ComparedOrder> orders{parsed("original")};
   for (const std::string& name : names) {
@@ -77,8 +77,8 @@ std::vector<ComparedOrder> orders_of(const std::vector<std::string>& names) {
   return orders;
 }
 
-/// Returns the orders of a matrix, whose entries keep their places: of its rows alone. By default only those
-/// that it has the coordinates for.
+/// Returns the orders of a matrix: of its rows only, as entries keep their places in the file. By default,
+/// those that need points are among them only if it has coordinates.
 std::vector<ComparedOrder> orders_of_matrix(const Mesh& mesh, const CompareArguments& arguments) {
   std::vector<std::string> names = arguments.methods;
   for (const std::string& name : names) {
@@ -104,7 +104,7 @@ std::vector<ComparedOrder> orders_of_matrix(const Mesh& mesh, const CompareArgum
 
 /// Times the kernels in all orders and on the band, in interleaved rounds.
 ///
-/// @param entries  of a matrix
+/// @param entries  pattern of a matrix; empty for a mesh
 KernelTable timed(const Mesh& mesh, const EntryPattern& entries, const CsrGraph& graph,
                   const std::vector<ComparedOrder>& orders, const Band& band, KernelSet kernels, int threads,
                   const TimingOptions& options) {
@@ -132,8 +132,8 @@ KernelTable timed(const Mesh& mesh, const EntryPattern& entries, const CsrGraph&
   return table;
 }
 
-/// Orders the mesh in all ways, and predicts the cache misses of each if that is asked for. Of orders that
-/// nobody named, one that `auto` has taken is left out.
+/// Orders the mesh in all ways, and predicts the cache misses of each if `predicts`. If the user named no
+/// orders, an order that equals that of `auto` is left out.
 void compute_orders(Comparison& comparison, const Mesh& mesh, const CsrGraph& graph, double graph_seconds,
                     const CompareArguments& arguments, bool predicts, Progress& progress, Notes& notes) {
   const double share = 0.35 / static_cast<double>(comparison.orders.size());
@@ -183,7 +183,7 @@ void run(const CompareArguments& arguments) {
   comparison.size = stored != nullptr ? size_in_words(*stored, entries)
                                       : fmt::format("{} vertices, {}", with_commas(mesh.vertex_count()),
                                                     cells_in_words(mesh));
-  mesh.cell_blocks.clear();  // orders are compared, not a file's layout
+  mesh.cell_blocks.clear();  // orders are compared, not the layout of a file
   const Stopwatch building_graph;
   const CsrGraph graph = vertex_graph(mesh);
   const bool predicts =

@@ -26,11 +26,11 @@ namespace {
 
 constexpr const char* kBand = "band";
 
-/// Returns the time divided by the band's. Both are taken relative to the file's own order, since orders that
-/// do not fit into memory together are timed in groups, each with that order.
+/// Returns the time divided by the band's. Both are relative to the file's own order: orders that do not fit
+/// into memory together are timed in groups, and each group contains that order.
 double of_band(const KernelTimes& times, const KernelTimes& band) { return band.speedup / times.speedup; }
 
-/// Returns what the largest number of threads took as advice on the mesh: the other orders are candidates.
+/// Returns the times on the largest number of threads as advice on the mesh: the other orders are candidates.
 Advice advice_of(const Comparison& comparison) {
   const KernelTable& table = comparison.kernels.back();
   Advice advice;
@@ -66,11 +66,11 @@ std::string label(const ComparedOrder& order, bool is_matrix) {
 
 constexpr int kBarWidth = 12;
 
-/// A column of the table: how many times faster each order is than the file's own, and last the band.
+/// A column of the table: for each order, and last for the band, the speedup over the file's own order.
 struct Column {
   std::string title;
   std::vector<double> factors;
-  double best = 0;  ///< of the orders
+  double best = 0;  ///< largest factor of the orders
 };
 
 Column column(std::string title, const KernelTable& table,
@@ -82,7 +82,7 @@ Column column(std::string title, const KernelTable& table,
   return result;
 }
 
-/// Returns a column for each kernel, and before them, where there are several, one for their geometric mean.
+/// Returns a column for each kernel. For a mesh, one for their geometric mean comes first.
 std::vector<Column> columns_of(const Comparison& comparison, const KernelTable& table) {
   std::vector<Column> columns;
   if (!comparison.is_matrix()) {
@@ -100,7 +100,7 @@ std::vector<Column> columns_of(const Comparison& comparison, const KernelTable& 
   return columns;
 }
 
-/// Prints how many times faster the kernels run in each order than in the file's own, with bars for `told`.
+/// Prints the speedups of the kernels over the file's own order, with bars for the workload `told`.
 void print_speedups(const Console& console, const Comparison& comparison, const KernelTable& table,
                     Workload told) {
   const std::vector<Column> columns = columns_of(comparison, table);
@@ -123,7 +123,7 @@ void print_speedups(const Console& console, const Comparison& comparison, const 
   }
 }
 
-/// Returns the beginning of a row; of a matrix, which has no elements, the order of its rows alone.
+/// Returns the beginning of a row: both methods or, for a matrix, which has no elements, that of its rows.
 std::string row_head(const Comparison& comparison, const std::string& vertices, const std::string& elements) {
   return comparison.is_matrix() ? fmt::format("{:<15}", vertices)
                                 : fmt::format("{:<15} {:<12}", vertices, elements);
@@ -160,15 +160,15 @@ void print_quality(const Console& console, const Comparison& comparison) {
   }
 }
 
-/// A table with a row for each order and columns for each kernel.
+/// A table with a row for each order and the same columns for each kernel.
 struct KernelColumns {
-  std::vector<std::string> rows;                                          ///< their heads
+  std::vector<std::string> rows;                                          ///< first cells of the rows
   std::string heads;                                                      ///< of the columns of a kernel
   std::function<std::string(std::size_t row, std::size_t kernel)> cells;  ///< as wide as `heads`
   std::vector<std::string> last;  ///< last column: its head and its cells; may be empty
 };
 
-/// Prints the table, as many kernels side by side as fit 100 columns.
+/// Prints the table, with as many kernels side by side as fit into 100 columns.
 void print_columns(const Console& console, const Comparison& comparison, const KernelColumns& table) {
   constexpr std::size_t kColumns = 100;
   const std::size_t kernels = comparison.kernels_run.size();

@@ -26,8 +26,8 @@ struct ComparedOrder {
   MeshOrder order;
   double seconds = 0;  ///< cost of the order: graph and both methods; 0 for the file's own
   EdgeSpan span;
-  std::optional<KernelReuse> reuse;      ///< of a repeated run; none for a large mesh, nor where nobody asks
-  std::optional<Iterations> iterations;  ///< likewise, by --details alone
+  std::optional<KernelReuse> reuse;      ///< of repeated runs; none if not wanted or if the mesh is large
+  std::optional<Iterations> iterations;  ///< likewise, only with --details
 };
 
 /// Kernels measured with a number of threads.
@@ -36,33 +36,33 @@ struct KernelTable {
   std::vector<OrderTimes> orders;  ///< the file's own first
   OrderTimes band;
   Steadiness steadiness;
-  std::vector<double> redundancy;  ///< in each order, see KernelBench::redundancy
+  std::vector<double> redundancy;  ///< of each order, see KernelBench::redundancy
 };
 
-/// The orders, the first of which is the file's own, and for reference the band of the mesh's size (see
+/// The compared orders, the file's own first, and for reference the band of the mesh's size (see
 /// `ideal_band`).
 struct Comparison {
   std::string file;
   std::string size;  ///< in words
-  Caches caches;     ///< for which misses are predicted
+  Caches caches;     ///< caches for which misses are predicted
   KernelSet kernel_set = KernelSet::plain;
-  Workload workload = Workload::all;  ///< what is to be fast
+  Workload workload = Workload::all;  ///< what the orders optimise
   std::vector<ComparedOrder> orders;
   EdgeSpan band_span;
   std::vector<KernelTable> kernels;
-  std::span<const Kernel> kernels_run = kKernels;  ///< see kernels_of; products alone of a matrix
+  std::span<const Kernel> kernels_run = kKernels;  ///< see kernels_of; only products for a matrix
 
   [[nodiscard]] bool is_matrix() const noexcept { return kernels_run.size() < kKernels.size(); }
 };
 
-/// Prints which order is best and the line that makes it, and how much faster each one is than the file's
+/// Prints the best order, the command that makes it, and the speedup of each order over the file's
 /// own.
 void print_comparison(const Console& console, const Comparison& comparison);
 
 /// Prints costs and spans, predicted misses, and the times of kernels for each number of threads.
 void print_comparison_details(Console& console, const Comparison& comparison);
 
-/// Returns the keys that docs/json.md lists, but for those of the file.
+/// Returns the keys that docs/json.md lists, without those of the file.
 nlohmann::ordered_json to_json(const Comparison& comparison);
 
 }  // namespace meshorder::command

@@ -43,24 +43,24 @@ namespace fs = std::filesystem;
 
 constexpr int kStatusOfBadInput = 2;
 constexpr rlim_t kSecondsToRead = 10;                // of processor time
-constexpr std::uintmax_t kBytesASecond = 1'000'000;  // that it may read slowly beyond these
+constexpr std::uintmax_t kBytesASecond = 1'000'000;  // that are read in a further second
 constexpr std::uintmax_t kMostSeconds = 10'000'000;
-constexpr unsigned kWaiting = 10;  // seconds that pass for each of them
+constexpr unsigned kWaiting = 10;  // seconds by the clock for each of them
 constexpr std::array kPassedOn{SIGINT, SIGTERM, SIGHUP};
 constexpr std::array kCrashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS};
 
-/// What the child says of its work, in memory that both see. This process believes no more of it than which
-/// words to take.
+/// State of the child's work, in memory shared with this process, which uses it only for messages: the child
+/// may be under a stranger's control.
 struct Work {
   std::atomic<bool> is_reading{false};
-  std::atomic<std::uint32_t> mesh{0};     ///< the last one that was begun to be read
-  std::atomic<std::uint32_t> seconds{0};  ///< of processor time that it may take
+  std::atomic<std::uint32_t> mesh{0};     ///< index of the mesh that is read, or was read last
+  std::atomic<std::uint32_t> seconds{0};  ///< limit on its processor time
 };
 
-// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): of the process; a handler reaches no
-// others
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): state of the process, which a signal
+// handler can reach in no other way
 bool are_trusted = false;
-Work* work = nullptr;  // of a confined process
+Work* work = nullptr;  // set in a confined process
 std::vector<std::string> meshes;
 volatile std::sig_atomic_t child = 0;
 volatile std::sig_atomic_t signals_received = 0;
@@ -72,11 +72,11 @@ std::string_view library_of(const std::string& mesh) {
   try {
     return format_of(mesh).library;
   } catch (const Error&) {
-    return {};  // which reading it says
+    return {};  // reading the file reports the fault
   }
 }
 
-/// Whether a mesh may be in several files, all in its folder or below it.
+/// Returns whether a mesh may consist of several files, all in its folder or below it.
 bool has_companions(const std::string& mesh) {
   try {
     const Format& format = format_of(mesh);
@@ -86,9 +86,9 @@ bool has_companions(const std::string& mesh) {
   }
 }
 
-// ---- what the child reaches
+// ---- files that the child can reach
 
-/// Adds the files in a folder whose names begin so.
+/// Adds the files whose paths begin with the prefix and a dot.
 void add_files_beginning(const fs::path& prefix, std::vector<fs::path>& files) {
   const std::string start = prefix.filename().string() + ".";
   std::error_code code;
@@ -111,7 +111,7 @@ Reach reach_of(const Files& files) {
   folders.push_back(calibration_file(key_of_this_machine()).parent_path());
   for (const fs::path& folder : folders) {
     if (folder.empty()) continue;
-    std::error_code ignored;  // whoever writes there says what is wrong
+    std::error_code ignored;  // the code that writes there reports what is wrong
     fs::create_directories(folder, ignored);
     reach.write.push_back(folder);
   }
@@ -122,7 +122,7 @@ Reach reach_of(const Files& files) {
 
 extern "C" void wait_anew(int /*signal*/) { ::alarm(static_cast<unsigned>(seconds_to_wait)); }
 
-/// While alive, limits on the time of this process, and silence of what libraries print.
+/// While alive, limits the time of this process and drops what libraries print.
 class Reading {
  public:
   explicit Reading(const std::string& path) {
@@ -137,14 +137,14 @@ class Reading {
     (void)::getrusage(RUSAGE_SELF, &used);
     (void)::getrlimit(RLIMIT_CPU, &before_);
     struct rlimit limit = before_;
-    // RLIM_INFINITY is the largest number; at the hard limit the system kills without a word
+    // RLIM_INFINITY is the largest number; at the hard limit the system kills without a message
     const rlim_t hard =
         before_.rlim_max == RLIM_INFINITY || before_.rlim_max < 2 ? before_.rlim_max : before_.rlim_max - 1;
     const auto used_seconds = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec);
     limit.rlim_cur = std::min({limit.rlim_cur, hard, seconds + used_seconds});
     work->seconds = static_cast<std::uint32_t>(std::min<rlim_t>(limit.rlim_cur, seconds));
     (void)::setrlimit(RLIMIT_CPU, &limit);
-    // a damaged heap may also make it wait for ever; the time that it is stopped for does not count
+    // a damaged heap may also make it wait for ever; time during which the process is stopped does not count
     seconds_to_wait = static_cast<int>(kWaiting * work->seconds);
     (void)std::signal(SIGCONT, wait_anew);
     wait_anew(SIGCONT);
@@ -170,7 +170,7 @@ class Reading {
 
 extern "C" void pass_on(int signal, siginfo_t* info, void* /*context*/) {
   const int error = errno;
-  // what the terminal sends reaches the child as well; a third signal ends one that takes no notice
+  // signals from the terminal reach the child as well; a third signal kills a child that does not end
   constexpr int kPatience = 2;
   if (signals_received >= kPatience) {
     ::kill(static_cast<pid_t>(child), SIGKILL);
@@ -203,7 +203,7 @@ void pass_signals_on() {
   std::_Exit(128 + signal);
 }
 
-/// Says why the child did not end by itself.
+/// Reports why the child did not end by itself; returns the exit status.
 int report_ending(const Work& of_child, int signal) {
   const std::uint32_t number = of_child.mesh;
   const std::string& mesh = meshes[number < meshes.size() ? number : 0];
@@ -222,7 +222,7 @@ int report_ending(const Work& of_child, int signal) {
   return report_failure(error.what(), kStatusOfBadInput);
 }
 
-/// Serves the child, waits for it, removes what it unpacked, and ends as it does.
+/// Serves the child, waits for it, removes the files that it unpacked, and ends with the child's status.
 [[noreturn]] void supervise(const Work& of_child, std::unique_ptr<OutputDeputy> deputy,
                             std::unique_ptr<PrivateFolder> unpacked) {
   deputy->serve_child();
@@ -230,7 +230,7 @@ int report_ending(const Work& of_child, int signal) {
   while (::waitpid(static_cast<pid_t>(child), &status, 0) < 0) {
     if (errno != EINTR) break;
   }
-  deputy.reset();  // which removes unfinished outputs
+  deputy.reset();  // removes unfinished outputs
   unpacked.reset();
   if (!WIFSIGNALED(status)) std::_Exit(WEXITSTATUS(status));
   const int signal = WTERMSIG(status);
@@ -282,8 +282,8 @@ void confine(const Files& files) {
   (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) std::_Exit(1);
 #endif
-  // never destroyed here: what they hold is the other process's to remove
-  // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): keeps in reach what is not destroyed
+  // never destroyed here: the other process removes their files
+  // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): keeps these objects to the end
   static OutputDeputy* const own_deputy = deputy.release();
   static const PrivateFolder* const own_folder = unpacked.release();
   own_deputy->serve_this_process();

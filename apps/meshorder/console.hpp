@@ -15,8 +15,8 @@
 
 namespace meshorder::command {
 
-/// Output of a subcommand: results on stdout, as text or as one JSON object; warnings on stderr. What a
-/// terminal would act on is shown as an escape (see `visible`).
+/// Output of a subcommand: results on stdout, as text or as one JSON object; warnings on stderr. Characters
+/// that a terminal would act on are shown as escapes (see `visible`).
 class Console {
  public:
   explicit Console(const Common& common) : json_(common.json), quiet_(common.quiet) {}
@@ -27,22 +27,22 @@ class Console {
   /// Prints "meshorder: warning: …" on stderr unless quiet, and keeps the sentence for the JSON object.
   void warn(const std::string& sentence);
 
-  /// Warns of what readers and writers noted; notes that differ in one name only are one warning.
+  /// Warns of the notes of readers and writers; notes that differ in one name only become one warning.
   void warn_of(const Notes& notes);
 
-  /// Prints a line of the result as text, unless JSON is wanted or quiet.
+  /// Prints a line of the result as text, unless JSON is wanted or the console is quiet.
   template <class... Args>
   void print(fmt::format_string<Args...> format, Args&&... args) const {
     if (!quiet_) print_list(format, std::forward<Args>(args)...);
   }
 
-  /// Prints a line of a list, which is all that the subcommand is for, unless JSON is wanted.
+  /// Prints a line of a list, the only output of some subcommands, unless JSON is wanted; also if quiet.
   template <class... Args>
   void print_list(fmt::format_string<Args...> format, Args&&... args) const {
     if (!json_) write_stdout(visible(fmt::format(format, std::forward<Args>(args)...), "\n") + "\n");
   }
 
-  /// Prints the result as JSON, with the keys `version` and `notes`, if that is wanted. Bytes that are no
+  /// Prints the result as JSON if that is wanted, with the keys `version` and `notes`. Bytes that are not
   /// UTF-8 become U+FFFD.
   void print_json(nlohmann::ordered_json result) const;
 

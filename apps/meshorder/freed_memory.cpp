@@ -11,9 +11,9 @@ namespace meshorder::command {
 
 void keep_freed_memory() noexcept {
 #if defined(__GLIBC__)
-  (void)mallopt(M_MMAP_MAX, 0);         // no blocks beside the heap
-  (void)mallopt(M_TRIM_THRESHOLD, -1);  // none of which goes back
-  (void)mallopt(M_ARENA_MAX, 1);        // one heap for all threads: what one frees another takes
+  (void)mallopt(M_MMAP_MAX, 0);         // no blocks outside the heap
+  (void)mallopt(M_TRIM_THRESHOLD, -1);  // no memory of the heap goes back to the system
+  (void)mallopt(M_ARENA_MAX, 1);        // one heap for all threads: each can use what another freed
 #endif
 }
 

@@ -13,7 +13,7 @@
 namespace meshorder::command {
 namespace {
 
-/// A note without its first name, and that name in its quotes; "" where there is none.
+/// A note without its first quoted name, and that name with its quotes; "" if there is none.
 struct Parts {
   std::pair<std::string, std::string> around;
   std::string name;
@@ -26,8 +26,8 @@ Parts parts_of(const std::string& note) {
   return {{note.substr(0, begin + 1), note.substr(end + 1)}, note.substr(begin + 1, end - begin)};
 }
 
-/// Returns whether the note is on a set that Gmsh's reader made of periodic nodes. What is lost of them is
-/// said by a note on the pairs of periodic entities.
+/// Returns whether the note is on a set that Gmsh's reader made of periodic nodes. Another note, on pairs of
+/// periodic entities, reports the loss of these.
 bool is_on_periodic_nodes(const std::string& note) { return note.starts_with("the set 'gmsh:periodic "); }
 
 std::string likewise(const std::vector<std::string>& names) {

@@ -25,7 +25,7 @@ constexpr const char* kLab = "meshorder-lab";
 constexpr std::array<std::string_view, 6> kOptionsOfParts{"--parts",     "--pieces",  "--ghosts",
                                                           "--partition", "--balance", "--interface"};
 
-/// Returns the word that names the subcommand, and null if there is none or an option before it asks for
+/// Returns the word that names the subcommand; null if there is none, or if an option before it asks for
 /// something else.
 char** subcommand(char** arguments) {
   if (*arguments == nullptr) return nullptr;
@@ -40,7 +40,7 @@ char** subcommand(char** arguments) {
   return nullptr;
 }
 
-/// Returns the first of these arguments that only `order` of `meshorder-mpi` has; empty if there is none.
+/// Returns the first of these arguments that is an option of `meshorder-mpi order` only; empty if none is.
 std::string_view option_of_parts(char** arguments) {
   for (; *arguments != nullptr; ++arguments) {
     const std::string_view word = *arguments;
@@ -55,15 +55,15 @@ bool is_of_lab(std::string_view word) {
                      [&](const LabCommand& command) { return command.name == word; });
 }
 
-/// Returns an empty path where the system does not say where this program is: a name alone would be that of a
-/// file in the present folder.
+/// Returns the path of a program beside this one; empty if the system does not report where this one is (a
+/// name alone would mean a file in the present folder).
 std::filesystem::path beside_this_program(const char* name) {
   std::error_code code;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", code);
   return code ? std::filesystem::path() : self.parent_path() / name;
 }
 
-/// Executes the program, or reports why it is needed.
+/// Executes the program. If that fails, reports why it is needed and returns the exit status.
 int execute(const char* program, char** arguments, const std::string& need) {
   ::execv(beside_this_program(program).c_str(), arguments);
   return is_first_process() ? report_failure(need, kBadInput) : kBadInput;

@@ -5,13 +5,13 @@
 
 namespace meshorder::command {
 
-/// Executes another program from beside this one with the same arguments, and does not return, where that
+/// Executes another program beside this one with the same arguments, and does not return, if that
 /// program does the work: `meshorder-mpi` if `mpirun` or `srun` started several of this process together, or
-/// if `order` is given an option of parts; `meshorder-lab` for a subcommand of the laboratory.
+/// if `order` has an option of parts; `meshorder-lab` for a subcommand of the laboratory.
 ///
 /// @param arguments  as of `main`
-/// @return exit status if there is no such program, which the first process has said; nothing if this program
-///         does the work
+/// @return exit status if there is no such program, which the first process then reports; nothing if this
+///         program does the work
 std::optional<int> hand_over(char** arguments) noexcept;
 
 /// Returns whether `meshorder-lab` is beside this program.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kColumns = 100;
 
-/// Reads a word, or words in backquotes as one; returns whether there was one.
+/// Reads a word; words in backquotes count as one. Returns whether there was one.
 bool next_word(std::istream& text, std::string& word) {
   if (!(text >> word)) return false;
   for (std::string next; std::count(word.begin(), word.end(), '`') % 2 == 1 && text >> next;)
@@ -22,7 +22,7 @@ bool next_word(std::istream& text, std::string& word) {
   return true;
 }
 
-/// Returns the words in lines of at most `width` characters.
+/// Returns the text in lines of at most `width` characters.
 std::string wrapped(const std::string& text, std::size_t width) {
   std::istringstream words(text);
   std::string lines;
@@ -40,7 +40,7 @@ std::string wrapped(const std::string& text, std::size_t width) {
 
 class HelpFormat : public CLI::Formatter {
  public:
-  /// The program that `try` runs is none of its arguments.
+  /// Adds the program that `try` runs, which is not among its options.
   std::string make_usage(const CLI::App* app, std::string name) const override {
     std::string usage = CLI::Formatter::make_usage(app, name);
     if (app->get_name() == "try") usage.insert(usage.find_last_not_of('\n') + 1, " -- PROGRAM ARGUMENTS...");

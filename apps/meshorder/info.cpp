@@ -46,7 +46,7 @@ namespace {
 struct InfoArguments : Common {
   std::string input;
   std::string points;
-  std::string caches;  ///< empty: the machine's, unless that takes long
+  std::string caches;  ///< empty: the machine's, unless prediction takes long
   std::string machine;
   bool all_threads = false;
   bool measure = false;
@@ -55,22 +55,22 @@ struct InfoArguments : Common {
   KernelSet kernels = KernelSet::plain;
 };
 
-/// Seconds from the command's start until --measure is done, for meshes of up to about 300 thousand vertices.
+/// Seconds from the start of the command to the end of --measure, for up to about 300 thousand vertices.
 constexpr double kMeasureWithin = 3.8;
-/// The same where nobody asked for --measure, and the simplices up to which kernels run so soon.
+/// The same without --measure; then the largest number of simplices for which kernels run within that time.
 constexpr double kMeasureQuicklyWithin = 0.7;
 constexpr Offset kMaxQuick = 250'000;
 /// The smallest first-level cache of today's processors, bytes.
 constexpr Offset kFirstCache = 32 * 1024;
-/// Simplices up to which times are predicted without being asked, in a few seconds a million vertices.
+/// Largest number of simplices for which times are predicted by default, in seconds a million vertices.
 constexpr Offset kMaxPredicted = 100'000'000;
-/// Simplices above which there is no time to measure a second order.
+/// Largest number of simplices for which there is time to measure a second order.
 constexpr Offset kMaxOfTwoOrders = 500'000;
 
-/// Whether there is something for the kernels to compute: points are no elements.
+/// Returns whether the kernels have something to compute: points are not elements.
 bool has_elements(SimplicesRef simplices) { return simplices.size() > 0; }
 
-/// Whether times are predicted: unless --cache is given, only where this takes seconds.
+/// Returns whether times are predicted: by default only if this takes seconds, with --cache always.
 bool is_predicted(const InfoArguments& arguments, SimplicesRef simplices) {
   return has_elements(simplices) && (simplices.size() <= kMaxPredicted || !arguments.caches.empty());
 }
@@ -83,10 +83,11 @@ bool fits_in_first_cache(const CsrGraph& graph) {
   return entries * kBytesPerEntry + Offset{2} * graph.size() * sizeof(double) <= kFirstCache;
 }
 
-/// How the gain is found.
+/// How the gain is determined.
 enum class By : std::uint8_t { prediction, quick_measurement, measurement };
 
-/// Kernels run where this takes no longer than two seconds, unless times of some machine are asked for.
+/// Returns how: by default kernels run if that takes two seconds at most and no machine's times are asked
+/// for.
 By judged_by(const InfoArguments& arguments, SimplicesRef simplices, const MachineChoice& machine) {
   if (arguments.measure) return By::measurement;
   const bool asks_for_times = arguments.predict || !arguments.machine.empty() || !arguments.caches.empty() ||

@@ -32,7 +32,7 @@ constexpr std::array kEndings{
 
 constexpr std::array kNoted{SIGINT, SIGTERM};
 
-// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing else
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): a signal handler can reach nothing else
 volatile std::sig_atomic_t caught = 0;
 std::array<struct sigaction, kNoted.size()> actions_before{};
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
@@ -43,13 +43,13 @@ extern "C" void clean_up(int signal) {
     if (ending.signal == signal && !ending.line.empty())
       (void)!::write(messages_descriptor(), ending.line.data(), ending.line.size());
   }
-  // SA_RESETHAND: ends the process as if it had not been caught
+  // SA_RESETHAND was set: this ends the process as if the signal had not been caught
   ::raise(signal);
 }
 
 extern "C" void clean_up_quietly(int signal) {
   remove_unfinished_outputs();
-  ::raise(signal);  // as above
+  ::raise(signal);  // ends the process, as in clean_up
 }
 
 extern "C" void set_flag(int signal) {
@@ -81,7 +81,7 @@ void handle_endings(void (*handler)(int)) {
 void clean_up_at_signals() { handle_endings(clean_up); }
 
 void clean_up_quietly_at_signals() {
-  std::signal(SIGXFSZ, SIG_IGN);  // the write fails instead, and the other processes learn of it
+  std::signal(SIGXFSZ, SIG_IGN);  // the write then fails, and the other processes learn of it
   handle_endings(clean_up_quietly);
 }
 

@@ -3,16 +3,16 @@
 
 namespace meshorder::command {
 
-/// Has signals that end the process remove unfinished outputs before: SIGINT, SIGTERM, SIGHUP and SIGXFSZ
-/// with a line on stderr, SIGPIPE silently. Those that are ignored stay so.
+/// Makes signals that end the process remove unfinished outputs first: SIGINT, SIGTERM, SIGHUP and SIGXFSZ
+/// with a line on stderr, SIGPIPE silently. Ignored signals stay ignored.
 void clean_up_at_signals();
 
-/// The same without lines, for one of several processes, whose launcher says why it ends them. A file that
-/// exceeds the limit on the size of files ends none: writing it fails.
+/// The same without lines, for one of several processes, whose launcher reports why it ends them. SIGXFSZ is
+/// ignored: writing a file beyond the limit on sizes then fails.
 void clean_up_quietly_at_signals();
 
-/// While alive, the first Ctrl-C (SIGINT) or SIGTERM sets a flag; a second one does what it did before. Only
-/// one object at a time.
+/// While alive, the first Ctrl-C (SIGINT) or SIGTERM sets a flag; a second one acts as it would have before.
+/// Only one object at a time.
 class Interruption {
  public:
   Interruption();

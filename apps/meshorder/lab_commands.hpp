@@ -5,13 +5,13 @@
 
 namespace meshorder::command {
 
-/// A subcommand that `meshorder-lab` has, and which `meshorder` shows in its help and hands over.
+/// A subcommand of `meshorder-lab`. `meshorder` shows it in its help and executes that program for it.
 struct LabCommand {
   const char* name;
   const char* description;
 };
 
-/// In the order of the help.
+/// The subcommands in the order of the help.
 inline constexpr std::array kLabCommands{
     LabCommand{"simulate",
                "Simulate an elastic body or water as a scenario describes, in a given order, and time it."},

@@ -7,11 +7,11 @@
 namespace meshorder::command {
 namespace {
 
-// of Open MPI, of MPICH and its like, of Slurm for the step that a process is part of
+// of Open MPI, of MPICH and its derivatives, and of Slurm for the step that a process belongs to
 constexpr std::array kSizes{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
 constexpr std::array kRanks{"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"};
 
-/// The first of these variables that is set; null if none is.
+/// Returns the value of the first of these variables that is set; null if none is.
 template <class Names>
 const char* first_set(const Names& names) {
   const char* value = nullptr;
@@ -25,7 +25,7 @@ const char* first_set(const Names& names) {
 
 bool is_one_of_several() {
   const char* const size = first_set(kSizes);
-  // PMIx says of a process only which one it is
+  // PMIx gives a process only its rank
   return size != nullptr ? std::atoi(size) > 1 : std::getenv("PMIX_RANK") != nullptr;
 }
 

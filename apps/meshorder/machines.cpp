@@ -38,7 +38,7 @@ void add_kernels_option(CLI::App& subcommand, KernelSet& kernels) {
 
 namespace {
 
-/// What MESHORDER_CALIBRATION_SECONDS says, else what `meshorder calibrate` takes.
+/// Returns the value of MESHORDER_CALIBRATION_SECONDS, or else the time of `meshorder calibrate`.
 double seconds_to_calibrate() {
   const char* const variable = std::getenv("MESHORDER_CALIBRATION_SECONDS");
   const double seconds = variable == nullptr ? 0 : std::strtod(variable, nullptr);

@@ -11,18 +11,18 @@
 
 namespace meshorder::command {
 
-/// Adds --machine, whose value choose_machine reads.
+/// Adds --machine; choose_machine reads its value.
 void add_machine_option(CLI::App& subcommand, std::string& machine);
 
-/// Adds --all-threads, likewise.
+/// Adds --all-threads; choose_machine reads it as well.
 void add_all_threads_option(CLI::App& subcommand, bool& all_threads);
 
 /// Adds --kernels, plain or tuned.
 void add_kernels_option(CLI::App& subcommand, KernelSet& kernels);
 
-/// Returns the machine to predict for. If the choice only replaces this machine, which is not calibrated,
-/// this machine is calibrated and the result is kept for the next time. A line on stderr says so, unless
-/// quiet; `notes` receives a sentence where something went wrong.
+/// Returns the machine to predict for. If the choice stands in for this machine, which is not calibrated,
+/// this function calibrates it and stores the result. A line on stderr says so, unless
+/// quiet; `notes` receives a sentence if something went wrong.
 MachineChoice calibrated(MachineChoice choice, bool all_threads, Progress& progress, bool quiet,
                          Notes& notes);
 

@@ -19,7 +19,7 @@ struct Subcommand {
   void (*add)(CLI::App& subcommand);
 };
 
-/// In the order of the help, where those of the laboratory and `methods` come after them.
+/// In the order of the help; there the subcommands of the laboratory and then `methods` follow.
 constexpr std::array kSubcommands{
     Subcommand{"order", add_order},
     Subcommand{"apply", add_apply},

@@ -36,7 +36,7 @@ std::string ids_path(const std::string& prefix, const std::string& what) {
 }
 std::string kept_path(const std::string& prefix) { return prefix + ".cells.kept.npy"; }
 
-/// Writes numbers, or has a file removed that an earlier run left where there are none.
+/// Writes numbers. If there are none, has the file removed that an earlier run may have left.
 template <class Number>
 void write_or_remove(const std::vector<Number>& numbers, const std::string& path, OutputSet& files,
                      std::vector<std::string>& written) {
@@ -121,8 +121,8 @@ constexpr std::array<std::pair<const char*, std::uint64_t MapChecksums::*>, 5> k
      {"cell_ids", &MapChecksums::cell_ids},
      {"kept", &MapChecksums::kept}}};
 
-/// The checksums of the mesh before and after, unknown where another program wrote the mesh; those of the
-/// maps, unknown where another program wrote these.
+/// Content of PREFIX.maps.json: checksums of the mesh before and after, unknown if another program wrote the
+/// mesh; checksums of the maps, unknown if another program wrote them.
 struct Identity {
   std::optional<MeshChecksums> before;
   std::optional<MeshChecksums> after;
@@ -153,7 +153,7 @@ Identity read_identity(const std::string& path) {
 }
 
 /// Throws Error if the mesh is not in the order that the maps start from; if they move nothing, both orders
-/// are one.
+/// are the same.
 void require_order(const Identity& identity, const Maps& maps, const Mesh& mesh, const std::string& mesh_path,
                    const std::string& path, bool inverse) {
   const std::optional<MeshChecksums>& start = inverse ? identity.after : identity.before;

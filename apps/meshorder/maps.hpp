@@ -13,12 +13,12 @@
 namespace meshorder::command {
 
 /// The reordering of a mesh file, on disk as NumPy arrays: PREFIX.vertices.old_to_new.npy and
-/// PREFIX.vertices.new_to_old.npy, and PREFIX.cells.*.npy for all cells. If the input numbers its vertices
-/// or cells other than from 0 or 1 on, PREFIX.vertices.ids.npy or PREFIX.cells.ids.npy holds these numbers
-/// in the input's order. If cells of the input were left out, the maps of cells number those that were kept,
-/// and PREFIX.cells.kept.npy holds their positions among all cells of the input. Where the mesh is in parts,
+/// PREFIX.vertices.new_to_old.npy, and PREFIX.cells.*.npy for all cells. If the input has numbers of vertices
+/// or cells other than 0, 1, … or 1, 2, …, PREFIX.vertices.ids.npy or PREFIX.cells.ids.npy holds them
+/// in the input's order. If cells of the input were left out, the maps of cells number only the others,
+/// and PREFIX.cells.kept.npy holds their positions among all cells of the input. If the mesh is in parts,
 /// PREFIX.vertices.parts.npy and PREFIX.cells.parts.npy hold the part of each in the new order.
-/// PREFIX.maps.json says which mesh the maps are for, without the cells that were left out.
+/// PREFIX.maps.json identifies the mesh of the maps, without the cells that were left out.
 struct Maps {
   Permutation vertices;
   Permutation cells;
@@ -29,7 +29,7 @@ struct Maps {
   std::vector<Index> cell_parts;    ///< of each cell in the new order
 };
 
-/// Checksums that distinguish a mesh, and the order that it is in, from others.
+/// Checksums that identify a mesh in its present order.
 struct MeshChecksums {
   std::uint64_t points = 0;  ///< of the coordinates
   std::uint64_t cells = 0;   ///< of the vertices of all cells
@@ -37,8 +37,8 @@ struct MeshChecksums {
   bool operator==(const MeshChecksums&) const = default;
 };
 
-/// Checksums of the maps themselves, by which those of two runs are told apart: of the new places of all
-/// vertices and of all cells, and of what not every mesh has, which are empty lists then.
+/// Checksums of the maps, which distinguish those of two runs: new places of all vertices and of all cells,
+/// and lists that not every mesh has; these are empty if it has none.
 struct MapChecksums {
   std::uint64_t vertices = 0;
   std::uint64_t cells = 0;
@@ -63,11 +63,11 @@ MapPaths map_paths(const std::string& prefix, const std::string& what);
 /// Returns the checksums of a mesh in its order, the same on any number of threads. O(points + cells).
 MeshChecksums checksums_of(const Mesh& mesh);
 
-/// Fails, before the work, if maps cannot be written.
+/// Throws, before the work, if maps cannot be written.
 void check_can_write_maps(const std::string& prefix);
 
-/// Writes the maps, and the checksums of the mesh before and after, as files of a set, and has that remove
-/// maps that an earlier run left with this prefix; returns the paths.
+/// Writes the maps, and the checksums of the mesh before and after, as files of a set; the set also removes
+/// maps that an earlier run left with this prefix. Returns the paths.
 std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& before, const MeshChecksums& after,
                                     const std::string& prefix, OutputSet& files);
 
@@ -75,18 +75,18 @@ std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& befor
 std::string write_identity(const MeshChecksums& before, const MeshChecksums& after, const MapChecksums& maps,
                            const std::string& prefix, OutputSet& files);
 
-/// Has a set remove maps that an earlier run left with this prefix and that not every mesh has: old numbers
-/// and kept cells.
+/// Makes a set remove optional maps that an earlier run left with this prefix: old numbers and kept
+/// cells.
 void remove_other_maps(const std::string& prefix, OutputSet& files);
 
-/// Leaves those cells out of a mesh that were left out before it was ordered, with the notes of `keep_cells`.
-/// A mesh that has just the cells that were kept stays as it is. Throws Error for positions that do not fit
+/// Removes from a mesh the cells that were left out before it was ordered, with the notes of `keep_cells`.
+/// A mesh that has exactly the kept cells stays as it is. Throws Error for positions that do not fit
 /// it.
 void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& notes);
 
 /// Reads the maps of a mesh, which is in its old order or, if `inverse`, in the new one. Throws Error if a
-/// file is missing, is not a permutation or has another length; and if PREFIX.maps.json is there and says
-/// that the mesh is in the other order or is another one. A mesh whose points were moved is still the same by
+/// file is missing, is not a permutation or has another length, and if PREFIX.maps.json exists and shows
+/// that the mesh is another one or in the other order. A mesh whose points were moved is still recognised by
 /// its cells.
 Maps read_maps(const std::string& prefix, const Mesh& mesh, const std::string& mesh_path, bool inverse);
 

@@ -9,14 +9,14 @@
 
 namespace meshorder::command {
 
-/// Adds --points, the name of a file.
+/// Adds --points, which names a file.
 void add_points_option(CLI::App& subcommand, std::string& points);
 
-/// Returns the file of that name as the list that `Files` takes; an empty name is none.
+/// Returns a list with the file of that name, as `Files` needs it; empty for an empty name.
 std::vector<std::string> named_files(const std::string& name);
 
-/// Gives the rows of a matrix or graph the coordinates of a file (see `read_points`); an empty name gives
-/// none. Throws CommandError for a mesh, which has its own, and InputError for a faulty file.
+/// Gives the rows of a matrix or graph the coordinates in a file (see `read_points`); does nothing for an
+/// empty name. Throws CommandError for a mesh, which has its own, and InputError for a faulty file.
 void take_points(Mesh& mesh, const std::string& input, const std::string& points);
 
 /// Throws CommandError if the mesh is a matrix or graph without coordinates and one of the methods needs

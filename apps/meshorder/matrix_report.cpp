@@ -28,7 +28,7 @@ std::string components_in_words(const ComponentCounts& counts, bool is_graph) {
                              is_graph ? "edge" : "entry");
 }
 
-/// Prints the arrays beside the entries' values.
+/// Prints the names of the arrays, without the entries' values.
 void print_arrays(const Console& console, const Mesh& mesh, bool is_graph) {
   for (const auto& [association, title] :
        {std::pair(Association::vertices, is_graph ? "on vertices" : "on rows"),
@@ -56,7 +56,7 @@ void print_pattern(const Console& console, const StoredMatrix& stored, const Mat
                     : fmt::format("{} of {} entries are missing", with_commas(facts.missing_diagonal),
                                   with_commas(report.pattern.rows())));
   if (facts.block > 1) {
-    // rounded down: 100 % is full
+    // rounded down: only full blocks show 100 %
     console.print("{:<12} {}×{}, {} % full", "blocks", facts.block, facts.block,
                   static_cast<int>(100 * facts.block_fill));
   }

@@ -10,7 +10,7 @@
 
 namespace meshorder::command {
 
-/// What `info` says of a matrix or graph.
+/// The report of `info` on a matrix or graph.
 struct MatrixReport {
   EntryPattern pattern;
   PatternFacts facts;
@@ -19,7 +19,7 @@ struct MatrixReport {
   Offset profile = 0;  ///< likewise
 };
 
-/// Prints it in the words of matrices, or of graphs. `mesh` is the one that was read.
+/// Prints the report in terms of matrices, or of graphs. `mesh` is the one that was read.
 void print_matrix(const Console& console, const Mesh& mesh, const MatrixReport& report);
 
 /// Returns the object `matrix` of docs/json.md.

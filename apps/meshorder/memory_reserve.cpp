@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Replaces operator new by one that, where the system has no memory, serves small blocks from a reserve, so
-// that the command ends with a message. Destructors that ask for memory would otherwise terminate it:
+// Replaces operator new by one that serves small blocks from a reserve if the system has no memory, so
+// that the command ends with a message. Otherwise destructors that allocate memory would terminate it:
 // nlohmann::json moves its values into a vector before it destroys them.
 #include <algorithm>
 #include <array>
@@ -15,11 +15,11 @@
 namespace meshorder::command {
 namespace {
 
-/// Blocks cut one after another from an array. All of it is free again once all blocks are.
+/// Blocks cut one after another from an array. The array is free again once all blocks are.
 class MemoryReserve {
  public:
-  /// Returns a block aligned for any type, or nullptr where there is none. Takes no more than three quarters
-  /// unless an exception is on its way: the rest is for destructors that it runs.
+  /// Returns a block aligned for any type, or nullptr if there is none. Takes at most three quarters
+  /// unless the stack is being unwound: the rest is for destructors that run then.
   void* take(std::size_t size) noexcept {
     const bool unwinding = std::uncaught_exceptions() > 0;
     const std::size_t limit = unwinding ? bytes_.size() : bytes_.size() / 4 * 3;
@@ -33,10 +33,10 @@ class MemoryReserve {
     return bytes_.data() + (used_ - rounded);
   }
 
-  /// Takes a block back. Returns false if it is none of the reserve's.
+  /// Takes a block back. Returns false if it is not from the reserve.
   bool give_back(void* block) noexcept {
     auto* const byte = static_cast<std::byte*>(block);
-    const std::less<> before;  // of any two addresses
+    const std::less<> before;  // compares any two addresses
     if (before(byte, bytes_.data()) || !before(byte, bytes_.data() + bytes_.size())) return false;
     const std::lock_guard lock(mutex_);
     if (--blocks_ == 0) used_ = 0;
@@ -59,7 +59,7 @@ constinit MemoryReserve reserve;
 }  // namespace
 }  // namespace meshorder::command
 
-// NOLINTBEGIN(cppcoreguidelines-no-malloc): this is what operator new is made of
+// NOLINTBEGIN(cppcoreguidelines-no-malloc): operator new is built on malloc
 void* operator new(std::size_t size) {
   if (void* const block = std::malloc(std::max<std::size_t>(size, 1))) return block;
   if (void* const block = meshorder::command::reserve.take(size)) return block;

@@ -65,7 +65,7 @@ std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFil
     write_mesh_to(ordered.mesh, {files.output, outputs}, {.strict = files.keeping.strict, .notes = &notes});
   if (files.maps.empty()) return {};
   MeshChecksums after = checksums_of(ordered.mesh);
-  // a matrix or graph is written as it was read, without the points that were given for its rows
+  // a matrix or graph is written as it was read, without the points given for its rows
   if (!files.points.empty()) {
     const std::string format = output_format_of(files.output, ordered.mesh.format).key();
     if (format == "matrixmarket" || format == "metis") after.points = ordered.before.points;

@@ -14,50 +14,50 @@
 
 namespace meshorder::command {
 
-/// Where a mesh comes from and goes to.
+/// The files of a mesh: input, output and maps.
 struct MeshFiles {
   std::string input;
   std::string output;
-  std::string maps;  ///< prefix of the maps' names; empty: none are written
+  std::string maps;  ///< prefix of the maps' names; empty: no maps
   Keeping keeping;
-  std::string points;  ///< coordinates of a matrix's rows; empty: none are given
+  std::string points;  ///< file of coordinates of a matrix's rows; empty: none
 };
 
 /// A mesh as it was read, to be ordered and written.
 struct MeshToOrder {
   Mesh mesh;
-  Maps maps;             ///< ids and cells that are kept; not the permutations
-  MeshChecksums before;  ///< only where maps are wanted
+  Maps maps;             ///< ids and kept cells, without the permutations
+  MeshChecksums before;  ///< only if maps are wanted
 };
 
 /// Adds --ids, whose value parse<Ids> reads, --only, --strict and --maps.
 ///
-/// @param more_maps  what else is written with the maps, as the end of a sentence of the help
+/// @param more_maps  other files written with the maps, as the end of a sentence of the help
 void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids,
                         const std::string& more_maps = "");
 
-/// Reads a mesh to compute with. Its graphs may take what it leaves of the limit on memory, for the rest of
+/// Reads a mesh to compute with. Its graphs may use what it leaves of the memory limit, for the rest of
 /// the process.
 ///
 /// @param bytes_of_entry  as of `limit_joins`
 Mesh read_to_work_on(const FilePath& path, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
-/// As kBytesToOrder, for commands that predict times, and for those that run kernels, on so many orders at a
-/// time.
+/// As kBytesToOrder: for commands that predict times, and, for each order held at a time, for those that run
+/// kernels.
 inline constexpr std::uint64_t kBytesToPredict = 64;
 inline constexpr std::uint64_t kBytesToMeasure = 100;
 
-/// Fails, before the work, if the output or its maps cannot be written.
+/// Throws, before the work, if the output or its maps cannot be written.
 void check_can_write(const MeshFiles& files);
 
-/// Reads a mesh with the cells that the output can hold. Throws Error for a faulty file and for cells that
-/// the output must hold and cannot.
+/// Reads a mesh with the cells that the output can hold. Throws Error for a faulty file, and for cells that
+/// the output would have to hold but cannot.
 ///
 /// @param bytes_of_entry  as of `limit_joins`
 MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
-/// Writes a mesh that is in its new order, with its maps, whose permutations are known by now, as files of a
-/// set, whose `commit` puts all in place. Returns the paths of the maps. An empty output is not written.
+/// Writes a mesh that is in its new order, and its maps, whose permutations are known by now, as files of a
+/// set; its `commit` puts all in place. Returns the paths of the maps. An empty output is not written.
 std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
                                        Notes& notes);
 

@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
 
 struct OpenFoamArguments : Common {
   OpenFoamArguments() {
-    // Cuthill-McKee's orders need fewest iterations of DIC and compute fastest (docs/hosts.md)
+    // Cuthill-McKee's orders need the fewest iterations of DIC and compute fastest (docs/hosts.md)
     ordering.workload = Workload::bandwidth;
   }
 
@@ -67,7 +67,7 @@ std::vector<std::string> folders_in(const fs::path& path) {
   return names;
 }
 
-/// A case, and which of its meshes is meant.
+/// A case, and the choice of its meshes.
 class Case {
  public:
   explicit Case(const OpenFoamArguments& arguments)
@@ -79,11 +79,11 @@ class Case {
     find_meshes();
   }
 
-  /// Returns the names of the meshes, "processor3" or empty for that of the whole case.
+  /// Returns the names of the meshes: "processor3", or empty for the mesh of the whole case.
   [[nodiscard]] const std::vector<std::string>& meshes() const noexcept { return meshes_; }
-  /// Returns the folder that a mesh's files lie in.
+  /// Returns the folder with a mesh's files.
   [[nodiscard]] fs::path poly_mesh(const std::string& mesh) const { return instance(mesh) / "polyMesh"; }
-  /// Returns the file that renumberMesh takes a mesh's order from.
+  /// Returns the file in which renumberMesh expects a mesh's order.
   [[nodiscard]] fs::path cell_order(const std::string& mesh) const {
     return instance(mesh) / openfoam::kCellOrder;
   }
@@ -99,11 +99,11 @@ class Case {
     command += " -case " + in_shell(folder_.string());
     if (!region_.empty()) command += " -region " + in_shell(region_);
     if (!time_.empty()) command += " -time " + in_shell(time_);
-    // renumberMesh looks for it in the case, and there in the region's folder
+    // renumberMesh looks for the dictionary in the case, and there in the region's folder
     return command + " -overwrite -dict system/renumberMeshDict";
   }
 
-  /// Returns what to beware of in a case with several times.
+  /// Returns warnings on a case with several times.
   [[nodiscard]] Notes warnings() const {
     Notes notes;
     std::vector<std::string> times = folders_in(folder_ / meshes_.front());
@@ -150,7 +150,7 @@ class Case {
     if (missing != meshes_.end()) refuse_missing(poly_mesh(*missing));
   }
 
-  /// Throws InputError for a processor's folder where one with a lower number is missing.
+  /// Throws InputError if a processor's folder exists but one with a lower number is missing.
   void check_processors() const {
     constexpr std::string_view kProcessor = "processor";
     for (const std::string& name : folders_in(folder_)) {
@@ -194,7 +194,7 @@ class Case {
   std::vector<std::string> meshes_;
 };
 
-/// What was done to a mesh.
+/// A mesh and its order.
 struct OrderedMesh {
   std::string name;
   Index cells = 0;
@@ -206,13 +206,13 @@ struct OrderedMesh {
   Offset profile_after = 0;
 };
 
-/// Returns whether a method looks at the centres of cells.
+/// Returns whether a method uses the centres of cells.
 bool needs_centres(const std::string& method, Workload workload) {
-  if (method == "auto") return is_told_by_kernels(workload);  // the other orders go by the graph alone
+  if (method == "auto") return is_told_by_kernels(workload);  // the other orders use the graph alone
   return needs_points(vertex_methods(), method);
 }
 
-/// Returns a sentence if a method that was asked for by name makes the order no better.
+/// Returns a sentence if a method requested by name does not improve the order; else an empty text.
 std::string no_better(GraphRef graph, const Permutation& order, const std::string& method) {
   if (method == "auto" || method == "original" || method == "scrambled") return {};
   const std::string reason = reason_to_keep(graph, order, method, made_for(method));
@@ -244,10 +244,10 @@ OrderedMesh ordered(const Case& meshes, const std::string& name, const OpenFoamA
   return result;
 }
 
-/// What is to be written: the maps, and the dictionary unless there is one.
+/// The files to be written: the maps, and the dictionary unless there is one.
 class Outputs {
  public:
-  /// Fails, before the work, if the files cannot be written.
+  /// Throws, before the work, if the files cannot be written.
   Outputs(const Case& meshes, bool force) {
     for (const std::string& mesh : meshes.meshes()) maps_.push_back(meshes.output(meshes.cell_order(mesh)));
     const fs::path dictionary = meshes.dictionary();
@@ -262,7 +262,7 @@ class Outputs {
     }
   }
 
-  /// Returns whether a dictionary that asks for something else stays.
+  /// Returns whether there is a dictionary for another order, which stays.
   [[nodiscard]] bool keeps_other_dictionary() const noexcept { return keeps_other_; }
 
   /// Writes all files, or none; returns their paths.
@@ -270,7 +270,7 @@ class Outputs {
     std::vector<OutputFile> files;
     for (std::size_t m = 0; m < meshes.size(); ++m) {
       openfoam::write_cell_order(meshes[m].order.permutation, files.emplace_back(maps_[m]));
-      files.back().close();  // there may be more processors than files that may be open
+      files.back().close();  // there may be more processors than files that may be open at once
     }
     if (dictionary_) openfoam::write_dictionary(files.emplace_back(*dictionary_));
     std::vector<std::string> paths;

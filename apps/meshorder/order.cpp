@@ -45,7 +45,7 @@ struct OrderArguments : Common, MeshFiles {
   bool timings = false;
 };
 
-/// Throws InvalidArgument unless the arguments leave a race anything to decide.
+/// Throws InvalidArgument if the arguments leave nothing for a race to decide.
 void check_race(const OrderArguments& arguments) {
   const char* const option = arguments.measure ? "--measure" : "--predict";
   const ReorderOptions& options = arguments.reordering;
@@ -61,7 +61,7 @@ void check_race(const OrderArguments& arguments) {
   }
 }
 
-/// "hilbert/lexmax 2.31, spectral/lexmax 2.29 times as fast as the file's"
+/// Returns "hilbert/lexmax 2.31, spectral/lexmax 2.29 times as fast as the file's order".
 std::string in_words(const Race& race) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < race.advice.candidates.size(); ++i) {
@@ -72,7 +72,7 @@ std::string in_words(const Race& race) {
   return join(words) + " times as fast as the file's order";
 }
 
-/// @param stored  null for a mesh that is no matrix
+/// @param stored  null if the mesh is not a matrix
 void print_result(const Console& console, const MeshOrder& order, const std::optional<Grouping>& groups,
                   const EdgeSpan& before, const EdgeSpan& after, const StoredMatrix* stored) {
   const bool is_matrix = stored != nullptr && !stored->is_graph;
@@ -81,7 +81,7 @@ void print_result(const Console& console, const MeshOrder& order, const std::opt
     if (!method.reason.empty()) console.print("{:<10} {}", "", method.reason);
   };
   print_method(is_matrix ? "rows" : "vertices", order.vertices.method, order.vertices.seconds);
-  // entries stay unless they are told to move; a graph's file has its edges in the order of its vertices
+  // entries stay unless a method is named for them; a graph's file lists edges in the order of its vertices
   const bool entries_stay = stored != nullptr && !order.cells.method.reason.empty();
   if (!entries_stay)
     print_method(stored != nullptr ? "entries" : "elements", order.cells.method, order.cells.seconds);
@@ -93,7 +93,7 @@ void print_result(const Console& console, const MeshOrder& order, const std::opt
                 with_commas(before.max), with_commas(after.max), before.mean_log2, after.mean_log2);
 }
 
-/// Notes a method that was asked for by name and makes the order of the vertices no better.
+/// Notes a method that was requested by name and does not improve the order of the vertices.
 void note_no_better(GraphRef graph, const ReorderOptions& options, const Permutation& vertices,
                     Notes& notes) {
   const std::string& method = options.methods.vertices;
@@ -102,7 +102,7 @@ void note_no_better(GraphRef graph, const ReorderOptions& options, const Permuta
   if (!reason.empty()) notes.push_back(reason + "; --vertices original keeps the order");
 }
 
-/// Notes a method that was asked for by name and makes the order of the elements no better. `mesh` has been
+/// Notes a method that was requested by name and does not improve the order of the elements. `mesh` has been
 /// reordered by `cells`.
 void note_no_better(const Mesh& mesh, const ReorderOptions& options, const Permutation& cells, Notes& notes) {
   const std::string& method = options.methods.elements;
@@ -121,7 +121,7 @@ void note_no_better(const Mesh& mesh, const ReorderOptions& options, const Permu
   if (!reason.empty()) notes.push_back(reason + "; --elements original keeps the order");
 }
 
-/// Returns whether a file gives vertices or cells other numbers than it gave them before they moved. `mesh`
+/// Returns whether the file's numbers of vertices or cells differ from those before they moved. `mesh`
 /// has been reordered.
 bool has_new_numbers(const Mesh& mesh, const MeshOrder& order, const ReorderOptions& options) {
   const bool are_moved = !order.vertices.permutation.is_identity() || !order.cells.permutation.is_identity();

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestMessage = std::size_t{1} << 16;
 
-// ---- messages: parts that end with a zero byte, the first character of each is its kind
+// ---- messages: parts that end with a zero byte; the first character of each is its kind
 
 enum Kind : char {
   kScratch = 's',
@@ -45,7 +45,7 @@ void add(std::string& message, Kind kind, std::string_view text) {
   message += '\0';
 }
 
-/// Takes the next part off a message. Throws Error for one that does not end.
+/// Takes the next part off a message. Throws Error if it has no end.
 std::pair<char, std::string> next_part(std::string_view& message) {
   const std::size_t end = message.find('\0');
   if (end == std::string_view::npos || end == 0)
@@ -55,7 +55,7 @@ std::pair<char, std::string> next_part(std::string_view& message) {
   return part;
 }
 
-/// Returns the next message; empty where there is none.
+/// Returns the next message; empty if there is none.
 std::string received(int socket) {
   std::string message(kLongestMessage, '\0');
   ssize_t size = 0;
@@ -66,7 +66,7 @@ std::string received(int socket) {
   return message;
 }
 
-/// Has the other process put files in place; as `put_in_place`.
+/// Asks the other process to put files in place; parameters and result as of `put_in_place`.
 std::vector<std::string> ask(int socket, std::span<const FinishedFile> files, std::span<const FilePath> first,
                              std::span<const FilePath> removed) {
   std::string request;
@@ -94,7 +94,7 @@ std::vector<std::string> ask(int socket, std::span<const FinishedFile> files, st
 OutputDeputy::OutputDeputy(const std::vector<FilePath>& outputs, std::string maps) : maps_(std::move(maps)) {
   for (const FilePath& output : outputs) {
     if (output.path().empty()) continue;
-    (void)OutputFile(output);  // which says why it cannot be written
+    (void)OutputFile(output);  // throws if it cannot be written
     const OutputPlace place = output_place(output);
     if (place.is_through) {
       through_.push_back(place.path);
@@ -104,7 +104,7 @@ OutputDeputy::OutputDeputy(const std::vector<FilePath>& outputs, std::string map
     try {
       is_alone = format_of(output.path()).single_file;
     } catch (const Error&) {
-      // no mesh
+      // not a mesh
     }
     outputs_.push_back({output, is_alone});
     add_home(place.path);
@@ -167,7 +167,7 @@ FilePath OutputDeputy::allowed(const std::string& path) const {
   };
   for (const Output& output : outputs_) {
     if (path == output.path.string()) return output.path;
-    // out.ele and out.face for out.node; out.h5 and out_2.h5 for out.xdmf
+    // out.ele and out.face belong to out.node; out.h5 and out_2.h5 to out.xdmf
     const std::string stem = output.path.path().stem().string();
     const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
     if (!output.is_alone && is_in_folder_of(output.path.path()) && name.starts_with(stem) &&
@@ -203,7 +203,7 @@ Scratch OutputDeputy::taken(const std::string& scratch, const FilePath& target) 
   }
   if (!S_ISREG(status.st_mode) || status.st_nlink != 1)
     throw Error(Code::internal, "the reading process made no ordinary file");
-  constexpr mode_t kOfPrograms = S_ISUID | S_ISGID;  // which run with the rights of their owner
+  constexpr mode_t kOfPrograms = S_ISUID | S_ISGID;  // such programs run with the rights of their owner
   if ((status.st_mode & kOfPrograms) != 0) {
     const Descriptor opened(own.file(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
     (void)::fchmod(opened.get(), status.st_mode & ~kOfPrograms & 07777U);

@@ -12,9 +12,9 @@
 
 namespace meshorder::command {
 
-/// Puts outputs in place for a confined child process, which writes them in private scratch folders and can
-/// reach no others: the child asks, over a socket, and this process checks that each file is one that the
-/// user asked for. A child in a stranger's hands can spoil these outputs and no other file.
+/// Puts outputs in place for a confined child process. The child writes them in private scratch folders and
+/// can reach no others. It asks over a socket, and this process checks that the user requested each
+/// file. A child that a stranger controls can spoil these outputs, but no other file.
 class OutputDeputy {
  public:
   /// Makes a scratch folder in each folder of an output. Throws InputError for an output that cannot be
@@ -26,21 +26,21 @@ class OutputDeputy {
 
   /// Returns the scratch folders.
   [[nodiscard]] std::vector<std::filesystem::path> folders() const;
-  /// Returns the outputs that are written to rather than replaced: devices and pipes.
+  /// Returns the outputs that are written to directly, not replaced: devices and pipes.
   [[nodiscard]] const std::vector<std::filesystem::path>& through() const noexcept { return through_; }
 
-  /// In the child: has it make its scratch folders in those, and ask for its files to be put in place.
+  /// In the child: makes it use these scratch folders, and ask the other process to put its files in place.
   void serve_this_process();
-  /// In the other process: does what the child asks, until that ends.
+  /// In the other process: does what the child asks, until the child ends.
   void serve_child();
 
  private:
   struct Output {
     FilePath path;
-    bool is_alone = true;  ///< no other files belong to it
+    bool is_alone = true;  ///< the format has no further files
   };
   struct Home {
-    std::filesystem::path folder;  ///< of outputs
+    std::filesystem::path folder;  ///< folder of outputs
     Scratch scratch;
   };
 

@@ -31,7 +31,7 @@ namespace {
 constexpr int kBadInput = 2;
 constexpr int kOwnFailure = 1;
 
-/// Gives the parser what all programs have.
+/// Adds the options that all programs have, then those of the program, to the parser.
 void describe(const Program& program, CLI::App& app, std::vector<std::string>& arguments) {
   app.name("meshorder");
   app.set_version_flag("-V,--version", MESHORDER_VERSION);
@@ -51,7 +51,7 @@ void describe(const Program& program, CLI::App& app, std::vector<std::string>& a
   refuse_empty_values(app);
 }
 
-/// Runs what the arguments ask for; returns the exit status.
+/// Runs the subcommand that the arguments name; returns the exit status.
 int run(const Program& program, std::vector<std::string> arguments) {
   CLI::App app;
   describe(program, app, arguments);
@@ -61,7 +61,7 @@ int run(const Program& program, std::vector<std::string> arguments) {
   }
   if (const auto fault = option_without_value(arguments)) return report_failure(*fault, kBadInput);
   arguments = with_words_as_options(std::move(arguments));
-  std::reverse(arguments.begin(), arguments.end());  // as the parser takes them
+  std::reverse(arguments.begin(), arguments.end());  // the parser expects the arguments in reverse
   try {
     app.parse(std::move(arguments));
   } catch (const CLI::Success& asked_for_help) {
@@ -76,7 +76,7 @@ int run(const Program& program, std::vector<std::string> arguments) {
   return 0;
 }
 
-/// Runs the program; returns the exit status.
+/// Runs the program and reports failures; returns the exit status.
 int run_and_report(const Program& program, int argc, char** argv) {
   try {
     return run(program, {argv + std::min(argc, 1), argv + argc});
@@ -93,10 +93,10 @@ int run_and_report(const Program& program, int argc, char** argv) {
   }
 }
 
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): read at the end of the process
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): read when the process ends
 bool has_run = false;
 
-/// At the end of the process: libhdf5 ends it by itself where it has no memory.
+/// Called at the end of the process: reports that libhdf5 ended it, as it does without memory.
 extern "C" void tell_if_a_library_ended_it() {
   if (has_run) return;
   remove_unfinished_outputs();

@@ -11,16 +11,16 @@ class App;
 
 namespace meshorder::command {
 
-/// What is special of a program with subcommands.
+/// What distinguishes a program with subcommands from others.
 struct Program {
   /// Gives the parser its options and subcommands. May take away arguments that are not for the parser.
   void (*describe)(CLI::App& app, std::vector<std::string>& arguments);
-  /// Returns the exit status if another program was to do the work, and does not exist. Default: none.
+  /// Returns the exit status if another program should do the work but does not exist; else nothing.
   std::optional<int> (*hand_over)(char** arguments) noexcept = nullptr;
 };
 
-/// Is the `main` of `program`: prepares the process, parses the arguments, runs the subcommand and prints
-/// what went wrong.
+/// Implements the `main` of `program`: prepares the process, parses the arguments, runs the subcommand and
+/// reports failures.
 ///
 /// @return exit status: 0, 2 for bad input, 1 for a failure of the program
 int run_program(const Program& program, int argc, char** argv) noexcept;

@@ -10,20 +10,20 @@
 
 namespace meshorder::command {
 
-/// Returns the number that a text is, also one of Fortran ("1.5D-3") and one with a plus; nothing for other
+/// Returns the number that a text is, also in Fortran's form ("1.5D-3") or with a plus; nothing for other
 /// texts.
 std::optional<double> number_of(std::string_view text);
 
-/// Numbers in what a program printed.
+/// Finds numbers in what a program printed.
 class PrintedNumbers {
  public:
-  /// @param option   that the expression was given by, for messages
-  /// @param pattern  ECMAScript; its group, or all that matches, is a number
+  /// @param option   option that gave the expression, for messages
+  /// @param pattern  ECMAScript; its group, or else the whole match, is a number
   /// Throws InvalidArgument for a faulty expression and for one with several groups.
   PrintedNumbers(std::string option, std::string pattern);
 
-  /// Returns the numbers in the lines of these files, each line cut after 10,000 characters. Throws
-  /// InvalidArgument if nothing matches, or what is captured is no number.
+  /// Returns the numbers in the lines of these files; each line is cut after 10,000 characters. Throws
+  /// InvalidArgument if nothing matches, or if a match is not a number.
   [[nodiscard]] std::vector<double> find(const std::vector<std::filesystem::path>& files) const;
 
  private:
@@ -36,7 +36,7 @@ class PrintedNumbers {
 std::string difference(const std::vector<double>& expected, const std::vector<double>& found,
                        double tolerance);
 
-/// Returns where two texts disagree, word by word: numbers by the relative tolerance, others in any
+/// Returns where two texts differ, word by word: numbers by more than the relative tolerance, others in any
 /// character.
 std::string difference(std::string_view expected, std::string_view found, double tolerance);
 

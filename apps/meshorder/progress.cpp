@@ -31,7 +31,7 @@ Progress::Progress(bool enabled) : began_(now()) {
   try {
     drawer_ = std::thread([this] { draw_until_done(); });
   } catch (const std::system_error&) {
-    // no thread to be had: the work goes on without a line
+    // no thread can be made: the work continues without a line
   }
 }
 
@@ -76,7 +76,7 @@ void Progress::draw_until_done() noexcept {
 void Progress::draw(double elapsed) {
   double share = share_;
   if (share <= from_ && from_ > 0 && stage_began_ > 0) {
-    // the pace so far gives this stage's time; the estimate approaches the stage's end without reaching it
+    // the pace so far gives the expected time of this stage; the estimate approaches its end, but stays below
     const double expected = stage_began_ / from_ * (to_ - from_);
     share = from_ + (to_ - from_) * (1 - std::exp(-(elapsed - stage_began_) / std::max(expected, 1e-3)));
   }

@@ -12,7 +12,7 @@ namespace meshorder::command {
 /// Writes nothing if stderr is not a terminal.
 class Progress {
  public:
-  /// `enabled` is false for --quiet.
+  /// @param enabled  false for --quiet
   explicit Progress(bool enabled);
   ~Progress();
   Progress(const Progress&) = delete;
@@ -27,7 +27,7 @@ class Progress {
   /// Sets the share of the whole that is done, 0 … 1.
   void at(double share);
 
-  /// Clears the line for good. Call it before printing results.
+  /// Clears the line for good. Call it before results are printed.
   void finish();
 
  private:

@@ -14,7 +14,7 @@
 namespace meshorder::command {
 namespace {
 
-/// Returns the bytes of "4G", the most that a limit can be for "none", nothing for other texts.
+/// Returns the bytes of "4G", the largest limit for "none", nothing for other texts.
 std::optional<std::uint64_t> limit_of(const std::string& text) {
   if (text == "none") return UINT64_MAX;
   const std::optional<std::uint64_t> size = parse_size(text);

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// ---- Landlock. Its numbers are given here since the headers of older systems lack some of them.
+// ---- Landlock; its numbers are given here because the headers of older systems lack some of them
 
 constexpr long kCreateRuleset = 444;
 constexpr long kAddRule = 445;
@@ -41,7 +41,7 @@ enum : std::uint64_t {
   kReadFolder = 1U << 3U,
   kRead = kReadFile | kReadFolder,
   kOfVersion1 = (1U << 13U) - 1,
-  kMakeDevices = (1U << 6U) | (1U << 9U) | (1U << 10U) | (1U << 11U),  // and sockets, pipes
+  kMakeDevices = (1U << 6U) | (1U << 9U) | (1U << 10U) | (1U << 11U),  // also sockets and pipes
   kMakeLinks = 1U << 12U,
   kExecute = 1U << 0U,
   kMoveBetweenFolders = 1U << 13U,  // of version 2
@@ -82,7 +82,7 @@ constexpr std::array kSystemFiles{"/usr",
                                   "/dev/random",
                                   "/dev/urandom"};
 
-/// A set of rules on what the process may open.
+/// A set of rules for what the process may open.
 class Ruleset {
  public:
   Ruleset() {
@@ -152,14 +152,14 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_RISCV64;
 constexpr std::uint32_t kArchitecture = 0;
 #endif
 
-// LeakSanitizer clones a process that attaches to all threads
+// LeakSanitizer makes a process by clone, which attaches to all threads
 #ifdef MESHORDER_IS_SANITIZED
 constexpr bool kIsWatched = true;
 #else
 constexpr bool kIsWatched = false;
 #endif
 
-// calls that the headers of older systems lack; from 424 on all architectures share the numbers
+// calls that the headers of older systems lack; from 424 on, all architectures share the numbers
 enum : std::uint32_t {
   kPidfdSendSignal = 424,
   kIoUringSetup = 425,
@@ -191,14 +191,14 @@ constexpr std::array<std::uint32_t, 67> kDenied{
     SYS_perf_event_open, SYS_userfaultfd, SYS_keyctl, SYS_add_key, SYS_request_key, SYS_clock_settime,
     SYS_settimeofday, SYS_adjtimex, SYS_clock_adjtime, SYS_sethostname, SYS_acct, SYS_syslog, kIoUringSetup};
 
-#ifdef SYS_fork  // the older half of the calls, which newer architectures lack
+#ifdef SYS_fork  // older calls, which newer architectures lack
 constexpr std::array<std::uint32_t, 8> kDeniedOld{SYS_fork,   SYS_vfork, SYS_chmod,  SYS_chown,
                                                   SYS_lchown, SYS_utime, SYS_utimes, SYS_futimesat};
 #else
 constexpr std::array<std::uint32_t, 0> kDeniedOld{};
 #endif
 
-/// A program of the kernel's packet filter that judges system calls.
+/// A program for the kernel's packet filter that allows or refuses system calls.
 class CallFilter {
  public:
   CallFilter() {
@@ -219,7 +219,7 @@ class CallFilter {
     refuse(error);
   }
 
-  /// Allows a call only where `comparison` of the argument's lower half holds.
+  /// Allows a call only if `comparison` of the argument's lower half with the value is true.
   void allow_where(std::uint32_t call, std::uint32_t argument, std::uint16_t comparison,
                    std::uint32_t value) {
     jump_unless(BPF_JEQ, call, 0, 4);
@@ -229,7 +229,7 @@ class CallFilter {
     refuse(EPERM);
   }
 
-  /// Denies a call where the argument's lower half is the value.
+  /// Denies a call if the argument's lower half equals the value.
   void deny_where(std::uint32_t call, std::uint32_t argument, std::uint32_t value) {
     jump_unless(BPF_JEQ, call, 0, 4);
     load_argument(argument);
@@ -241,7 +241,7 @@ class CallFilter {
   void enforce() {
     allow();
     const sock_fprog program{static_cast<unsigned short>(code_.size()), code_.data()};
-    // without this flag, older kernels slow the process down against speculation
+    // without this flag, older kernels add slow protections against speculative execution
     constexpr unsigned kNoSlowerCode = 1U << 2U;
     if (::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, kNoSlowerCode, &program) != 0)
       (void)::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program);
@@ -253,7 +253,7 @@ class CallFilter {
                      static_cast<std::uint8_t>(if_false), value});
   }
   void load(std::size_t offset) { add(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset)); }
-  void load_argument(std::uint32_t argument) {  // of a machine whose lower half comes first
+  void load_argument(std::uint32_t argument) {  // only for machines that store the lower half first
     load(offsetof(seccomp_data, args) + sizeof(std::uint64_t) * argument);
   }
   void jump_unless(unsigned comparison, std::uint32_t value, unsigned if_true, unsigned if_false) {
@@ -273,13 +273,13 @@ void restrict_calls() {
   for (const auto call : std::array<std::uint32_t, 3>{SYS_kill, SYS_tkill, SYS_tgkill})
     filter.allow_where(call, 0, BPF_JEQ, self);
   filter.allow_where(SYS_prlimit64, 0, BPF_JEQ, 0);
-  filter.allow_where(SYS_utimensat, 1, BPF_JEQ, 0);  // of files that are open
+  filter.allow_where(SYS_utimensat, 1, BPF_JEQ, 0);  // only for open files
   for (const auto request : std::array<std::uint32_t, 2>{TIOCSTI, TIOCLINUX})
     filter.deny_where(SYS_ioctl, 1, request);
   if constexpr (!kIsWatched) {
     for (const std::uint32_t call : kDeniedOld) filter.deny(call);
     filter.deny(SYS_ptrace);
-    filter.deny(kClone3, ENOSYS);  // its flags are not seen here; the C library then calls clone
+    filter.deny(kClone3, ENOSYS);  // the filter cannot see its flags; the C library then calls clone
     filter.allow_where(SYS_clone, 0, BPF_JSET, CLONE_THREAD);
   }
   filter.enforce();
@@ -295,7 +295,7 @@ void give_up_rights(const Reach& reach) noexcept {
   try {
     restrict_calls();
   } catch (const std::bad_alloc&) {
-    // what the files allow is restricted nevertheless
+    // access to files is restricted nevertheless
   }
 }
 #else

@@ -12,7 +12,7 @@ namespace {
 constexpr int kLogWidth = 8;
 constexpr int kMissesWidth = 7;
 
-/// Returns three digits: "954k", "1.09M".
+/// Returns a count with three digits: "954k", "1.09M".
 std::string short_count(Offset count) {
   const auto number = static_cast<double>(count);
   if (number < 1e3) return std::to_string(count);

@@ -12,22 +12,22 @@
 
 namespace meshorder::command {
 
-/// Returns whether the mesh has so few simplices, two million at most, that misses are predicted without
-/// being asked, all lines followed: it takes a few seconds, and 13 bytes for each cache line that a kernel
+/// Returns whether the mesh has at most two million simplices. Misses are then predicted without being
+/// requested, from all cache lines: this takes a few seconds, and 13 bytes for each line that a kernel
 /// touches.
 bool is_quick_to_predict(const Mesh& mesh);
 
-/// Returns {"spmv": {"accesses", "misses": […], "jumps": […], "mean_log2"}, …} of these kernels, the first
-/// ones of kKernels, misses and jumps by level.
+/// Returns {"spmv": {"accesses", "misses": […], "jumps": […], "mean_log2"}, …} for these kernels, which are
+/// the first of kKernels; misses and jumps by level.
 nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches,
                                std::span<const Kernel> kernels = kKernels);
 
-/// Explains the columns of reuse_header.
+/// Explanation of the columns of reuse_header.
 inline constexpr std::string_view kReuseLegend =
     "log2: mean log2 of the reuse distances; a cache's size: its misses; jumps: misses of the last\n"
     "level that no hardware prefetcher foresees";
 
-/// What rows of tables call the product with a matrix, the only kernel that it has.
+/// Name of the product with a matrix, its only kernel, in rows of tables.
 inline constexpr std::string_view kProduct = "product";
 
 /// Returns the heads of the columns of reuse_cells: "log2", the caches, "jumps".

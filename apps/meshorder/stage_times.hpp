@@ -13,16 +13,16 @@
 
 namespace meshorder::command {
 
-/// What a command spends its wall-clock time on, stage by stage.
+/// Measures the wall-clock time of a command, stage by stage.
 class StageTimes {
  public:
   /// Adds the time since the last call, or since the object was made, as a stage of that name.
   void end(std::string stage);
 
-  /// Moves `seconds` of the last stage to a stage of that name before it.
+  /// Moves `seconds` of the last stage to a new stage of that name before it.
   void split_last(std::string stage, double seconds);
 
-  /// Says how many bytes a stage read or wrote.
+  /// Sets how many bytes a stage read or wrote.
   void set_bytes(const std::string& stage, std::uint64_t bytes);
 
   /// Returns the time of a stage; 0 if there was none.
@@ -31,7 +31,7 @@ class StageTimes {
   /// Prints a line for each stage: its name, time and bytes per second.
   void print(const Console& console) const;
 
-  /// Returns [{"stage", "seconds", "bytes"}, …]; bytes are null where a stage has none.
+  /// Returns [{"stage", "seconds", "bytes"}, …]; bytes are null if a stage has none.
   [[nodiscard]] nlohmann::ordered_json to_json() const;
 
  private:
@@ -45,8 +45,8 @@ class StageTimes {
   std::vector<Stage> stages_;
 };
 
-/// Returns the bytes of a mesh on disk, with the further files of TetGen and XDMF beside it; 0 if it is not
-/// there.
+/// Returns the bytes of a mesh on disk, including the further files of TetGen and XDMF; 0 if it does not
+/// exist.
 std::uint64_t bytes_on_disk(const std::string& mesh);
 
 }  // namespace meshorder::command

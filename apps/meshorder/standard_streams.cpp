@@ -17,7 +17,7 @@
 namespace meshorder::command {
 namespace {
 
-// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): as stderr itself
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): state of the process, as stderr
 std::atomic<std::FILE*> messages = nullptr;  // null: stderr
 volatile std::sig_atomic_t descriptor_of_messages = STDERR_FILENO;
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
@@ -33,7 +33,7 @@ void refuse_unless_reader_left() {
 void occupy_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) >= 0) continue;
-    // takes the lowest number that is free
+    // the new descriptor is the lowest free number, which is that of the stream
     (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
 }
@@ -55,11 +55,11 @@ void write_stderr(std::string_view text) noexcept {
 
 void silence_libraries() noexcept {
 #ifdef MESHORDER_IS_SANITIZED
-  return;  // what sanitizers report is to be seen
+  return;  // sanitizers report on stderr
 #endif
   constexpr int kBeyondThoseOfShells = 10;
   static const int copy = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, kBeyondThoseOfShells);
-  // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a stream is written to
+  // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): writing changes a stream
   static std::FILE* const stream = copy < 0 ? nullptr : ::fdopen(copy, "w");
   if (stream == nullptr) return;
   (void)std::setvbuf(stream, nullptr, _IONBF, 0);
@@ -85,7 +85,7 @@ int report_failure(std::string_view message, int status) noexcept {
     escaped = visible(message);
     message = escaped;
   } catch (const std::bad_alloc&) {
-    // as it is
+    // print the message unescaped
   }
   for (const std::string_view part : {std::string_view("meshorder: "), message, std::string_view("\n")})
     write_stderr(part);

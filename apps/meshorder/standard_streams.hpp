@@ -5,12 +5,12 @@
 
 namespace meshorder::command {
 
-/// Gives standard streams that are closed a descriptor that refuses writing, so that no file that is opened
-/// later takes their place. To be called first.
+/// Gives closed standard streams a descriptor that refuses reading or writing, so that no file that is opened
+/// later takes their place. Call it first.
 void occupy_closed_streams();
 
-/// Writes text to stdout. Throws CommandError if it cannot be written; where the reader of a pipe has gone
-/// away, the text is dropped instead.
+/// Writes text to stdout. Throws CommandError if it cannot be written; if the reader of a pipe has closed
+/// it, drops the text instead.
 void write_stdout(std::string_view text);
 
 /// Writes what is buffered; throws likewise.
@@ -19,16 +19,16 @@ void flush_stdout();
 /// Writes text to stderr; ignores a failure, which could not be reported.
 void write_stderr(std::string_view text) noexcept;
 
-/// Has what libraries print on stderr dropped, also what the C library says before it aborts. What this
-/// program prints, by `write_stderr` and to `messages_descriptor`, is still seen.
+/// Drops what libraries print on stderr, including messages of the C library before it aborts. Messages of
+/// this program, by `write_stderr` and to `messages_descriptor`, still appear.
 void silence_libraries() noexcept;
-/// Ends that.
+/// Ends the effect of `silence_libraries`.
 void hear_libraries() noexcept;
-/// Returns the descriptor that messages of this program go to; for a signal handler, too.
+/// Returns the descriptor for messages of this program; a signal handler may call it.
 int messages_descriptor() noexcept;
 
-/// Prints why the command fails, with characters that a terminal acts on escaped as long as there is memory,
-/// and returns the status.
+/// Prints why the command failed and returns the status. Characters that a terminal acts on are escaped, as
+/// long as there is memory.
 int report_failure(std::string_view message, int status) noexcept;
 
 }  // namespace meshorder::command

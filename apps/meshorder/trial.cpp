@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr double kLeastTime = 1e-6;
 
-/// What a program prints and writes, as far as it is looked at.
+/// Reads the times, counts and results of a program from what it printed and wrote.
 class Readings {
  public:
   explicit Readings(const TrialOptions& options)
@@ -39,8 +39,8 @@ class Readings {
                             ": give its path in the folder that the program runs in, or {out}");
   }
 
-  /// Throws InvalidArgument if something that is asked for is not there. Returns why the results are not
-  /// those of the first run, empty if they are.
+  /// Throws InvalidArgument if something that was requested is missing. Returns how the results differ from
+  /// those of the first run; empty if they are the same.
   std::string read(const TrialFolder& folder, TriedOrder& order, double& time) {
     const std::vector<fs::path> printed{folder.log().string() + ".out", folder.log().string() + ".err"};
     if (time_) time = time_->find(printed).back();
@@ -88,7 +88,7 @@ class Trial {
     report_.orders.push_back({.name = "original", .methods = {"original", "original"}});
   }
 
-  /// Runs the trial. Throws InvalidArgument for faults in its own order, or in all others.
+  /// Runs the trial. Throws InvalidArgument if the mesh's own order fails, or if all others do.
   void run() {
     warm_up(0);
     find_orders();
@@ -111,7 +111,7 @@ class Trial {
   [[nodiscard]] const Notes& notes() const { return notes_; }
 
  private:
-  // a warm-up, some rounds to choose among the orders, and some pairs for the best
+  // runs of the best order: a warm-up, rounds to choose among the orders, and pairs; then runs of each order
   static constexpr double kRunsOfBest = 15;
   static constexpr double kRunsOfEach = 3;
 
@@ -128,7 +128,7 @@ class Trial {
     return result;
   }
 
-  /// Returns the time of a run; takes the order out of the trial if it does not succeed.
+  /// Returns the time of a run. If the run fails, excludes the order from the trial.
   double timed_run(std::size_t number, const fs::path& kept = {}) {
     TriedOrder& order = report_.orders[number];
     const TrialCommand command = this->command();
@@ -232,7 +232,7 @@ class Trial {
     });
   }
 
-  /// Makes an order, unless it is one of those that there are.
+  /// Makes an order, unless an equal one exists.
   void add_order(const std::string& name) {
     TriedOrder order{.name = name, .methods = order_named(name), .by_auto = name == "auto"};
     if (is_there(order.methods)) return;
@@ -254,7 +254,7 @@ class Trial {
     }
   }
 
-  /// Returns whether an order before has the same files.
+  /// Returns whether an earlier order has the same files.
   bool is_known(std::size_t number) {
     folder_.complete_order(number);
     for (std::size_t other = 1; other < number; ++other) {
@@ -271,8 +271,8 @@ class Trial {
   TrialFolder folder_;
   TrialReport report_;
   Notes notes_;
-  std::vector<std::string> are_own_;  ///< orders that keep everything where it is
-  std::vector<double> last_seconds_;  ///< of each order's last run, by the clock
+  std::vector<std::string> are_own_;  ///< names of orders that move nothing
+  std::vector<double> last_seconds_;  ///< wall-clock time of each order's last run
 };
 
 }  // namespace

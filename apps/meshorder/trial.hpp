@@ -11,7 +11,7 @@
 
 namespace meshorder::command {
 
-/// What is run, and how it is judged; see docs/try.md.
+/// The program to run, and how its runs are judged; see docs/try.md.
 struct TrialOptions {
   std::vector<std::string> command;
   std::vector<std::string> methods;  ///< empty: those of the subject
@@ -26,8 +26,8 @@ struct TrialOptions {
   double timeout_seconds = 600;
 };
 
-/// Runs a program in several orders. Throws InvalidArgument for faults in the subject's own order, or in all
-/// others, and Interrupted.
+/// Runs a program in several orders. Throws InvalidArgument if the subject's own order fails, or all others
+/// do, and Interrupted.
 TrialReport run_trial(const TrialSubject& subject, const TrialOptions& options, Progress& progress,
                       Notes& notes);
 

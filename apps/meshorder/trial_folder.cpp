@@ -23,8 +23,8 @@ constexpr std::size_t kMostFiles = 10'000;
 
 bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
 
-/// Calls `take` with the files below a folder, and the links to folders, by their paths in it. With `enters`
-/// also with the files in the folders that links lead to.
+/// Calls `take` with the files below a folder and the links to folders, except hidden ones. With `enters`,
+/// also with the files in folders that links lead to.
 void for_each_file(const fs::path& folder, bool enters,
                    const std::function<void(const fs::directory_entry&)>& take) {
   std::error_code code;
@@ -82,14 +82,14 @@ std::size_t TrialFolder::hash_of(const fs::path& path) {
 }
 
 void TrialFolder::find_companions(const fs::path& folder, const std::vector<std::string>& with) {
-  // what an order is made in is written to, so that no link may lead out of it
+  // an order is made in a copy of the folder, so no link there may lead out of it
   const bool enters = name_.empty();
   std::vector<std::pair<std::uintmax_t, std::string>> sizes;
   const auto add = [&](const fs::directory_entry& entry) {
     std::error_code ignored;
     const std::string name = entry.path().lexically_relative(folder).string();
     const bool is_file = entry.is_regular_file(ignored);
-    if (!is_file && (enters || !entry.is_directory(ignored))) return;  // leads nowhere, a device
+    if (!is_file && (enters || !entry.is_directory(ignored))) return;  // leads nowhere, or is a device
     sizes.emplace_back(is_file ? entry.file_size(ignored) : kMostCopied, name);
     companions_[name].source = entry.path();
     if (companions_.size() <= kMostFiles) return;
@@ -121,7 +121,7 @@ void TrialFolder::place(const std::string& name, Companion& companion) const {
   fs::create_directories(here.parent_path(), ignored);
   fs::remove_all(here, ignored);
   if (companion.is_copied) {
-    fs::copy_file(companion.source, here, ignored);  // one that cannot be read, the program cannot either
+    fs::copy_file(companion.source, here, ignored);  // the program cannot read such a file either
   } else {
     fs::create_symlink(companion.source, here, ignored);
     companion.there = stamp_of(companion.source, true);
@@ -152,7 +152,7 @@ void TrialFolder::add_file(std::size_t order, const std::string& name) {
   orders_[order][name] = {stamp_of(path, false), hash_of(path)};
 }
 
-/// Makes a file beside the mesh a part of all orders that lack it: it is another one in some order.
+/// Makes a file beside the mesh a part of all orders that lack it, because it differs in some order.
 void TrialFolder::move_into_orders(const std::string& name) {
   for (std::size_t order = 0; order < orders_.size(); ++order) {
     const fs::path path = folder_of_order(order) / name;
@@ -249,10 +249,10 @@ void TrialFolder::remove_new() const {
   std::vector<fs::path> found;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(run()))
     found.push_back(entry.path());
-  std::reverse(found.begin(), found.end());  // what is in a folder comes after it, and goes first
+  std::reverse(found.begin(), found.end());  // files before their folders
   for (const fs::path& path : found) {
     const std::string name = path.lexically_relative(run()).string();
-    if (!companions_.contains(name)) fs::remove(path, ignored);  // leaves folders that are not empty
+    if (!companions_.contains(name)) fs::remove(path, ignored);  // does not remove folders that are not empty
   }
 }
 

@@ -14,33 +14,33 @@
 namespace meshorder::command {
 
 /// A private folder in which a program runs on a mesh in one order after another, with copies of the files
-/// beside the mesh. A run finds the same files at the same paths as every other, and what it leaves is
+/// beside the mesh. Every run finds the same files at the same paths; what it leaves is
 /// removed.
 ///
-/// Files beside the mesh are copied, the smallest first, up to 64 MiB; the larger ones are links, and so are
-/// links to folders. Hidden ones are left out. A program can write into what is linked: this is noticed after
-/// the run, but not prevented. Where a folder is what is ordered, it is copied whole for each order, with the
-/// folders that links lead to, since orders are made in these copies.
+/// Files beside the mesh are copied, the smallest first, up to 64 MiB; larger ones become links, as do links
+/// to folders. Hidden files are left out. A program can write to linked files: this is noticed after
+/// the run, but not prevented. If a folder is ordered instead of a file, it is copied whole for each order,
+/// with the folders that links lead to, because orders are made in these copies.
 class TrialFolder {
  public:
-  /// @param folder  in which the mesh is
-  /// @param mesh    name of its file, order 0; empty where the folder itself is what is ordered
+  /// @param folder  folder of the mesh
+  /// @param mesh    name of its file, order 0; empty if the folder itself is ordered
   /// @param with    names of files and folders in the folder to copy; empty: all
-  /// Throws InvalidArgument for a name that is not there and for more than 10,000 files.
+  /// Throws InvalidArgument for a name that does not exist and for more than 10,000 files.
   TrialFolder(const std::filesystem::path& folder, std::string mesh, const std::vector<std::string>& with);
 
   /// Returns the program's current directory.
   [[nodiscard]] std::filesystem::path run() const { return private_.path() / "run"; }
-  /// Returns the prefix of the files that get what the program prints.
+  /// Returns the prefix of the files that receive what the program prints.
   [[nodiscard]] std::filesystem::path log() const { return private_.path() / "log"; }
-  /// Returns a path for outputs at which nothing is when a run begins.
+  /// Returns a path for outputs, where nothing exists when a run begins.
   [[nodiscard]] std::filesystem::path output() const { return private_.path() / "out"; }
 
-  /// Makes and returns the folder of an order, into which its files are written.
+  /// Makes and returns the folder of an order, in which its files have to be written.
   std::filesystem::path add_order(std::size_t order);
   /// Copies all files beside the mesh into the folder of an order.
   void copy_files(std::size_t order) const;
-  /// Takes note of the files that were written for an order: those that are as beside the mesh are none of
+  /// Records the files that were written for an order. Files equal to those beside the mesh are not part of
   /// it.
   void complete_order(std::size_t order);
   /// Removes the files of the order that was added last.
@@ -50,13 +50,13 @@ class TrialFolder {
 
   /// Puts the files of an order in place.
   void begin_run(std::size_t order);
-  /// Takes them away again, restores the files beside the mesh and removes everything else. Where `kept` is
+  /// Takes them away again, restores the files beside the mesh and removes everything else. If `kept` is
   /// not empty, first copies what the program wrote to this folder. Throws InvalidArgument if the program
-  /// changed its mesh or a file that is linked.
+  /// changed its mesh or a linked file.
   void end_run(std::size_t order, const std::filesystem::path& kept = {});
 
  private:
-  /// By which a change of a file is noticed.
+  /// Properties that show a change of a file.
   struct Stamp {
     std::uint64_t inode = 0;
     std::uint64_t size = 0;

@@ -50,13 +50,13 @@ sigset_t awaited_signals() {
   ::sigemptyset(&signals);
   ::sigaddset(&signals, SIGCHLD);
   for (const int signal : kEndings) {
-    struct sigaction now {};  // what is ignored, as under nohup, does not end a trial
+    struct sigaction now {};  // ignored signals, as under nohup, do not end a trial
     if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_IGN) ::sigaddset(&signals, signal);
   }
   return signals;
 }
 
-/// Waits for one of the blocked signals, for at most a tenth of a second; returns it, 0 if none came.
+/// Waits at most a tenth of a second for one of the blocked signals; returns it, or 0 if none came.
 int wait_for_signal(const sigset_t& signals) {
 #ifdef __linux__
   constexpr timespec kLongest{.tv_sec = 0, .tv_nsec = 100'000'000};
@@ -75,7 +75,7 @@ int wait_for_signal(const sigset_t& signals) {
 
 // ---- the child
 
-/// Says by its errno why the child could not begin.
+/// Reports the errno with which the child failed to begin, and ends it.
 [[noreturn]] void give_up(int report) {
   const int error = errno;
   (void)!::write(report, &error, sizeof error);
@@ -89,7 +89,7 @@ void open_as(const char* path, int flags, int descriptor, int report) {
   if (opened != descriptor) ::close(opened);
 }
 
-/// What the child needs, made before the fork: afterwards it calls system functions alone.
+/// Data of the child, made before the fork: after it, the child may only call system functions.
 struct Prepared {
   explicit Prepared(const TrialCommand& command)
       : folder(command.folder.string()),
@@ -137,7 +137,7 @@ struct Prepared {
 
 // ---- the process that waits
 
-/// Returns the children of this process that have not been waited for; none where the system does not say.
+/// Returns the children of this process that have not been waited for; none if the system cannot list them.
 std::vector<pid_t> children() {
   std::vector<pid_t> result;
 #ifdef __linux__
@@ -157,7 +157,7 @@ class Processes {
  public:
   explicit Processes(pid_t program) : program_(program) {}
 
-  /// Takes in those that have ended; returns whether the program is among them.
+  /// Waits for processes that have ended; returns whether the program is among them.
   bool reap(TrialRun& run) const {
     bool has_ended = false;
     int status = 0;
@@ -174,7 +174,7 @@ class Processes {
 
   void kill_program() const { ::kill(-program_, SIGKILL); }
 
-  /// Ends what the program left running, also what went out of its process group, and counts it.
+  /// Kills the processes that the program left running, also outside its process group, and counts them.
   void end_others(TrialRun& run) const {
     const pid_t group = program_;
     (void)::kill(-group, SIGKILL);
@@ -205,7 +205,7 @@ class Processes {
   pid_t program_;
 };
 
-/// Waits until the program ends, or ends it; returns the signal that interrupted this, or 0.
+/// Waits until the program ends, or kills it; returns the signal that interrupted the wait, or 0.
 int await(const Processes& processes, double timeout_seconds, TrialRun& run) {
   const Stopwatch stopwatch;
   const sigset_t awaited = awaited_signals();
@@ -220,7 +220,7 @@ int await(const Processes& processes, double timeout_seconds, TrialRun& run) {
   return interruption;
 }
 
-/// Returns the last line of a file that is not blank, at most `kMostOfLine` bytes of it.
+/// Returns the last line of a file that is not blank, cut to `kMostOfLine` bytes.
 std::string last_line(const fs::path& path) {
   constexpr std::uint64_t kTail = 4096;
   const InputFile file(path);
@@ -293,7 +293,7 @@ TrialRun run_program(const TrialCommand& command) {
   const bool was_executed = ::read(report[0], &error, sizeof error) != sizeof error;
   ::close(report[0]);
   if (interruption != 0) {
-    ::raise(interruption);  // which is blocked: it waits
+    ::raise(interruption);  // it is blocked, so it stays pending
     throw Interrupted();
   }
   if (!was_executed)

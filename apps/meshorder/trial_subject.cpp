@@ -34,8 +34,8 @@ std::string own_program() {
   return program.string();
 }
 
-/// Runs a program that makes an order. Throws CommandError with the last line that it prints if it fails, in
-/// which `shown` takes the place of `path`.
+/// Runs a program that makes an order. If it fails, throws CommandError with the last line that it printed,
+/// with `shown` in place of `path`.
 TrialRun run_to_order(const TrialCommand& command, const std::string& path, const std::string& shown) {
   TrialRun run = run_program(command);
   if (run.succeeded()) return run;
@@ -108,7 +108,7 @@ class TriedMesh final : public TrialSubject {
   }
 
  private:
-  /// Returns the command that makes an order.
+  /// Returns the command that a user can give to make an order.
   [[nodiscard]] std::string command_for(const TriedOrder& order) const {
     std::string command =
         fmt::format("meshorder order {} -o {}", in_shell(path_), in_shell("ordered-" + name()));
@@ -123,7 +123,7 @@ class TriedMesh final : public TrialSubject {
   OrderingOptions options_;
 };
 
-/// A case of OpenFOAM, whose cells renumberMesh moves.
+/// A case of OpenFOAM; renumberMesh moves its cells.
 class TriedCase final : public TrialSubject {
  public:
   TriedCase(const std::string& path, OrderingOptions options)

@@ -12,24 +12,24 @@
 
 namespace meshorder::command {
 
-/// What a program is tried on: a mesh, or a case of OpenFOAM.
+/// The mesh, or case of OpenFOAM, on which a program is tried.
 class TrialSubject : public Polymorphic {
  public:
-  /// Returns what replaces {} in the command, and what replaces {stem}.
+  /// Returns the replacement for {} in the command, and that for {stem}.
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual std::string stem() const = 0;
 
-  /// Returns a new folder with a copy of it.
+  /// Returns a new folder with a copy of the subject.
   [[nodiscard]] virtual TrialFolder folder(const std::vector<std::string>& with) const = 0;
 
-  /// Returns the orders that are tried where none are named.
+  /// Returns the orders that are tried if the user names none.
   [[nodiscard]] virtual std::vector<std::string> orders() const = 0;
 
-  /// Throws InvalidArgument for an order that there is not.
+  /// Throws InvalidArgument if no such order exists.
   virtual void check_order(const std::string& name) const = 0;
 
-  /// Writes it in another order, the one of that number in the folder, and completes `order`. Returns whether
-  /// that is its own order, in which everything stays. Throws CommandError where the order cannot be made.
+  /// Writes the subject in another order to the folder of that number, and completes `order`. Returns whether
+  /// this is its own order, in which nothing moves. Throws CommandError if the order cannot be made.
   virtual bool make(TriedOrder& order, TrialFolder& folder, std::size_t number) const = 0;
 };
 
@@ -37,11 +37,11 @@ class TrialSubject : public Polymorphic {
 struct OrderingOptions {
   int threads = 0;
   std::string ids = "renumber";      ///< as in `order`
-  std::vector<std::string> words{};  ///< further options of `order` and `openfoam`, passed on as they are
+  std::vector<std::string> words{};  ///< further options for `order` and `openfoam`, passed on unchanged
 };
 
-/// Returns the mesh, or the case where the path is that of a folder or a .foam file. Throws InvalidArgument
-/// and InputError for what cannot be tried.
+/// Returns the mesh, or the case if the path is a folder or a .foam file. Throws InvalidArgument
+/// and InputError for a path that cannot be tried.
 std::unique_ptr<TrialSubject> trial_subject(const std::string& path, OrderingOptions options);
 
 }  // namespace meshorder::command

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// options of `order` that are passed on to it
+// options that `order` has as well
 constexpr std::array kPassedOn{"--for", "--seed", "--limit-memory", "--allow-includes-from", "--trust"};
 
 struct TryArguments : Common, TrialOptions {
@@ -37,7 +37,7 @@ struct TryArguments : Common, TrialOptions {
   OrderOptions ordering;
 };
 
-/// Throws unless the command takes the mesh; a case it finds in its folder.
+/// Throws unless the command names the mesh; for a case this is not needed, as it runs in the case's folder.
 void check_command(const TrialOptions& options, const TrialSubject& subject) {
   if (options.command.empty()) {
     throw InvalidArgument(
@@ -60,7 +60,7 @@ void run(const TryArguments& arguments) {
       trial_subject(arguments.input, {arguments.threads, arguments.ids, arguments.to_order});
   check_command(arguments, *subject);
   for (const std::string& name : arguments.methods) subject->check_order(name);
-  std::optional<OutputFile> page;  // fails, before anything runs, if it cannot be written
+  std::optional<OutputFile> page;  // throws, before anything runs, if the page cannot be written
   if (!arguments.page.empty()) {
     std::error_code ignored;
     if (fs::equivalent(arguments.page, arguments.input, ignored))
@@ -84,7 +84,7 @@ void run(const TryArguments& arguments) {
   console.print_json(result);
 }
 
-/// Returns the options of the command line that `order` takes as well.
+/// Returns the options on the command line that `order` has as well.
 std::vector<std::string> passed_on(const CLI::App& subcommand) {
   std::vector<std::string> words;
   const auto add = [&](const CLI::Option* option) {
@@ -98,7 +98,7 @@ std::vector<std::string> passed_on(const CLI::App& subcommand) {
   return words;
 }
 
-/// The words after `--`.
+/// Returns the words after `--`.
 std::vector<std::string>& program_to_try() {
   static std::vector<std::string> words;
   return words;

@@ -46,7 +46,7 @@ std::string time_of(const TrialReport& report, const TriedOrder& order) {
   return is_in_seconds(report) ? duration(median(order.times)) : fmt::format("{:.4g}", median(order.times));
 }
 
-/// The time of an order as a share of the mesh's own, with its interval.
+/// Returns a bar: the time of an order as a share of the longest, with its interval.
 std::string track(const TimeRatio& speedup, double longest) {
   const auto percent = [&](double ratio) { return 100 / ratio / longest; };
   std::string result =

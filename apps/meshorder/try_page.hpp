@@ -7,8 +7,8 @@
 
 namespace meshorder::command {
 
-/// Returns a page for the browser, complete in itself: the sentence, a bar with its interval for each order,
-/// and the commands. `input` is the mesh or case as it was named.
+/// Returns a page for the browser that needs no other files: the sentence, a bar with its interval for each
+/// order, and the commands. `input` is the mesh or case as the user named it.
 std::string trial_page(const TrialReport& report, const std::string& input);
 
 }  // namespace meshorder::command

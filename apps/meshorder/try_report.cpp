@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns after how many runs the order has saved what it cost; nothing if it saves no seconds.
+/// Returns the number of runs after which the order has saved its cost; nothing if it saves no seconds.
 std::optional<double> runs_to_pay(const TrialReport& report, std::size_t order) {
   if (!is_in_seconds(report) || !is_faster(report)) return std::nullopt;
   const double gain = median(report.orders[0].times) * (1 - 1 / report.trials.speedup(order).ratio);
@@ -30,7 +30,7 @@ std::string number(double ratio) {
   return std::abs(ratio - 1) < kNear ? fmt::format("{:.3f}", ratio) : fmt::format("{:.2f}", ratio);
 }
 
-/// Returns "1.08–1.16", "" where too few pairs were run.
+/// Returns "1.08–1.16", or "" if too few pairs were run.
 std::string interval(const TimeRatio& speedup) {
   return std::isinf(speedup.high) ? "" : number(speedup.low) + "–" + number(speedup.high);
 }

@@ -18,34 +18,34 @@ namespace meshorder::command {
 /// An order in which a program was run. The first one is the mesh's own.
 struct TriedOrder {
   std::string name;             ///< "original", "rcm", "hilbert/hilbert"
-  OrderNames methods;           ///< as `order` takes them
-  bool by_auto = false;         ///< `auto` takes it
+  OrderNames methods;           ///< for the options of `order`
+  bool by_auto = false;         ///< `auto` chose it
   std::string made_by{};        ///< the command that makes it
-  double order_seconds = 0;     ///< what that took, without reading and writing
+  double order_seconds = 0;     ///< seconds of that command, for a mesh with reading and writing
   std::vector<double> times{};  ///< of the runs that count
-  double count = -1;            ///< that --count captured, negative: none
+  double count = -1;            ///< number captured by --count; negative: none
   std::int64_t peak_bytes = 0;
-  std::string fault{};        ///< why it is out of the trial; empty: it is not
-  bool is_different = false;  ///< it is, as its results differ
+  std::string fault{};        ///< why it was excluded from the trial; empty: it was not
+  bool is_different = false;  ///< excluded because its results differ
 };
 
-/// What a trial found.
+/// Result of a trial.
 struct TrialReport {
   std::vector<std::string> command;
   std::string time;  ///< "cpu", "wall" or a regular expression
   std::vector<TriedOrder> orders;
   PairedTrials trials{0};
-  std::vector<std::string> left_out;  ///< orders that there was no time for
+  std::vector<std::string> left_out;  ///< names of orders for which there was no time
   double run_seconds = 0;             ///< of all runs, by the clock
 };
 
-/// Returns whether times are in seconds, not in a number that the program prints.
+/// Returns whether times are in seconds, as opposed to a number that the program prints.
 bool is_in_seconds(const TrialReport& report);
 
 /// Returns whether the best order is faster than the mesh's own.
 bool is_faster(const TrialReport& report);
 
-/// Returns the sentence that says what the trial found.
+/// Returns the result of the trial in one sentence.
 std::string trial_in_words(const TrialReport& report);
 
 /// Prints the sentence and a table of the orders.

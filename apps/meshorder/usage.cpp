@@ -11,7 +11,7 @@
 namespace meshorder::command {
 namespace {
 
-/// The subcommand that the arguments name, as far as they were understood, and its words: "meshorder models".
+/// The innermost subcommand that was parsed, and the words to write for it: "meshorder models".
 struct Place {
   const CLI::App* command;
   std::string words;
@@ -35,7 +35,7 @@ std::vector<std::string> subcommands_of(const CLI::App& command) {
   return names;
 }
 
-/// Returns the names of the options of a command and of those that it is part of.
+/// Returns the names of the options of a command and of its parents.
 std::vector<std::string> options_of(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::App* app = &command; app != nullptr; app = app->get_parent()) {
@@ -47,7 +47,7 @@ std::vector<std::string> options_of(const CLI::App& command) {
   return names;
 }
 
-/// Returns the first word that names an option which there is not, without its value; "" if there is none.
+/// Returns the first left-over word that looks like an option, without its value; "" if there is none.
 std::string unknown_option(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (word == "--") break;
@@ -56,7 +56,7 @@ std::string unknown_option(const std::vector<std::string>& words) {
   return "";
 }
 
-/// Returns what to write after `order` where a mesh is named and no output: "part.msh -o ordered-part.msh".
+/// Returns the words after `order` if a mesh but no output is named: "part.msh -o ordered-part.msh".
 std::optional<std::string> line_with_output(const CLI::App& command) {
   const CLI::Option* const mesh = command.get_option_no_throw("MESH");
   const CLI::Option* const output = command.get_option_no_throw("--output");

@@ -12,23 +12,23 @@ class ParseError;
 
 namespace meshorder::command {
 
-/// Returns what is wrong with an argument like `--maps=`, after which the parser would take the next one for
-/// the value; nothing if there is none.
+/// Returns what is wrong with an argument like `--maps=`, for which the parser would take the next one as
+/// the value; nothing if there is no such argument.
 std::optional<std::string> option_without_value(const std::vector<std::string>& arguments);
 
-/// Returns the arguments with `help WORDS…` and `version` as the options that mean the same.
+/// Returns the arguments with `help WORDS…` and `version` replaced by the equivalent options.
 std::vector<std::string> with_words_as_options(std::vector<std::string> arguments);
 
-/// Has the options of a command and of its subcommands refuse an empty text: more often than a value, it is a
-/// variable of a script that is not set.
+/// Makes the options of a command and of its subcommands refuse an empty text, which usually comes from
+/// a variable of a script that is not set.
 void refuse_empty_values(CLI::App& command);
 
-/// Returns "unknown command 'ordr'; did you mean 'order'?" if the parsed arguments name a command that there
-/// is not.
+/// Returns "unknown command 'ordr'; did you mean 'order'?" if the parsed arguments name a command that does
+/// not exist.
 std::optional<std::string> unknown_command(const CLI::App& app);
 
-/// Returns what is wrong with the parsed arguments and which help to see: first commands and options that
-/// there are not, with the nearest one that there is, else the parser's own error.
+/// Returns what is wrong with the parsed arguments and which help to read: first unknown commands and
+/// options, with the nearest known one, else the parser's own error.
 std::string usage_fault(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace meshorder::command

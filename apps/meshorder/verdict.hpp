@@ -10,15 +10,15 @@
 
 namespace meshorder::command {
 
-/// Prints the line that gives the mesh the order of a candidate.
+/// Prints the command that makes the order of a candidate.
 void print_line_for(const Console& console, const Candidate& candidate, bool is_matrix,
                     const std::string& mesh);
 
-/// Prints the line that makes the order which the sentence on a mesh names; where nothing is gained, whether
-/// `order` moves the mesh all the same.
+/// Prints the command for the order that the verdict names. If nothing is gained, prints whether
+/// `order` would move the mesh all the same.
 void print_next(const Console& console, const Advice& advice, const std::string& mesh);
 
-/// Prints what the mesh's order costs, kernel by kernel, and what others are worth.
+/// Prints the times of the kernels in the present order and the speedups of others.
 void print_times(const Console& console, const Advice& advice);
 
 /// Returns the keys that docs/json.md lists.

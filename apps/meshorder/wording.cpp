@@ -28,7 +28,7 @@ std::vector<std::pair<std::string, Index>> type_counts(const Mesh& mesh) {
   for (Index first = 0, end = 0; first < mesh.cell_count(); first = end) {
     while (end < mesh.cell_count() && is_as(first, end)) ++end;
     const Shape shape = mesh.cells.shapes[first];
-    const bool fixed = corners(shape, 0) > 0;  // polygons are one type
+    const bool fixed = corners(shape, 0) > 0;  // polygons are one type whatever their size
     counts[{-dimension(shape), static_cast<int>(shape), fixed ? mesh.cells.vertex_count(first) : 0}] +=
         end - first;
   }
@@ -137,7 +137,7 @@ std::string replaced(std::string text, std::string_view what, const std::string&
 
 std::string ordered_name(const std::string& mesh) {
   const std::filesystem::path file = std::filesystem::path(mesh).filename();
-  // outputs are not compressed
+  // outputs are never compressed
   return "ordered-" + (file.extension() == ".gz" ? file.stem() : file).string();
 }
 

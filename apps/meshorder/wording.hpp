@@ -43,10 +43,10 @@ std::string groups_in_words(const Grouping& grouping);
 /// Adds a note for each component whose eigensolver did not converge.
 void note_convergence(const std::vector<FiedlerComponent>& components, const std::string& of, Notes& notes);
 
-/// Returns the name that proposals give to the mesh in a new order: "ordered-dragon.veg".
+/// Returns the file name that messages propose for the mesh in a new order: "ordered-dragon.veg".
 std::string ordered_name(const std::string& mesh);
 
-/// Returns a bar that is a share, 0 … 1, of `width` blocks long, at least a thin one.
+/// Returns a bar whose length is a share, 0 … 1, of `width` blocks; at least a thin one.
 std::string bar(double share, int width);
 
 /// Returns a word that a shell reads as this text.

@@ -15,23 +15,23 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// What a rank has of a mesh that many ranks share. Vertices are numbered across the ranks from 0 on: those
-/// that rank 0 owns, those of rank 1, and so on.
+/// One rank's share of a mesh. Vertices are numbered across the ranks from 0 on: first those that rank 0
+/// owns, then those of rank 1, and so on.
 struct RankMesh {
   std::int64_t vertex_count = 0;                    ///< vertices that this rank owns
   std::span<const std::int64_t> cell_offsets = {};  ///< elements + 1, ascending from 0; none: no elements
   /// Numbers of the elements' vertices, whichever rank owns these.
   std::span<const std::int64_t> cell_vertices = {};
-  std::span<const double> points = {};  ///< x y z of each own vertex; or none, on all ranks
+  std::span<const double> points = {};  ///< x y z of each own vertex; or none on all ranks
 };
 
-/// The same on all ranks.
+/// Options of a call; the same on all ranks.
 struct RankOptions {
   std::string method = "spectral";  ///< vertex method of a part, see `vertex_methods`
-  /// Of `order_parts`: "ptscotch", "hilbert", "rsb": recursive spectral bisection, or "order": equal ranges
-  /// of one order of the whole mesh, by the method "fiedler" only.
+  /// How `order_parts` makes the parts: "ptscotch", "hilbert", "rsb" (recursive spectral bisection), or
+  /// "order" (equal ranges of one order of the whole mesh, by the method "fiedler" only).
   std::string partition = "ptscotch";
-  std::string balance = "vertices";  ///< of `order_parts`: "vertices" or "cells" are shared out evenly
+  std::string balance = "vertices";  ///< of `order_parts`: every part gets equally many "vertices" or "cells"
   std::uint64_t seed = 0;
   std::int32_t parts = 0;    ///< of `order_parts`; 0: one for each rank
   std::int32_t threads = 1;  ///< of this rank
@@ -39,18 +39,18 @@ struct RankOptions {
   bool interface_last = false;
 };
 
-/// Order of what a rank has.
+/// Order of one rank's vertices and elements.
 struct RankOrder {
   std::vector<std::int64_t> new_numbers;  ///< of each own vertex, within the rank's own range
-  /// The elements in their new order, by `lexmax`: entry k is the old place of the element that comes k-th.
+  /// The elements in their new order, by `lexmax`: entry k is the old place of the element at new place k.
   std::vector<std::int64_t> cell_order;
 };
 
-/// Parts of a mesh, and the order in which they and their vertices follow each other.
+/// Parts of a mesh in their order, and the order of their vertices.
 struct PartOrder {
   std::vector<std::int64_t> new_numbers;  ///< of each own vertex
-  /// First new number of each part, and the end of the last one's: the same on all ranks. Vertices that no
-  /// element uses have the numbers from there on.
+  /// First new number of each part, then the end of the last part; the same on all ranks. Vertices that no
+  /// element uses have the numbers from that end on.
   std::vector<std::int64_t> part_starts;
   /// Part of each element: that of its vertex with the largest new number.
   std::vector<std::int64_t> cell_parts;
@@ -82,7 +82,7 @@ inline mo_mpi_options to_c(const RankOptions& options) {
           .reserved = 0};
 }
 
-/// A negative count is for the library to refuse, on all ranks.
+/// Returns the count as a size, 0 for a negative one: the library refuses that on all ranks.
 inline std::size_t room_for(std::int64_t count) { return count > 0 ? static_cast<std::size_t>(count) : 0; }
 
 inline void throw_unless_ok(mo_status status) {
@@ -91,17 +91,17 @@ inline void throw_unless_ok(mo_status status) {
 
 }  // namespace detail
 
-/// Orders the vertices of every rank among themselves: each stays with its owner. The ends of a rank's order
-/// turn towards the ranks before and after it. Every rank has to call it.
+/// Orders the vertices of every rank among themselves: each stays with its owner. A rank's order begins near
+/// the rank before it and ends near the rank after it, if that can be. Every rank has to call it.
 ///
 /// @param communicator  of the ranks that share the mesh
 /// @param mesh          of this rank. Elements may be on several ranks (ghost layers); each rank orders all
-///                      that it has
+///                      of its own
 /// @param options       the same on all ranks; `parts`, `partition` and `balance` are not used
-/// @throws Error on all ranks where one fails: for an unknown method, for numbers of vertices that there are
-///         not, for a geometric method without coordinates
-/// @note The same order for the same mesh on the same ranks. O(sum of element sizes squared) memory for the
-///       graph, and what the method costs.
+/// @throws Error on all ranks if one fails: for an unknown method, for vertex numbers that do not exist, or
+///         for a geometric method without coordinates
+/// @note The same mesh on the same ranks gives the same order. Memory: O(sum of element sizes squared) for
+///       the graph, and that of the method.
 inline RankOrder order_ranks(MPI_Comm communicator, const RankMesh& mesh, const RankOptions& options = {}) {
   const mo_mpi_mesh given = detail::to_c(mesh);
   const mo_mpi_options wanted = detail::to_c(options);
@@ -113,15 +113,15 @@ inline RankOrder order_ranks(MPI_Comm communicator, const RankMesh& mesh, const 
   return order;
 }
 
-/// Cuts the mesh into parts, orders each, and numbers them one after another, so that parts that touch are
-/// near each other. Moving vertices and elements to their new owners is left to the caller. Every rank has to
+/// Cuts the mesh into parts, orders each, and numbers them one after another, so that touching parts are
+/// near each other. The caller has to move vertices and elements to their new owners. Every rank has to
 /// call it.
 ///
 /// @param communicator  of the ranks that share the mesh
 /// @param mesh          of this rank, with coordinates; each element on one rank
 /// @param options       the same on all ranks
-/// @throws Error as above
-/// @note Parts by PT-Scotch need MPI_THREAD_MULTIPLE; without it they are those of "hilbert".
+/// @throws Error as `order_ranks`
+/// @note PT-Scotch needs MPI_THREAD_MULTIPLE; without it "hilbert" makes the parts.
 inline PartOrder order_parts(MPI_Comm communicator, const RankMesh& mesh, const RankOptions& options = {}) {
   const mo_mpi_mesh given = detail::to_c(mesh);
   const mo_mpi_options wanted = detail::to_c(options);

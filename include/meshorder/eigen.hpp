@@ -2,8 +2,8 @@
 #pragma once
 
 /// @file
-/// Meshes and matrices of Eigen, as libigl has them: V with a row for each vertex, F with a row for each
-/// cell, in either storage order. Header only; the program that includes it brings Eigen 3.4.
+/// Meshes and matrices of Eigen in libigl's layout: V with a row for each vertex, F with a row for each cell,
+/// in either storage order. Header only; the program that includes it provides Eigen 3.4.
 
 #include <meshorder/error.hpp>
 #include <meshorder/order.hpp>
@@ -21,9 +21,9 @@ inline namespace v0_3 {
 
 /// Returns a view of the rows of a matrix as points.
 ///
-/// @param points  n × 1, 2 or 3 of float or double: a matrix, map or block, not an expression to be computed.
-/// It must live
-///                as long as the view is used
+/// @param points  n × 1, 2 or 3 of float or double: a matrix, map or block, not an unevaluated expression. It
+///                must live as long as the view
+///                is used
 /// @throws InvalidArgument for more columns: a matrix with a column for each point has to be transposed
 template <class Derived>
 [[nodiscard]] PointsView points_view(const Eigen::DenseBase<Derived>& points MESHORDER_LIFETIMEBOUND) {
@@ -54,8 +54,8 @@ template <class Scalar, int Options, class StorageIndex>
           .neighbours = {matrix.innerIndexPtr(), matrix.nonZeros()}};
 }
 
-/// Returns the permutation as Eigen has it: P * x moves the rows of x, A.twistedBy(P) rows and columns of a
-/// matrix. O(n).
+/// Returns the permutation as an Eigen matrix P: P * x moves the rows of x, A.twistedBy(P) moves rows and
+/// columns of a matrix. O(n).
 [[nodiscard]] inline Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index> permutation_matrix(
     const Permutation& permutation) {
   const auto map = permutation.old_to_new();
@@ -71,7 +71,7 @@ template <class Scalar, int Options, class StorageIndex>
 /// @param methods  names of the two methods
 /// @param options  as of `order_mesh`
 /// @throws as `order_mesh` and `points_view`
-/// @note As of `order_mesh`, and a copy of the cells.
+/// @note Cost of `order_mesh`, and a copy of the cells.
 template <class V, class F>
 [[nodiscard]] MeshOrder order_mesh(const Eigen::DenseBase<V>& points, const Eigen::DenseBase<F>& cells,
                                    Shape shape, const MeshMethods& methods = {},
@@ -83,10 +83,10 @@ template <class V, class F>
                     methods, options);
 }
 
-/// The same for segments, triangles or tetrahedra, which F has 2, 3 or 4 columns of.
+/// The same for segments, triangles or tetrahedra: F has 2, 3 or 4 columns.
 ///
-/// @throws InvalidArgument for other numbers of columns, besides: name the shape, or transpose F if it has a
-/// column for each
+/// @throws InvalidArgument also for other numbers of columns: name the shape, or transpose F if it has a
+///         column for each
 ///         cell
 template <class V, class F>
 [[nodiscard]] MeshOrder order_mesh(const Eigen::DenseBase<V>& points, const Eigen::DenseBase<F>& cells,
@@ -102,11 +102,11 @@ template <class V, class F>
   return order_mesh(points, cells, shape, methods, options);
 }
 
-/// Moves the rows of a matrix or vector to their new places: all that belongs to vertices, or to cells.
+/// Moves the rows of a matrix or vector to their new places, for values of vertices or of cells.
 ///
 /// @param permutation  of n places
 /// @param values       n × k, in either storage order; of a trivially copyable type
-/// @throws InvalidArgument if it has not n rows; nothing is changed then
+/// @throws InvalidArgument if it does not have n rows; nothing is changed then
 /// @note O(n · k), with a copy of the matrix.
 template <class Derived>
 void move_rows(const Permutation& permutation, Eigen::PlainObjectBase<Derived>& values) {
@@ -126,15 +126,15 @@ void move_rows(const Permutation& permutation, Eigen::PlainObjectBase<Derived>& 
   }
 }
 
-/// Replaces the vertex numbers in cells by the new ones: F after its vertices moved. Throws as
+/// Replaces the vertex numbers in cells by the new ones, after the vertices have moved. Throws as
 /// `Permutation::renumber`. O(m · k).
 template <class Derived>
 void renumber(const Permutation& vertices, Eigen::PlainObjectBase<Derived>& cells) {
   vertices.renumber({cells.data(), cells.size()});
 }
 
-/// Orders a mesh and moves V and F. Returns the order, for all else that belongs to vertices and cells
-/// (`move_rows`). Parameters, exceptions and cost as of `order_mesh`.
+/// Orders a mesh and moves V and F. Returns the order, by which `move_rows` moves all other values of
+/// vertices and cells. Parameters, exceptions and cost as of `order_mesh`.
 template <class V, class F>
 MeshOrder reorder(Eigen::PlainObjectBase<V>& points, Eigen::PlainObjectBase<F>& cells,
                   const MeshMethods& methods = {}, const OrderOptions& options = {}) {

@@ -26,11 +26,11 @@ enum class Code : int {
 /// Base class of all exceptions that meshorder throws, besides `std::bad_alloc`.
 ///
 /// Exceptions of a user's callback (progress, companion, own method) pass through unchanged. After an
-/// exception the input arguments have the values that they had before the call; output arrays are
+/// exception the inputs have the values that they had before the call; outputs are
 /// unspecified.
 class MESHORDER_API Error : public std::runtime_error {
  public:
-  /// @param code     kind of the failure; `Code::io` is thrown as this class itself
+  /// @param code     kind of the failure; this class itself is thrown for `Code::io`
   /// @param message  one sentence: what is wrong, where, and what would be right
   Error(Code code, const std::string& message) : std::runtime_error(message), code_(code) {}
 
@@ -60,11 +60,11 @@ struct Location {
 class MESHORDER_API InputError : public Error {
  public:
   /// @param location  where the fault is
-  /// @param what      the fault, maybe with names of the file, of which `what()` shows line ends by escapes
+  /// @param what      the fault; may quote names from the file, whose line ends `what()` escapes
   /// @param remedy    what would be right; may be empty
   InputError(Location location, const std::string& what, const std::string& remedy);
 
-  /// The same for a fault of the file as a whole.
+  /// The same for a fault that has no line or byte.
   InputError(const std::string& file, const std::string& what, const std::string& remedy)
       : InputError(Location{file, 0, -1}, what, remedy) {}
 
@@ -75,13 +75,13 @@ class MESHORDER_API InputError : public Error {
   std::shared_ptr<const Location> location_;  // shared: copying an exception must not throw
 };
 
-/// Thrown where numbers would not fit: 2³¹ or more vertices, cells or degrees of freedom; 2³¹ or more entries
-/// for a METIS of 32 bits; a result that the caller's integer type cannot hold.
+/// Thrown if numbers do not fit: 2³¹ or more vertices, cells or degrees of freedom; 2³¹ or more entries for a
+/// METIS of 32 bits; a result that the caller's integer type cannot hold.
 struct MESHORDER_API TooLarge : Error {
   explicit TooLarge(const std::string& message) : Error(Code::too_large, message) {}
 };
 
-/// Thrown for a method or a compression that this build lacks; the message names the build option that brings
+/// Thrown for a method or a compression that this build lacks; the message names the build option that adds
 /// it.
 struct MESHORDER_API Unavailable : Error {
   explicit Unavailable(const std::string& message) : Error(Code::unavailable, message) {}

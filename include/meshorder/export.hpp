@@ -2,10 +2,10 @@
 #pragma once
 
 /// @file
-/// Macros of the public headers. They are not meant for use outside them.
+/// Macros of the public headers, not for use elsewhere.
 
 /// Marks what a shared library exports. Empty for static libraries. `MESHORDER_SHARED` is set by the CMake
-/// targets and the pkg-config files of shared builds, `MESHORDER_BUILDING` only while the library itself is
+/// targets and pkg-config files of shared builds, `MESHORDER_BUILDING` only while the library itself is
 /// compiled.
 #if !defined(MESHORDER_SHARED)
 #define MESHORDER_API

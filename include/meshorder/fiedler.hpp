@@ -17,7 +17,7 @@ struct FiedlerComponent {
   Index size = 0;         ///< vertices
   double lambda2 = 0;     ///< second-smallest eigenvalue of the component's Laplacian; 0 for one vertex
   double residual = 0;    ///< ‖L x − λ x‖ / ‖x‖, absolute
-  int iterations = 0;     ///< of LOBPCG on the finest graph; 0 where a dense eigensolver gave the answer
+  int iterations = 0;     ///< of LOBPCG on the finest graph; 0 where a dense eigensolver was used
   bool converged = true;  ///< residual ≤ tolerance · λ₂
 
   bool operator==(const FiedlerComponent&) const = default;
@@ -26,7 +26,7 @@ struct FiedlerComponent {
 /// The Fiedler vectors of all connected components of a graph.
 struct Fiedler {
   /// n entries. In each component ‖x‖₂ = 1 and Σ x = 0; an isolated vertex has 0. Sign: of the vertices with
-  /// at least half of the largest magnitude, the one with the smallest number has a negative entry.
+  /// at least half the largest magnitude, the one with the smallest number has a negative entry.
   std::vector<double> values;
   std::vector<FiedlerComponent> components;  ///< largest first, ties by their smallest vertex
   std::vector<Index> component_of;           ///< n entries: position in `components`
@@ -37,21 +37,21 @@ struct Fiedler {
 /// Computes the Fiedler vector of every connected component.
 ///
 /// The Fiedler vector is the eigenvector of the second-smallest eigenvalue of the combinatorial Laplacian L =
-/// D − A (Fiedler 1973, Algebraic connectivity of graphs). Components of up to 60 vertices go to a dense
-/// eigensolver, larger ones are coarsened by aggregation and solved by LOBPCG (Knyazev 2001, Toward the
-/// optimal preconditioned eigensolver) from level to finer level.
+/// D − A (Fiedler 1973, Algebraic connectivity of graphs). A dense eigensolver solves components of up to 60
+/// vertices. Larger ones are coarsened by aggregation and solved level by level, coarsest first, by LOBPCG
+/// (Knyazev 2001, Toward the optimal preconditioned eigensolver).
 ///
 /// @param graph    n vertices; weights > 0 or none, the largest at most 1e100 times the smallest
-/// @param options  tolerance, max_iterations, seed, start, check, symmetry and run; the rest is not used. The
-///                 default tolerance of 0.1 suffices for an order; take 1e-8 for a vector to be used as such
-/// @return vector and report for each component. A component that does not converge keeps its best vector,
-///         with `converged` false: a status, not an error
-/// @throws InvalidArgument if `check` refuses the graph, or the size of `start` is neither 0 nor n, or an
-///         entry of it is not finite
+/// @param options  tolerance, max_iterations, seed, start, check, symmetry and run; others are ignored. The
+///                 default tolerance of 0.1 suffices for an order; take 1e-8 if the values themselves matter
+/// @return the vectors, and a report for each component. A component that does not converge keeps its best
+///         vector, with `converged` false; that is not an error
+/// @throws InvalidArgument if `check` refuses the graph, or if `start` has a size other than 0 and n or an
+///         entry that is not finite
 /// @throws TooLarge for more than 2,147,483,647 vertices
 /// @throws Stopped if the progress callback returned false
 /// @note O((n + edges) · iterations), about six iterations on meshes; memory about 3.5 times the graph's. The
-///       result does not depend on the number of threads, in any bit. Reentrant.
+///       result is the same, bit for bit, on any number of threads. Reentrant.
 MESHORDER_API Fiedler fiedler_vector(const GraphView& graph, const OrderOptions& options = {});
 
 }  // namespace v0_3

@@ -28,7 +28,7 @@ struct FormatInfo {
   std::string name = {};                     ///< as in `ReadOptions::format`: "gmsh", "vtu"
   std::vector<std::string> extensions = {};  ///< lower case, with the dot
   bool single_file = true;                   ///< false for formats of several files (TetGen)
-  bool groups_cells_by_type = false;         ///< cells of a type stand together in the file
+  bool groups_cells_by_type = false;         ///< the file keeps cells of one type together
 };
 
 /// Lists the formats of this build, in the order in which help shows them.
@@ -36,42 +36,42 @@ struct FormatInfo {
 
 /// Options of `read_mesh`.
 struct ReadOptions {
-  std::string format = {};  ///< name of the format; empty: by the extension, in memory by the first bytes
-  std::string name = {};    ///< of bytes and streams in messages; its extension is not looked at
-  /// For formats of several files in memory: returns the bytes of the file of that name, none where there is
+  std::string format = {};  ///< name of the format; empty: by the extension, or in memory by the first bytes
+  std::string name = {};    ///< of bytes and streams, for messages; its extension does not choose the format
+  /// For formats of several files in memory: returns the bytes of the file of that name, none if there is
   /// no such file. An exception passes through.
   std::function<std::string(std::string_view name)> companion = {};
   Notes* notes = nullptr;  ///< receives warnings; null: they are dropped
   Run run = {};            ///< `threads`; readers report no progress
-  /// The most bytes that a file may take for what it claims rather than holds: compressed or repeated values,
-  /// sizes without values, ranges of numbers. None: 256 MiB and 100 times the size of its files, at most
+  /// Limit in bytes on memory for data larger than its stored form: compressed or repeated values, sizes
+  /// without values, ranges of numbers. None: 256 MiB plus 100 times the size of its files, but at most
   /// three quarters of the memory that this process may have.
   std::optional<std::uint64_t> memory_limit = {};
-  /// Folders where files may be that this one names to be read with it, besides its own folder. Links are
-  /// followed before.
+  /// Folders, besides the file's own, from which other files that it names may be read. Links are resolved
+  /// first.
   std::vector<std::filesystem::path> include_folders = {};
 };
 
 /// Reads a mesh from a file.
 ///
-/// Files of one mesh that do not belong together, as a stopped process leaves them, are refused where the
-/// format marks them (TetGen, XDMF). Nothing is written.
+/// Files that do not belong together, as an interrupted writer leaves them, are refused if the format marks
+/// them (TetGen, XDMF). Nothing is written.
 ///
-/// @param path     the file; for formats of several, any of them
+/// @param path     the file; any of them if the format has several
 /// @param options  see `ReadOptions`
 /// @return a mesh with at least one cell that `check_mesh` accepts
 /// @throws InputError for a file that is missing, faulty or without cells, with place and remedy; for more
-///         than 2,147,483,647 vertices or cells; for one that claims more than `options.memory_limit` or
-///         names files elsewhere; for an unknown extension, with the known ones
-/// @throws InvalidArgument for an unknown format, with the known ones
-/// @throws Unavailable for a format or a compression of which this build lacks the library
+///         than 2,147,483,647 vertices or cells; for data that exceed `options.memory_limit`; for names of
+///         files in other folders; for an unknown extension (the message lists the known ones)
+/// @throws InvalidArgument for an unknown format (the message lists the known ones)
+/// @throws Unavailable for a format or a compression whose library this build lacks
 [[nodiscard]] MESHORDER_API Mesh read_mesh(const std::filesystem::path& path,
                                            const ReadOptions& options = {});
 
-/// Reads a mesh from the bytes of a file; throws likewise. Nothing of `bytes` is referred to afterwards.
+/// Reads a mesh from the bytes of a file; throws likewise. The mesh does not refer to `bytes`.
 [[nodiscard]] MESHORDER_API Mesh read_mesh(std::span<const std::byte> bytes, const ReadOptions& options = {});
 
-/// Reads a mesh from the rest of a stream, which is read to its end; throws likewise.
+/// Reads a mesh from a stream, up to its end; throws likewise.
 [[nodiscard]] MESHORDER_API Mesh read_mesh(std::istream& stream, const ReadOptions& options = {});
 
 /// Options of `keep_cells`.
@@ -79,22 +79,22 @@ struct KeepOptions {
   /// Name of the format that the mesh will be written in; empty: none in particular.
   std::string format = {};
   int dimension = -1;      ///< keep the cells of this dimension only, 0 to 3; −1: of all dimensions
-  Notes* notes = nullptr;  ///< receives what was left out, one line for each type of cells; null: dropped
+  Notes* notes = nullptr;  ///< receives what was left out, one line for each cell type; null: dropped
 };
 
-/// Leaves cells out of a mesh: those of other dimensions than the wanted one, then those that the format has
-/// no place for, unless one of them has the highest dimension of the mesh (`write_mesh` refuses such a mesh).
-/// Called before `reorder`, it makes the order and its permutations describe the file that `write_mesh`
+/// Removes cells from a mesh: first those of other dimensions than the wanted one, then those that the format
+/// cannot hold, unless one of these has the highest dimension (`write_mesh` refuses such a mesh). Call it
+/// before `reorder`: the order and its permutations then describe the file that `write_mesh`
 /// makes.
 ///
-/// Vertices stay, all of them. Arrays, sets, ids and blocks follow the cells. Sets and arrays on some cells
-/// go with the last of their cells, which `notes` tells.
+/// All vertices stay. Arrays, sets, ids and blocks follow the cells. Sets, and arrays on some cells, are
+/// removed if none of their cells is left; `notes` reports them.
 ///
 /// @param mesh     changed in place
 /// @param options  see `KeepOptions`
 /// @return the old positions of the cells that are kept, ascending
-/// @throws InvalidArgument for a mesh that `check_mesh` refuses, an unknown format, a dimension out of range
-///         and one of which the mesh has no cells
+/// @throws InvalidArgument for a mesh that `check_mesh` refuses, an unknown format, a dimension out of range,
+///         and a dimension of which the mesh has no cells
 /// @note O(size of the mesh).
 MESHORDER_API std::vector<Index> keep_cells(Mesh& mesh, const KeepOptions& options);
 
@@ -104,25 +104,25 @@ struct WriteOptions {
   Notes* notes = nullptr;  ///< receives what the format cannot hold; null: dropped
 };
 
-/// Writes a mesh to a file in the format that the extension names.
+/// Writes a mesh to a file in the format of its extension.
 ///
-/// Cells that the format has no place for are left out, as by `keep_cells`.
+/// Cells that the format cannot hold are left out, as by `keep_cells`.
 ///
 /// @param mesh   not changed
-/// @param path   replaced when all is written and on the disk; nothing is left behind after an exception.
-///               Symbolic links are followed in `path` itself, not in names derived from it; owner, mode and
-///               ACLs stay as the system allows; further hard links keep the old content, which `notes`
-///               tells; devices and pipes are written directly
+/// @param path   replaced once everything is written and on the disk; an exception leaves no file behind.
+///               Symbolic links are followed in `path` itself, not in names derived from it. Owner, mode and
+///               ACLs are kept as far as the system allows. Other hard links keep the old content; `notes`
+///               reports that. Devices and pipes are written directly
 /// @param notes  receives what the format cannot hold; null: dropped
-/// @return the places that the cells have in the file, behind them those of cells that are left out; the
+/// @return the places of the cells in the file, followed by those of cells that are left out; the
 ///         identity after `reorder` for that format
 /// @throws InvalidArgument for a mesh that `check_mesh` refuses
-/// @throws InputError for an unknown extension, for cells of the highest dimension that the format cannot
-///         hold, with the formats that can, and if the file cannot be written
+/// @throws InputError for an unknown extension, if the file cannot be written, and for cells of the highest
+///         dimension that the format cannot hold (the message lists formats that can)
 MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path,
                                      Notes* notes = nullptr);
 
-/// The same with options; throws InputError also for the first loss where `options.strict` allows none.
+/// The same with options; under `options.strict` throws InputError also for the first loss.
 ///
 /// @note A strict call writes the mesh twice, first to memory.
 MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path,
@@ -147,7 +147,7 @@ struct MemoryFile {
 
 /// The files that `write_mesh` would have made, and what it would have returned.
 struct MemoryFiles {
-  std::vector<MemoryFile> files;  ///< one, or several for TetGen; at least one
+  std::vector<MemoryFile> files;  ///< one, or for TetGen several
   Permutation cells;
 };
 
@@ -155,7 +155,7 @@ struct MemoryFiles {
 ///
 /// @param mesh    not changed
 /// @param format  name of the format
-/// @param name    name of the file, from which those of its companions follow
+/// @param name    name of the file, from which the names of its companions are derived
 /// @param notes   receives what the format cannot hold; null: dropped
 [[nodiscard]] MESHORDER_API MemoryFiles write_mesh_to_memory(const Mesh& mesh, std::string_view format,
                                                              std::string_view name, Notes* notes = nullptr);

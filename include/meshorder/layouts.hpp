@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// Layouts for graphics processors, where many threads work on elements at once, and what their additions
-// cost. Put the mesh in order first: a layout keeps the order of its cells and vertices, and is better if
-// elements that share vertices are near each other.
+// Layouts for graphics processors, where many threads work on elements at once, and the cost of their atomic
+// additions. Order the mesh first: a layout keeps the order of cells and vertices, and is better if elements
+// that share vertices are near each other.
 
 #include <meshorder/export.hpp>
 #include <meshorder/options.hpp>
@@ -25,8 +25,8 @@ struct Patches {
   int corners_per_cell = 0;        ///< k
   std::vector<Index> cells = {};   ///< old number of each of the m cells: those of patch p from p · size on
   std::vector<Offset> offsets{0};  ///< patches + 1: where the vertices of each patch begin
-  std::vector<Index> vertices = {};  ///< of each patch its vertices, ascending
-  /// m · k: corner a of `cells[i]` is the vertex local[i · k + a] of its patch.
+  std::vector<Index> vertices = {};  ///< the vertices of each patch, ascending
+  /// m · k: corner a of `cells[i]` is vertex local[i · k + a] of its patch.
   std::vector<std::uint16_t> local = {};
 
   /// Returns the number of patches.
@@ -47,30 +47,30 @@ struct Patches {
 /// @param run           threads
 /// @throws InvalidArgument for faulty cells, cells of several types, and a size out of range
 /// @throws TooLarge for more than 2,147,483,647 vertices or cells
-/// @note O(m k log(size · k) + n · threads) time, and 2 n bytes for each thread besides the result, of which
-///       the vertices are there twice for a while. The same on any number of threads.
+/// @note O(m k log(size · k) + n · threads) time. Memory besides the result: 2 n bytes for each thread, and
+///       for a while a second copy of `vertices`. The same result on any number of threads.
 [[nodiscard]] MESHORDER_API Patches patches(const CellsView& cells, std::size_t vertex_count, int size = 256,
                                             const Run& run = {});
 
-/// For each vertex the cells that have it: in place of adding to vertices, a first pass stores what each cell
-/// gives each corner, and a second one adds up for each vertex. No two threads write to one place.
+/// The cells at each vertex. Instead of adding to vertices, a first pass stores the contribution of each cell
+/// to each corner, and a second one sums them for each vertex. No two threads write to one place.
 struct GatherLists {
   std::vector<Offset> offsets{0};          ///< n + 1: where the entries of each vertex begin
-  std::vector<Index> cells = {};           ///< of each vertex its cells, ascending
-  std::vector<std::uint8_t> corners = {};  ///< which corner of the cell it is
+  std::vector<Index> cells = {};           ///< the cells of each vertex, ascending
+  std::vector<std::uint8_t> corners = {};  ///< position of the vertex in that cell
 };
 
 /// Returns the gather lists of cells, which may be of several types, with at most 256 vertices each.
 ///
-/// @throws InvalidArgument for faulty cells and for larger ones; TooLarge as `patches`
-/// @note O(Σ vertices of a cell + n) on one thread. A cell that names a vertex twice is in its list twice.
+/// @throws InvalidArgument for faulty cells and for cells with more vertices; TooLarge as `patches`
+/// @note O(Σ vertices of a cell + n) on one thread. A cell that names a vertex twice is listed twice there.
 [[nodiscard]] MESHORDER_API GatherLists gather_lists(const CellsView& cells, std::size_t vertex_count,
                                                      const Run& run = {});
 
-/// Cells by colour: no two of a colour share a vertex, so that threads may work on them at once.
+/// Cells by colour: no two cells of a colour share a vertex, so that threads may work on them at once.
 struct Colours {
   std::vector<Index> starts{0};   ///< colours + 1: where the cells of each colour begin
-  std::vector<Index> cells = {};  ///< all cells, colour after colour, each in the order that they had
+  std::vector<Index> cells = {};  ///< all cells, colour after colour, in their old order within a colour
 
   [[nodiscard]] std::size_t count() const noexcept { return starts.size() - 1; }
 };
@@ -80,15 +80,15 @@ struct Colours {
 /// vertices.
 ///
 /// @throws InvalidArgument for faulty cells; TooLarge as `patches`
-/// @note O(Σ vertices of a cell + n) on one thread, and 40 n bytes besides the result. There are at least as
-///       many colours as cells at a vertex.
+/// @note O(Σ vertices of a cell + n) on one thread, and 40 n bytes besides the result. The number of colours
+///       is at least the largest number of cells at a vertex.
 [[nodiscard]] MESHORDER_API Colours colours(const CellsView& cells, std::size_t vertex_count,
                                             const Run& run = {});
 
-/// Returns the vertices of linear triangles or tetrahedra with those of each cell sorted as far as its
-/// orientation allows: a triangle begins with its smallest vertex; the vertices of a tetrahedron ascend, and
-/// the last two are swapped if ascending order would reverse the orientation. Threads of a warp then read and
-/// add at nearer places.
+/// Sorts the vertices of each linear triangle or tetrahedron as far as its orientation allows. A triangle
+/// begins with its smallest vertex. The vertices of a tetrahedron ascend; the last two are swapped if
+/// ascending order would reverse the orientation. Threads of a warp then read and add at nearer
+/// places.
 ///
 /// @return m · k vertices
 /// @throws InvalidArgument for faulty cells and for other types; TooLarge as `patches`
@@ -98,25 +98,25 @@ struct Colours {
 
 /// Where a kernel keeps the numbers, of 4 bytes each, that it adds to the vertices of its cells.
 enum class GpuLayout {
-  packed,  ///< three of a vertex side by side, each added by itself
-  apart,   ///< three arrays
-  padded   ///< four of a vertex side by side, added at once
+  packed,  ///< the three numbers of a vertex side by side, each added separately
+  apart,   ///< three arrays, one for each number
+  padded   ///< four numbers of a vertex side by side, added at once
 };
 
-/// What the atomic additions of a pass over cells cost, a thread a cell.
+/// Cost of the atomic additions of a pass over cells with one thread for each cell.
 struct GpuCost {
   Offset requests = 0;  ///< additions, each of a warp of 32 threads at once
   /// Sectors of 32 bytes that these additions write. A sector counts t times, where t is the largest number
-  /// of threads of the warp that add to one number in it: these wait for each other.
+  /// of threads of the warp that add to the same number in it: they wait for each other.
   Offset sectors = 0;
-  Offset floor = 0;  ///< `sectors` if the vertices of each warp were side by side, and no two the same
+  Offset floor = 0;  ///< `sectors` if the vertices of each warp were all different and side by side
 
   bool operator==(const GpuCost&) const = default;
 };
 
-/// Counts what the atomic additions to the vertices of cells cost on a graphics processor. Of two orders of
-/// the same cells, the one with fewer sectors is faster there. An NVIDIA H100 counts the same within 1.2 %
-/// (docs/gpu.md).
+/// Counts the cost of atomic additions to the vertices of cells on a graphics processor. Of two orders of
+/// the same cells, the one with fewer sectors is faster there. The counters of an NVIDIA H100 agree within
+/// 1.2 % (docs/gpu.md).
 ///
 /// @param cells         cells with the same number of vertices; edges are lines
 /// @param vertex_count  n

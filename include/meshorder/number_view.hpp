@@ -25,7 +25,7 @@ using Offset = std::int64_t;
 /// `std::vector<std::array<int, 4>>` are 40 numbers. bool, character types and other sizes do not compile.
 ///
 /// @note Nothing is copied: the array must live, at the same address, as long as the view is used. Functions
-///       of meshorder use views only until they return. The view keeps the type by value, so that the library
+///       of meshorder use views only until they return. The view stores the type at run time, so that the
 ///       is compiled once for all types.
 class IndexView {
  public:
@@ -60,8 +60,8 @@ class IndexView {
   [[nodiscard]] constexpr int bytes() const noexcept { return bytes_; }
   [[nodiscard]] constexpr bool is_signed() const noexcept { return is_signed_; }
 
-  /// Returns integer `k` < size(). Unsigned ones from 2⁶³ on come out negative. O(1); a branch for each call,
-  /// so inner loops should know the type.
+  /// Returns integer `k` < size(). Unsigned ones from 2⁶³ on are negative. O(1), with a branch in each call:
+  /// inner loops should read the array by its type.
   [[nodiscard]] std::int64_t operator[](std::size_t k) const noexcept {
     if (bytes_ == 4) {
       return is_signed_ ? std::int64_t{static_cast<const std::int32_t*>(data_)[k]}
@@ -81,9 +81,9 @@ class IndexView {
   bool is_signed_ = true;
 };
 
-/// A view of the caller's integers that a function writes to: the mutable `IndexView`.
+/// A view of the caller's integers that a function writes to: a mutable `IndexView`.
 ///
-/// Converts implicitly from the same ranges where they are not const: from lvalues of containers and from
+/// Converts implicitly from the same ranges if they are not const: from lvalues of containers and from
 /// spans.
 class IndexSpan {
  public:
@@ -113,7 +113,7 @@ class IndexSpan {
   [[nodiscard]] constexpr int bytes() const noexcept { return bytes_; }
   [[nodiscard]] constexpr bool is_signed() const noexcept { return is_signed_; }
 
-  /// The same integers, read-only.
+  /// Returns a read-only view of the same integers.
   constexpr operator IndexView() const noexcept {  // NOLINT(google-explicit-constructor)
     return {data_, size_, bytes_, is_signed_};
   }

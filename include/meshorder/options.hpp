@@ -13,16 +13,16 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// What to order for. `auto` chooses its method by this; methods asked for by name ignore it.
+/// What to optimise. `auto` chooses its method by this; methods requested by name ignore it.
 enum class Workload : std::uint8_t {
-  all,        ///< the four kernels below, weighted equally
+  all,        ///< the next four kernels, weighted equally
   element,    ///< element forces: gather from and scatter to the vertices of each element
   spmv,       ///< products of the stiffness matrix with a vector, as iterative solvers repeat them
   assembly,   ///< assembly of the stiffness matrix
   springs,    ///< a force along every edge
   bandwidth,  ///< the bandwidth of the matrix, for banded and skyline solvers
   fill,       ///< few non-zeros in the factors of the matrix, for sparse direct solvers
-  gpu,        ///< graphics processors: products, a thread a row, and atomic additions, a thread an element
+  gpu,        ///< graphics processors: products, a thread for each row; atomic additions, one for each cell
 };
 
 /// All values of `Workload`.
@@ -43,10 +43,10 @@ MESHORDER_API Workload parse_workload(std::string_view name);
 /// range throw InvalidArgument.
 enum class Check : std::uint8_t {
   /// Everything: sizes; ascending offsets; numbers in range; weights positive and finite; coordinates finite;
-  /// pattern and weights symmetric. Symmetry is decided by a 64-bit hash sum over the entries, which misses a
+  /// pattern and weights symmetric. Symmetry is tested by a 64-bit hash sum over the entries, which misses a
   /// random fault with probability 2⁻⁶⁴.
   full,
-  /// The same, but an asymmetric graph is not refused: it gives an unspecified, valid order.
+  /// The same, except that an asymmetric graph is accepted and gets an unspecified, valid order.
   fast,
   /// Nothing. The graph must be what `full` accepts, with ascending rows, no loops and no repeats; anything
   /// else is undefined behaviour.
@@ -55,28 +55,28 @@ enum class Check : std::uint8_t {
 
 /// What to do with an asymmetric pattern.
 enum class Symmetry : std::uint8_t {
-  require,  ///< refuse it with InvalidArgument, where `Check` looks for it
+  require,  ///< refuse it with InvalidArgument, if `Check` tests for it
   mirror,   ///< order A + Aᵀ; weights become those of (A + Aᵀ) / 2
 };
 
 /// State of a running call.
 struct Progress {
-  /// What is done now: "check", "graph", "coarsen", "eigenvector", "improve", "sort", "move", or "metis";
-  /// while METIS runs, no callback comes and the call cannot be stopped. These words are stable; more may
+  /// The present stage: "check", "graph", "coarsen", "eigenvector", "improve", "sort", "move", or "metis".
+  /// While METIS runs, no callback comes and the call cannot be stopped. These words are stable; more may
   /// come. Valid during the callback.
   std::string_view stage;
   double fraction = -1;  ///< of the whole call that is done, 0 … 1, never decreasing; −1 where unknown
   double seconds = 0;    ///< since the call began
 };
 
-/// How a call runs. Except for `time_limit` nothing here changes a result by a single bit.
+/// How a call runs. Only `time_limit` can change a result; all else leaves it the same, bit for bit.
 struct Run {
-  /// Threads at most, ≥ 0; 0: as many as the caller's TBB arena has. The call runs in an arena of its own; 1
+  /// Most threads, ≥ 0; 0: as many as the caller's TBB arena has. The call runs in an arena of its own; 1
   /// starts no thread. A limit set by tbb::global_control holds as well.
   int threads = 0;
 
-  /// Called now and then on the thread that made the call, never twice at once and with no lock held.
-  /// Returning false ends the call with `Stopped`; an exception ends it and passes through.
+  /// Called now and then on the calling thread, never twice at once and with no lock held.
+  /// If it returns false, the call ends with `Stopped`; if it throws, the exception passes through.
   std::function<bool(const Progress&)> progress = {};
 
   /// Seconds after which iterative methods return the best result so far, with `complete` = false. Methods
@@ -91,10 +91,10 @@ struct OrderOptions {
   /// Of Fiedler vectors: ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖, > 0; 0.1 suffices for orders.
   double tolerance = 0.1;
   int max_iterations = 500;           ///< of the eigensolver on the whole graph, ≥ 1
-  Workload workload = Workload::all;  ///< what `auto` chooses its method for
+  Workload workload = Workload::all;  ///< what `auto` optimises
   RealView start = {};    ///< n numbers near the Fiedler vector, as `Order::vector` has them; or none
-  IndexView groups = {};  ///< a group for each vertex, any integer: groups stay together, ascending; or none
-  IndexView cell_groups = {};  ///< likewise for each cell, within its block and dimension
+  IndexView groups = {};  ///< group of each vertex, any integer, or none; groups stay together and ascend
+  IndexView cell_groups = {};  ///< group of each cell, or none; used within each block and dimension
   Check check = Check::full;
   Symmetry symmetry = Symmetry::require;
   Run run = {};

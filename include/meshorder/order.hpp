@@ -20,18 +20,18 @@ inline namespace v0_3 {
 /// The method that made an order.
 struct MethodChoice {
   std::string name;    ///< never "auto"
-  std::string reason;  ///< why `auto` took it; empty where it was asked for by name
+  std::string reason;  ///< why `auto` chose it; empty if it was requested by name
 
   bool operator==(const MethodChoice&) const = default;
 };
 
-/// An order and how it was found.
+/// An order and a report on how it was found.
 struct Order {
   Permutation permutation;
   MethodChoice method = {};
-  /// Of methods that use Fiedler vectors: a report for each component.
+  /// For methods that use Fiedler vectors: a report on each component.
   std::vector<FiedlerComponent> fiedler = {};
-  /// Of `fiedler` and `minla`: n entries, the next call's `OrderOptions::start`.
+  /// For `fiedler` and `minla`: n entries, to pass as `OrderOptions::start` to the next call.
   std::vector<double> vector = {};
   bool complete = true;  ///< false: `Run::time_limit` ended the method early
   double seconds = 0;    ///< wall-clock time of the call
@@ -57,7 +57,7 @@ struct MeshMethods {
 /// Orders the vertices of a graph or the rows of a matrix. Nothing is changed.
 ///
 /// Vertices without neighbours come last, in their old order, except under `original` and registered methods.
-/// With `options.groups` the groups ascend and each is ordered by the method.
+/// With `options.groups` the groups ascend, and the method orders each.
 ///
 /// @param graph    n vertices (see `GraphView`); weights count for fiedler and registered methods only
 /// @param method   name of a vertex method
@@ -68,9 +68,9 @@ struct MeshMethods {
 /// @throws TooLarge for more than 2,147,483,647 vertices, or entries beyond the index type of METIS
 /// @throws Unavailable for a method that this build lacks
 /// @throws Stopped if the progress callback returned false
-/// @note rcm and bfs O(n + entries · log degree), with a copy of the graph; hilbert and morton O(n log n);
-///       fiedler O((n + entries) · iterations), about six; spectral that times log n; minla that and O(n +
-///       entries) a pass. A clean graph with int64 offsets and int32 neighbours is read in place; other
+/// @note Time: rcm and bfs O(n + entries · log degree), with a copy of the graph; hilbert and morton O(n log
+///       n); fiedler O((n + entries) · iterations), about six; spectral that times log n; minla that and
+///       O(n + entries) a pass. A clean graph with int64 offsets and int32 neighbours is read in place; other
 ///       offsets take 8 bytes a vertex, other neighbours 4 bytes an entry. Same input, options and version
 ///       give the same order on any number of threads and for any integer types. Reentrant.
 MESHORDER_API Order order_vertices(const GraphView& graph, std::string_view method = "auto",
@@ -78,9 +78,9 @@ MESHORDER_API Order order_vertices(const GraphView& graph, std::string_view meth
 
 /// Orders the cells of a mesh. Nothing is changed.
 ///
-/// The elements, which are the cells of the highest dimension, go by the method; cells of lower dimension go
-/// by `lexmax` (under `original` they stay). Cells stay within their block. In a block, a cell moves only to
-/// places that cells of its dimension had.
+/// The method orders the elements, which are the cells of the highest dimension; `lexmax` orders the cells of
+/// lower dimension (they stay under `original`). Cells stay within their block. In a block, a cell moves only
+/// to places that cells of its dimension had.
 ///
 /// @param cells     m cells of n vertices, any layout; see `CellsView`
 /// @param vertices  order of the n vertices, which most element orders follow
@@ -89,8 +89,8 @@ MESHORDER_API Order order_vertices(const GraphView& graph, std::string_view meth
 /// @param points    n points in their old order for geometric methods; n or none for others
 /// @return permutation of all m cells
 /// @throws as `order_vertices`
-/// @note lexmax, mean, min, max O(entries + m log m); fiedler as for vertices, on the dual graph. Determinism
-///       as above.
+/// @note lexmax, mean, min, max O(entries + m log m); fiedler as for vertices, on the dual graph. As
+///       deterministic as `order_vertices`.
 MESHORDER_API Order order_elements(const CellsView& cells, const Permutation& vertices,
                                    std::string_view method = "auto", const OrderOptions& options = {},
                                    const PointsView& points = {});
@@ -99,18 +99,18 @@ MESHORDER_API Order order_elements(const CellsView& cells, const Permutation& ve
 /// `lexmax` for edges.
 ///
 /// A loop over the edges then reaches new vertices nearly in their order, whatever method ordered the
-/// vertices: springs that go by the smaller end run up to 1.5 times slower in orders along curves.
+/// vertices. Springs sorted by their smaller end take up to 1.5 times as long in orders along curves.
 ///
 /// @param ends      2 m numbers in 0 … n − 1: the ends of one edge after another
 /// @param vertices  order of the n vertices
 /// @param run       threads, progress
 /// @return permutation of the m edges; `ends` are neither moved nor renumbered
 /// @throws InvalidArgument for an odd number of ends, and ends out of range
-/// @note O(m log m). Determinism as above.
+/// @note O(m log m). As deterministic as `order_vertices`.
 MESHORDER_API Permutation order_edges(const IndexView& ends, const Permutation& vertices,
                                       const Run& run = {});
 
-/// Orders the vertices of a mesh, by the graph that joins those of a common element, and then its cells.
+/// Orders the vertices of a mesh by the graph that joins the vertices of each element, and then its cells.
 ///
 /// @param mesh     n vertices, m cells
 /// @param methods  names of the two methods
@@ -129,7 +129,7 @@ class MESHORDER_API Graph {
   /// The graph without vertices.
   Graph() = default;
 
-  /// Takes over the arrays of a clean graph without a check; `check` verifies it afterwards where in doubt.
+  /// Takes over the arrays of a clean graph without checking them; call `check` if in doubt.
   ///
   /// @param offsets     n + 1, from 0
   /// @param neighbours  offsets[n] numbers in 0 … n−1
@@ -173,7 +173,7 @@ class MESHORDER_API Graph {
   std::vector<double> weights_;
 };
 
-/// Builds the graph that joins all vertices of each element, or of each piece of it (docs/limits.md).
+/// Builds the graph that joins all vertices of each element, or of each piece of an element (docs/limits.md).
 ///
 /// @param cells         the cells; elements are those of the highest dimension, others are ignored
 /// @param vertex_count  n; vertices that no element uses have no neighbours
@@ -189,8 +189,8 @@ class MESHORDER_API Graph {
 /// @param cells         the cells; vertex e of the graph is the e-th cell of the highest dimension
 /// @param vertex_count  number of the mesh's vertices
 /// @param by_facet      true: join elements that share a face (volumes), an edge (surfaces) or an end
-///                      (lines); where more than two share it, each is joined to the next, and polyhedra to
-///                      the elements that have three of their vertices. false: join those
+///                      (lines). If more than two share it, each is joined to the next. A polyhedron is
+///                      joined to the elements that have three of its vertices. false: join those
 ///                      that share a vertex, about 50 neighbours for a tetrahedron
 /// @param run           threads, progress
 /// @throws as `vertex_graph`; InvalidArgument for `by_facet` with cells of unknown shape
@@ -198,7 +198,7 @@ class MESHORDER_API Graph {
 [[nodiscard]] MESHORDER_API Graph dual_graph(const CellsView& cells, std::size_t vertex_count,
                                              bool by_facet = true, const Run& run = {});
 
-/// Copies a graph with ascending rows, without loops and repeats; weights of repeats are added.
+/// Returns a copy of a graph with ascending rows, without loops and repeats; weights of repeats are added.
 ///
 /// @param graph     n vertices; offsets and numbers must be in range
 /// @param symmetry  mirror: adds the missing entries, weights become those of (A + Aᵀ) / 2; require: throws
@@ -213,11 +213,11 @@ class MESHORDER_API Graph {
 /// Checks that a graph is what the functions of this library accept: see `Check`. Loops, repeats and unsorted
 /// rows pass.
 ///
-/// @param graph  any arrays of the sizes that the views state
+/// @param graph  arrays of any content, of the sizes that the views have
 /// @param level  what to check
-/// @throws InvalidArgument for the first fault, in words that name the row, the entry and the fault
+/// @throws InvalidArgument for the first fault; the message names the row, the entry and the fault
 /// @throws TooLarge for more than 2,147,483,647 vertices
-/// @note O(n + entries), on all threads; row by row with a sorted copy only where symmetry fails. No memory
+/// @note O(n + entries), on all threads; a slower pass with sorted rows only if symmetry fails. No memory
 ///       for int64 offsets and int32 neighbours, else as `order_vertices`.
 MESHORDER_API void check(const GraphView& graph, Check level = Check::full);
 

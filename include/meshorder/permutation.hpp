@@ -21,13 +21,13 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// A bijection of 0 … n−1, stored in both directions, and the moves of arrays that it describes.
+/// A bijection of 0 … n−1, stored in both directions. Moves arrays to the new order.
 ///
 /// `old_to_new()[i]` is the new place of the item that was at place i. `new_to_old()[k]` is the old place of
 /// the item that is now at place k. For SciPy, MATLAB and PETSc `new_to_old` is the index array: `moved =
 /// array[new_to_old]`.
 ///
-/// @note Immutable but for assignment, so one object may be read by several threads. Memory: 8 n bytes.
+/// @note Immutable except for assignment, so several threads may read one object. Memory: 8 n bytes.
 class MESHORDER_API Permutation {
  public:
   /// The empty permutation, n = 0.
@@ -52,7 +52,7 @@ class MESHORDER_API Permutation {
   }
 
   /// Makes a permutation of a map from new to old places: `map[k]` is the old place of new k, so that the map
-  /// lists the old things in their new order. Throws and costs as `from_old_to_new`.
+  /// lists the old items in their new order. Throws and costs as `from_old_to_new`.
   static Permutation from_new_to_old(IndexView map);
   static Permutation from_new_to_old(std::vector<Index>&& map);  ///< the same without a copy of the map
   static Permutation from_new_to_old(std::initializer_list<Index> map) {  ///< the same for a list in braces
@@ -62,14 +62,14 @@ class MESHORDER_API Permutation {
   /// Returns the number of places n.
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(old_to_new_.size()); }
 
-  /// Returns where each old thing went: n entries. Valid as long as this object is neither assigned to nor
+  /// Returns the new place of each old item: n entries. Valid while this object is neither assigned to nor
   /// destroyed.
   [[nodiscard]] std::span<const Index> old_to_new() const& noexcept MESHORDER_LIFETIMEBOUND {
     return old_to_new_;
   }
   [[nodiscard]] std::vector<Index> old_to_new() && noexcept { return std::move(old_to_new_); }
 
-  /// Returns which old thing stands at each place: n entries. Valid as long as this object is neither
+  /// Returns the old place of the item at each new place: n entries. Valid while this object is neither
   /// assigned to nor destroyed.
   [[nodiscard]] std::span<const Index> new_to_old() const& noexcept MESHORDER_LIFETIMEBOUND {
     return new_to_old_;
@@ -79,7 +79,7 @@ class MESHORDER_API Permutation {
   /// Returns true if nothing moves. O(n).
   [[nodiscard]] bool is_identity() const noexcept;
 
-  /// Returns the permutation that moves everything back. O(n), O(1) for an rvalue.
+  /// Returns the permutation that moves everything back. O(n); O(1) for an rvalue.
   [[nodiscard]] Permutation inverse() const&;
   [[nodiscard]] Permutation inverse() && noexcept;
 
@@ -115,8 +115,8 @@ class MESHORDER_API Permutation {
   /// @param width   values in a row
   /// @throws InvalidArgument if the size is not n · width
   /// @note O(n · width) on one thread. Rows of trivially copyable types move along the cycles of the
-  /// permutation, with n / 8 bytes and one row of extra memory; other types need a second array. `move` is
-  /// faster if memory suffices.
+  ///       permutation, with n / 8 bytes and one row of extra memory; other types need a second array. `move`
+  ///       is faster if memory suffices.
   template <std::ranges::contiguous_range R>
   void move_in_place(R&& values, std::size_t width = 1) const;
 
@@ -146,8 +146,8 @@ class MESHORDER_API Permutation {
   /// Moves the rows and columns of a square sparse matrix: B = P A Pᵀ, B[old_to_new[i], old_to_new[j]] = A[i,
   /// j].
   ///
-  /// Columns ascend in every row of B; repeated ones keep their order. The pattern of A may be asymmetric,
-  /// unsorted and with a diagonal.
+  /// Columns ascend in every row of B; repeated ones keep their order. The pattern of A may be asymmetric and
+  /// unsorted and may have a diagonal.
   ///
   /// @param matrix   A: n rows; its weights are ignored; B has the same base
   /// @param values   the same number of bytes for each entry of A, one after another; may be empty
@@ -157,7 +157,7 @@ class MESHORDER_API Permutation {
   /// @throws InvalidArgument if sizes do not match, A is faulty or an output overlaps an input
   /// @throws TooLarge if an output type cannot hold its numbers
   /// @note O(n + entries · log row), on all threads. Memory: 8 (n + 1) bytes and a row for each thread; for
-  ///       other than int64 offsets and int32 columns of base 0 another 8 (n + 1) bytes, 4 bytes an entry.
+  ///       other than int64 offsets and int32 columns of base 0, 8 (n + 1) bytes and 4 bytes an entry more.
   void move_csr(const GraphView& matrix, std::span<const std::byte> values, IndexSpan offsets,
                 IndexSpan columns, std::span<std::byte> moved) const;
 

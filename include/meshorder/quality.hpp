@@ -13,25 +13,25 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// Numbers that describe how near the two ends of each edge are in an order. The span of edge ij is |rank i −
+/// Measures of how near the two ends of each edge are in an order. The span of edge ij is |rank i −
 /// rank j|. All 0 without edges.
 struct Quality {
-  Offset edges = 0;      ///< loops not counted, repeats once
+  Offset edges = 0;      ///< without loops; repeats count once
   double mean_span = 0;  ///< ≥ 1; about n/3 for a random order
-  /// Mean of log₂ span: short spans count here, where long ones dominate mean_span.
+  /// Mean of log₂ span; weighs short spans more than mean_span, which long spans dominate.
   double mean_log2_span = 0;
   Index bandwidth = 0;  ///< the largest span: the half bandwidth of the matrix with this pattern
-  Offset profile = 0;   ///< Σ over rows of the distance from the first neighbour before the diagonal to it
+  Offset profile = 0;   ///< Σ over rows of the distance from the diagonal to the first entry before it
   std::vector<Offset> histogram_log2 = {};  ///< entry k: the number of edges with span in [2ᵏ, 2ᵏ⁺¹)
-  /// Share of the lines of 8 entries that a product with the matrix first reads out of order, 0 … 1: not soon
-  /// after one of the three lines before. Where vectors exceed the last cache, it explains the times of plain
-  /// products and springs.
+  /// Share, 0 … 1, of the lines of 8 entries whose first read, in a product with the matrix, is out of order:
+  /// not soon after one of the three lines before. If vectors exceed the last cache, it explains the times of
+  /// plain products and springs.
   double jump_share = 0;
 
   bool operator==(const Quality&) const = default;
 };
 
-/// Where the entries of a matrix lie: how many are in each of side × side tiles, rows from the top.
+/// The number of entries of a matrix in each of side × side tiles, rows from the top.
 struct SparsityPattern {
   int side = 0;
   std::vector<std::uint32_t> counts = {};  ///< side · side, row after row
@@ -39,7 +39,7 @@ struct SparsityPattern {
   bool operator==(const SparsityPattern&) const = default;
 };
 
-/// Measures the order that a graph's vertices have.
+/// Measures the present order of a graph's vertices.
 ///
 /// @param graph  n vertices; weights are not used
 /// @param run    threads, progress
@@ -72,7 +72,7 @@ MESHORDER_API std::vector<Offset> span_histogram(const GraphView& graph, const P
 ///
 /// @param graph  n vertices
 /// @param order  n places
-/// @param side   tiles along each side, ≥ 1; n where that is less
+/// @param side   tiles along each side, ≥ 1; n if that is less
 /// @param run    threads, progress
 /// @throws InvalidArgument as `quality`, and if side < 1
 /// @note O(n + edges).

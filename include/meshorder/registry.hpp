@@ -18,11 +18,11 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// Description of a method, as lists of methods show it.
+/// Description of a method in lists of methods.
 struct MethodInfo {
   std::string name = {};         ///< lower case letters, digits, '-' and '_'; unique
   std::string description = {};  ///< one line
-  bool needs_points = false;     ///< InvalidArgument without coordinates
+  bool needs_points = false;     ///< throws InvalidArgument without coordinates
   bool deterministic = true;     ///< the same result on every run and for any number of threads
   std::string source = "built in";
 };
@@ -44,15 +44,15 @@ struct ElementProblem {
   PointsView points;                    ///< n, in the vertices' old order, or none
 };
 
-/// A vertex method returns the order of the n vertices. It may throw; the exception reaches who asked for the
-/// order. It is called on the thread that asked, by several threads at once if several ask.
+/// A vertex method returns the order of the n vertices. It may throw; the exception reaches the caller that
+/// asked for the order. It runs on the caller's thread, on several threads at once if several ask.
 using VertexMethod = std::function<Permutation(const VertexProblem&, const OrderOptions&)>;
 
 /// An element method returns the order of the m elements. Calls and exceptions as of `VertexMethod`.
 using ElementMethod = std::function<Permutation(const ElementProblem&, const OrderOptions&)>;
 
-/// Owner of an entry in the list of methods: takes the method out when it is destroyed. Calls in flight
-/// finish first on their own copy of the method. Move-only.
+/// Owner of an entry in the list of methods; the destructor removes the method. Calls that are running
+/// finish with their own copy of the method. Move-only.
 class [[nodiscard]] MESHORDER_API Registration {
  public:
   /// Owns nothing.
@@ -66,24 +66,24 @@ class [[nodiscard]] MESHORDER_API Registration {
   /// Leaves the method in the list until the program ends.
   void keep() && noexcept { id_ = 0; }
 
-  /// For the registry: owns the entry of that number, > 0.
+  /// For the registry only: owns the entry of that number, > 0.
   explicit Registration(std::uint64_t id) noexcept : id_(id) {}
 
  private:
   std::uint64_t id_ = 0;
 };
 
-/// Adds a vertex method, which `order_vertices`, the comparison and the C interface then know by its name.
+/// Adds a vertex method; `order_vertices`, the comparison and the C interface then know it by its name.
 /// `auto` never takes it.
 ///
 /// @param info    name and description
 /// @param method  must not be empty; its result is checked to have n places
-/// @throws InvalidArgument for a name that is taken, "auto" or not of the permitted characters, and for no
+/// @throws InvalidArgument if the name is taken, is "auto" or has other characters, and for an empty
 ///         method
 /// @note Thread-safe.
 MESHORDER_API Registration register_vertex_method(MethodInfo info, VertexMethod method);
 
-/// Adds an element method; likewise.
+/// Adds an element method; parameters and exceptions likewise.
 MESHORDER_API Registration register_element_method(MethodInfo info, ElementMethod method);
 
 /// Lists the methods of this build and the registered ones, in the order in which help shows them.

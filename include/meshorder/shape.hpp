@@ -16,8 +16,8 @@ inline namespace v0_3 {
 ///
 /// Corners come first, in VTK's order except for linear wedges: the first triangle of every wedge faces
 /// inward, as in Gmsh. In second-order cells the nodes of edges, faces and interior follow, in VTK's order.
-/// A polyhedron has the corners of its faces, each once, in any order; the faces themselves are not part of
-/// the cell, and stay with what the file's format keeps.
+/// A polyhedron has the corners of its faces, each once, in any order. The faces themselves are not part of
+/// the cell; the metadata of the file's format keep them.
 enum class Shape : std::uint8_t {
   vertex,
   line,
@@ -55,9 +55,9 @@ MESHORDER_API std::string type_name(Shape shape, int vertices);
 
 /// Returns the facets of a cell: faces of a volume, edges of a surface, ends of a line.
 ///
-/// @return each facet as positions, from 0, of its corners in the cell: `facets(Shape::triangle, 3)` is
-///         {{0, 1}, {1, 2}, {2, 0}}. A triangle strip gives its outline. Vertex shapes have none, and those
-///         of a polyhedron are not known.
+/// @return for each facet the positions, from 0, of its corners in the cell: `facets(Shape::triangle, 3)` is
+///         {{0, 1}, {1, 2}, {2, 0}}. For a triangle strip, its outline. Empty for vertex shapes, and for
+///         polyhedra, whose facets are not known.
 MESHORDER_API std::vector<std::vector<int>> facets(Shape shape, int vertices);
 
 }  // namespace v0_3

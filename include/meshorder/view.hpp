@@ -21,28 +21,28 @@ inline namespace v0_3 {
 /// A view of an undirected graph, or of the pattern of a square matrix, in compressed sparse rows.
 ///
 /// Row v has the neighbours `neighbours[offsets[v] − base] … neighbours[offsets[v + 1] − base − 1]`. Every
-/// edge stands in the rows of both its ends. Loops (a matrix's diagonal), repeats and unsorted rows are
+/// edge is in the rows of both its ends. Loops (a matrix's diagonal), repeats and unsorted rows are
 /// allowed and cost a cleaned copy; see `Symmetry` for asymmetric patterns.
 ///
 /// Brace initialisation works from any mix of integer types: `GraphView{row_start, column}`.
 struct GraphView {
-  /// n + 1 numbers that ascend, the first is `base`; none at all is the graph without vertices.
+  /// n + 1 numbers that ascend, the first is `base`; empty for the graph without vertices.
   IndexView offsets = {};
   /// offsets[n] − base numbers in base … base + n − 1.
   IndexView neighbours = {};
-  /// One for each neighbour, > 0, finite, equal in both rows of an edge; or none: all 1.
+  /// One for each neighbour, > 0, finite, equal in both rows of an edge; or none: all are 1.
   RealView weights = {};
-  /// 0, or 1 for arrays of Fortran and Julia.
+  /// Number of the first vertex: 0, or 1 for arrays of Fortran and Julia.
   int base = 0;
 };
 
-/// Coordinates x, y, z; z is 0 in the plane.
+/// Coordinates x, y, z; z is 0 for meshes in the plane.
 using Point = std::array<double, 3>;
 
 /// A view of the caller's coordinates, float or double, in one to three dimensions and in any regular layout.
 ///
 /// Axis a of point p is at `data + p · point_stride + a · axis_stride` bytes: structures of arrays, arrays of
-/// structures, padded rows. Lifetime as of `IndexView`.
+/// structures and padded rows all fit. Lifetime as of `IndexView`.
 class PointsView {
  public:
   /// No coordinates.
@@ -79,7 +79,7 @@ class PointsView {
     detail::check_data(data_, size_);
   }
 
-  /// A container of std::array<float or double, 1 to 3>; the array's size is the dimension.
+  /// A container of std::array<float or double, 1 to 3>; the size of the array is the dimension.
   template <class R>
   requires(detail::PointRange<const R&> && !detail::Borrowed<R>)
       PointsView(const R& points MESHORDER_LIFETIMEBOUND)  // NOLINT(google-explicit-constructor)
@@ -91,7 +91,7 @@ class PointsView {
       PointsView(const R& points)  // NOLINT(google-explicit-constructor)
       : PointsView(detail::first_number(points), std::ranges::size(points), width<const R&>) {}
 
-  /// A container or span of plain numbers x y z x y z …, whose dimension has to be told.
+  /// A container or span of plain numbers x y z x y z …; `dimension` of them make a point.
   ///
   /// @throws InvalidArgument if the dimension is not 1, 2 or 3 or does not divide the number of numbers
   template <class R>
@@ -171,7 +171,7 @@ class CellsView {
     return view;
   }
 
-  /// Blocks of cells of one type each, as meshio, Gmsh and MFEM keep them. Cells are numbered block after
+  /// Blocks of cells of one type each, as in meshio, Gmsh and MFEM. Cells are numbered block after
   /// block. Copies the descriptors, not the arrays. O(blocks).
   static CellsView blocks(std::span<const CellBlock> blocks, int base = 0) {
     CellsView view;
@@ -195,7 +195,7 @@ class CellsView {
     return view;
   }
 
-  /// The same with VTK's type number of each cell; none where they are not known.
+  /// The same with VTK's type number of each cell; none if they are not known.
   static CellsView mixed(IndexView offsets MESHORDER_LIFETIMEBOUND,
                          IndexView vertices MESHORDER_LIFETIMEBOUND, std::span<const std::uint8_t> vtk_types,
                          int base = 0) {
@@ -204,7 +204,7 @@ class CellsView {
     return view;
   }
 
-  /// The same with the shape of each cell; none where they are not known.
+  /// The same with the shape of each cell; none if they are not known.
   static CellsView mixed(IndexView offsets MESHORDER_LIFETIMEBOUND,
                          IndexView vertices MESHORDER_LIFETIMEBOUND, std::span<const Shape> shapes,
                          int base = 0) {
@@ -225,8 +225,8 @@ class CellsView {
     return cells;
   }
 
-  /// Returns true for the compressed form, which `offsets`, `vertices`, `vtk_types` and `shapes` describe;
-  /// otherwise `block_list` does.
+  /// Returns true for the compressed form: `offsets`, `vertices`, `vtk_types` and `shapes` describe it.
+  /// Otherwise `block_list` does.
   [[nodiscard]] bool is_mixed() const noexcept { return !offsets_.empty(); }
   [[nodiscard]] std::span<const CellBlock> block_list() const& noexcept MESHORDER_LIFETIMEBOUND {
     return blocks_;

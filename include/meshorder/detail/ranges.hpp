@@ -12,7 +12,7 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// An integer type that views and spans accept: 32 or 64 bits, signed or not. Neither bool nor a character
+/// An integer type that views and spans accept: 32 or 64 bits, signed or not, neither bool nor a character
 /// type.
 template <class T>
 concept IndexType = std::integral<T> && !std::same_as<T, bool> && !std::same_as<T, wchar_t> &&
@@ -22,7 +22,7 @@ concept IndexType = std::integral<T> && !std::same_as<T, bool> && !std::same_as<
 template <class T>
 concept RealType = std::same_as<T, float> || std::same_as<T, double>;
 
-/// An integer type for a number of entries.
+/// An integer type that counts entries.
 template <class N>
 concept CountType = std::integral<N> && !std::same_as<N, bool>;
 
@@ -34,7 +34,7 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace detail {
 
-/// The number type of a range's values: T of T and of std::array<T, width>.
+/// The number type and the count of numbers of a range's values, which are T or std::array<T, width>.
 template <class T>
 struct Row {
   using Number = T;
@@ -66,12 +66,12 @@ template <class R>
 concept PointRange =
     Contiguous<R> && RowOf<R>::is_array && RealType<typename RowOf<R>::Number> && RowOf<R>::width <= 3;
 
-/// A range whose values may be assigned to and which does not die at the end of the expression.
+/// A range that outlives the expression and whose values are not const.
 template <class R>
 concept Writable = Contiguous<R> && std::ranges::borrowed_range<R> &&
     !std::is_const_v<std::remove_reference_t<std::ranges::range_reference_t<R>>>;
 
-/// Views such as std::span, whose arrays outlive them.
+/// A view such as std::span, which does not own its array.
 template <class R>
 concept Borrowed = std::ranges::enable_borrowed_range<std::remove_cvref_t<R>>;
 
@@ -102,7 +102,7 @@ constexpr void check_data(const void* data, std::size_t count) {
   if (data == nullptr && count > 0) refuse_null(count);
 }
 
-/// Returns a count as std::size_t, 0 for a negative one: whoever reads the array then finds its size wrong.
+/// Returns a count as std::size_t; 0 for a negative one, so that later checks find the wrong size.
 template <CountType N>
 constexpr std::size_t checked_count(N count) noexcept {
   if constexpr (std::is_signed_v<N>) {
