@@ -16,8 +16,8 @@ namespace meshorder::python {
 
 namespace nb = nanobind;
 
-/// An array of the caller's, of any type and rank, row after row in the memory of the CPU. The module's
-/// Python half brings everything else into this form (meshorder/_arrays.py).
+/// An array of the caller's, of any type and rank, row after row in the memory of the CPU. The Python half of
+/// the module converts all other arrays to this form (meshorder/_arrays.py).
 using Array = nb::ndarray<nb::ro, nb::c_contig, nb::device::cpu>;
 using MutableArray = nb::ndarray<nb::c_contig, nb::device::cpu>;
 
@@ -25,15 +25,15 @@ using MutableArray = nb::ndarray<nb::c_contig, nb::device::cpu>;
 template <class T>
 using Result = nb::ndarray<nb::numpy, const T, nb::ndim<1>>;
 
-/// Views integers of 32 or 64 bits, of any rank, without a copy. Throws InvalidArgument for other types.
+/// Returns a view of integers of 32 or 64 bits, of any rank. Throws InvalidArgument for other types.
 IndexView index_view(const Array& array);
 IndexSpan index_span(const MutableArray& array);
-/// Views float or double numbers; throws likewise.
+/// Returns a view of float or double numbers; throws likewise.
 RealView real_view(const Array& array);
-/// Views points: one in each row of one to three coordinates, float or double. Throws InvalidArgument.
+/// Returns a view of points: one in each row of one to three coordinates, float or double. Throws likewise.
 PointsView points_view(const nb::ndarray<nb::ro, nb::device::cpu>& array);
 
-/// Hands a vector to Python, without a copy.
+/// Moves a vector to an array that Python owns, without a copy.
 template <class T>
 Result<T> given(std::vector<T> values) {
   auto* const kept = new std::vector<T>(std::move(values));

@@ -21,13 +21,13 @@
 
 namespace meshorder::python {
 
-/// Cells as Python gives them: blocks of one shape each, or offsets, vertices and VTK's types (or none).
+/// Cells in the form of Python's half: blocks of one shape each; or offsets, vertices and types (or none).
 using Blocks = std::vector<std::pair<std::string, Array>>;
 using Mixed = std::tuple<Array, Array, std::optional<Array>>;
 using GivenCells = std::variant<Blocks, Mixed>;
 using GivenPoints = std::optional<nb::ndarray<nb::ro, nb::device::cpu>>;
 
-/// Views the arrays, which must live as long. Throws InvalidArgument for shapes that are not known.
+/// Returns a view of the arrays, which must outlive it. Throws InvalidArgument for unknown shapes.
 MeshView mesh_view(const GivenPoints& points, const GivenCells& cells, std::size_t vertex_count);
 
 }  // namespace meshorder::python

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Orders of meshes that change.
+// Bindings for orders of meshes that change.
 #include "cells.hpp"
 #include "module.hpp"
 #include "options.hpp"

@@ -9,11 +9,11 @@ namespace {
 
 namespace nb = nanobind;
 
-/// Python's class for each `Code`, in the module `meshorder._errors`.
+/// Name of Python's class for each `Code`, in the module `meshorder._errors`.
 constexpr std::array kClasses{"Error",       "InvalidArgument", "InputError", "TooLarge",
                               "Unavailable", "Stopped",         "Error",      "InternalError"};
 
-/// Sets Python's error to the one that corresponds to the library's.
+/// Sets Python's error to the one that corresponds to the library's exception.
 void translate(const std::exception_ptr& thrown, void* /*unused*/) {
   try {
     std::rethrow_exception(thrown);

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Orders, Fiedler vectors and quality of graphs.
+// Bindings for orders, Fiedler vectors and quality of graphs.
 #include "module.hpp"
 #include "options.hpp"
 #include "results.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Layouts of cells for graphics processors.
+// Bindings for layouts of cells for graphics processors.
 #include "cells.hpp"
 #include "module.hpp"
 #include "options.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Orders of meshes that are given as arrays, and meshes of files.
+// Bindings for orders of meshes that are given as arrays, and for meshes of files.
 #include "cells.hpp"
 #include "mesh/boundary.hpp"
 #include "mesh/stored_matrix.hpp"
@@ -114,8 +114,8 @@ nb::tuple calibrated(double seconds, bool keep, const nb::dict& options) {
   return nb::make_tuple(report.machine, report.json, report.file, report.doubt);
 }
 
-/// A method of Mesh that asks `question`, advise_mesh or compare_mesh, with Python's arguments as its
-/// options.
+/// Returns a method of Mesh that converts Python's arguments to options and calls `question`, which is
+/// advise_mesh or compare_mesh.
 template <class Answer>
 auto answering(Answer (*question)(const Mesh&, const PayoffOptions&)) {
   return [question](const Mesh& self, const MethodPairs& methods, bool predict, bool measure,
@@ -127,7 +127,7 @@ auto answering(Answer (*question)(const Mesh&, const PayoffOptions&)) {
   };
 }
 
-/// The surface's corners, three for each triangle.
+/// Returns the corners of the surface, three for each triangle.
 Result<Index> surface_of(const Mesh& mesh) {
   return given(unlocked([&] {
     std::vector<Index> corners;
@@ -138,7 +138,7 @@ Result<Index> surface_of(const Mesh& mesh) {
   }));
 }
 
-/// An array of a mesh's, viewed as long as the mesh lives.
+/// Returns a view of an array of a mesh, which lives as long as the view.
 template <class T>
 Result<T> viewed(nb::handle mesh, const std::vector<T>& values) {
   return Result<T>(values.data(), {values.size()}, mesh);
@@ -159,8 +159,8 @@ nb::object values_of(nb::handle mesh, const DataArray& array) {
       array.values);
 }
 
-/// Copies an array of Python's, of rank 1 or 2, into an array of a mesh. Throws InvalidArgument for other
-/// types than real numbers.
+/// Copies an array of Python's, of rank 1 or 2, into an array of a mesh. Throws InvalidArgument unless it
+/// holds real numbers.
 DataArray array_of(const std::string& name, bool of_vertices, const Array& values) {
   DataArray array{.name = name,
                   .association = of_vertices ? Association::vertices : Association::cells,

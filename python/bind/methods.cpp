@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// The list of methods, and methods written in Python.
+// Bindings for the list of methods, and methods written in Python.
 #include "module.hpp"
 #include "options.hpp"
 #include <meshorder/registry.hpp>
@@ -15,7 +15,7 @@
 namespace meshorder::python {
 namespace {
 
-/// The registered Python functions. They must be gone before the interpreter is: `end` runs at
+/// Returns the registered Python functions. They must be released before the interpreter ends: `end` runs at
 /// exit.
 std::map<std::string, Registration>& registrations() {
   static std::map<std::string, Registration> all;
@@ -31,10 +31,10 @@ nb::list described(const std::vector<MethodInfo>& methods) {
   return list;
 }
 
-/// A vertex method that calls `function(offsets, neighbours, points)`, which returns new_to_old. The arrays
-/// are copies, since Python may keep them.
+/// Returns a vertex method that calls `function(offsets, neighbours, points)`, which returns new_to_old. The
+/// arrays are copies, because Python may keep them.
 VertexMethod method_of(const nb::object& function) {
-  // the last owner of a function may be any thread
+  // any thread may release the last reference to the function
   const std::shared_ptr<nb::object> kept(new nb::object(function), [](nb::object* object) {
     const nb::gil_scoped_acquire lock;
     delete object;

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// meshorder._core: the library's functions on arrays. What users call is Python's half of the package, which
-// brings their objects into arrays and the arrays back.
+// meshorder._core: the library's functions on arrays. Users call Python's half of the package, which converts
+// their objects to arrays and back.
 #include "module.hpp"
 
 #include <meshorder/version.hpp>
@@ -10,7 +10,7 @@
 
 NB_MODULE(_core, module) {
   using namespace meshorder::python;
-  nanobind::set_leak_warnings(false);  // of what lives until the process ends, as a user's global variable
+  nanobind::set_leak_warnings(false);  // objects may live until the process ends, as a user's global variable
   add_errors(module);
   add_permutation(module);
   add_graphs(module);

@@ -9,12 +9,12 @@
 
 namespace meshorder::python {
 
-/// Returns a text of the library as Python's. Names in files are of any bytes: those that are no UTF-8 become
-/// escapes, `\xff`.
+/// Returns a text of the library as a Python str. Names in files may have any bytes: those that are not UTF-8
+/// become escapes, `\xff`.
 nanobind::str text(std::string_view bytes);
 nanobind::list texts(const std::vector<std::string>& list);
 
-/// Each adds its subject to the module `meshorder._core`.
+/// Each function adds its part of the module `meshorder._core`.
 void add_errors(nanobind::module_& module);
 void add_permutation(nanobind::module_& module);
 void add_graphs(nanobind::module_& module);

@@ -19,21 +19,21 @@ std::atomic<int> running_calls = 0;
 std::atomic<bool> interpreter_ends = false;
 std::thread::id ending_thread;  // set before `interpreter_ends`
 
-/// Lets the calling thread sleep until the process is gone.
+/// Makes the calling thread sleep until the process ends.
 [[noreturn]] void sleep_for_ever() {
   while (true) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
-/// Returns whether an object is False, Python's or NumPy's, as a comparison of its numbers gives it.
+/// Returns whether an object is False: Python's, or NumPy's, which comparisons of its numbers return.
 bool is_false(const nb::object& answer) {
   const std::string_view type = Py_TYPE(answer.ptr())->tp_name;  // numpy.bool_ before NumPy 2
   return answer.is(Py_False) ||
          ((type == "numpy.bool" || type == "numpy.bool_") && !nb::cast<bool>(answer.attr("item")()));
 }
 
-/// Reports to a Python function, or to none, and lets signals through: Ctrl-C ends the call as
-/// KeyboardInterrupt. Only the function's False stops; its None goes on. The library may copy it while Python
-/// is unlocked: copies share one reference, the last of which the options hold.
+/// Returns a progress function that calls a Python function, or none, and handles signals: Ctrl-C ends the
+/// call with KeyboardInterrupt. Only the result False stops the call; None does not. The library may copy it
+/// while Python is unlocked: the copies share one reference, which the options hold to the end.
 std::function<bool(const Progress&)> reporter(const nb::object& given) {
   return [shared = std::make_shared<const nb::object>(given)](const Progress& progress) {
     if (interpreter_ends) return false;

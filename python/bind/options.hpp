@@ -9,8 +9,8 @@
 
 namespace meshorder::python {
 
-/// Options as Python gives them: a dict with the names of `OrderOptions` and `Run`; what is not there has its
-/// default. Keeps the arrays that the options view.
+/// Options from a dict of Python with the names of `OrderOptions` and `Run`; missing ones have their
+/// defaults. Owns the arrays that the options view.
 class Options {
  public:
   explicit Options(const nb::dict& given);
@@ -22,15 +22,15 @@ class Options {
   std::vector<Array> arrays_;
 };
 
-/// A call that works without Python's lock: gives the lock up, and is counted until it has it again.
+/// A call without Python's lock: releases the lock, and is counted until it has the lock again.
 ///
-/// A thread that asks for the lock of an interpreter that ends is ended in the middle of C++, which ends the
+/// Python ends a thread that asks for the lock while the interpreter ends. In the middle of C++ this ends the
 /// process. So the interpreter waits at its exit for all calls, which stop as if their progress function had
-/// said so (`wait_for_calls`). By then all other threads of Python are daemons: they never return to it, as
-/// it may be gone, and an exception there would be written to a closed file.
+/// returned False (`wait_for_calls`). All other threads of Python are daemons then: they never return to the
+/// interpreter, which may be gone, and an exception there would be written to a closed file.
 class UnlockedCall {
  public:
-  /// If the interpreter ends, throws Stopped in the thread that ends it and does not return in others.
+  /// If the interpreter ends: throws Stopped in the thread that ends it, and does not return in others.
   UnlockedCall();
   UnlockedCall(const UnlockedCall&) = delete;
   UnlockedCall(UnlockedCall&&) = delete;
@@ -45,10 +45,10 @@ class UnlockedCall {
 
 /// Stops all calls and waits for their end. No call begins afterwards.
 void wait_for_calls();
-/// In a process that was forked: the calls of other threads go on in the parent only.
+/// For a forked process: forgets the calls of other threads, which continue in the parent only.
 void forget_calls();
 
-/// Calls `work()` without Python's lock and returns its result. Other Python threads go on meanwhile.
+/// Calls `work()` without Python's lock and returns its result. Other Python threads run meanwhile.
 template <class Work>
 auto unlocked(const Work& work) {
   const UnlockedCall call;

@@ -13,7 +13,7 @@
 namespace meshorder::python {
 namespace {
 
-/// One direction of a permutation, which stays in its place as long as the array lives.
+/// Returns a view of one direction of a permutation, which lives as long as the array.
 Result<Index> direction(nb::handle self, std::span<const Index> map) {
   return Result<Index>(map.data(), {map.size()}, self);
 }

@@ -10,7 +10,7 @@
 
 namespace meshorder::python {
 
-/// Results as dicts with the names of their members; arrays are handed over without a copy.
+/// Return results as dicts with the names of their members; arrays are not copied.
 nb::dict described(Order order);
 nb::dict described(const Quality& quality);
 nb::object described(SparsityPattern pattern);  // side × side numbers

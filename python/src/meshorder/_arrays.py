@@ -1,7 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Brings users' arrays into the form that the library reads: contiguous, in the machine's byte order.
+"""Converts users' arrays to the form that the library reads: contiguous, in the machine's byte order.
 
-An array that has this form is returned as it is; others are copied, and PyTorch's tensors brought from their device. All
+An array in this form is returned as it is. Others are copied; PyTorch's tensors are brought from their device. All
 functions raise InvalidArgument for masked entries, other arrays on a GPU, ragged lists and wrong types and ranks.
 """
 
@@ -73,5 +73,5 @@ def points(values: Any, name: str = "points") -> NDArray[Any]:
         if array.dtype.kind not in "fiu":
             raise InvalidArgument(f"{name}: expected real numbers, not {array.dtype}")
         array = array.astype(np.float64)
-    # of packed records, say, whose rows are not whole numbers apart
+    # a copy for rows at misaligned addresses, as in packed records
     return array if array.flags.aligned else array.copy()

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Orders of meshes and particles that change, kept fresh."""
+"""Orders of changing meshes and particles, kept up to date."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from ._permutation import Permutation
 
 @dataclasses.dataclass(frozen=True)
 class Update:
-    """What `Reorderer.update` found.
+    """Result of `Reorderer.update`.
 
     Attributes:
-        permutation: from the places that the arrays have now; moves nothing where ``repair`` is "none".
-        repair: how the order came about: "none"; "carried": what was there keeps its order, what is new comes next to its
-            neighbours; "warm": computed anew from the last Fiedler vector; "fresh": computed anew.
-        reason: why there is a new order, or none; a sentence.
-        span_log2: how near neighbours are: the mean of ⌊log₂ span⌋ over the edges of a sample of the vertices; of points
-            alone the mean of log₂ (1 + places away from the curve). To be compared for one method only.
-        fresh_span_log2: the same of the last order that was computed anew.
+        permutation: from the present places of the rows; moves nothing if ``repair`` is "none".
+        repair: how the order was found: "none"; "carried": present vertices keep their order, new ones come next to their
+            neighbours; "warm": computed again from the last Fiedler vector; "fresh": computed again.
+        reason: why a new order was computed or not, a sentence.
+        span_log2: distance of neighbours: the mean of ⌊log₂ span⌋ over the edges of a sample of the vertices; for points
+            alone, the mean of log₂ (1 + places away from the curve). Compare it only with values of the same method.
+        fresh_span_log2: ``span_log2`` of the last order that was computed anew.
         added: number of new vertices.
         removed: number of vertices that are gone.
         seconds: wall-clock time of the call.
-        complete: False: the budget or the time limit kept a better order from being found.
+        complete: False if the budget or the time limit ended the search for a better order.
         notes: what was cleaned or converted.
     """
 
@@ -63,28 +63,28 @@ class Update:
 
 
 class Reorderer:
-    """Keeps the order of a mesh, graph or set of particles fresh while it changes.
+    """Keeps the order of a changing mesh, graph or set of particles up to date.
 
     Call `update` whenever connectivity or positions have changed, and move all arrays by its permutation. Most updates look
-    at a sample, and nothing moves. A new order comes when neighbours are too far apart, and now and then to see whether it
-    would be better: at first after 10 updates, and twice as rarely whenever that was in vain.
+    at a sample, and nothing moves. A new order is computed when neighbours are too far apart, and now and then to test
+    whether it would be better: first after 10 updates, then half as often after each test in vain.
 
     Args:
-        method: "auto", which takes what `order` would take for the first mesh, or the name of one of `methods`.
-        slack: the share, ≥ 0, by which ``span_log2`` may exceed that of the last fresh order.
-        budget: seconds, ≥ 0: no order is computed anew that took longer the last time; None: no limit.
-        **options: see `Options`; not ``progress``, ``start``, ``groups`` and ``cell_groups``.
+        method: "auto", which chooses as `order` does for the first mesh, or the name of one of `methods`.
+        slack: the share, ≥ 0, by which ``span_log2`` may exceed that of the last fresh order before a new one is computed.
+        budget: seconds, ≥ 0: no new order is computed if the last one took longer; None: no limit.
+        **options: see `Options`; but not ``progress``, ``start``, ``groups`` and ``cell_groups``.
 
     Raises:
-        InvalidArgument: an unknown method, a slack or budget that is negative.
-        TypeError: an unknown option, or one of those that are not taken.
+        InvalidArgument: an unknown method, a negative slack or budget.
+        TypeError: an unknown option, or one of the excluded ones.
 
     Example:
-        A simulator whose mesh is refined at times::
+        A simulator that sometimes refines its mesh::
 
             reorderer = meshorder.Reorderer()
             while simulating:
-                previous = refine(points, tetrahedra)   # the place of each vertex before, −1 where it is new
+                previous = refine(points, tetrahedra)   # the old place of each vertex, −1 for a new one
                 update = reorderer.update({"tetra": tetrahedra}, points=points, previous=previous)
                 points = update.permutation.move(points)
                 tetrahedra = update.permutation.renumber(tetrahedra)
@@ -108,19 +108,19 @@ class Reorderer:
         """Brings the order up to date. Nothing is moved.
 
         Args:
-            graph: a graph or matrix as `order` takes it, in the places that the arrays have now; or the cells of a mesh, as
-                ``{type: array}`` or ``[(type, array), …]`` with meshio's names of types; or None, where there are points
-                alone, such as particles.
+            graph: a graph or matrix that `order` takes, in the present order of the arrays; or the cells of a mesh, as
+                ``{type: array}`` or ``[(type, array), …]`` with meshio's names of types; or None if there are only points,
+                such as particles.
             points: one row of one to three coordinates for each vertex, or None.
-            previous: for each vertex its place after the last update, −1 for a new one, each at most once; None: the same
+            previous: the place of each vertex after the last update, no place twice, −1 for a new vertex; None: the same
                 vertices in the same places.
-            vertex_count: of a mesh without points.
+            vertex_count: number of vertices of a mesh without points.
 
         Returns:
-            The update, whose ``permutation`` moves all that belongs to vertices.
+            The update; its ``permutation`` moves all values of vertices.
 
         Raises:
-            InvalidArgument: a faulty graph, mesh or ``previous``; the object is unchanged then.
+            InvalidArgument: a faulty graph, mesh or ``previous``; the object is then unchanged.
             TooLarge: 2³¹ or more vertices.
         """
         coordinates = None if points is None else as_points(points)
@@ -145,9 +145,9 @@ class Reorderer:
         return Update(**made)
 
     def observe(self, step_seconds: float) -> None:
-        """Reports how long the step took that followed the last update.
+        """Reports the duration of the step after the last update.
 
-        From the fifth report on a new order comes when the time that slower steps lose exceeds its cost. Optional.
+        From the fifth report on, a new order is computed once slower steps have lost more time than it costs. Optional.
 
         Args:
             step_seconds: ≥ 0 and finite.
@@ -160,7 +160,7 @@ class Reorderer:
 
     @property
     def state(self) -> bytes:
-        """The state as bytes, for a checkpoint: `restore` continues from it."""
+        """The state as bytes, for a checkpoint; `restore` continues from it."""
         with self._lock:
             state: bytes = self._inside.state()
             return state
@@ -169,10 +169,10 @@ class Reorderer:
         """Continues from a state of the same method.
 
         Args:
-            state: bytes that `state` gave.
+            state: a value of `state`.
 
         Raises:
-            InvalidArgument: bytes that are no whole state, or one of another method; the object is unchanged then.
+            InvalidArgument: bytes that are not a whole state, or the state of another method; the object is then unchanged.
         """
         with self._lock:
             self._inside.restore(bytes(state))

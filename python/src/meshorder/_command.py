@@ -27,7 +27,7 @@ from . import _core, _files, _foreign
 from ._errors import Error, InputError
 from .hosts.meshio import GROUPED, Blocks, to_meshio
 
-#: subcommands that take a mesh, and the place of the mesh among their arguments that are no options
+#: subcommands that take a mesh, and the place of the mesh among their positional arguments
 _MESH_PLACE = {"order": 0, "apply": 1, "info": 0, "compare": 0}
 #: options without a value; all others have one
 _FLAGS = {"--json", "--quiet", "-q", "--inverse", "--measure", "--predict", "--strict", "--timings", "--all-threads", "--trust",
@@ -45,7 +45,7 @@ def main() -> int:
     """Runs the command with the arguments of this process.
 
     Returns:
-        Its exit status, unless the command takes the place of this process.
+        The exit status, unless the command replaces this process.
     """
     arguments = sys.argv[1:]
     try:
@@ -63,7 +63,7 @@ def main() -> int:
 def _run_as_is(arguments: list[str]) -> int:
     if os.name == "nt":
         return subprocess.call([program(), *arguments])
-    for ignored in ("SIGPIPE", "SIGXFSZ"):  # Python ignores them
+    for ignored in ("SIGPIPE", "SIGXFSZ"):  # Python ignores these signals; the command must not
         signal.signal(getattr(signal, ignored), signal.SIG_DFL)
     os.execv(program(), ["meshorder", *arguments])
 
@@ -88,7 +88,7 @@ class _Word:
 
 @dataclass
 class _Words:
-    """The files and the options of a command line that matter to the conversion."""
+    """The files and options of a command line that the conversion needs."""
 
     subcommand: str
     mesh: _Word
@@ -114,7 +114,7 @@ class _Words:
             word = arguments[place]
             name, equals, value = word.partition("=")
             option = word
-            if word.startswith("-q") and len(word) > 2:  # with another one, as in -qo FILE
+            if word.startswith("-q") and len(word) > 2:  # -q together with another option, as in -qo FILE
                 flags.add("-q")
                 option = f"-{word[2:]}"
             if word == "--":
@@ -150,14 +150,14 @@ class _Words:
 
 
 class _Maps:
-    """Files of maps, which take their places when the mesh that they are of is written.
+    """Files of maps. They are put in place when their mesh has been written.
 
     Attributes:
-        prefix: of their names.
-        scratch: prefix of the names that they have before.
+        prefix: of their final names.
+        scratch: prefix of their temporary names.
     """
 
-    #: what only some runs write; those of an earlier one go
+    #: maps that only some runs write; those of an earlier run are removed
     _OPTIONAL = ("vertices.ids", "cells.ids", "cells.kept", "vertices.parts", "cells.parts")
 
     def __init__(self, prefix: str, folder: str) -> None:
@@ -260,13 +260,13 @@ def _print(text: str) -> None:
         sys.stdout.write(text)
         sys.stdout.flush()
     except OSError as error:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes its buffer there when it ends
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes its buffer there at exit
         if not isinstance(error, BrokenPipeError):
             raise Error("standard output: cannot be written to the end; is the disk full?") from error
 
 
 def _write(made: str, path: str, format: str, words: _Words, dimension: int, maps: _Maps | None) -> list[str]:
-    """Converts the file that the command made by meshio, and returns notes."""
+    """Converts the file that the command made, by meshio, and returns notes."""
     ordered = words.subcommand == "order"
     moved = _files.read(made)
 
@@ -295,7 +295,7 @@ def _reorder_map_of_cells(prefix: str, order: NDArray[np.int64]) -> None:
 
     Args:
         prefix: the value of --maps.
-        order: the place that each cell of the file had in the reordered mesh.
+        order: the place in the reordered mesh of each cell of the file.
     """
     file = f"{prefix}.cells.new_to_old.npy"
     written = np.load(file)
@@ -307,7 +307,7 @@ def _reorder_map_of_cells(prefix: str, order: NDArray[np.int64]) -> None:
 
 
 def _forget_mesh_after(prefix: str) -> None:
-    """Removes the checksums of the maps and of the reordered mesh, since meshio may write other cells and digits."""
+    """Removes the checksums of the maps and of the reordered mesh: meshio may write other cells and digits."""
     file = pathlib.Path(f"{prefix}.maps.json")
     identity = json.loads(file.read_text(encoding="utf-8"))
     identity["after"] = None
@@ -320,7 +320,7 @@ def _run_in_other_names(arguments: list[str], names: dict[str, str], words: _Wor
 
     Args:
         arguments: of the command.
-        names: the user's file for each temporary one.
+        names: for each temporary file the user's file.
         words: the files and options of the command line.
 
     Returns:
@@ -357,7 +357,7 @@ def _run_in_other_names(arguments: list[str], names: dict[str, str], words: _Wor
             child.wait()
             errors.join()
     printed = renamed(printed, lambda name: json.dumps(name, ensure_ascii=False)) if words.json else renamed(printed)
-    if words.subcommand == "info":  # it names the format of the file that it read
+    if words.subcommand == "info":  # it prints the format of the file that it read
         printed = printed.replace('"format": "VTU"', '"format": "meshio"')
         printed = printed.replace(f"{words.mesh.path}, VTU", words.mesh.path)
     return status, printed

@@ -1,7 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Moves arrays of other libraries on the device that they are on, a GPU for instance.
+"""Moves arrays of other libraries on their device, a GPU for instance.
 
-That is JAX, CuPy and whatever else follows the Python array API standard (https://data-apis.org/array-api/), and Warp.
+These are JAX, CuPy and other libraries with the Python array API standard (https://data-apis.org/array-api/), and Warp.
 hosts/torch.py does the same for PyTorch.
 """
 
@@ -31,7 +31,7 @@ class Standard:
         return self._functions.take(values, self._beside(values, new_to_old), axis=axis)
 
     def renumbered(self, numbers: Any, old_to_new: NDArray[np.int32]) -> Any:
-        """Returns an array with the new number of each old one; raises InvalidArgument for numbers out of range."""
+        """Returns the new number of each old one in an array; raises InvalidArgument for numbers out of range."""
         functions = self._functions
         try:
             bits = functions.iinfo(numbers.dtype).bits
@@ -47,7 +47,7 @@ class Standard:
     def _beside(self, values: Any, numbers: NDArray[np.int32]) -> Any:
         """Returns numbers on the device of an array."""
         device = values.device
-        if hasattr(device, "__enter__"):  # CuPy's, which is made current
+        if hasattr(device, "__enter__"):  # a device of CuPy, which has to be made current
             with device:
                 return self._functions.asarray(numbers)
         return self._functions.asarray(numbers, device=device)
@@ -65,7 +65,7 @@ class Warp:
         return warp.indexedarray(values, indices).contiguous()
 
     def renumbered(self, numbers: Any, old_to_new: NDArray[np.int32]) -> Any:
-        """Returns an array with the new number of each old one, by way of the host; raises as `Standard` does."""
+        """Returns the new number of each old one in an array, through the host; raises as `Standard` does."""
         import warp
 
         old = numbers.numpy()
@@ -77,7 +77,7 @@ class Warp:
 
 
 def library_of(values: Any) -> Standard | Warp | None:
-    """Returns what moves an array of another library; None for NumPy's arrays and for other objects."""
+    """Returns the object that moves arrays of another library; None for NumPy's arrays and for other objects."""
     if isinstance(values, (np.ndarray, np.generic)):
         return None
     package = type(values).__module__.partition(".")[0]

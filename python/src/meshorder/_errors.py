@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The exceptions of meshorder. All but the base class also derive from the built-in exception that fits best."""
+"""The exceptions of meshorder. All but the base class also derive from the most fitting built-in exception."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ __all__ = ["Error", "InputError", "InternalError", "InvalidArgument", "Stopped",
 
 
 class Error(Exception):
-    """Base class of meshorder's exceptions; itself raised where something cannot be stored or printed."""
+    """Base class of meshorder's exceptions; raised itself if something cannot be stored or printed."""
 
 
 class InvalidArgument(Error, ValueError):
-    """An argument is wrong: an unknown method, a map that is no permutation, sizes that do not match, NaN."""
+    """An argument is wrong: an unknown method, a map that is not a permutation, sizes that do not match, NaN."""
 
 
 class InputError(Error, ValueError):
     """A file or bytes cannot be read or written as a mesh.
 
     Attributes:
-        file: name of the file; None where it is not known.
-        line: line of the fault in a text, from 1; None where it is not known.
-        byte: offset of the fault in binary data, from 0; None where it is not known.
+        file: name of the file; None if it is not known.
+        line: line of the fault in a text, from 1; None if it is not known.
+        byte: offset of the fault in binary data, from 0; None if it is not known.
     """
 
     file: str | None = None
@@ -41,7 +41,7 @@ class Stopped(Error, RuntimeError):
 
 
 class InternalError(Error, RuntimeError):
-    """Something failed inside meshorder or a library that it uses."""
+    """Something failed inside meshorder or inside a library that it uses."""
 
 
 for _name in __all__:

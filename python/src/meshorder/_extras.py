@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Imports of the optional packages, which only some functions need."""
+"""Imports optional packages, which only some functions need."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ def load(module: str, extra: str) -> Any:
     """Imports and returns a module of an optional package.
 
     Raises:
-        ImportError: the package is not installed; the message names the extra of meshorder that brings it.
+        ImportError: the package is not installed; the message names the extra of meshorder that installs it.
     """
     package = module.partition(".")[0]
     try:

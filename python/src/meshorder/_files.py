@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Meshes made of arrays, read from files and written to files."""
+"""Makes meshes from arrays, reads them from files and writes them to files."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from .hosts import host_of
 
 
 def make_mesh(points: Any, cells: Any = None) -> Mesh:
-    """Makes a `Mesh` of arrays or of another library's mesh. Everything is copied.
+    """Makes a `Mesh` from arrays or from another library's mesh. Everything is copied.
 
     Args:
-        points: one row of one to three coordinates for each vertex; or, if no cells are given, a mesh that `reorder`
-            takes, whose data and sets are taken over.
+        points: one row of one to three coordinates for each vertex; or, if no cells are given, a mesh that `reorder` takes,
+            with its data and sets.
         cells: cells of known types, in one of the forms that `order_mesh` takes.
 
     Returns:
         The mesh; its ``notes`` name the data that were left out. If ``points`` is a `Mesh`, that mesh itself.
 
     Raises:
-        InvalidArgument: faulty arrays, an object that is no mesh, cells of unknown types.
+        InvalidArgument: faulty arrays, an object that is not a mesh, cells of unknown types.
         TooLarge: 2³¹ or more vertices or cells.
     """
     if cells is None:
@@ -42,16 +42,16 @@ def read(
 ) -> Mesh:
     """Reads a mesh from a file, or from the bytes of one.
 
-    Files in formats that meshorder does not have are read by meshio where it is installed; the mesh's notes say so.
+    Files in formats that meshorder does not have are read by meshio if it is installed; the mesh's notes say so.
 
     Args:
         source: the path of a file, or its bytes.
         format: name of the format, "gmsh" or "vtu"; None: by the extension, or by the first bytes.
-        memory_limit: the most bytes of memory for values of which the file holds only a shorter form or the number,
-            such as compressed ones; None: 256 MiB and 100 times the file, at most three quarters of the memory. Files
+        memory_limit: limit in bytes on memory for values that the file holds in a shorter form only, such as compressed
+            ones; None: 256 MiB plus 100 times the file's size, but at most three quarters of the memory. Files
             that meshio reads have no limit.
-        include_folders: a folder, or several, besides the file's own, that may hold files which it names to be read with
-                it.
+        include_folders: a folder, or several, besides the file's own, from which other files that it names may be
+                read.
 
     Returns:
         The mesh; its ``notes`` say what the reader dropped or repaired.
@@ -76,24 +76,24 @@ def read(
     foreign = _foreign.format_of_meshio(path, format or "")
     if foreign:
         return _foreign.read(path, foreign)
-    # the letters of a path are folders, too: "/", say
+    # a single path must not be iterated: its letters, such as "/", would be taken for folders
     folders = [include_folders] if isinstance(include_folders, (str, os.PathLike)) else include_folders
     return Mesh(*_core.read(path, format or "", limit, [os.fspath(folder) for folder in folders]))
 
 
 def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:
-    """Writes a mesh to a file, by meshio where meshorder does not have the format.
+    """Writes a mesh to a file, by meshio if meshorder does not have the format.
 
     Args:
-        mesh: a `Mesh`, or another mesh that `reorder` takes, of which a `Mesh` is made first.
-        path: the file, whose extension names the format. It is replaced when all is written.
+        mesh: a `Mesh`, or another mesh that `reorder` takes, which is converted to a `Mesh` first.
+        path: the file; its extension sets the format. It is replaced once everything is written.
 
     Returns:
-        Notes that name what the format cannot hold and was left out, and say so if meshio wrote the file.
+        Notes that name what was left out because the format cannot hold it, and say so if meshio wrote the file.
 
     Raises:
         InputError: an unknown extension, cells that the format cannot hold, a file that cannot be written.
-        InvalidArgument: an object that is no mesh, a faulty mesh.
+        InvalidArgument: an object that is not a mesh, a faulty mesh.
         Unavailable: this build, or meshio, lacks a library that the format needs.
     """
     if not isinstance(mesh, Mesh):
@@ -109,14 +109,14 @@ def write(mesh: Any, path: str | os.PathLike[str]) -> list[str]:
 
 
 def to_bytes(mesh: Any, format: str) -> bytes:
-    """Returns the bytes of the file that `write` would make. What the format cannot hold is left out without a note.
+    """Returns the bytes of the file that `write` would make. Data that the format cannot hold are left out without a note.
 
     Args:
         mesh: as `write` takes it.
-        format: name of a format of meshorder that takes one file, "gmsh" or "vtu".
+        format: name of a meshorder format that uses one file, "gmsh" or "vtu".
 
     Raises:
-        InvalidArgument: an unknown format or one of several files, an object that is no mesh.
+        InvalidArgument: an unknown format or one of several files, an object that is not a mesh.
         InputError: cells that the format cannot hold.
         Unavailable: this build lacks a library that the format needs.
     """
@@ -125,5 +125,5 @@ def to_bytes(mesh: Any, format: str) -> bytes:
 
 
 def mesh_of(mesh: Any) -> Mesh:
-    """Returns the `Mesh` in a file, or made of a mesh that `reorder` takes."""
+    """Returns the `Mesh` in a file, or one made from a mesh that `reorder` takes."""
     return read(mesh) if isinstance(mesh, (str, os.PathLike)) else host_of(mesh).mesh()

@@ -1,7 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Reads and writes files in formats that meshorder does not have, by meshio where it is installed.
+"""Reads and writes files in formats that meshorder does not have, by meshio if it is installed.
 
-Each written file is read again: notes name the data that do not come back, and where cells would be lost, no file is
+Each written file is read again: notes name the data that are missing from it. If cells would be lost, no file is
 written.
 """
 
@@ -30,7 +30,7 @@ def format_of_meshio(path: str, format: str = "") -> str | None:
 
     Args:
         path: the file, whose extension gives the format.
-        format: name of the format, which counts instead of the extension; empty: none.
+        format: name of the format, which overrides the extension; empty: none.
 
     Raises:
         InputError: meshorder does not have the format, and meshio is not installed.
@@ -89,7 +89,7 @@ def read_meshio(path: str, format: str) -> tuple[Any, list[str]]:
     """Reads a file by meshio.
 
     Returns:
-        The meshio.Mesh, and notes: that meshio read the file, and what meshio printed.
+        The meshio.Mesh, and notes: that meshio read the file, and the messages of meshio.
 
     Raises:
         InputError: the file is missing, or meshio cannot read it.
@@ -120,11 +120,11 @@ def write_meshio(mesh: Any, path: str, format: str, strict: bool = False) -> lis
         strict: True refuses to lose cells, arrays or sets.
 
     Returns:
-        Notes that say that meshio wrote the file, what it printed, and what the file does not hold.
+        Notes: that meshio wrote the file, the messages of meshio, and what the file does not hold.
 
     Raises:
-        InputError: meshio cannot write the mesh, or cells would be lost, or anything if ``strict``; the file is not
-            made then.
+        InputError: meshio cannot write the mesh; or cells would be lost, or anything at all if ``strict``; the file is then
+            not made.
         Unavailable: meshio needs another package for the format.
     """
     import meshio
@@ -170,10 +170,10 @@ def folder_beside(path: str) -> Iterator[str]:
 
 @contextlib.contextmanager
 def _meshios_words(path: str, notes: list[str], what: str) -> Iterator[None]:
-    """Runs meshio: adds what it prints to the notes, and raises InputError or Unavailable for all its failures."""
+    """Runs meshio: adds its messages to the notes, and raises InputError or Unavailable for all its failures."""
     printed = io.StringIO()
     width = os.environ.get("COLUMNS")
-    os.environ["COLUMNS"] = "1000"  # so that meshio breaks no lines
+    os.environ["COLUMNS"] = "1000"  # long lines, so that meshio does not break them
     try:
         with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
             yield
@@ -196,7 +196,7 @@ def _meshios_words(path: str, notes: list[str], what: str) -> Iterator[None]:
 
 
 def _shallow_copy(mesh: Any) -> Any:
-    """Returns a mesh with the same arrays in lists and dictionaries of its own, which meshio's writers change."""
+    """Returns a mesh with the same arrays but its own lists and dictionaries, because meshio's writers change them."""
     return type(mesh)(
         mesh.points,
         list(mesh.cells),
@@ -254,7 +254,7 @@ def _what_is_rounded(mesh: Any, again: Any) -> Iterator[str]:
 
 
 def _member_count(members: Any) -> int:
-    """Returns the number of members of a set of points, or of cells, which has a list for each block."""
+    """Returns the number of members of a set; a set of cells has a list with an array for each block."""
     if isinstance(members, list):
         return sum(len(part) for part in members if part is not None)
     return len(members)

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Graphs and matrices: their orders, Fiedler vectors, and the quality of orders."""
+"""Orders of graphs and matrices, Fiedler vectors, and the quality of orders."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class FiedlerComponent(NamedTuple):
         size: number of vertices.
         lambda2: second-smallest eigenvalue of the component's Laplacian; 0 for a single vertex.
         residual: ‖L x − λ x‖ / ‖x‖, absolute.
-        iterations: of LOBPCG on the component itself, its coarser levels aside; 0 where a dense eigensolver gave the
-            answer.
+        iterations: of LOBPCG on the component itself, without its coarser levels; 0 where a dense eigensolver was
+            used.
         converged: whether the residual is at most ``tolerance · lambda2``.
     """
 
@@ -39,12 +39,12 @@ class FiedlerComponent(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Order:
-    """An order of n vertices or cells, and how it was found.
+    """An order of n vertices or cells, and a report on how it was found.
 
     Attributes:
         permutation: the new place of each vertex or cell.
         method: name of the method that made the order; never "auto".
-        reason: why "auto" chose that method; empty where it was asked for by name.
+        reason: why "auto" chose that method; empty if it was requested by name.
         fiedler: the eigensolver's report for each connected component, from methods that sort by a Fiedler vector
             ("fiedler", "minla", "fiedler-facet"); empty for others.
         vector: the Fiedler vector, n numbers, from the same methods: pass it as ``start`` to order a similar graph;
@@ -90,9 +90,9 @@ class Order:
         """Draws the sparsity pattern of a matrix before and after the order, with matplotlib. O(entries).
 
         Args:
-            graph: the graph or matrix that was ordered, in a form that `meshorder.order` takes but no mesh. Its pattern
+            graph: the graph or matrix that was ordered, in a form that `meshorder.order` takes, but not a mesh. Its pattern
                 must be symmetric.
-            side: the entries are counted in side × side tiles, n × n where the matrix has fewer rows; ≥ 1.
+            side: the entries are counted in side × side tiles, n × n if the matrix has fewer rows; ≥ 1.
             axes: two matplotlib Axes to draw on; None: those of a new figure.
 
         Returns:
@@ -110,8 +110,8 @@ class Order:
 class Fiedler:
     """The Fiedler vectors of all connected components of a graph of n vertices.
 
-    Attributes:
-        values: n numbers, the Fiedler vector of each component at its vertices: of norm 1 and sum 0 within the
+    values: n numbers: the Fiedler vector of each component at its vertices, with norm 1 and sum 0 within the
+        component; 0 for vertices without neighbours. Signs are the same on every run.
             component; 0 for vertices without neighbours. Signs are the same on every run.
         component_of: n numbers, the position of each vertex's component in ``components``.
         components: the eigensolver's report for each component, the largest component first.
@@ -153,19 +153,19 @@ class Fiedler:
 
 @dataclass(frozen=True)
 class Quality:
-    """Numbers that say how near the two ends of edges are in an order of n vertices.
+    """Measures of how near the two ends of edges are in an order of n vertices.
 
     The span of an edge is the distance between the places of its ends. All numbers are 0 for a graph without edges.
 
     Attributes:
-        edges: number of edges; loops are not counted, repeated entries once.
+        edges: number of edges, without loops; repeated entries count once.
         mean_span: mean of the spans: ≥ 1, about n/3 for a random order.
-        mean_log2_span: mean of log₂ of the spans, which a few long edges change little.
+        mean_log2_span: mean of log₂ of the spans, on which a few long edges have little effect.
         bandwidth: the largest span: the half bandwidth of the matrix.
-        profile: sum over the rows of the matrix of the distance from the first entry before the diagonal to it.
+        profile: sum over the rows of the matrix of the distance from the diagonal to the first entry before it.
         histogram_log2: entry k is the number of edges with a span of 2ᵏ … 2ᵏ⁺¹ − 1.
-        jump_share: share of the lines of 8 numbers that a product with the matrix first reads out of order, 0 to 1.
-            Where vectors exceed the last cache, it explains the times of products in different orders.
+        jump_share: share, 0 to 1, of the lines of 8 numbers whose first read in a product with the matrix is out of order.
+            If vectors exceed the last cache, it explains the times of products in different orders.
     """
 
     edges: int
@@ -212,13 +212,13 @@ def graph_arrays(graph: Any, mirror: bool = False) -> tuple[NDArray[Any], NDArra
 
     Args:
         graph: the graph.
-        mirror: True: edges of PyTorch that have a direction are taken in both.
+        mirror: True: directed edges of PyTorch are taken in both directions.
 
     Returns:
-        The two arrays, and where the weight of each entry is among those given: an array of places, or all in order.
+        The two arrays, and for each entry the place of its weight among those given: an array of places, or all in order.
 
     Raises:
-        InvalidArgument: none of these forms, a matrix that is not square, arrays of other types than integers.
+        InvalidArgument: none of these forms, a matrix that is not square, arrays that do not hold integers.
     """
     if _is_of_scipy(graph):
         matrix = graph.tocsr()
@@ -278,7 +278,7 @@ def fiedler(graph: Any, *, weights: Any = None, tolerance: float = 1e-8, **optio
     each edge and D the sums of its rows.
 
     Args:
-        graph: a graph or matrix in a form that `order` takes, but no mesh. A matrix gives its pattern only; to use its
+        graph: a graph or matrix in a form that `order` takes, but not a mesh. A matrix gives its pattern only; to use its
             values, pass them as weights.
         weights: one for each entry of the graph, in the order of its arrays, > 0, finite, and equal in both entries of
             an edge; None: all are 1.
@@ -287,7 +287,7 @@ def fiedler(graph: Any, *, weights: Any = None, tolerance: float = 1e-8, **optio
 
     Returns:
         The vectors and a report for each component. A component that has not converged after ``max_iterations`` keeps
-        its best vector, with ``converged`` False; that is no error.
+        its best vector, with ``converged`` False; that is not an error.
 
     Raises:
         InvalidArgument: a faulty graph, weights that are not positive, sizes that do not match.
@@ -308,12 +308,12 @@ def fiedler(graph: Any, *, weights: Any = None, tolerance: float = 1e-8, **optio
 
 
 def quality(graph: Any, order: Order | Permutation | None = None) -> Quality:
-    """Measures how near the ends of edges are in the order that a graph's vertices have, or in another one. O(entries).
+    """Measures how near the ends of edges are in the present order of a graph's vertices, or in another one. O(entries).
 
     Args:
-        graph: a graph or matrix in a form that `order` takes, but no mesh. Its pattern must be symmetric; edges of an
+        graph: a graph or matrix in a form that `order` takes, but not a mesh. Its pattern must be symmetric; edges of an
             edge_index or Data count in both directions.
-        order: the order to measure, which is not carried out; None: the order that the vertices have.
+        order: the order to measure, which is not carried out; None: the present order.
 
     Returns:
         Spans, bandwidth and profile.

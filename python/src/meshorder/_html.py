@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ._permutation import Permutation
 
 _BAR = "rgba(76,139,205,.42)"
-_MOST_LINES = 8  # that a long list is cut to
+_MOST_LINES = 8  # to which a long list is cut
 
 
 def _cell(html: str, style: str = "") -> str:
@@ -47,14 +47,14 @@ def _lines(lines: Iterable[str]) -> str:
 
 
 def _some(lines: Sequence[str]) -> list[str]:
-    """Returns the lines, of many only the first and the number of the others."""
+    """Returns the lines; of many, only the first ones and the number of the others."""
     if len(lines) <= _MOST_LINES:
         return list(lines)
     return [*lines[: _MOST_LINES - 1], f"and {len(lines) - _MOST_LINES + 1:,} more"]
 
 
 def permutation(of: Permutation) -> str:
-    """Shows a picture of the moves, and their mean."""
+    """Shows a picture of the moves, and their mean distance."""
     picture = _thumbnails.image(_thumbnails.moves(of.old_to_new), "old places from the left, new ones from the top")
     return _beside(picture, escape(repr(of)[1:-1]))
 
@@ -115,7 +115,7 @@ def fiedler(of: Fiedler) -> str:
 
 
 def mesh(of: Mesh) -> str:
-    """Lists what the mesh holds."""
+    """Shows what the mesh holds, as a table."""
     types, counts = np.unique(np.stack([of.shapes, np.diff(of.offsets)]), axis=1, return_counts=True)
     names = [
         f"{count:,} × {_core.shapes[shape]} of {width:,}" for (shape, width), count in zip(types.T.tolist(), counts.tolist())
@@ -155,6 +155,6 @@ def candidates(of: Sequence[Candidate], kernels: Sequence[str]) -> str:
 
 
 def advice(of: Advice, kernels: Sequence[str]) -> str:
-    """Shows the verdict above the candidates."""
+    """Shows the verdict, and below it the candidates."""
     verdict = re.sub("`([^`]*)`", r"<code>\1</code>", escape(of.verdict))
     return _lines([f"<b>{verdict}</b>", candidates([of.as_is, *of.candidates], kernels)])

@@ -1,7 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Refuses to be imported in another interpreter than the main one, since the extension module has one state a process.
+"""Refuses an import in an interpreter other than the main one, as the extension module has one state for each process.
 
-From Python 3.12 on the import of the extension module refuses that itself.
+From Python 3.12 on, the extension module itself refuses such an import.
 """
 
 import sys

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Layouts of cells for graphics processors, where many threads work at once. Put the mesh in order first."""
+"""Layouts of cells for graphics processors, where many threads work at once. Order the mesh first."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _LAYOUTS = ("packed", "apart", "padded")
 
 
 class Patches(NamedTuple):
-    """Cells in patches, each for one block of threads, which keeps the patch's vertices in shared memory.
+    """Cells in patches, one for each block of threads, which keeps the patch's vertices in shared memory.
 
     Attributes:
         cells: the old number of each of the m cells: those of patch p are ``cells[p * size : (p + 1) * size]``.
         offsets: the vertices of patch p are ``vertices[offsets[p] : offsets[p + 1]]``.
-        vertices: of each patch its vertices, ascending.
+        vertices: the vertices of each patch, ascending.
         local: m × k numbers of 16 bits: corner a of ``cells[i]`` is vertex ``local[i, a]`` of its patch.
-        size: how many cells each patch has; the last may have fewer.
+        size: number of cells of each patch; the last may have fewer.
     """
 
     cells: NDArray[np.int32]
@@ -36,12 +36,12 @@ class Patches(NamedTuple):
 
 
 class GatherLists(NamedTuple):
-    """For each vertex v the cells that have it, from ``offsets[v]`` to ``offsets[v + 1]``.
+    """The cells at each vertex: those of vertex v are at ``offsets[v]`` to below ``offsets[v + 1]``.
 
     Attributes:
         offsets: n + 1 numbers.
-        cells: of each vertex its cells, ascending.
-        corners: which corner of the cell the vertex is.
+        cells: the cells of each vertex, ascending.
+        corners: the position of the vertex in that cell.
     """
 
     offsets: NDArray[np.int64]
@@ -50,11 +50,11 @@ class GatherLists(NamedTuple):
 
 
 class Colours(NamedTuple):
-    """Cells by colour: no two of a colour share a vertex.
+    """Cells by colour: no two cells of a colour share a vertex.
 
     Attributes:
         starts: the cells of colour c are ``cells[starts[c] : starts[c + 1]]``.
-        cells: all cells, colour after colour, each in the order that they had.
+        cells: all cells, colour after colour, in their old order within a colour.
     """
 
     starts: NDArray[np.int32]
@@ -62,13 +62,13 @@ class Colours(NamedTuple):
 
 
 class GpuCost(NamedTuple):
-    """What the atomic additions of a pass over cells cost on a GPU, a thread a cell.
+    """Cost of the atomic additions of a pass over cells on a GPU, with one thread for each cell.
 
     Attributes:
         requests: additions, each of a warp of 32 threads at once.
-        sectors: sectors of 32 bytes that these additions write; one counts t times, where t is the largest number of threads
-            of the warp that add to one number in it.
-        floor: ``sectors`` if the vertices of each warp were side by side, and no two the same.
+        sectors: sectors of 32 bytes that these additions write. A sector counts t times, where t is the largest number of
+            threads of the warp that add to the same number in it.
+        floor: ``sectors`` if the vertices of each warp were all different and side by side.
     """
 
     requests: int
@@ -83,7 +83,7 @@ def _given(cells: Any, vertices: int | None) -> tuple[Any, int]:
         return arrays, whole(vertices, 2**31 - 1, "vertices")
     named = [block for _, block in arrays] if isinstance(arrays, list) else [arrays[1]]
     most = max((int(block.max()) + 1 for block in named if block.size), default=0)
-    return arrays, min(most, 2**63)  # more than the library takes, which says so
+    return arrays, min(most, 2**63)  # the bound is more than the library takes; it reports that
 
 
 def _rows(values: NDArray[Any], cells: Any) -> NDArray[Any]:
@@ -96,7 +96,7 @@ def _rows(values: NDArray[Any], cells: Any) -> NDArray[Any]:
 def patches(cells: Any, size: int = 256, *, vertices: int | None = None) -> Patches:
     """Cuts cells into patches, in their order.
 
-    A block of threads loads the vertices of its patch into shared memory, works on them by their local numbers, and adds up
+    A block of threads loads the vertices of its patch into shared memory, uses their local numbers, and adds up its results
     there. Within a patch, neighbouring cells are spread over the warps of 32 threads, so that few threads of a warp add to
     the same vertex.
 
@@ -110,7 +110,7 @@ def patches(cells: Any, size: int = 256, *, vertices: int | None = None) -> Patc
         TooLarge: 2³¹ or more cells.
 
     Example:
-        What block p of threads has in shared memory, and the corners of its cells in it::
+        The vertices that block p of threads has in shared memory, and the corners of its cells there::
 
             cut = meshorder.patches(tetrahedra)
             shared = positions[cut.vertices[cut.offsets[p] : cut.offsets[p + 1]]]
@@ -123,7 +123,7 @@ def patches(cells: Any, size: int = 256, *, vertices: int | None = None) -> Patc
 
 
 def gather_lists(cells: Any, *, vertices: int | None = None) -> GatherLists:
-    """Lists for each vertex the cells that have it, so that each vertex can add up what its cells give without atomics.
+    """Lists the cells at each vertex, so that each vertex can sum their contributions without atomics.
 
     Args:
         cells: cells in one of the forms that `order_mesh` takes, with at most 256 vertices each; rows of two are edges.
@@ -137,7 +137,7 @@ def gather_lists(cells: Any, *, vertices: int | None = None) -> GatherLists:
 
 
 def colours(cells: Any, *, vertices: int | None = None) -> Colours:
-    """Colours cells, or edges, so that no two of a colour share a vertex and threads may work on them at once.
+    """Colours cells, or edges, so that no two of a colour share a vertex and threads may work on a colour at once.
 
     Args:
         cells: cells in one of the forms that `order_mesh` takes; rows of two are edges.
@@ -174,12 +174,12 @@ def sort_corners(cells: Any, *, vertices: int | None = None) -> NDArray[np.int32
 def gpu_cost(cells: Any, layout: str = "padded", *, vertices: int | None = None) -> GpuCost:
     """Counts the cost of atomic additions to the vertices of cells on a GPU. The count needs no GPU.
 
-    Of two orders of the same cells, the one with fewer sectors is faster there. An NVIDIA H100 counts the same within 1.2 %.
+    Of two orders of the same cells, the one with fewer sectors is faster there. The counters of an H100 agree within 1.2 %.
 
     Args:
         cells: cells of one type, in one of the forms that `order_mesh` takes; rows of two are edges.
         layout: where the kernel keeps the numbers of 4 bytes that it adds to vertices: "packed" has three side by side,
-            each added by itself; "apart" has three arrays; "padded" has four side by side, added at once.
+            each added separately; "apart" has three arrays; "padded" has four side by side, added at once.
         vertices: number of vertices n; None: as many as the cells name.
 
     Raises:

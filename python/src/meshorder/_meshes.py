@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Meshes with all that belongs to them, and the orders of arrays of cells."""
+"""Meshes with all their data, and orders of arrays of cells."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ _SIMPLEX = {2: "line", 3: "triangle", 6: "wedge", 8: "hexahedron", 10: "tetrahed
 
 
 def cell_arrays(cells: Any, dimension: int) -> Any:
-    """Cells in the form that the library takes: blocks, or offsets, vertices and VTK's types."""
+    """Returns cells in the form that the library takes: blocks, or offsets, vertices and VTK's types."""
     if isinstance(cells, Mapping):
         return [_block(name, vertices) for name, vertices in cells.items()]
     if isinstance(cells, tuple) and 2 <= len(cells) <= 3 and not isinstance(cells[0], str):
@@ -91,7 +91,7 @@ def cell_arrays(cells: Any, dimension: int) -> Any:
 def order_arrays(
     points: Any, cells: Any, vertices: str, elements: str, vertex_count: int | None, options: dict[str, Any]
 ) -> MeshOrder:
-    """`order_mesh`, of arrays."""
+    """Orders a mesh that is given as arrays; see `order_mesh`."""
     coordinates = None if points is None else as_points(points)
     if coordinates is None and vertex_count is None:
         raise InvalidArgument("order_mesh: without points vertex_count must be given")
@@ -102,16 +102,16 @@ def order_arrays(
 
 
 class Mesh:
-    """A mesh of a file, with all its data. `read` makes it, and `make_mesh` from arrays.
+    """A mesh with all data of its file. `read` makes it from a file, `make_mesh` from arrays.
 
-    Arrays that were taken from it stay as they are when it is reordered in place.
+    Arrays that were taken from a mesh keep their values when it is reordered in place.
     """
 
     __slots__ = ("_handle", "notes")
 
     def __init__(self, made: _core.Mesh, notes: list[str] | None = None) -> None:
         self._handle = made
-        #: what the reader dropped or repaired
+        #: notes on what the reader dropped or repaired
         self.notes = notes or []
 
     @property
@@ -136,7 +136,7 @@ class Mesh:
 
     @property
     def cells(self) -> list[tuple[str, NDArray[np.int32]]]:
-        """Runs of cells of one type, in the order of the file: its shape and a row of vertices for each cell."""
+        """Consecutive cells of one type, in the order of the file: for each run its shape and a row of vertices for each cell."""
         widths = np.diff(self.offsets)
         kinds = np.stack([self.shapes.astype(np.int64), widths])
         changes = (np.diff(kinds, axis=1) != 0).any(axis=0)
@@ -166,7 +166,7 @@ class Mesh:
 
     @property
     def sets(self) -> dict[str, NDArray[np.int32]]:
-        """Named lists of vertices or cells; "vertices:NAME" and "cells:NAME" where both have a set of that name."""
+        """Named lists of vertices or cells; "vertices:NAME" and "cells:NAME" if both have a set of that name."""
         sets = self._handle.sets
         count_of = Counter(name for name, _, _ in sets)
         return {
@@ -176,12 +176,12 @@ class Mesh:
 
     @property
     def vertex_ids(self) -> NDArray[np.int64]:
-        """The file's numbers of the vertices; empty where these are their places."""
+        """The numbers of the vertices in the file; empty if these are their places."""
         return self._handle.vertex_ids
 
     @property
     def cell_ids(self) -> NDArray[np.int64]:
-        """Likewise of the cells."""
+        """The numbers of the cells in the file; empty if these are their places."""
         return self._handle.cell_ids
 
     @property
@@ -190,7 +190,7 @@ class Mesh:
         return self._handle.format
 
     def copy(self) -> Mesh:
-        """A mesh of its own with the same contents."""
+        """Returns an independent mesh with the same contents."""
         return Mesh(self._handle.copy(), list(self.notes))
 
     def __repr__(self) -> str:
@@ -201,6 +201,6 @@ class Mesh:
 
 
 def mesh_of_arrays(points: Any, cells: Any) -> Mesh:
-    """`make_mesh`, of arrays."""
+    """Makes a mesh from arrays; see `make_mesh`."""
     coordinates = as_points(points)
     return Mesh(_core.make_mesh(coordinates, cell_arrays(cells, coordinates.shape[1])))

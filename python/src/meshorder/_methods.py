@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The list of ordering methods, and methods written in Python."""
+"""Lists ordering methods, and adds methods written in Python."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ._errors import InvalidArgument
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
-# calls in other threads must end, and methods in Python be released, before the interpreter ends
+# before the interpreter ends, calls in other threads must end and Python functions be released
 atexit.register(_core.end)
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_core.forget_calls)
@@ -26,7 +26,7 @@ class MethodInfo(NamedTuple):
     """Description of a method.
 
     Attributes:
-        name: what functions take as ``method``, ``vertices`` or ``elements``.
+        name: the value for ``method``, ``vertices`` or ``elements``.
         description: what the method does, in one line.
         needs_points: whether it needs coordinates.
         deterministic: whether it gives the same order on every run and for any number of threads.
@@ -60,23 +60,23 @@ def methods(of: str = "vertices") -> list[MethodInfo]:
 
 
 def register(name: str, description: str = "", *, needs_points: bool = False) -> Callable[[_Function], _Function]:
-    """Makes a Python function a vertex method, which all functions then know by its name; "auto" never chooses it.
+    """Makes a Python function a vertex method. All functions then know it by its name; "auto" never chooses it.
 
     The function is called as ``function((offsets, neighbours), points)`` with copies of a clean graph (rows ascending,
     symmetric, no loops, no repeats): n + 1 offsets (int64), the neighbours (int32), and n × 3 coordinates (float64), or
-    0 × 3 where there are none. It returns ``new_to_old``, n integers. Its exceptions pass through.
+    0 × 3 if there are none. It returns ``new_to_old``, n integers. Its exceptions pass through.
 
     Args:
         name: lower-case letters, digits, "-" and "_"; not yet in the list.
         description: one line for lists of methods.
-        needs_points: True refuses to order without coordinates, with InvalidArgument.
+        needs_points: True: ordering without coordinates is an InvalidArgument.
 
     Returns:
         A decorator that registers the function and returns it.
 
     Raises:
-        InvalidArgument: when the function is decorated: a name that is taken, or that has other characters; something
-            that cannot be called.
+        InvalidArgument: when the function is decorated: the name is taken or has other characters, or the object
+            cannot be called.
 
     Example:
         A method that puts the vertices with the fewest neighbours first::
@@ -112,7 +112,7 @@ def unregister(name: str) -> None:
 
 
 def load_methods(path: Any) -> None:
-    """Loads a shared library that registers methods. This runs its code, and it stays loaded.
+    """Loads a shared library that registers methods. Runs its code; the library is never unloaded.
 
     Args:
         path: a library with the function ``meshorder_plugin_v1`` (see meshorder.h).

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Options that several functions share: their names, their checks and their form in the library."""
+"""Options that several functions share: their names, their checks and their form for the library."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ class Options(TypedDict, total=False):
     Another name is a TypeError; a value that is out of range is an InvalidArgument.
 
     Attributes:
-        workload: what the method "auto" chooses for: "element", "spmv", "assembly" or "springs", the four kernels;
+        workload: what the method "auto" optimises: "element", "spmv", "assembly" or "springs", the four kernels;
             "all" of them, weighted equally (default); "bandwidth", for banded solvers; "fill", for sparse direct solvers;
             or "gpu", for graphics processors. Other methods ignore it.
         seed: integer ≥ 0, default 0, for the method "scrambled", METIS's methods and random start vectors.
         tolerance: > 0: the eigensolver iterates until ‖L x − λ x‖ ≤ tolerance · λ₂ ‖x‖. The default, 0.1, suffices for
             orders; that of `fiedler` is 1e-8.
-        max_iterations: ≥ 1, default 500: the most iterations of the eigensolver on the whole graph.
+        max_iterations: ≥ 1, default 500: limit on the iterations of the eigensolver on the whole graph.
         start: n real numbers, for n vertices: an approximation of the Fiedler vector from which the eigensolver
             starts, such as ``Order.vector`` of an earlier call.
-        groups: n integers, the group of each vertex: the vertices of a group stay together, groups ascend, and each
-            is ordered by the method.
-        cell_groups: m integers, the group of each cell, likewise. Cells stay in their block all the same, and each
-            dimension keeps its places there.
+        groups: n integers, the group of each vertex: the vertices of a group stay together, groups ascend, and the method
+            orders each group.
+        cell_groups: m integers, the group of each cell, likewise. Cells still stay in their block, and cells of each
+            dimension keep their places there.
         symmetric: for graphs and matrices. True: an asymmetric pattern is an InvalidArgument. False and None
-            (default): it is replaced by that of A + Aᵀ, with the weights of (A + Aᵀ) / 2.
+            (default): it is replaced by the pattern of A + Aᵀ, with the weights of (A + Aᵀ) / 2.
         check: "full" (default) checks sizes, ranges, symmetry and that weights and coordinates are finite; "fast"
-            does the same but does not refuse an asymmetric pattern; "none" trusts the arrays, those of a graph only
-            with ``symmetric=True``, and faulty ones can crash the process.
-        threads: the most threads, ≥ 0; None and 0: all. Orders do not depend on it.
+            does the same but accepts an asymmetric pattern; "none" trusts the arrays (those of a graph only
+            with ``symmetric=True``): faulty ones can crash the process.
+        threads: limit on threads, ≥ 0; None and 0: all. Orders do not depend on it.
         time_limit: seconds ≥ 0 after which iterative methods return the best order so far, with ``complete`` False;
             other methods ignore it. None (default): no limit.
         progress: a function that is called now and then as ``progress(stage, fraction)``, with the name of the stage
-            and the share of the call that is done (0 … 1, −1 where unknown). It ends the call with `Stopped` if it
+            and the share of the call that is done (0 … 1, or −1 if unknown). It ends the call with `Stopped` if it
             returns False; an exception ends it and passes through. True shows a bar by tqdm, which must be installed.
     """
 
@@ -63,10 +63,10 @@ class Options(TypedDict, total=False):
 
 @contextlib.contextmanager
 def prepared(options: Options | dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Checks the options and yields them as the dict that the functions of `_core` take.
+    """Checks the options and yields them as the dict that the functions of `_core` need.
 
     Raises:
-        TypeError: an option of another name.
+        TypeError: an unknown option.
         InvalidArgument: a value of the wrong type, a negative seed.
     """
     unknown = options.keys() - Options.__annotations__.keys()
@@ -101,7 +101,7 @@ def prepared(options: Options | dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def whole(value: Any, most: int, name: str) -> int:
-    """Returns a whole number, 0 … ``most``; raises InvalidArgument for others."""
+    """Returns an integer in 0 … ``most``; raises InvalidArgument for other values."""
     try:
         number = operator.index(value)
     except TypeError:
@@ -120,7 +120,7 @@ def _real(value: Any, name: str) -> float:
 
 @contextlib.contextmanager
 def _bar() -> Iterator[Callable[[str, float], None]]:
-    """Shows a bar by tqdm and yields the progress function that moves it."""
+    """Shows a bar by tqdm and yields a progress function that updates it."""
     try:
         from tqdm.auto import tqdm
     except ImportError:

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Orders of graphs, matrices and meshes, also of other libraries' objects."""
+"""Orders of graphs, matrices and meshes, including other libraries' objects."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ def order(
             vertices are ordered. A matrix gives its pattern only: its values and diagonal are ignored, as are the
             weights of a networkx graph.
         method: "auto", which chooses by the size and the ``workload``, or the name of one of `methods`.
-        points: one row of one to three coordinates for each vertex, which orders along curves ("hilbert", "morton") need and "auto" uses;
-            or None.
+        points: one row of one to three coordinates for each vertex, or None. Orders along curves ("hilbert", "morton") need
+            them, and "auto" uses them.
         weights: one for each entry of the graph, in the order of its arrays, > 0, finite and equal on both sides of the
             diagonal; None: all are 1.
         **options: see `Options`.
 
     Returns:
-        The order, whose ``permutation`` moves arrays and matrices.
+        The order; its ``permutation`` moves arrays and matrices.
 
     Raises:
-        InvalidArgument: a faulty graph, an unknown method, coordinates that are missing, sizes that do not match.
+        InvalidArgument: a faulty graph, an unknown method, missing coordinates, sizes that do not match.
         TooLarge: 2³¹ or more vertices.
         Unavailable: this build lacks the method.
         Stopped: ``progress`` returned False.
@@ -59,9 +59,9 @@ def order(
 
 
 def order_edges(edges: Any, vertices: Permutation) -> Permutation:
-    """Orders a list of edges by the new places of their ends, the larger first.
+    """Orders edges by the larger of the new places of their ends, then by the smaller one.
 
-    A loop over the edges then touches new vertices nearly in their order, whatever method ordered these.
+    A loop over them then touches new vertices nearly in their order, whatever method ordered the vertices.
 
     Args:
         edges: one row of two vertex numbers for each edge.
@@ -71,7 +71,7 @@ def order_edges(edges: Any, vertices: Permutation) -> Permutation:
         The order of the edges: ``vertices.renumber(order.move(edges))`` is the new list.
 
     Raises:
-        InvalidArgument: ``edges`` have another shape, or a number that is no vertex.
+        InvalidArgument: ``edges`` have another shape, or name a vertex that does not exist.
 
     Example::
 
@@ -94,9 +94,9 @@ def order_mesh(
     Args:
         points: one row of one to three coordinates for each vertex; or None, together with ``vertex_count``; or, if no
             cells are given, a mesh that `reorder` takes.
-        cells: vertex numbers from 0 on, in one of these forms, which number the cells in the order given:
+        cells: vertex numbers from 0 on, in one of these forms; cells are numbered in the order given:
 
-            - an array with one row for each cell, of 2 vertices (lines), 3 (triangles), 4 (quads where points have one
+            - an array with one row for each cell, of 2 vertices (lines), 3 (triangles), 4 (quads if points have one
               or two coordinates, else tetrahedra), and in space only 6 (wedges), 8 (hexahedra) or 10 (second-order
               tetrahedra);
             - ``{type: array}`` or ``[(type, array), …]``, with meshio's names of types: "tetra", "triangle6";
@@ -104,8 +104,8 @@ def order_mesh(
               ``connectivity[offsets[c]:offsets[c + 1]]``; or ``(offsets, connectivity)``: all cells are elements then.
         vertices: method for the vertices: "auto" or the name of one of `methods`.
         elements: method for the elements, the cells of the highest dimension: "auto" or one of ``methods("elements")``.
-            Cells of lower dimension go by "lexmax", with "original" they stay. Every cell stays in its block.
-        vertex_count: the number of vertices, where there are no points.
+            Cells of lower dimension are ordered by "lexmax", or stay with "original". Every cell stays in its block.
+        vertex_count: the number of vertices, if there are no points.
         **options: see `Options`.
 
     Returns:
@@ -134,37 +134,37 @@ def reorder(
     mesh: Any, *, vertices: str = "auto", elements: str = "auto", group_by: str | None = None, ids: str = "renumber",
     format: str | None = None, inplace: bool = False, **options: Any,
 ) -> tuple[Any, MeshOrder]:  # fmt: skip
-    """Orders a mesh and moves its vertices and cells, together with their data, sets and groups.
+    """Orders a mesh and moves its vertices and cells with their data, sets and groups.
 
     Args:
         mesh: a `Mesh`; a mesh of meshio, PyVista, VTK (vtkUnstructuredGrid, vtkPolyData), scikit-fem or trimesh;
             ``gmsh.model``; or a tuple of arrays, ``(points, cells)``, ``(points, cells, point_data)`` or
             ``(points, cells, point_data, cell_data)``. The cells have a form that `order_mesh` takes, the data are
-            dicts of arrays with a row for each point or cell; where cells are in blocks, an entry of ``cell_data`` has
+            dicts of arrays with a row for each point or cell; if cells are in blocks, an entry of ``cell_data`` has
             an array for each block. Or a graph: an edge_index or sparse tensor of PyTorch, or a Data, HeteroData or Batch
-            of PyTorch Geometric, with all that belongs to its nodes, edges and faces.
+            of PyTorch Geometric, with all values of its nodes, edges and faces.
         vertices: method for the vertices: "auto" or the name of one of `methods`.
         elements: method for the elements, the cells of the highest dimension: "auto" or one of ``methods("elements")``.
-            The edges of a graph go by their new target, then source, with "auto", and stay with "original".
+            With "auto", edges of a graph are sorted by their new target, then source; with "original", they stay.
         group_by: name of an array of whole numbers on cells or vertices: cells and vertices with the same number stay
-            together, groups ascend. "cells:NAME" and "vertices:NAME" tell arrays of one name apart; "sets" groups by
+            together, groups ascend. Write "cells:NAME" or "vertices:NAME" if both have that array; "sets" groups by
             the sets of cells.
-        ids: for a `Mesh` only, what becomes of the numbers that its file gives to vertices and cells: "renumber" (the
+        ids: for a `Mesh` only, how the file's numbers of vertices and cells change: "renumber" (the
             same numbers, ascending along the new order), "keep" (each keeps its number) or "attach" (as "renumber", and
-            arrays "original" hold the old numbers, or the old places from 0 where there are none).
-        format: for a `Mesh` only, name of the format that it will be written in, some of which group cells by type;
-            None: the one that it was read from.
-        inplace: True changes and returns the mesh itself, or the arrays of the tuple. Gmsh's model needs it,
+            arrays "original" hold the old numbers, or the old places from 0 if there are none).
+        format: for a `Mesh` only, name of the format that it will be written in, as some formats group cells by type;
+            None: the format that it was read from.
+        inplace: True changes and returns the mesh itself, or the arrays of the tuple. Gmsh's model requires it;
             scikit-fem's meshes and tensors refuse it.
         **options: see `Options`.
 
     Returns:
-        The mesh in its new order, of the same type, and its orders. Those of a graph are of its nodes, type after type,
-        and of its edges, type after type, then its faces. A UserWarning names tensors of which name and shape do not
+        The mesh in its new order, of the same type, and its orders. For a graph, these are of its nodes, type after type,
+        and of its edges, type after type, then its faces. A UserWarning names tensors for which name and shape do not
         show whether they belong to the nodes or faces.
 
     Raises:
-        InvalidArgument: an object that is no mesh or cannot be reordered, faulty arrays, an unknown method or array, a
+        InvalidArgument: an object that is not a mesh or cannot be reordered, faulty arrays, an unknown method or array, a
             path (`read` makes a mesh of a file).
         TooLarge: 2³¹ or more vertices or cells.
         Unavailable: this build, or the mesh's library, lacks something that is needed.

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Makes the page of `meshorder.show` out of the viewer of the report page."""
+"""Makes the page of `meshorder.show` from the viewer of the report page."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from ._thumbnails import pattern
 
 _VIEWER = pathlib.Path(__file__).with_name("viewer")
 _PATTERN_SIDE = 192
-_STEPS = 65535  # to which coordinates are rounded, along each side of the box around the mesh
+_STEPS = 65535  # number of steps to which coordinates are rounded, along each side of the mesh's box
 
 
 class Page:
-    """A page in HTML that needs neither other files nor a network.
+    """A page in HTML that needs no other files and no network.
 
-    A notebook shows it where it is the result of a cell, in a frame that may run scripts and nothing else.
+    A notebook shows it if it is the result of a cell, in a frame that may run scripts and nothing else.
 
     Attributes:
         html: the text of the page.
-        triangles: number of triangles of the surface that it shows.
-        path: the file that it was last saved to; None if it was not saved.
+        triangles: number of triangles of the surface in it.
+        path: the file that it was last saved to; None if it was never saved.
     """
 
     def __init__(self, page: str, triangles: int) -> None:
@@ -63,7 +63,7 @@ class Page:
 
 
 class _Arrays:
-    """The page's arrays, in the form that its scripts unpack (viewer/README.md)."""
+    """The page's arrays, in the form that its scripts decode (viewer/README.md)."""
 
     def __init__(self) -> None:
         self.elements: dict[str, str] = {}
@@ -114,7 +114,7 @@ def _json_element(name: str, value: Any) -> str:
 
 
 def make_page(mesh: Mesh, orders: Mapping[str, Permutation], mesh_name: str) -> Page:
-    """Makes a page that shows a mesh as it is and in the orders given by name.
+    """Makes a page that shows a mesh as it is and in the given orders, by name.
 
     Raises:
         InputError: the mesh has neither surfaces nor volumes.

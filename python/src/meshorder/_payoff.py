@@ -25,23 +25,23 @@ from .hosts import find_host
 class Candidate:
     """An order of a mesh, and the times of the kernels in it.
 
-    The kernels, which are the keys of ``predicted`` and ``measured``: "spmv" (a product of the stiffness matrix with a
+    The keys of ``predicted`` and ``measured`` are the kernels: "spmv" (a product of the stiffness matrix with a
     vector), "element" (elastic forces of the elements), "assembly" (of the stiffness matrix) and "springs" (forces
-    along the edges). Of a matrix "spmv" alone: the product with its own entries.
+    along the edges). A matrix has "spmv" alone: the product with its own entries.
 
     Attributes:
-        vertices: name of the method for the vertices; "original" for the order that the mesh has.
+        vertices: name of the method for the vertices; "original" for the present order of the mesh.
         elements: name of the method for the elements.
-        reason: why "auto" chose the method for the vertices; empty where it was asked for by name.
-        workload: the kernels that "auto" chose for.
+        reason: why "auto" chose the method for the vertices; empty if it was requested by name.
+        workload: what "auto" optimised.
         spans: spans, bandwidth and profile of the vertex graph in this order.
         pattern: the sparsity pattern of the matrix over the vertices in this order: the number of entries, diagonal
-            included, in each of 64 × 64 tiles, n × n where there are fewer vertices; rows from the top. 16 KB.
-        predicted: milliseconds of one run of each kernel by a cost model, to be compared with each other only; None if
+            included, in each of 64 × 64 tiles, n × n if there are fewer vertices; rows from the top. 16 KB.
+        predicted: milliseconds of one run of each kernel by a cost model; compare them only with each other. None if
             nothing was predicted.
         measured: milliseconds of one run of each kernel on this machine, the best of interleaved rounds;
             None if nothing was measured.
-        order_seconds: what the order cost: the graph, both methods and moving the mesh; 0 for "original".
+        order_seconds: cost of the order: the graph, both methods and moving the mesh; 0 for "original".
     """
 
     vertices: str
@@ -69,8 +69,8 @@ class KernelAdvice(NamedTuple):
 
     Attributes:
         candidate: position in ``Advice.candidates`` of the order in which the kernel runs fastest.
-        factor: the time as the mesh is, divided by the time in that order; 1 where nothing is gained.
-        runs_to_pay: runs of the kernel after which the order has saved more time than it cost; 0 where nothing is
+        factor: the present time divided by the time in that order; 1 if nothing is gained.
+        runs_to_pay: runs of the kernel after which the order has saved more time than it cost; 0 if nothing is
             gained.
     """
 
@@ -84,19 +84,19 @@ class Advice:
     """How much faster the kernels would run if a mesh were reordered; ``str(advice)`` is the verdict.
 
     Attributes:
-        verdict: one sentence: which kernel loses most as the mesh is, which order mends it and after how many time
-            steps that has paid for itself; or that there is nothing to gain.
-        as_is: the order that the mesh has.
+        verdict: one sentence: which kernel loses most in the present order, which order is better and after how many time
+            steps it has saved its own cost; or that nothing is gained.
+        as_is: the present order of the mesh.
         candidates: other orders; the first is the one that `reorder` chooses without arguments.
         kernels: the best candidate for each kernel, by the kernel's name: its position ``candidate`` in ``candidates``;
-            ``factor``, the time as the mesh is divided by the time in that order; and ``runs_to_pay``, the runs of the
+            ``factor``, the present time divided by the time in that order; and ``runs_to_pay``, the runs of the
             kernel after which the order has saved more time than it cost. Times that differ by less than the
-            uncertainty of a measurement or prediction count as equal; ``factor`` is 1 then, and ``runs_to_pay`` 0.
-        doubt: why the measured times are not to be trusted (the machine was busy or throttled); empty where they are,
-            and where nothing was measured.
+            uncertainty of a measurement or prediction count as equal; then ``factor`` is 1 and ``runs_to_pay`` 0.
+        doubt: reason not to trust the measured times (the machine was busy or throttled); empty if they are reliable,
+            or if nothing was measured.
         machine: the machine that the predicted times are for: "this machine, calibrated 2026-11-22", "zen3", or "this
-            machine's caches at the costs of zen3"; empty where nothing was predicted.
-        threads: how many threads shared each run of a kernel.
+            machine's caches at the costs of zen3"; empty if nothing was predicted.
+        threads: number of threads that shared each run of a kernel.
     """
 
     verdict: str
@@ -118,7 +118,7 @@ class Advice:
 
 
 class Comparison(Sequence[Candidate]):
-    """A sequence of `Candidate`: the order that a mesh has, then those that were asked for.
+    """A sequence of `Candidate`: the present order of a mesh, then the requested ones.
 
     Its text is a table; a notebook shows it with sparsity patterns and bars.
     """
@@ -185,7 +185,7 @@ class Comparison(Sequence[Candidate]):
 
 
 def _handle_of(given: Any) -> Any:
-    """Returns the mesh or matrix that `advise` and `compare` were given, as the library has it."""
+    """Returns the library's form of the mesh or matrix that `advise` and `compare` were given."""
     is_path = isinstance(given, (str, os.PathLike))
     host = None if is_path else find_host(given)
     if is_graph(given) or host is not None and host.takes_weights:
@@ -205,11 +205,11 @@ class Calibration:
     """The measurements of this machine that `calibrate` made.
 
     Attributes:
-        machine: how ``Advice.machine`` names this machine from now on.
-        figures: all measured numbers: the share of the caches that a thread gets, latencies, bandwidths, costs of cache
+        machine: the name of this machine in ``Advice.machine`` from now on.
+        figures: all measured numbers: the caches' share of a thread, latencies, bandwidths, and the costs of cache
             misses for each kernel.
-        file: the file that stores them; None if they are not kept.
-        doubt: why they are not to be trusted (the machine was busy or throttled); empty where they are.
+        file: the file that stores them; None if they are not stored.
+        doubt: reason not to trust them (the machine was busy or throttled); empty if they are reliable.
     """
 
     machine: str
@@ -224,7 +224,7 @@ def calibrate(seconds: float = 16, *, keep: bool = True, **options: Any) -> Cali
     Takes about 1 GB of memory. Other work on the machine during the call spoils the measurements.
 
     Args:
-        seconds: > 0: no measurement begins that would end later, except that each is made once; 16 take 40 to 60 s.
+        seconds: > 0: a measurement begins only if it would end in time, but each is made once; 16 take 40 to 60 s.
         keep: True stores the measurements for this processor and this build of the library, in the user's cache folder
             ($MESHORDER_CACHE, else $XDG_CACHE_HOME/meshorder, else ~/.cache/meshorder).
         **options: see `Options`; only ``threads`` and ``progress`` have an effect.
@@ -252,31 +252,31 @@ def advise(
     all_threads: bool = False,
     **options: Any,
 ) -> Advice:
-    """Says how much faster simulators' kernels would run if a mesh or matrix were reordered. It is not changed.
+    """Says how much faster simulators' kernels would run if a mesh or matrix were reordered, without changing it.
 
     Args:
         mesh: the path of a file; a mesh that `reorder` takes, with lines, surfaces or volumes; or a matrix or graph of
             SciPy, networkx or PyTorch: its product with a vector is the only kernel then, "spmv".
         measure: True runs the kernels on this machine; False predicts their times by reuse distances and a cost model.
-        kernels: "plain": as most programs have them, one loop without tricks; "tuned": as the simulators of
-            ``meshorder simulate`` have them, which prefetch, work on blocks, and run alike in all good orders. The latter
-            are measured only.
-        budget: with ``measure``, seconds ≥ 0 from the start of the call: no round of measurements begins that would end
-            later, but two are run.
-        machine: what to predict for: "this" machine, as `calibrate` measured it, else its caches with the costs of
-            "zen3", which come with the library; or "zen3". Empty: the environment variable MESHORDER_MACHINE names it,
+        kernels: "plain": as in most programs, one simple loop; "tuned": as in the simulators of
+            ``meshorder simulate``, which prefetch, work on blocks, and run alike in all good orders; these
+            can only be measured.
+        budget: with ``measure``, seconds ≥ 0 from the start of the call: a round of measurements begins only if it would
+            end in time, but two are run.
+        machine: the machine to predict for: "this" machine, as `calibrate` measured it, else its caches with the costs of
+            "zen3", which are part of the library; or "zen3". Empty: the environment variable MESHORDER_MACHINE names it,
             else "this".
-        all_threads: True judges the kernels as all threads (those of the option ``threads``) share each run, False as
-            one thread runs them. To predict the former needs a calibration of this machine on as many threads.
+        all_threads: True: times of kernel runs that all threads (see the option ``threads``) share; False: times on
+            one thread. Predictions for all threads need a calibration of this machine on as many threads.
         **options: see `Options`; ``symmetric`` has no effect.
 
     Returns:
-        The verdict, the times as the mesh is and in other orders, and the best order for each kernel.
+        The verdict, the times in the present and other orders, and the best order for each kernel.
 
     Raises:
         InvalidArgument: a mesh without lines, surfaces and volumes, a matrix without entries off the diagonal, an unknown
-            machine or set of kernels, tuned kernels that are not measured or of a matrix, a negative budget; times on all
-            threads of a machine that are not known.
+            machine or set of kernels, tuned kernels without measuring or for a matrix, a negative budget; a prediction for
+            all threads of a machine whose costs for these are not known.
         InputError: the file cannot be read.
         Stopped: ``progress`` returned False.
 
@@ -317,18 +317,18 @@ def compare(
         mesh: the path of a file; a mesh that `reorder` takes, with lines, surfaces or volumes; or a matrix or graph of
             SciPy, networkx or PyTorch: its product with a vector is the only kernel then, "spmv".
         methods: the name of a vertex method, or a list of names, to which the element method "auto" is added, or of pairs
-            ``(vertex method, element method)``; None: what "auto" chooses for all kernels, and for springs where that
-            differs.
+            ``(vertex method, element method)``; None: the choices of "auto" for all kernels, and for springs if these
+            differ.
         measure: True runs the kernels on this machine.
-        kernels: "plain" or "tuned", as for `advise`; nothing is predicted of the latter.
+        kernels: "plain" or "tuned", as for `advise`; nothing is predicted for the latter.
         budget: with ``measure``, seconds from the start of the call, as for `advise`.
         predict: True predicts the times by reuse distances and a cost model.
-        machine: what to predict for, as for `advise`.
+        machine: the machine to predict for, as for `advise`.
         all_threads: whether all threads share each run, as for `advise`.
         **options: see `Options`; ``symmetric`` has no effect.
 
     Returns:
-        The order that the mesh has, then one for each method.
+        The present order of the mesh, then one for each method.
 
     Raises:
         InvalidArgument: as `advise`; an unknown method; neither ``measure`` nor ``predict``.

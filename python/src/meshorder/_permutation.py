@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Permutations, and the moves of arrays and matrices that they describe."""
+"""Permutations, which move arrays and matrices."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from ._errors import InvalidArgument
 
 
 class Permutation:
-    """A permutation of n items (vertices, cells, rows): their places before and after they move. Immutable.
+    """A permutation of n items (vertices, cells, rows): their places before and after a move. Immutable.
 
-    Both directions have names, since they are easily taken for each other:
+    Both directions have names, because they are easily confused:
 
     - ``old_to_new[i]`` is the new place of the item that was at place i;
-    - ``new_to_old[k]`` is the old place of the item that is at place k now, so that ``a[p.new_to_old]`` moves the rows
+    - ``new_to_old[k]`` is the old place of the item that is now at place k, so that ``a[p.new_to_old]`` moves the rows
       of an array and ``A[p.new_to_old][:, p.new_to_old]`` the rows and columns of a matrix.
 
     Permutations can be compared, hashed and pickled; ``len(p)`` is n. Memory: 8 n bytes.
@@ -30,7 +30,7 @@ class Permutation:
             given.
 
     Raises:
-        InvalidArgument: both maps or none are given, or the map is no bijection of 0 … n−1.
+        InvalidArgument: both maps or none are given, or the map is not a bijection of 0 … n−1.
         TooLarge: 2³¹ or more items.
 
     Example:
@@ -64,7 +64,7 @@ class Permutation:
 
     @classmethod
     def identity(cls, n: int) -> Permutation:
-        """Returns the permutation of n ≥ 0 items that moves none."""
+        """Returns the permutation of n ≥ 0 items that moves nothing."""
         if n < 0:
             raise InvalidArgument(f"identity: expected 0 or more items, not {n}")
         return cls(old_to_new=np.arange(n, dtype=np.int32))
@@ -94,15 +94,15 @@ class Permutation:
         return Permutation._of(self._handle.then(other._handle))
 
     def repeated(self, components: int, node_major: bool = True) -> Permutation:
-        """Returns the permutation of degrees of freedom, of which each item has several.
+        """Returns the permutation of degrees of freedom, several for each item.
 
         Args:
             components: degrees of freedom of each item, ≥ 1.
             node_major: True: component c of item i has the number ``components * i + c``; False: ``c * n + i``.
 
         Returns:
-            A permutation of ``components * n`` degrees of freedom, each with the number that its item's new place
-            gives it.
+            A permutation of ``components * n`` degrees of freedom; each gets its number from its item's new
+            place.
 
         Raises:
             InvalidArgument: ``components`` is below 1.
@@ -118,16 +118,16 @@ class Permutation:
                 entries along ``axis``, or an n × n matrix of SciPy or PyTorch (COO or CSR), whose rows and columns both
                 move. Unchanged. Arrays of PyTorch, JAX, CuPy, Warp and other libraries that follow the Python array API
                 standard stay on their device, and gradients of PyTorch and JAX flow through.
-            axis: the axis of an array or a pandas object that the items lie along.
-            out: for arrays of NumPy, where to write the result: of the same shape and dtype, C-contiguous, without memory in
-                common with ``a``.
+            axis: the axis of an array or a pandas object along which the items lie.
+            out: for arrays of NumPy, where to write the result: of the same shape and dtype, C-contiguous, sharing no memory
+                with ``a``.
 
         Returns:
             An object of the same kind; ``out`` if it is given.
 
         Raises:
             InvalidArgument: ``a`` has another number of entries, ``out`` does not fit, or ``axis`` or ``out`` is given
-                with something that is no array.
+                with an object that is not an array.
         """
         if hasattr(a, "index_select"):
             return self._move_tensor(a, axis, out)
@@ -193,7 +193,7 @@ class Permutation:
     def renumber(self, numbers: Any, out: NDArray[Any] | None = None) -> Any:
         """Replaces numbers of items, such as a mesh's connectivity, by their new numbers.
 
-        Entry i of the result is ``old_to_new[numbers[i]]``. A number keeps its place; `move` changes places.
+        Entry i of the result is ``old_to_new[numbers[i]]``. Unlike `move`, this does not change the places of the numbers.
 
         Args:
             numbers: integers in 0 … n−1, of any shape, in an array of any library that `move` takes. Unchanged unless it
@@ -202,8 +202,8 @@ class Permutation:
                 ``out=numbers`` works in place. None: a new array.
 
         Returns:
-            ``out``, or a new array of the type and library of ``numbers``, on its device; of int32 for integers of less
-            than 32 bits, but for tensors of PyTorch.
+            ``out``, or a new array of the type and library of ``numbers``, on its device; integers of less than 32 bits give
+            int32, except for tensors of PyTorch.
 
         Raises:
             InvalidArgument: a number outside 0 … n−1, an array of other types, an ``out`` that does not fit.
@@ -224,7 +224,7 @@ class Permutation:
         elif not isinstance(out, np.ndarray) or not out.flags.c_contiguous or not out.flags.writeable:
             raise InvalidArgument("renumber: out must be a C-contiguous and writeable array")
         elif out is not numbers:
-            renumbered = self.renumber(numbers)  # before the numbers take another type
+            renumbered = self.renumber(numbers)  # before the numbers are converted to the type of out
             if out.shape != renumbered.shape or out.dtype.kind not in "iu" or out.dtype.itemsize < 4:
                 raise InvalidArgument("renumber: out must have the shape of the numbers, and 32 or 64 bits")
             np.copyto(out, renumbered, casting="unsafe")
@@ -285,7 +285,7 @@ def _refuse(axis: int, out: Any, what: str) -> None:
 
 
 def _takes(out: Any, array: NDArray[Any]) -> bool:
-    """Whether the rows of an array can be written to another."""
+    """Returns whether the moved rows of an array can be written to ``out``."""
     if not isinstance(out, np.ndarray) or not out.flags.c_contiguous or not out.flags.writeable:
         return False
     fits: bool = out.shape == array.shape and out.dtype == array.dtype

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def _named(order: Any, mesh: Mesh) -> dict[str, Permutation]:
-    """Returns the orders to show by their names; repeated names get a number: "rcm (2)"."""
+    """Returns the orders to show, by name; repeated names get a number: "rcm (2)"."""
     if isinstance(order, Mapping):
         return {str(name): _permutation(one, mesh)[1] for name, one in order.items()}
     given = order if isinstance(order, (list, tuple)) else ["auto" if order is None else order]
@@ -34,7 +34,7 @@ def _named(order: Any, mesh: Mesh) -> dict[str, Permutation]:
 
 
 def _permutation(order: Any, mesh: Mesh) -> tuple[str, Permutation]:
-    """Returns the name and the permutation of the vertices for an order, or for a method given by its name."""
+    """Returns the name and the permutation of the vertices of an order, or of a method given by name."""
     if isinstance(order, str):
         order = reorder(mesh, vertices=order, elements="original")[1]
     if isinstance(order, MeshOrder):
@@ -53,25 +53,25 @@ def _in_notebook() -> bool:
 
 
 def show(mesh: Any, order: Any = None, *, path: str | os.PathLike[str] | None = None) -> Page:
-    """Shows a mesh's surface coloured by the places of its vertices, as the mesh is and in other orders.
+    """Shows a mesh's surface coloured by the places of its vertices, in the present order and in others.
 
     Makes a page in HTML with a view of the mesh for each order, which can be turned and zoomed, and the sparsity
-    patterns. In a notebook the page appears where the call is the last line of a cell; elsewhere it opens in the
+    patterns. In a notebook the page appears if the call is the last line of a cell; elsewhere it opens in the
     browser, as a temporary file.
 
     Args:
         mesh: the path of a file, or a mesh that `reorder` takes, with surfaces or volumes, before it is reordered.
         order: a `MeshOrder`, `Order` or `Permutation` of the mesh's vertices, or the name of a method; a list of
             these, or ``{name: order}``; None: "auto".
-        path: a file to write the page to, instead of opening it.
+        path: a file for the page, which is then not opened.
 
     Returns:
-        The page, an HTML text of 0.9 MB and about 15 bytes for each triangle of the surface, in its attribute ``html``;
-        ``save(path)`` writes it. A notebook that shows it stores it.
+        The page. Its attribute ``html`` is a text of 0.9 MB and about 15 bytes for each triangle of the surface;
+        ``save(path)`` writes it. A notebook that shows the page stores it.
 
     Raises:
         InputError: the mesh has neither surfaces nor volumes, or the file cannot be read.
-        InvalidArgument: an order of another size, an unknown method, an object that is no mesh.
+        InvalidArgument: an order of another size, an unknown method, an object that is not a mesh.
         Unavailable: this build lacks three.js.
     """
     from ._page import make_page  # takes time to import

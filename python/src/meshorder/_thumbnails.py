@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from . import _core
 
-#: tiles, and pixels, along each side of a thumbnail
+#: number of tiles, and of pixels, along each side of a thumbnail
 SIDE = 64
 _PAPER = np.array([255.0, 255.0, 255.0])
 _INK = np.array([17.0, 33.0, 69.0])
@@ -24,12 +24,12 @@ _FAINTEST = 0.16  # share of ink of a tile with one entry
 def pattern(
     offsets: NDArray[Any], neighbours: NDArray[Any], order: _core.Permutation, side: int
 ) -> NDArray[np.uint32]:
-    """Counts the entries of a graph's matrix, diagonal included, in side × side tiles; n × n where n is less."""
+    """Counts the entries of a graph's matrix, diagonal included, in side × side tiles; n × n if n is less."""
     return np.asarray(_core.sparsity_pattern(offsets, neighbours, order, side))
 
 
 def ink(counts: NDArray[Any], most: int) -> NDArray[np.float64]:
-    """Returns the share of ink, 0 … 1, for each count: logarithmic, 1 at ``most``, visible from one entry on."""
+    """Returns a share of ink, 0 … 1, for each count: logarithmic, 1 at ``most``, visible for one entry."""
     shares = _FAINTEST + (1 - _FAINTEST) * np.log1p(counts) / np.log1p(max(most, 1))
     return np.where(counts > 0, np.minimum(shares, 1.0), 0.0)
 
@@ -45,7 +45,7 @@ def png(shares: NDArray[Any]) -> bytes:
         shares: an array of rank 2 of numbers in 0 … 1.
     """
     height, width = shares.shape
-    rows = np.zeros((height, 1 + width), dtype=np.uint8)  # each row begins with its filter, none
+    rows = np.zeros((height, 1 + width), dtype=np.uint8)  # each row begins with the number of its filter, 0 for none
     rows[:, 1:] = np.rint(255 * shares)
     ramp = np.linspace(0, 1, 256)[:, np.newaxis]
     palette = np.rint(_PAPER + ramp * (_INK - _PAPER)).astype(np.uint8)
@@ -56,12 +56,12 @@ def png(shares: NDArray[Any]) -> bytes:
 
 
 def image(counts: NDArray[Any], words: str, most: int | None = None) -> str:
-    """Returns an HTML image of counts, one pixel for each, that needs no other file; an empty text without counts.
+    """Returns an HTML image of counts, one pixel for each, that needs no other file; an empty text if there are none.
 
     Args:
         counts: an array of rank 2.
-        words: the alternative text, which says what the image shows.
-        most: the count that is drawn darkest; None: the largest.
+        words: the alternative text: a description of the image.
+        most: the count that is drawn darkest; None: the largest one.
     """
     if counts.size == 0:
         return ""

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Runs a function of the caller's on a mesh or matrix in several orders, and says in which it runs faster."""
+"""Runs a caller's function on a mesh or matrix in several orders, and reports in which it runs faster."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from ._orders import order, reorder
 from ._permutation import Permutation
 from .hosts import find_host
 
-#: what `try_orders` tries unless ``methods`` names others, as `meshorder try` does
+#: orders that `try_orders` tries by default, as `meshorder try` does
 _DEFAULT = ("auto", "hilbert", "rcm", "spectral-fronts", "hilbert-fronts")
 _CLOCKS = {"cpu": clocks.process_time, "wall": clocks.perf_counter}
 
-# the rule of src/payoff/paired_trials.cpp, which has the reasons
+# the rule of src/payoff/paired_trials.cpp, which explains it
 _TIE = 0.015
 _FEWEST_ROUNDS = 3
 _FEWEST_PAIRS = 6
@@ -31,13 +31,13 @@ _BETWEEN_CHECKS = 1.2
 _LEAST_SPREAD = 0.003
 _LEAST_TIME = 1e-6
 
-# a first run, some rounds to choose among the orders, and some pairs for the best
+# runs of the best order: a first run, rounds to choose among the orders, and pairs; then runs of each order
 _RUNS_OF_BEST = 15
 _RUNS_OF_EACH = 3
 
 
 def _student_tail(t: float, degrees: int) -> float:
-    """The probability that Student's t exceeds t > 0, by Abramowitz and Stegun, 1964, 26.7.3 and 26.7.4."""
+    """Returns the probability that Student's t exceeds t > 0 (Abramowitz and Stegun, 1964, 26.7.3 and 26.7.4)."""
     angle = math.atan(t / math.sqrt(degrees))
     odd = degrees % 2 == 1
     term = math.cos(angle) if odd else 1.0
@@ -66,7 +66,7 @@ class _Speedup(NamedTuple):
 
 
 def _speedup_of(logs: Sequence[float]) -> _Speedup:
-    """The speedup from logarithms of paired ratios, by their trimmed mean (Yuen, 1974)."""
+    """Returns the speedup from logarithms of paired ratios, by their trimmed mean (Yuen, 1974)."""
     if not logs:
         return _Speedup()
     if len(logs) < _FEWEST_PAIRS:
@@ -87,7 +87,7 @@ def _spread(values: Sequence[float]) -> float:
 
 
 class _PairedTrials:
-    """Decides by paired runs which of several candidates, 1 …, is faster than 0."""
+    """Decides by paired runs which of the candidates 1, 2, … is faster than candidate 0."""
 
     def __init__(self, candidates: int) -> None:
         self.logs: list[list[float]] = [[] for _ in range(candidates + 1)]
@@ -97,7 +97,7 @@ class _PairedTrials:
         self._next_check = _FEWEST_PAIRS
 
     def next_round(self) -> list[int]:
-        """What is to be run next, in this order; empty when the trial has ended."""
+        """Returns the candidates to run next, in this order; empty when the trial has ended."""
         if not self.left or self.verdict != "undecided":
             return []
         each = [0, *self.left]
@@ -153,13 +153,13 @@ class TriedOrder:
     """An order in which a function was run.
 
     Attributes:
-        name: "original", or the order's name: "rcm", "hilbert/hilbert"; "auto" has that of what it chose.
-        time: the median of its runs, in seconds; or of the numbers that ``time`` gave. None if none counts.
-        ratio: how many times as fast as in the original order the function ran; None if it did not.
-        interval: the lowest and the highest ratio by a 95 % interval; None for fewer than six runs.
-        runs: how many runs count.
-        order_seconds: what making the order took.
-        fault: why the order is out of the trial, a sentence; None if it is not.
+        name: "original", or the name of the order: "rcm", "hilbert/hilbert"; for "auto" the name of its choice.
+        time: the median of its runs, in seconds or as returned by ``time``; None if no run counts.
+        ratio: speedup over the original order; None if no run counts.
+        interval: lowest and highest ratio of a 95 % interval; None for fewer than six runs.
+        runs: number of runs that count.
+        order_seconds: seconds to make the order.
+        fault: why the order was excluded from the trial, a sentence; None if it was not.
     """
 
     name: str
@@ -173,18 +173,18 @@ class TriedOrder:
 
 @dataclass(frozen=True)
 class Trial:
-    """What `try_orders` found.
+    """Result of `try_orders`.
 
     Attributes:
-        verdict: "faster": the function runs faster in ``best``; "slower": it does not run as fast in any other order
-            as in the original one; "tie": no order changes its time by more than 1.5 %; "undecided": no order makes it
+        verdict: "faster": the function runs faster in ``best``; "slower": it runs slower in every other order
+            than in the original one; "tie": no order changes its time by more than 1.5 %; "undecided": no order makes it
             faster by more than its times vary.
         best: name of the best order besides the original one; None if there is no other.
-        ratio: how many times as fast the function runs in it; 1 if there is none.
+        ratio: speedup in that order; 1 if there is none.
         interval: a 95 % interval of the ratio, None for fewer than six runs.
-        orders: what was tried, the original order first.
-        ordered: the mesh or matrix in the best order if the verdict is "faster", else as it was given.
-        left_out: the orders that the budget left no time for.
+        orders: the orders that were tried, the original one first.
+        ordered: the mesh or matrix in the best order if the verdict is "faster", else the one that was given.
+        left_out: names of orders for which the budget left no time.
     """
 
     verdict: str
@@ -233,19 +233,19 @@ TimeOf = Union[str, Callable[[Any], float]]
 
 
 class _Candidate:
-    """An order, the object in it and its runs."""
+    """An order, the mesh or matrix in it, and the times of its runs."""
 
     def __init__(self, name: str, ordered: Any, seconds: float) -> None:
         self.name = name
         self.ordered = ordered
         self.order_seconds = seconds
         self.times: list[float] = []
-        self.last = 0.0  # by the clock
+        self.last = 0.0  # seconds of the last run, by the clock
         self.fault: str | None = None
 
 
 class _Runner:
-    """Runs the function and compares what it returns with what it returned first."""
+    """Runs the function and compares its result with that of the first run."""
 
     def __init__(self, function: Callable[[Any], Any], time: TimeOf, tolerance: float | None) -> None:
         if isinstance(time, str) and time not in _CLOCKS:
@@ -290,7 +290,7 @@ def _stays(moved: Permutation) -> bool:
 
 
 def _ordered(given: Any, name: str, options: dict[str, Any]) -> tuple[str, Any, bool]:
-    """The name of an order, the object in it, and whether nothing has moved."""
+    """Returns the name of an order, the object in it, and whether nothing has moved."""
     vertices, _, elements = name.partition("/")
     if find_host(given) is None:
         if not hasattr(given, "tocsr"):
@@ -309,7 +309,7 @@ def _ordered(given: Any, name: str, options: dict[str, Any]) -> tuple[str, Any, 
 def _candidates(
     given: Any, names: Sequence[str] | None, most: int, options: dict[str, Any]
 ) -> tuple[list[_Candidate], list[str]]:
-    """The orders to try, and those that there is no time for."""
+    """Returns the orders to try, and the names of those for which there is no time."""
     found: list[_Candidate] = []
     left_out: list[str] = []
     for name in _DEFAULT if names is None else names:
@@ -324,7 +324,7 @@ def _candidates(
         except InvalidArgument:
             if names is not None or name == "auto":
                 raise
-            continue  # a geometric order of what has no coordinates
+            continue  # a geometric order, for an object without coordinates
         if not kept and all(candidate.name != shown for candidate in found):
             found.append(_Candidate(shown, ordered, clocks.perf_counter() - began))
     return found, left_out
@@ -334,31 +334,31 @@ def try_orders(
     mesh: Any, function: Callable[[Any], Any], methods: Sequence[str] | None = None, *, budget: float = 120.0,
     time: TimeOf = "cpu", tolerance: float | None = None, **options: Any,
 ) -> Trial:  # fmt: skip
-    """Runs a function on a mesh or matrix as it is and in other orders, and says in which it runs faster.
+    """Runs a function on a mesh or matrix in its present order and in others, and reports in which it runs faster.
 
-    The function runs once in each order, then in rounds, in the original order and in those that are left, until it is
-    clear which is the best and whether it is faster, or the budget ends. Orders that are all the same are called
+    The function runs once in each order, then in rounds, in the original order and in the remaining ones, until it is
+    clear which one is best and whether it is faster, or until the budget ends. Equally fast orders are reported as
     different in fewer than one of twenty trials, as by the command ``meshorder try``.
 
     Args:
         mesh: a mesh that `reorder` takes, except for Gmsh's model, or a SciPy matrix.
-        function: is called with the mesh or matrix in one of the orders, of the type that `reorder` returns, and must
-            leave it as it is.
-        methods: the orders to try, "rcm" or "rcm/lexmax" with a method for the elements. None: "auto", and hilbert,
-            rcm, spectral-fronts and hilbert-fronts where they are possible.
+        function: called with the mesh or matrix in one of the orders, of the type that `reorder` returns; must not change
+            it.
+        methods: the orders to try: "rcm", or "rcm/lexmax" with a method for the elements. None: "auto", and hilbert,
+            rcm, spectral-fronts and hilbert-fronts where possible.
         budget: seconds for all runs of the function.
-        time: what counts: "cpu", the processor time of this process; "wall", the time by the clock; or a function that
-            returns a number > 0 for what ``function`` returned.
-        tolerance: None, or the relative difference up to which the numbers that ``function`` returns must be those of
-            its first run; an order in which they are not is out of the trial.
-        **options: for the orders; see `Options`.
+        time: what is compared: "cpu", the processor time of this process; "wall", the time by the clock; or a function that
+            returns a number > 0 for the result of ``function``.
+        tolerance: None, or the relative difference up to which the numbers that ``function`` returns must equal those of
+            its first run; an order in which they do not is excluded.
+        **options: of the orders; see `Options`.
 
     Returns:
-        What was found, which prints as a sentence and a table.
+        The result, which prints as a sentence and a table.
 
     Raises:
-        InvalidArgument: an object that is no mesh or matrix, an unknown method or time, results that differ in all
-            orders; as `reorder`. What the function raises passes through.
+        InvalidArgument: an object that is not a mesh or matrix, an unknown method or time, results that differ in all
+            orders; as `reorder`. Exceptions of the function pass through.
 
     Example:
         >>> import scipy.sparse
@@ -391,7 +391,7 @@ def try_orders(
     for number in range(1, len(candidates)):
         run(number)
     for candidate in candidates:
-        candidate.times.clear()  # those of first runs
+        candidate.times.clear()  # without the first runs
     if found and not trials.left:
         raise InvalidArgument(f"the function works in no other order; in {found[0].name} {found[0].fault}")
     while each := trials.next_round():

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Functions with the names and signatures of those of ``scipy.sparse.csgraph``."""
+"""Functions with names and signatures of ``scipy.sparse.csgraph``."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ def reverse_cuthill_mckee(graph: Any, symmetric_mode: bool = False) -> NDArray[n
     Ties are broken differently, so the order differs from SciPy's, and its bandwidth a little.
 
     Args:
-        graph: a square SciPy matrix, or another graph that `meshorder.order` takes, but no mesh.
-        symmetric_mode: True takes for granted that the pattern is symmetric, and does not refuse another one; False
-            orders A + Aᵀ.
+        graph: a square SciPy matrix, or another graph that `meshorder.order` takes, but not a mesh.
+        symmetric_mode: True: the pattern is taken to be symmetric, without a check; False: the order is that of
+            A + Aᵀ.
 
     Returns:
         ``new_to_old``, n numbers p for which ``A[p][:, p]`` is the matrix in its new order.

@@ -25,8 +25,8 @@ def reorder(**options: Any) -> MeshOrder:
     entity, so that physical groups and periodic entities stay valid; ``group_by="physical"`` or "entity" orders within
     groups or entities.
 
-    Programs that take nodes by their tags, from this model or from a file in MSH 4, see the new order. MSH files list
-    nodes entity by entity, and MSH 2.2 numbers them again: for programs that go by the place in the file, reorder the
+    Programs that use the tags of nodes, from this model or from a file in MSH 4, see the new order. MSH files list
+    nodes entity by entity, and MSH 2.2 numbers them again: for programs that use the places in the file, reorder the
     file with `meshorder.reorder`. Views that name nodes or elements by tags are not changed.
 
     Args:
@@ -50,5 +50,5 @@ def compare(methods: Any = None, **options: Any) -> Comparison:
 
 
 def advise(**options: Any) -> Advice:
-    """Says what reordering the current model's mesh would gain; see `meshorder.advise`."""
+    """Says how much reordering the current model's mesh would gain; see `meshorder.advise`."""
     return _payoff.advise(_model(), **options)

@@ -1,8 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Orders of meshes that many ranks share, for programs with mpi4py or petsc4py.
 
-Needs the library ``libmeshorder_mpi``, which no wheel contains, since it is built for the MPI of the machine: a build
-with ``MESHORDER_MPI=ON`` installs it. It is looked for where the system looks for libraries; the environment variable
+Needs the library ``libmeshorder_mpi``. No wheel contains it, as it has to be built for the MPI of the machine: a build
+with ``MESHORDER_MPI=ON`` installs it. The system's usual search finds it; the environment variable
 ``MESHORDER_MPI_LIBRARY`` names another file. A call::
 
     from mpi4py import MPI
@@ -49,7 +49,7 @@ class RankOrder:
     Attributes:
         new_numbers: the new number, across the ranks, of each vertex that the rank owns; it stays among the numbers of
             the rank's own vertices. int64.
-        cell_order: the old places of the rank's elements in their new order, which the element method "lexmax" makes:
+        cell_order: the old places of the rank's elements in their new order, by the element method "lexmax":
             ``cells[order.cell_order]`` moves them. int64.
     """
 
@@ -64,7 +64,7 @@ class PartOrder:
     Attributes:
         new_numbers: the new number, across all parts, of each vertex that the rank owns. int64.
         part_starts: parts + 1 numbers, the same on all ranks: part p has the new numbers from ``part_starts[p]`` to
-            below ``part_starts[p + 1]``; vertices that no element uses have those from ``part_starts[-1]`` on. int64.
+            below ``part_starts[p + 1]``; vertices that no element uses have the numbers from ``part_starts[-1]`` on. int64.
         cell_parts: the part of each element of the rank: that of its vertex with the largest new number. int64.
     """
 
@@ -92,7 +92,7 @@ class _Options(ctypes.Structure):
 def _library() -> ctypes.CDLL:
     name = os.environ.get("MESHORDER_MPI_LIBRARY", _LIBRARY)
     try:
-        # it finds the MPI library that mpi4py has loaded, by its name
+        # the MPI library that mpi4py has loaded is found by its name
         library = ctypes.CDLL(name)
     except OSError as error:
         raise _errors.Unavailable(f"{name} was not found ({error}): install a build with MESHORDER_MPI=ON, or let "
@@ -162,12 +162,12 @@ class _Arrays:
 
 
 def _on_all_ranks(communicator: Any, prepare: Callable[[], _Prepared]) -> _Prepared:
-    """Returns what this rank prepares, or raises on all ranks what one of them raises: none waits for it."""
+    """Returns the result of ``prepare`` on this rank. If one rank raises, all do, so that none waits for it."""
     prepared: _Prepared | None = None
     failure: Exception | None = None
     try:
         prepared = prepare()
-    except Exception as error:  # noqa: BLE001, which the others have to hear of
+    except Exception as error:  # noqa: BLE001, as the other ranks have to learn of it
         failure = error
     failures = communicator.allgather(None if failure is None else (type(failure).__name__, str(failure)))
     if failure is not None:
@@ -221,7 +221,7 @@ def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         Unavailable: the library ``libmeshorder_mpi`` was not found.
         Error: another failure.
 
-    What one rank raises, all do.
+    If one rank raises, all do.
     """
 
     def prepare() -> tuple[_Arrays, _Options, RankOrder]:
@@ -267,7 +267,7 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         New numbers of this rank's vertices, the ranges of the parts, and the part of each of its elements.
 
     Raises:
-        InvalidArgument, Unavailable, Error: as `order_ranks`; InvalidArgument also for options that do not go together.
+        InvalidArgument, Unavailable, Error: as `order_ranks`; InvalidArgument also for options that contradict each other.
     """
 
     def prepare() -> tuple[_Arrays, _Options, PartOrder]:

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Functions with the names and signatures of those of networkx, also as its backend "meshorder"."""
+"""Functions with names and signatures of networkx, also for its backend "meshorder"."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MOST_ITERATIONS = 2000
 
 
 def _weights(graph: Any, weight: str | None) -> NDArray[np.float64] | None:
-    """Returns the absolute weights of the edges, as networkx takes them, in the order of `networkx_arrays`; or None."""
+    """Returns the absolute weights of the edges, as networkx uses them, in the order of `networkx_arrays`; or None."""
     if weight is None and not graph.is_multigraph():
         return None
     rows = [row for _, row in graph.adjacency()]
@@ -32,7 +32,7 @@ def _weights(graph: Any, weight: str | None) -> NDArray[np.float64] | None:
 def _solved(graph: Any, weight: str | None, tol: float, seed: Any) -> Fiedler:
     """Returns the Fiedler vectors of an undirected graph.
 
-    Raises networkx's exceptions for directed graphs and where the eigensolver does not converge.
+    Raises networkx's exceptions for directed graphs, and if the eigensolver does not converge.
     """
     import networkx
 
@@ -55,14 +55,14 @@ def _solved(graph: Any, weight: str | None, tol: float, seed: Any) -> Fiedler:
 
 
 def _networkxs_own(name: str) -> Any:
-    """Returns networkx's own implementation, whichever backend is in force."""
+    """Returns networkx's own implementation, whatever backend is selected."""
     import networkx
 
     return getattr(networkx, name).orig_func
 
 
 def _connected(graph: Any) -> None:
-    """Refuses graphs of fewer than two nodes with networkx's exception."""
+    """Raises networkx's exception for graphs of fewer than two nodes."""
     import networkx
 
     if len(graph) < 2:
@@ -77,15 +77,15 @@ def fiedler_vector(
 
     Args:
         G: an undirected networkx graph.
-        weight: the edge attribute with the weights, of which the absolute value is taken and which is 1 where it is
-            missing; None: all are 1.
-        normalized: True leaves the work to networkx.
+        weight: the edge attribute with the weights; absolute values are used, and 1 if the attribute is missing;
+            None: all weights are 1.
+        normalized: True calls networkx's own function.
         tol: the residual ‖L x − λ x‖ relative to λ₂ ‖x‖.
         method: not used, except by networkx.
-        seed: an integer for the eigensolver's start vector; others, such as a RandomState, count as 0.
+        seed: an integer for the eigensolver's start vector; other values, such as a RandomState, count as 0.
 
     Returns:
-        One number for each node, in the order of ``G``'s nodes, of norm 1 and sum 0.
+        One number for each node, in the order of ``G``'s nodes, with norm 1 and sum 0.
 
     Raises:
         networkx.NetworkXError: the graph has fewer than two nodes, or is not connected.
@@ -158,7 +158,7 @@ def spectral_ordering(
 
 
 class _Backend:
-    """The functions that networkx calls for ``backend="meshorder"``. Graphs stay networkx's own."""
+    """The functions that networkx calls for ``backend="meshorder"``. Graphs are not converted."""
 
     fiedler_vector = staticmethod(fiedler_vector)
     algebraic_connectivity = staticmethod(algebraic_connectivity)

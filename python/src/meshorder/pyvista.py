@@ -24,7 +24,7 @@ if not hasattr(pyvista, "register_dataset_accessor"):
 @pyvista.register_dataset_accessor("meshorder", pyvista.UnstructuredGrid)
 @pyvista.register_dataset_accessor("meshorder", pyvista.PolyData)
 class MeshorderAccessor:
-    """Orders a dataset of PyVista: ``grid.meshorder.reorder("hilbert").plot()``."""
+    """Orders a PyVista dataset: ``grid.meshorder.reorder("hilbert").plot()``."""
 
     def __init__(self, dataset: Any) -> None:
         self._dataset = dataset
@@ -32,7 +32,7 @@ class MeshorderAccessor:
     def reorder(self, vertices: str = "auto", *, inplace: bool = False, **options: Any) -> Any:
         """Returns the dataset in a new order, with the arrays ``original_point`` and ``original_cell``.
 
-        These hold, for each point and cell, its number in this dataset; earlier arrays of these names are replaced.
+        They hold, for each point and cell, its number in this dataset; earlier arrays of these names are replaced.
 
         Args:
             vertices: method for the vertices: "auto" or the name of one of `meshorder.methods`.
@@ -52,5 +52,5 @@ class MeshorderAccessor:
         return _payoff.compare(self._dataset, methods, **options)
 
     def advise(self, **options: Any) -> Advice:
-        """Says what reordering the dataset would gain; see `meshorder.advise`."""
+        """Says how much reordering the dataset would gain; see `meshorder.advise`."""
         return _payoff.advise(self._dataset, **options)

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Finds the host of a mesh of another library by the module of its class, without an import of the library."""
+"""Finds the host of another library's mesh by the module of its class, without importing the library."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from .._errors import InvalidArgument
 from .host import Host
 
-#: the module of this package for the meshes of each library
+#: for each library, the module of this package that handles its meshes
 _MODULES = {
     "meshorder": "native",
     "meshio": "meshio",
@@ -29,7 +29,7 @@ def find_host(mesh: Any) -> Host | None:
     """Returns the host of a mesh; None for objects of other libraries.
 
     Raises:
-        InvalidArgument: an object of one of the libraries that is no mesh, or a mesh that cannot be ordered.
+        InvalidArgument: an object of one of the libraries that is not a mesh, or a mesh that cannot be ordered.
     """
     kind = mesh if isinstance(mesh, type) else type(mesh)
     for base in kind.__mro__[:-1]:
@@ -44,7 +44,7 @@ def host_of(mesh: Any) -> Host:
     """Returns the host of a mesh.
 
     Raises:
-        InvalidArgument: as `find_host`, and objects of other libraries.
+        InvalidArgument: as `find_host`, and for objects of other libraries.
     """
     found = find_host(mesh)
     if found is None:

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Meshes that are tuples of the caller's own arrays."""
+"""Meshes given as tuples of the caller's arrays."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .host import Host, moved_rows, parts
 class ArrayMesh(Host):
     """``(points, cells)``, ``(points, cells, point_data)`` or ``(points, cells, point_data, cell_data)``.
 
-    The data are dicts of arrays. Those of ``cell_data`` have the form of the cells: where the cells are a dict or list
+    The data are dicts of arrays. Those of ``cell_data`` have the form of the cells: if the cells are a dict or list
     of blocks, a dict or list with an array for each block, else one array with a row for each cell.
     """
 
@@ -130,7 +130,7 @@ def _copy_into(part: Any, moved: Any) -> None:
 
 
 def _with_types(cells: Any) -> Any:
-    """Returns meshio's blocks of cells as pairs of their type and data; other cells as they are."""
+    """Returns meshio's blocks of cells as pairs of type and data; other cells unchanged."""
     if isinstance(cells, list) and cells and all(hasattr(block, "type") and hasattr(block, "data") for block in cells):
         return [(block.type, block.data) for block in cells]
     return cells
@@ -145,7 +145,7 @@ def _is_list_of_blocks(cells: Any) -> bool:
 
 
 def _blocks(cells: Any) -> list[Any]:
-    """Returns the rows of each block of cells; an empty list for cells as offsets and connectivity."""
+    """Returns the rows of each block of cells; an empty list for cells given by offsets and connectivity."""
     if isinstance(cells, Mapping):
         return list(cells.values())
     if _is_list_of_blocks(cells):
@@ -156,7 +156,7 @@ def _blocks(cells: Any) -> list[Any]:
 
 
 def host(mesh: Any) -> Host | None:
-    """Returns the host of a tuple of arrays that begins with points; None for others, such as ``(indptr, indices)``."""
+    """Returns the host of a tuple of arrays that begins with points; None for other objects, such as ``(indptr, indices)``."""
     if not isinstance(mesh, tuple) or not 2 <= len(mesh) <= 4:
         return None
     first = mesh[0]

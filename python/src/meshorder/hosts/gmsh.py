@@ -14,7 +14,7 @@ from .._errors import InvalidArgument, Unavailable
 from .._meshes import MeshOrder
 from .host import Host, parts
 
-#: shapes by the first word of Gmsh's names of element types: "Tetrahedron 10"
+#: shapes by the first word of Gmsh's names of element types, such as "Tetrahedron 10"
 _SHAPES = {
     "Point": "vertex",
     "Line": "line",
@@ -40,7 +40,7 @@ class GmshModel(Host):
     """The current model of the module gmsh.
 
     Vertices are numbered from 0 by ascending tags, elements as Gmsh lists them: entity by entity, type by type.
-    Elements stay in their entity. Nodes get the same set of tags in the new order, elements those of their type and
+    Elements stay in their entity. Nodes keep the same set of tags, in the new order; so do the elements of a type in an
     entity.
     """
 

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The interface by which the functions on meshes use the meshes of other libraries."""
+"""The interface of other libraries' meshes for the functions on meshes."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ class Request:
 
 
 class Host(abc.ABC):
-    """A mesh of another library, as the functions on meshes use it.
+    """A mesh of another library, in the form that the functions on meshes use.
 
     Attributes:
         given: the mesh itself.
         points: one row of one to three coordinates for each vertex.
         cells: the cells, in one of the forms that `meshorder.order_mesh` takes.
-        takes_weights: whether `meshorder.order` takes points and weights with it, as with a graph.
+        takes_weights: whether `meshorder.order` accepts points and weights with it, as for a graph.
     """
 
     takes_weights = False
@@ -53,7 +53,7 @@ class Host(abc.ABC):
 
     @abc.abstractmethod
     def moved(self, order: MeshOrder, inplace: bool) -> Any:
-        """Returns the mesh with vertices, cells and their data in another order: a new one, or ``given`` changed."""
+        """Returns the mesh with vertices, cells and their data in another order: a new mesh, or ``given`` changed."""
 
     def point_data(self) -> Mapping[str, Any]:
         """Returns the arrays with a row for each vertex, by name."""
@@ -72,10 +72,10 @@ class Host(abc.ABC):
         return {}
 
     def graph(self, mirror: bool) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]] | None:
-        """Returns the offsets and neighbours of a graph, and the place of each entry in what was given; None for meshes.
+        """Returns the offsets and neighbours of a graph, and the place of each entry in the input; None for meshes.
 
         Args:
-            mirror: True: edges that have a direction are taken in both.
+            mirror: True: directed edges are taken in both directions.
         """
         return None
 
@@ -94,7 +94,7 @@ class Host(abc.ABC):
         return self.moved(order, request.inplace), order
 
     def grouped_order(self, request: Request) -> MeshOrder:
-        """Finds the order that keeps the groups of an array together, by a `meshorder.Mesh` with the same arrays."""
+        """Finds the order that keeps the groups of an array together, using a `meshorder.Mesh` with the same arrays."""
         handle = self.mesh()._handle
         with prepared(request.options) as given:
             return MeshOrder._of(
@@ -142,7 +142,7 @@ def parts(cells: Permutation, sizes: Sequence[int]) -> list[Permutation]:
 def moved_rows(
     offsets: NDArray[Any], entries: NDArray[Any], rows: Permutation
 ) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Returns the offsets and entries of rows of any size in their new order; both are new arrays."""
+    """Returns the offsets and entries of rows of any length in their new order; both are new arrays."""
     widths = np.diff(offsets)
     if len(widths) and (widths == widths[0]).all():
         return offsets.copy(), rows.move(entries.reshape(len(widths), -1)).reshape(-1)
@@ -155,7 +155,7 @@ def moved_rows(
 
 
 def _numbers(values: Any) -> NDArray[Any] | None:
-    """Returns values as an array of real numbers of rank 1 or 2, masked ones as NaN; None for values of other types."""
+    """Returns values as an array of real numbers of rank 1 or 2, with NaN for masked ones; None for other types."""
     if np.ma.is_masked(values):
         values = np.ma.filled(values.astype(np.float64), np.nan)
     array = np.asarray(values)
@@ -173,9 +173,9 @@ def _numbers(values: Any) -> NDArray[Any] | None:
 
 
 def wedges_inward(points: NDArray[Any], cells: Any) -> Any:
-    """Returns the cells, in the form given, with the first triangle of linear wedges facing inward.
+    """Returns the cells, in the given form, with the first triangle of linear wedges facing inward.
 
-    A `meshorder.Mesh` has them so; VTK's first triangle faces outward.
+    This is the order of a `meshorder.Mesh`; VTK's first triangle faces outward.
     """
     if isinstance(cells, list):
         return [

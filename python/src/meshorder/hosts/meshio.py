@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The meshes of meshio, and meshes made for it."""
+"""Meshes of meshio, and conversion of a `Mesh` to them."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from .._permutation import Permutation
 from .host import Host, parts
 
 
-#: what meshio's reader of Gmsh 4.1 keeps among the sets of cells: tags of the entities that bound each block, signed by
-#: their orientation
+#: name under which meshio's reader of Gmsh 4.1 stores, among the sets of cells, the tags of the entities that bound each
+#: block, signed by their orientation
 _ENTITY_TAGS = "gmsh:bounding_entities"
 
 
 class MeshioMesh(Host):
     """A meshio.Mesh. Cells stay within their block, so blocks keep their sizes.
 
-    A set of cells has an array for each block, with numbers within this block, or None; arrays may be missing at the
-    end. Some readers of meshio 5.3 make other sets, which keep their form and meaning:
+    A set of cells has an array for each block, with numbers within the block, or None; arrays may be missing at the
+    end. Some readers of meshio 5.3 make other sets, whose form and meaning are kept:
 
     - Gmsh 4.1: tags of entities among the sets;
     - Abaqus: a set that names other sets is a list of these, each with an array for each block;
@@ -109,7 +109,7 @@ class MeshioMesh(Host):
             "cell_sets": self._moved_cell_sets(by_cell),
             "gmsh_periodic": self._periodic(by_vertex.old_to_new),
         }
-        # the ids that meshio's reader of Nastran leaves
+        # ids that meshio's reader of Nastran adds to the mesh
         if hasattr(mesh, "points_id"):
             new["points_id"] = by_vertex.move(np.asarray(mesh.points_id))
         if hasattr(mesh, "cells_id"):
@@ -156,7 +156,7 @@ def _moved_block(block: Any, by_vertex: Permutation, by_cell: Permutation) -> An
 
 
 def _joined(blocks: Any) -> Any:
-    """Returns the values of all blocks in one array, a masked one where a block is masked."""
+    """Returns the values of all blocks in one array, which is masked if a block is."""
     library: Any = np.ma if any(map(np.ma.is_masked, blocks)) else np
     return library.concatenate(blocks)
 
@@ -181,7 +181,7 @@ def _renumbered(new_places: NDArray[Any], members: Any, name: str, first: int = 
     return renumbered
 
 
-#: what `to_meshio` notes that is no loss
+#: note of `to_meshio` that reports no loss
 GROUPED = "cells were grouped by type"
 
 
@@ -197,10 +197,10 @@ class Blocks(enum.Enum):
 
 
 def to_meshio(mesh: Mesh, blocks: Blocks = Blocks.OF_TYPES) -> tuple[Any, NDArray[np.int64], list[str]]:
-    """Makes a meshio.Mesh of a `Mesh`, with its data and sets.
+    """Makes a meshio.Mesh from a `Mesh`, with its data and sets.
 
     Returns:
-        The meshio.Mesh; the old place of each of its cells, in their order; and notes that name what it cannot hold.
+        The meshio.Mesh; the old place of each of its cells, in their order; and notes on what it cannot hold.
 
     Raises:
         InputError: cells of a type that meshio does not have.
@@ -230,7 +230,7 @@ def to_meshio(mesh: Mesh, blocks: Blocks = Blocks.OF_TYPES) -> tuple[Any, NDArra
 
 
 def _members(mesh: Mesh, widths: NDArray[Any], blocks: Blocks) -> list[NDArray[np.int64]]:
-    """Returns the cells of each block; blocks are sorted by their first cells."""
+    """Returns the cells of each block; the blocks are sorted by their first cells."""
     if len(widths) == 0:
         return []
     kinds = np.stack([mesh.shapes.astype(np.int64), widths])

@@ -26,7 +26,7 @@ class NativeMesh(Host):
                 request.vertices, request.elements, request.ids, request.group_by or "", request.format or "", given
             )
         if request.inplace:
-            # the arrays that were taken from the mesh keep what they are views of
+            # arrays that were taken from the mesh remain views of the old handle
             self.given._handle = moved._handle
             moved = self.given
         return moved, MeshOrder._of(made)
@@ -40,7 +40,7 @@ class NativeMesh(Host):
 
 
 def host(mesh: Any) -> Host:
-    """The host of a `meshorder.Mesh`."""
+    """Returns the host of a `meshorder.Mesh`."""
     if not isinstance(mesh, Mesh):
         raise InvalidArgument(f"mesh: expected a meshorder.Mesh, not {type(mesh).__name__}")
     return NativeMesh(mesh)

@@ -19,21 +19,21 @@ from .._permutation import Permutation
 from . import torch as tensors
 from .host import Host, Request, parts
 
-#: names of what belongs to nodes also where there are as many edges
+#: names of values that belong to nodes even if there are as many edges
 _OF_NODES = ("x", "y", "z", "pos", "batch", "norm", "normal", "feat", "n_id")
 
 
 class PygGraph(Host):
     """A Data or HeteroData.
 
-    Nodes are numbered type after type. They go by one graph of all types and edge types, each type within its own
-    numbers; without edges by the sides of the faces. The cells of an order are the edges, type after type, then the
-    faces.
+    Nodes are numbered type after type. One graph of all types and edge types orders them, each type within its own
+    numbers; without edges, the sides of the faces are the graph. The cells of an order are the edges, type after type,
+    then the faces.
     """
 
     def __init__(self, data: Any) -> None:
         self.given = data
-        with warnings.catch_warnings():  # of PyG's guess, the largest number in edge_index
+        with warnings.catch_warnings():  # PyG warns that it guesses from the largest number in edge_index
             warnings.simplefilter("ignore")
             self._sizes = [store.num_nodes for store in data.node_stores]
         for store, size in zip(data.node_stores, self._sizes):
@@ -49,7 +49,7 @@ class PygGraph(Host):
         self.points = self._points()
 
     def _columns(self, store: Any) -> NDArray[np.int64]:
-        """Returns two rows, for both ends of a store's edges: the first node of their type and how many there are."""
+        """Returns two rows, one for each end of a store's edges: the first node of its type and the number of nodes."""
         for key in _ends(store):
             if key not in self._nodes:
                 raise InvalidArgument(f"data: the nodes {key!r} are missing; set data[{key!r}].num_nodes")
@@ -75,7 +75,7 @@ class PygGraph(Host):
         pairs = list(self._edges)
         for store in self.given.edge_stores:
             for key, matrix in store.items("adj", "adj_t"):
-                if tensors.is_sparse(matrix):  # others are refused when they would move
+                if tensors.is_sparse(matrix):  # other matrices are refused when they are to be moved
                     ends, (start, count) = tensors.to_numpy(tensors.entries(matrix.detach()).indices()), self._columns(store).T
                     shape = tuple(matrix.shape[::-1] if key == "adj_t" else matrix.shape)
                     if shape != tuple(count):
@@ -125,7 +125,7 @@ class PygGraph(Host):
         return dataclasses.replace(whole, permutation=Permutation(new_to_old=np.concatenate(places)))
 
     def _groups(self, given: Any) -> NDArray[Any] | None:
-        """Returns groups that keep the graphs of a batch apart, and within them the groups given."""
+        """Returns groups that keep the graphs of a batch apart, and within each the given groups."""
         batches = [store.get("batch") for store in self.given.node_stores]
         whole = bool(batches) and all(batch is not None for batch in batches)
         found = [np.concatenate([tensors.to_numpy(batch) for batch in batches])] if whole else []
@@ -150,7 +150,7 @@ class PygGraph(Host):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             for place, store in enumerate(self.given.stores):
-                if hasattr(store, "is_edge_attr"):  # not that of a HeteroData as a whole
+                if hasattr(store, "is_edge_attr"):  # not the store of a HeteroData as a whole
                     of = {"nodes": nodes.get(store._key), "edges": edges.get(store._key), "faces": cells[-1] if sizes else None}
                     ends = [nodes[key] for key in _ends(store)]
                     moved += [(place, key, self._value(store, key, value, ends, of, doubts)) for key, value in store.items()]
@@ -164,7 +164,7 @@ class PygGraph(Host):
     def _value(
         self, store: Any, key: str, value: Any, ends: list[Permutation], of: dict[str, Permutation | None], doubts: list[str]
     ) -> Any:
-        """Returns a value of a store with its rows moved and its node numbers renewed."""
+        """Returns a value of a store with its rows moved and its node numbers replaced."""
         if type(value).__name__ == "SparseTensor":
             raise InvalidArgument(f"{_name(store, key)} is a SparseTensor of torch_sparse; pass its edge_index instead")
         count, axis = self._rows(store, key, value)
@@ -190,7 +190,7 @@ class PygGraph(Host):
         return tensors.stacked(both)
 
     def _owner(self, store: Any, key: str, rows: int) -> str | None:
-        """Returns what a value of so many rows has a row for each of: "nodes", "edges" or "faces"; None for others."""
+        """Returns the items for which a value has a row each: "nodes", "edges" or "faces"; None for other values."""
         if rows < 0 or key.endswith("ptr"):
             return None
         if self._face is not None and "face" in key and rows == self._face.shape[1]:
@@ -198,17 +198,17 @@ class PygGraph(Host):
         return "nodes" if store.is_node_attr(key) else "edges" if store.is_edge_attr(key) else None
 
     def _rows(self, store: Any, key: str, value: Any) -> tuple[int, int]:
-        """Returns the number of rows of a value and the axis that they lie along; −1 rows for values without."""
+        """Returns the number of rows of a value and the axis along which they lie; −1 rows for values without rows."""
         if isinstance(value, (list, tuple)):
             return len(value), 0
         axis = self.given.__cat_dim__(key, value, store) if getattr(value, "shape", ()) else None
         return (int(value.shape[axis]), axis) if isinstance(axis, int) else (-1, 0)
 
     def _holds_nodes(self, store: Any, key: str, value: Any) -> bool:
-        """Returns whether a batch would add numbers of nodes to a tensor.
+        """Returns whether PyG's batches would add numbers of nodes to a tensor, which shows that it holds node numbers.
 
         Raises:
-            InvalidArgument: it would add other numbers.
+            InvalidArgument: they would add other numbers.
         """
         step = 0 if "batch" in key or key.endswith("ptr") else self.given.__inc__(key, value, store)
         step = np.asarray(step).ravel()
@@ -218,7 +218,7 @@ class PygGraph(Host):
         return bool(step.any())
 
     def _doubts(self, store: Any, key: str, value: Any, owner: str | None, rows: int) -> list[str]:
-        """Returns a warning where name and shape do not show whether a value moves."""
+        """Returns a warning if name and shape do not show whether a value belongs to moved items."""
         name = _name(store, key)
         if owner == "nodes" and value.shape[1:2] == (rows,) and rows > 1 and key not in _OF_NODES:
             return [f"{name} has a row and a column for each node: only its rows were moved; 'adj' in its name moves both"]

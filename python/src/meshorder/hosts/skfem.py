@@ -15,7 +15,7 @@ from .._meshes import MeshOrder
 from .._permutation import Permutation
 from .host import Host
 
-#: shape, and rows of ``mesh.t`` in VTK's order of corners, by dimension and number of corners
+#: by dimension and number of corners: the shape, and the rows of ``mesh.t`` in VTK's order of corners
 _SHAPES = {
     (1, 2): ("line", [0, 1]),
     (2, 3): ("triangle", [0, 1, 2]),
@@ -53,7 +53,7 @@ class SkfemMesh(Host):
         t = vertices.renumber(mesh.t)[:, cells.new_to_old]
         doflocs = vertices.move(self.points).T
         if self._is_quadratic:
-            # scikit-fem takes the nodes between corners as further rows of t, and numbers them again
+            # scikit-fem expects the nodes between corners as further rows of t, and renumbers them
             between = mesh.dofs.element_dofs[mesh.t.shape[0] :, cells.new_to_old]
             t = np.vstack([t, between])
             doflocs = np.hstack([doflocs, mesh.doflocs[:, self._corners :]])
@@ -70,7 +70,7 @@ class SkfemMesh(Host):
 
 
 def _moved_boundaries(mesh: Any, moved: Any, vertices: Permutation, cells: Permutation) -> dict[str, Any]:
-    """Returns the boundaries with the new numbers of their facets, each with the same element on its side."""
+    """Returns the boundaries with new numbers of their facets; the element on the side of each stays the same."""
     new_facet = _new_facets(vertices.renumber(mesh.facets), moved.facets)
     boundaries = {}
     for name, facets in mesh.boundaries.items():
@@ -85,7 +85,7 @@ def _moved_boundaries(mesh: Any, moved: Any, vertices: Permutation, cells: Permu
 
 
 def _new_facets(facets: NDArray[Any], new_facets: NDArray[Any]) -> NDArray[Any]:
-    """Returns the number that each facet, a column of new vertex numbers, has among the new facets."""
+    """Returns the new number of each facet, given as a column of new vertex numbers."""
     old, new = (np.lexsort(np.sort(columns, axis=0)) for columns in (facets, new_facets))
     places = np.empty(facets.shape[1], dtype=np.int64)
     places[old] = new

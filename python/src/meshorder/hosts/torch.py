@@ -81,12 +81,12 @@ def node_numbers(tensor: Any, name: str, count: Any = _MOST_NODES) -> NDArray[np
 
     Args:
         tensor: the tensor.
-        name: what errors call it.
-        count: number of nodes, or a column with that for each row of the tensor.
+        name: its name in error messages.
+        count: number of nodes, or a column with this number for each row of the tensor.
 
     Raises:
-        InvalidArgument: a type other than int32 and int64, numbers of no node.
-        TooLarge: 2³¹ − 1 or more.
+        InvalidArgument: a type other than int32 and int64, a number that is not a node.
+        TooLarge: a number of 2³¹ − 1 or more.
     """
     if hasattr(tensor, "as_tensor"):
         raise InvalidArgument(f"{name}: an EdgeIndex knows how it is sorted, which an order changes; pass .as_tensor()")
@@ -102,7 +102,7 @@ def node_numbers(tensor: Any, name: str, count: Any = _MOST_NODES) -> NDArray[np
 
 
 def entries(matrix: Any) -> Any:
-    """Returns a sparse matrix in COO form, its entries ascending by row and column, repeated ones added.
+    """Returns a sparse matrix in COO form, with entries ascending by row and column and repeated ones added.
 
     Raises:
         InvalidArgument: a form other than COO and CSR, more than two sparse dimensions.
@@ -116,12 +116,12 @@ def entries(matrix: Any) -> Any:
 def compressed(
     ends: NDArray[np.int64], count: int, mirror: bool
 ) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """Returns the offsets and neighbours of a graph, and the place that each entry had in ``ends``.
+    """Returns the offsets and neighbours of a graph, and the place of each entry in ``ends``.
 
     Args:
         ends: the rows and columns of the entries.
         count: number of vertices.
-        mirror: True: entries are also taken in the other direction.
+        mirror: True: entries are taken in both directions.
     """
     rows, columns = np.concatenate([ends, ends[::-1]], axis=1) if mirror else ends
     places = np.argsort(rows * count + columns, kind="stable")
@@ -134,7 +134,7 @@ def order_of_edges(
     sources: NDArray[Any], targets: NDArray[Any], elements: str, name: str = "target",
     reason: str = "edges by their new target, then source",
 ) -> Order:  # fmt: skip
-    """Returns the order of edges between new numbers: by target, then source; or, with "original", as they are.
+    """Returns the order of edges between new numbers: by target, then source; or, for "original", unchanged.
 
     Raises:
         InvalidArgument: ``elements`` is neither "auto" nor "original".
@@ -150,14 +150,14 @@ def order_of_edges(
 
 
 def moved_rows(values: Any, permutation: Permutation, axis: int) -> Any:
-    """Returns a tensor with its rows along an axis in their new places, on its device."""
+    """Returns a tensor with its rows along an axis moved to their new places, on its device."""
     import torch
 
     return values.index_select(axis, torch.tensor(permutation.new_to_old, dtype=torch.int64, device=values.device))
 
 
 def renumbered(numbers: Any, permutation: Permutation) -> Any:
-    """Returns a tensor of node numbers with their new ones, of the same type and on the same device."""
+    """Returns a tensor with new node numbers, of the same type and on the same device."""
     import torch
 
     node_numbers(numbers, "numbers", len(permutation))
@@ -165,14 +165,14 @@ def renumbered(numbers: Any, permutation: Permutation) -> Any:
 
 
 def stacked(rows: Any) -> Any:
-    """Returns tensors, or arrays, as the rows of one."""
+    """Returns one tensor, or array, whose rows are the given ones."""
     import torch
 
     return torch.stack(rows) if is_tensor(rows[0]) else np.stack(rows)
 
 
 def moved_matrix(matrix: Any, rows: Permutation, columns: Permutation) -> Any:
-    """Returns a sparse matrix with its rows and columns in their new places, in its form and on its device."""
+    """Returns a sparse matrix with its rows and columns moved, in the same form and on the same device."""
     import torch
 
     if tuple(matrix.shape[:2]) != (len(rows), len(columns)):

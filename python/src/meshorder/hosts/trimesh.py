@@ -14,7 +14,7 @@ from .host import Host
 
 
 class TrimeshSurface(Host):
-    """A trimesh.Trimesh. Its own functions move its attributes, colours and texture coordinates."""
+    """A trimesh.Trimesh. Its own methods move its attributes, colours and texture coordinates."""
 
     def __init__(self, mesh: Any) -> None:
         self.given = mesh
@@ -31,7 +31,7 @@ class TrimeshSurface(Host):
         for name, values in (*self.point_data().items(), *self.cell_data().items()):
             if isinstance(values, (list, tuple)):
                 raise InvalidArgument(f"mesh: attribute '{name}' must be an array, not a list, to be moved")
-        # normals that the caller set are kept in the cache only, which a change of faces clears
+        # the cache alone holds normals that the caller set; a change of faces clears it
         normals = [self.given._cache[name] for name in ("face_normals", "vertex_normals")]
         mesh = self.given if inplace else self.given.copy()
         if not inplace:  # versions before 4.5 copy no attributes

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The unstructured grids and surfaces of VTK, and of PyVista, whose classes derive from VTK's."""
+"""Unstructured grids and surfaces of VTK and of PyVista, whose classes derive from VTK's."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from .._permutation import Permutation
 from .host import Host, Request, moved_rows, parts
 
 _POLYHEDRON = 42
-#: VTK's numbers of pentagonal and hexagonal prisms, quadratic polygons and convex point sets; a grid with such cells is
+#: VTK's types: pentagonal and hexagonal prisms, quadratic polygons, convex point sets. A grid with such cells is
 #: ordered by the vertices of its cells, without their types
 _WITHOUT_SHAPE = (15, 16, 36, 41)
 
 
 class _Dataset(Host):
-    """What grids and surfaces have in common."""
+    """Common base of grids and surfaces."""
 
     def __init__(self, mesh: Any) -> None:
         self.given = mesh
@@ -81,7 +81,7 @@ class Grid(_Dataset):
             return
         if not hasattr(moved, "SetPolyhedralCells"):
             raise Unavailable("mesh: polyhedra need VTK 9.4 or later")
-        # the faces stay where they are; each cell's list of them moves
+        # the faces keep their places; each cell's list of faces moves with it
         faces = _moved_cell_array(self.given.GetPolyhedronFaces(), vertices, None)
         faces_of_cells = _moved_cell_array(self.given.GetPolyhedronFaceLocations(), None, cells)
         moved.SetPolyhedralCells(types, rows, faces_of_cells, faces)
@@ -134,7 +134,7 @@ def _support() -> Any:
 
 
 def _array(values: Any) -> NDArray[Any]:
-    """Returns the numbers of a VTK array, as a view if they are stored row after row."""
+    """Returns the numbers of a VTK array; a view if they are stored row after row."""
     if not values.HasStandardMemoryLayout():
         plain = values.CreateDataArray(values.GetDataType())
         plain.DeepCopy(values)
@@ -159,7 +159,7 @@ def _rows(cells: Any) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def _moved_cell_array(given: Any, vertices: Permutation | None, cells: Permutation | None) -> Any:
-    """Returns a vtkCellArray with new vertex numbers, with its rows in a new order, or both."""
+    """Returns a vtkCellArray with new vertex numbers, with its rows in a new order, or with both."""
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
     offsets, connectivity = _rows(given)
@@ -175,12 +175,12 @@ def _moved_cell_array(given: Any, vertices: Permutation | None, cells: Permutati
 
 
 def _ids(numbers: NDArray[Any]) -> Any:
-    """Returns a vtkIdTypeArray that owns its memory, since a vtkCellArray may keep the memory without the array."""
+    """Returns a vtkIdTypeArray that owns its memory: a vtkCellArray may keep the memory but not the array."""
     return _support().numpy_to_vtkIdTypeArray(np.ascontiguousarray(numbers, dtype=np.int64), deep=True)
 
 
 def _arrays_of(data: Any) -> dict[str, Any]:
-    """Returns the arrays that have a name, by their names."""
+    """Returns the arrays that have a name, as a dict."""
     arrays = (data.GetAbstractArray(number) for number in range(data.GetNumberOfArrays()))
     return {array.GetName(): _values(array) for array in arrays if array.GetName()}
 
@@ -192,7 +192,7 @@ def _values(array: Any) -> NDArray[Any]:
 
 
 def _move_attributes(given: Any, moved: Any, permutation: Permutation) -> None:
-    """Copies all arrays, of numbers, bits and strings, with their names and roles (scalars, normals, global ids)."""
+    """Copies all arrays (numbers, bits and strings) with their names and roles (scalars, normals, global ids)."""
     n = len(permutation)
     if given.GetNumberOfArrays() == 0 or n == 0:
         return
@@ -206,7 +206,7 @@ def _move_attributes(given: Any, moved: Any, permutation: Permutation) -> None:
 
 
 def _id_list(numbers: NDArray[Any]) -> Any:
-    """Returns a vtkIdList with these numbers, by way of a cell, since it takes no array."""
+    """Returns a vtkIdList with these numbers, made through a cell because the class accepts no array."""
     from vtkmodules.vtkCommonCore import vtkIdList
     from vtkmodules.vtkCommonDataModel import vtkCellArray
 
