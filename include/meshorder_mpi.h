@@ -56,7 +56,7 @@ MO_API void mo_mpi_options_init(mo_mpi_options* options, size_t struct_size);
 
 /**
  * Orders the vertices of every rank among themselves: each stays with its owner. A rank's order begins near
- * the rank before it and ends near the rank after it, if that can be.
+ * the rank before it and ends near the rank after it, as far as possible.
  *
  * Elements may be on several ranks (ghost layers); each rank orders all of its own.
  *

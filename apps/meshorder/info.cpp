@@ -86,8 +86,7 @@ bool fits_in_first_cache(const CsrGraph& graph) {
 /// How the gain is determined.
 enum class By : std::uint8_t { prediction, quick_measurement, measurement };
 
-/// Returns how: by default kernels run if that takes two seconds at most and no machine's times are asked
-/// for.
+/// Returns how the gain is determined: by kernels that run at most two seconds, unless times are requested.
 By judged_by(const InfoArguments& arguments, SimplicesRef simplices, const MachineChoice& machine) {
   if (arguments.measure) return By::measurement;
   const bool asks_for_times = arguments.predict || !arguments.machine.empty() || !arguments.caches.empty() ||
@@ -95,12 +94,12 @@ By judged_by(const InfoArguments& arguments, SimplicesRef simplices, const Machi
   return asks_for_times || simplices.size() > kMaxQuick ? By::prediction : By::quick_measurement;
 }
 
-/// As of `reuse_of`: all lines are followed for the caches that are asked for.
+/// Returns the `halvings` of `reuse_of_kernels`: 0, for all cache lines, if --cache is given.
 int halvings_of(const InfoArguments& arguments, SimplicesRef simplices) {
   return arguments.caches.empty() ? halvings_for(simplices.size()) : 0;
 }
 
-/// Returns what reordering is worth; nothing for a mesh without elements, nor for a large or tiny one unless
+/// Returns the gain of reordering; nothing for a mesh without elements, nor for a large or tiny one unless
 /// --cache, --predict or --measure is given.
 std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph,
                                 double graph_seconds, SimplicesRef simplices,
@@ -128,7 +127,7 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
   return advise(mesh, graph, options);
 }
 
-/// Returns the reuse of the mesh in its order; nothing for a large mesh unless --cache is given, nor when
+/// Returns the reuse of the mesh in its order; nothing for a large mesh unless --cache is given, nor if
 /// measuring leaves no time for it.
 ///
 /// @param pattern  of a matrix; null for other meshes
@@ -186,7 +185,7 @@ void print_attachments(const Console& console, const Mesh& mesh) {
   }
 }
 
-/// What is counted on the vertex graph of a mesh.
+/// Counts of the vertex graph of a mesh.
 struct GraphFacts {
   ComponentCounts components;
   EdgeSpan span;
@@ -194,7 +193,7 @@ struct GraphFacts {
   std::vector<Offset> histogram;
 };
 
-/// Prints what a mesh holds and how near its vertices are.
+/// Prints the contents of a mesh and the distances of its neighbours.
 void print_mesh_facts(const Console& console, const Mesh& mesh, Offset edges, const GraphFacts& facts,
                       Offset degenerate) {
   const Index isolated = facts.components.isolated;
@@ -215,23 +214,23 @@ void print_mesh_facts(const Console& console, const Mesh& mesh, Offset edges, co
   console.print("{:<12} {}", "profile", with_commas(facts.profile));
 }
 
-/// What `info` says of a mesh.
+/// The report of `info` on a mesh.
 struct Findings {
   std::string_view format;
-  const StoredMatrix* stored = nullptr;  ///< of a matrix or graph
-  MatrixReport matrix;                   ///< likewise
+  const StoredMatrix* stored = nullptr;  ///< set for a matrix or graph
+  MatrixReport matrix;                   ///< filled for a matrix or graph
   CsrGraph graph;
   double graph_seconds = 0;
   GraphFacts facts;
   Offset degenerate = 0;
   bool has_elements = true;
   std::optional<KernelReuse> reuse;
-  int halvings = 0;  ///< of the lines that `reuse` is estimated from
+  int halvings = 0;  ///< halvings of the cache lines from which `reuse` is estimated
   Caches caches;
   std::optional<Advice> advice;
 };
 
-/// Counts what a mesh holds, its cache misses as well where they are shown or predicted by.
+/// Counts the contents of a mesh, and its cache misses if they are shown or needed for a prediction.
 Findings counted(const InfoArguments& arguments, const Mesh& mesh, SimplicesRef simplices, By by) {
   Findings found;
   found.format = format_named(mesh.format).name;
@@ -287,7 +286,7 @@ void print_details(const Console& console, const Mesh& mesh, const Findings& fou
   }
 }
 
-/// Prints the answer, and then what it is about.
+/// Prints the verdict, and then the contents of the mesh.
 void print_findings(const Console& console, const InfoArguments& arguments, const Mesh& mesh,
                     const Findings& found) {
   const std::optional<Advice>& advice = found.advice;
@@ -340,7 +339,7 @@ void run(const InfoArguments& arguments) {
   Console console(arguments);
   Notes notes;
   const Stopwatch since_start;
-  // refused before anything takes time
+  // refuse wrong options before anything takes time
   if (!arguments.caches.empty()) (void)parse_caches(arguments.caches);
   if (arguments.kernels == KernelSet::tuned && !arguments.measure) {
     throw CommandError("--kernels tuned: these are not predicted; give --measure, too", 2);
@@ -355,7 +354,7 @@ void run(const InfoArguments& arguments) {
 
   const CellSimplices simplices(mesh);
   const By by = judged_by(arguments, simplices, machine);
-  // nobody waits for a calibration who did not ask for this machine's times
+  // calibrate only if the user requested times of this machine
   const bool calibrates = arguments.predict || arguments.machine == "this" || arguments.all_threads;
   if (by == By::prediction && calibrates && is_predicted(arguments, simplices)) {
     machine = calibrated(std::move(machine), arguments.all_threads, progress, console.quiet(), notes);

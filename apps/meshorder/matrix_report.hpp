@@ -16,7 +16,7 @@ struct MatrixReport {
   PatternFacts facts;
   ComponentCounts components;
   EdgeSpan span;       ///< of A + A′
-  Offset profile = 0;  ///< likewise
+  Offset profile = 0;  ///< of A + A′
 };
 
 /// Prints the report in terms of matrices, or of graphs. `mesh` is the one that was read.

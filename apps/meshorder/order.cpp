@@ -169,7 +169,7 @@ void run(const OrderArguments& arguments) {
   times.end("read");
   times.set_bytes("read", bytes_on_disk(arguments.input));
 
-  // a race on all threads has no other costs to choose by
+  // on all threads, a race needs the costs of a calibration to choose by
   if (arguments.predict || (arguments.measure && arguments.all_threads)) {
     machine = calibrated(*std::move(machine), arguments.all_threads, progress, console.quiet(), notes);
   }

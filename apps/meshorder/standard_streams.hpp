@@ -13,7 +13,7 @@ void occupy_closed_streams();
 /// it, drops the text instead.
 void write_stdout(std::string_view text);
 
-/// Writes what is buffered; throws likewise.
+/// Writes the buffered text; throws likewise.
 void flush_stdout();
 
 /// Writes text to stderr; ignores a failure, which could not be reported.

@@ -92,7 +92,7 @@ inline void throw_unless_ok(mo_status status) {
 }  // namespace detail
 
 /// Orders the vertices of every rank among themselves: each stays with its owner. A rank's order begins near
-/// the rank before it and ends near the rank after it, if that can be. Every rank has to call it.
+/// the rank before it and ends near the rank after it, as far as possible. Every rank has to call it.
 ///
 /// @param communicator  of the ranks that share the mesh
 /// @param mesh          of this rank. Elements may be on several ranks (ghost layers); each rank orders all

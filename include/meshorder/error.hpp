@@ -31,7 +31,7 @@ enum class Code : int {
 class MESHORDER_API Error : public std::runtime_error {
  public:
   /// @param code     kind of the failure; this class itself is thrown for `Code::io`
-  /// @param message  one sentence: what is wrong, where, and what would be right
+  /// @param message  one sentence: the fault, its place and a remedy
   Error(Code code, const std::string& message) : std::runtime_error(message), code_(code) {}
 
   /// Returns the kind of the failure; one kind for each derived class.
@@ -50,8 +50,8 @@ struct MESHORDER_API InvalidArgument : Error {
 /// Position of a fault in a file. Text is located by line, binary data by byte.
 struct Location {
   std::string file;
-  std::int64_t line = 0;   ///< from 1; 0 where unknown
-  std::int64_t byte = -1;  ///< from 0; −1 where unknown
+  std::int64_t line = 0;   ///< from 1; 0 if unknown
+  std::int64_t byte = -1;  ///< from 0; −1 if unknown
 };
 
 /// Thrown for a faulty file or faulty bytes in memory.

@@ -133,7 +133,7 @@ class MESHORDER_API FormatMetadata {
 /// A simulation mesh with the arrays, sets and ids of its file. Plain data: code that changes one member has
 /// to keep the others consistent; `check_mesh` verifies it.
 struct Mesh {
-  std::vector<Point> points = {};  ///< one for each vertex; the third coordinate is 0 where the file has two
+  std::vector<Point> points = {};  ///< one for each vertex; the third coordinate is 0 if the file has two
   int dimension = 3;               ///< number of coordinates of a point in the file: 2 or 3
   Cells cells = {};
   std::vector<DataArray> data = {};

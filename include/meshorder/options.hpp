@@ -65,7 +65,7 @@ struct Progress {
   /// While METIS runs, no callback comes and the call cannot be stopped. These words are stable; more may
   /// come. Valid during the callback.
   std::string_view stage;
-  double fraction = -1;  ///< of the whole call that is done, 0 … 1, never decreasing; −1 where unknown
+  double fraction = -1;  ///< share of the whole call that is done, 0 … 1, never decreasing; −1 if unknown
   double seconds = 0;    ///< since the call began
 };
 

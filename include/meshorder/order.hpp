@@ -35,7 +35,7 @@ struct Order {
   std::vector<double> vector = {};
   bool complete = true;  ///< false: `Run::time_limit` ended the method early
   double seconds = 0;    ///< wall-clock time of the call
-  /// What was cleaned or converted: "12 loops dropped", "indices narrowed".
+  /// Changes to a copy of the input: "12 loops dropped", "indices narrowed".
   std::vector<std::string> notes = {};
 };
 

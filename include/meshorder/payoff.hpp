@@ -71,7 +71,7 @@ inline constexpr int kPatternSide = 64;
 struct Candidate {
   MethodChoice vertices = {};
   MethodChoice elements = {};
-  Workload workload = Workload::all;  ///< what `auto` chose the methods for
+  Workload workload = Workload::all;  ///< what `auto` optimised
   Quality spans = {};                 ///< of the vertex graph in this order
   SparsityPattern pattern = {};       ///< likewise, `kPatternSide` tiles along each side
   OrderCosts costs = {};
@@ -88,7 +88,7 @@ struct KernelAdvice {
 /// The gain that reordering a mesh would bring.
 struct Advice {
   Candidate as_is = {};                    ///< the order that the mesh has
-  std::vector<Candidate> candidates = {};  ///< the first is what `reorder` does without options
+  std::vector<Candidate> candidates = {};  ///< the first is the choice of `reorder` without options
   std::array<KernelAdvice, kKernels.size()> kernels = {};
   /// Reason not to trust the measured times, a sentence: the machine was busy or throttled. Empty if they are
   /// reliable, or if nothing was measured.
@@ -100,7 +100,7 @@ struct Advice {
   /// differences do not count. 0 if unknown.
   std::array<double, kKernels.size()> floor = {};
   int threads = 1;                          ///< that shared each run
-  KernelSet kernel_set = KernelSet::plain;  ///< whose times these are
+  KernelSet kernel_set = KernelSet::plain;  ///< the kernels that were timed
   /// Whether the file of the mesh holds a matrix or graph. Then spmv is the product with that matrix, the
   /// times of the other kernels are 0, and one product counts in place of a time step.
   bool is_matrix = false;
@@ -131,7 +131,7 @@ struct PayoffOptions {
   OrderOptions order = {};  ///< `groups` has n entries or none, `cell_groups` m or none
 };
 
-/// Returns what other orders of a mesh gain. The mesh is not changed.
+/// Returns the gain of other orders of a mesh. The mesh is not changed.
 ///
 /// @param mesh     n vertices with points, m cells with types, at least one of them a line, surface or volume
 /// @param options  see `PayoffOptions`

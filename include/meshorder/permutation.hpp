@@ -41,7 +41,7 @@ class MESHORDER_API Permutation {
 
   /// Makes a permutation of a map from old to new places: `map[i]` is the new place of old i.
   ///
-  /// @throws InvalidArgument if the map is no bijection of 0 … n−1; the message names the first faulty
+  /// @throws InvalidArgument if the map is not a bijection of 0 … n−1; the message names the first faulty
   ///         entries
   /// @throws TooLarge for more than 2,147,483,647 entries
   /// @note O(n), on all threads.
@@ -129,7 +129,7 @@ class MESHORDER_API Permutation {
   /// @param to_stride    likewise
   /// @param row_bytes    bytes of a row
   /// @param run          threads; progress and time limit are not used
-  /// @throws InvalidArgument for null arrays with n > 0 and row_bytes > 0, or where dense arrays overlap
+  /// @throws InvalidArgument for null arrays with n > 0 and row_bytes > 0, or if dense arrays overlap
   /// @note O(n · row_bytes).
   void move_rows(const void* from, Offset from_stride, void* to, Offset to_stride, std::size_t row_bytes,
                  const Run& run = {}) const;

@@ -94,7 +94,7 @@ MESHORDER_API Registration register_element_method(MethodInfo info, ElementMetho
 /// Loads a shared library and calls its `meshorder_plugin_v1` (see meshorder.h), which registers methods. The
 /// library is never unloaded.
 ///
-/// @throws Unavailable if it cannot be loaded or lacks that function, or where the platform has no shared
+/// @throws Unavailable if it cannot be loaded or lacks that function, or if the platform has no shared
 ///         libraries
 /// @throws InvalidArgument if the function returns other than 0
 /// @warning Runs code of that library.

@@ -105,7 +105,7 @@ class _Words:
 
     @classmethod
     def of(cls, arguments: list[str]) -> _Words | None:
-        """Returns what the arguments name; None if they name no mesh or ask for help."""
+        """Returns the words of a command line; None if they name no mesh or ask for help."""
         plain: list[int] = []
         values: dict[str, _Word] = {}
         flags: set[str] = set()
@@ -324,7 +324,7 @@ def _run_in_other_names(arguments: list[str], names: dict[str, str], words: _Wor
         words: the files and options of the command line.
 
     Returns:
-        The exit status, negative if a signal ended the command; and what it printed on stdout.
+        The exit status, negative if a signal ended the command; and its text on stdout.
     """
     with subprocess.Popen(
         [program(), *arguments],

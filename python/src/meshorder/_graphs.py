@@ -51,7 +51,7 @@ class Order:
             None for others.
         complete: False if the time limit ended the method early.
         seconds: wall-clock time of the call.
-        notes: what was changed in a copy of the input: "12 loops dropped", "offsets widened".
+        notes: changes to a copy of the input: "12 loops dropped", "offsets widened".
     """
 
     permutation: Permutation
@@ -116,7 +116,7 @@ class Fiedler:
         component_of: n numbers, the position of each vertex's component in ``components``.
         components: the eigensolver's report for each component, the largest component first.
         complete: False if the time limit ended the iteration.
-        notes: what was changed in a copy of the graph: "12 loops dropped".
+        notes: changes to a copy of the graph: "12 loops dropped".
     """
 
     values: NDArray[np.float64]

@@ -211,7 +211,7 @@ def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         method: name of a vertex method, but not "auto", "original" or "scrambled".
         interface_last: True numbers the vertices that share an element with vertices of other ranks after the others.
         seed: integer ≥ 0 for the method.
-        threads: the most threads that this rank uses.
+        threads: limit on the threads of this rank.
 
     Returns:
         New numbers of this rank's vertices, and the order of its elements.
@@ -261,7 +261,7 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         interface_last: True numbers the vertices that share an element with vertices of other parts after the others
             of their part.
         seed: integer ≥ 0 for the method.
-        threads: the most threads that this rank uses.
+        threads: limit on the threads of this rank.
 
     Returns:
         New numbers of this rank's vertices, the ranges of the parts, and the part of each of its elements.
