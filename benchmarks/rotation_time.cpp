@@ -12,7 +12,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rotation_time.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// from here on compiled once for each instruction set
 #include "kernels/float_lanes-inl.hpp"
 #include "kernels/rotation-inl.hpp"
 

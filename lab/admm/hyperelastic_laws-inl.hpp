@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// log a to a few units in the last place; NaN unless a > 0.
+/// Returns log a to a few units in the last place; not finite unless a > 0.
 template <class Lanes>
 HWY_INLINE typename Lanes::Value logarithm(typename Lanes::Value a) {
   if constexpr (Lanes::kCount == 1)
@@ -26,9 +26,9 @@ HWY_INLINE typename Lanes::Value logarithm(typename Lanes::Value a) {
                          Lanes::set(std::numeric_limits<double>::quiet_NaN()));
 }
 
-/// The stress of an isotropic law plus F, all over the bulk modulus, as A F + b cof F + γ R with R the
-/// rotation closest to F: see proximal-inl.hpp. A, b and γ are functions of p = (σ₁ + σ₂ + σ₃,
-/// σ₁σ₂ + σ₁σ₃ + σ₂σ₃, σ₁σ₂σ₃), with their derivatives where the law has any.
+/// F plus an isotropic law's stress over the bulk modulus is A F + b cof F + γ R, with R the rotation closest
+/// to F (see proximal-inl.hpp). A, b and γ are functions of p = (σ₁ + σ₂ + σ₃, σ₁σ₂ + σ₁σ₃ + σ₂σ₃, σ₁σ₂σ₃).
+/// The derivatives that a law has are given too.
 template <class Lanes>
 struct StressFactors {
   typename Lanes::Value a, b, shift;
@@ -37,8 +37,8 @@ struct StressFactors {
   typename Lanes::Value of_shift[3];  ///< ∂γ/∂p
 };
 
-/// The step of Hooke's law, which all laws share near rest: Z = s S + c I takes S − I without its mean by
-/// 1 + 2m, and the mean by 4.
+/// The step of Hooke's law, which all laws share near rest: Z = s S + c I divides the deviatoric part of S −
+/// I by 1 + 2m and the mean of S − I by 4.
 template <class Lanes>
 HWY_INLINE void hookean_step(typename Lanes::Value m, typename Lanes::Value trace, typename Lanes::Value& s,
                              typename Lanes::Value& c) {
@@ -47,7 +47,7 @@ HWY_INLINE void hookean_step(typename Lanes::Value m, typename Lanes::Value trac
   c = Lanes::mul_add(trace, Lanes::set(1.0 / 12.0) - Lanes::set(1.0 / 3.0) * s, Lanes::set(0.75));
 }
 
-/// sum + Σ σᵢ².
+/// Returns sum + Σ σᵢ².
 template <class Lanes>
 HWY_INLINE typename Lanes::Value plus_squares(typename Lanes::Value sum,
                                               const typename Lanes::Value (&sigma)[3]) {
@@ -56,8 +56,8 @@ HWY_INLINE typename Lanes::Value plus_squares(typename Lanes::Value sum,
   return sum;
 }
 
-// A law's energy, gradient and Hessian are those per volume over the bulk modulus κ, functions of the signed
-// singular values σ. m = μ/κ, l = λ/κ = 1 − ⅔m.
+// Energies, gradients and Hessians of a law are per volume, divided by the bulk modulus κ, and functions of
+// the signed singular values σ. m = μ/κ, l = λ/κ = 1 − ⅔m.
 
 /// ¼m Σ (σᵢ² − 1)² + ⅛l (Σ σᵢ² − 3)².
 template <class Lanes>

@@ -70,7 +70,7 @@ void check_law(const LocalLaw& law, std::size_t count) {
   }
 }
 
-/// The vertex graph of the elements.
+/// Returns the vertex graph of the elements.
 CsrGraph graph_of(std::vector<Index> vertices, Index corners, Index n) {
   Incidence incidence;
   incidence.vertex_count = n;
@@ -98,7 +98,7 @@ LocalElements<Real> springs_of(const LocalLaw& law, const Simplices& simplices,
     const Offset from = std::min(s, springs.count - 1);
     const Offset source = 2 * (from / kBatch) * kBatch + from % kBatch;
     const Index b = springs.ends[source + kBatch];
-    // those that fill the last batch join a vertex to itself
+    // springs that fill the last batch join a vertex to itself
     const Index a = s < springs.count ? springs.ends[source] : b;
     Index* const ends = result.vertices.data() + LocalElements<Real>::place(s, 2);
     ends[0] = a;
@@ -114,7 +114,7 @@ LocalElements<Real> springs_of(const LocalLaw& law, const Simplices& simplices,
   return result;
 }
 
-/// Dₘ⁻¹ of a tetrahedron that is not flat, row by row: the shape gradients of corners 1, 2 and 3.
+/// Computes Dₘ⁻¹ of a tetrahedron that is not flat, row by row: the shape gradients of corners 1, 2 and 3.
 void shape_gradients(const Index* corner, std::span<const Point> points, double (&g)[3][3]) {
   double e[3][3];
   for (int a = 0; a < 3; ++a) {
@@ -158,7 +158,7 @@ LocalElements<Real> tetrahedra_of(const LocalLaw& law, const Simplices& simplice
     }
   }
   const auto is_flat = [&](Offset s) { return shapes.volume(s) <= 0.0; };
-  // flat ones take the shape of the last one before that is not flat, else of the first that is not
+  // a flat one takes the shape of the last earlier one that is not flat, or else of the first such one
   Offset shape = 0;
   while (shape + 1 < result.count && is_flat(shape)) ++shape;
   for (Offset s = 0; s < lanes; ++s) {

@@ -21,23 +21,23 @@ struct LocalElements {
   Index corners = 0;
   AlignedVector<Index> vertices;
   AlignedVector<Real> rest, directions, softness;
-  Offset softness_stride = 0;  ///< 0 where one batch of `softness` is that of all
+  Offset softness_stride = 0;  ///< 0 if all batches share one batch of `softness`
   Real stiffness = 0;          ///< of springs
 
   [[nodiscard]] Offset batches() const noexcept {
     return (count + kLocalBatch<Real> - 1) / kLocalBatch<Real>;
   }
-  /// Numbers of D x of one element.
+  /// Returns the number of rows of D x of one element.
   [[nodiscard]] Index rows() const noexcept { return corners == 2 ? 3 : 9; }
 
   [[nodiscard]] Index vertex(Offset element, Index corner) const {
     return vertices[place(element, corners) + corner * kLocalBatch<Real>];
   }
-  /// D of one element, `corners` numbers for each column of D x: 1 and −1, or the corners' shape gradients.
-  /// Returns w².
+  /// Sets d to D of one element, `corners` numbers for each column of D x: 1 and −1, or the corners' shape
+  /// gradients. Returns w².
   double load(Offset element, double (&d)[4][3]) const;
 
-  /// Where the numbers of an element begin that has as many as that.
+  /// Returns where the numbers of an element begin, if each element has `numbers` of them.
   [[nodiscard]] static Offset place(Offset element, Index numbers) {
     return element / kLocalBatch<Real> * numbers * kLocalBatch<Real> + element % kLocalBatch<Real>;
   }

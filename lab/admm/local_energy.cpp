@@ -36,7 +36,7 @@ double strain(const Matrix3& f) {
   return 0.5 * squared_norm(difference);
 }
 
-// over the bulk modulus, with Lamé's parameters m and l over it too
+// energy densities over the bulk modulus; m and l are Lamé's parameters over the bulk modulus
 
 double stvk(const Matrix3& f, double m, double l) {
   double trace = 0.0;
@@ -68,7 +68,7 @@ double log_neo_hookean(const Matrix3& f, double m, double l) {
   return 0.5 * m * (squared_norm(f) - 3.0) - m * log + 0.5 * l * log * log;
 }
 
-/// U/w² of a tetrahedron.
+/// Returns U/w² of a tetrahedron.
 double density(LocalModel model, const Matrix3& f, double m) {
   const double l = 1.0 - 2.0 / 3.0 * m;
   if (model == LocalModel::strain) return strain(f);

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lab/admm/local_hyperelastic.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// from here on compiled once for each instruction set
 #include "lab/admm/hyperelastic_laws-inl.hpp"
 #include "lab/admm/proximal-inl.hpp"
 #include "lab/admm/tetrahedra-inl.hpp"

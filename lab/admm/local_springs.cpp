@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lab/admm/local_springs.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// from here on compiled once for each instruction set
 #include "kernels/float_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -16,8 +16,8 @@ HWY_INLINE typename Lanes::Value squared_length(const typename Lanes::Value (&q)
   return Lanes::mul_add(q[2], q[2], Lanes::mul_add(q[1], q[1], q[0] * q[0]));
 }
 
-/// Unit vectors along any q, of which some may be 0 or their squares too large or too small for a number:
-/// along the rest edge where q = 0.
+/// Finds unit vectors along any q. Some q may be 0, or their squares too large or too small for a number.
+/// Where q = 0 the direction is that of the rest edge.
 template <class Lanes>
 HWY_NOINLINE void find_directions(const typename Lanes::Value (&q)[3],
                                   const typename Lanes::Number* rest_direction,
@@ -26,7 +26,7 @@ HWY_NOINLINE void find_directions(const typename Lanes::Value (&q)[3],
   const Value largest = Lanes::max(Lanes::max(Lanes::abs(q[0]), Lanes::abs(q[1])), Lanes::abs(q[2]));
   MESHORDER_UNROLL
   for (int c = 0; c < 3; ++c) {
-    // NaN > 0 is false, and so is kept by q − q
+    // NaN > 0 is false; adding q, otherwise 0 there, keeps the NaN
     direction[c] =
         Lanes::choose(largest, q[c] / largest,
                       Lanes::load(rest_direction + c * kLocalBatch<typename Lanes::Number>) + q[c]);
@@ -36,7 +36,7 @@ HWY_NOINLINE void find_directions(const typename Lanes::Value (&q)[3],
   for (Value& coordinate : direction) coordinate = coordinate / length;
 }
 
-/// z = ½(q + ℓ₀ q/‖q‖), so that 2z − q = ℓ₀ q/‖q‖.
+/// Takes the steps z = ½(q + ℓ₀ q/‖q‖), so that 2z − q = ℓ₀ q/‖q‖.
 template <class Lanes>
 HWY_INLINE void pass_any(const LocalPass<typename Lanes::Number>& pass) {
   using Number = typename Lanes::Number;

@@ -30,7 +30,7 @@ void run(LocalModel model, const LocalPass<Real>& pass) {
   }
 }
 
-/// Ranges of vertices with about as many corners of elements each.
+/// Returns ranges of vertices with about equally many corners of elements each.
 template <class Real>
 std::vector<Index> ranges_of(const LocalElements<Real>& elements, Index n) {
   std::vector<Offset> corners(static_cast<std::size_t>(n) + 1, 0);
@@ -53,7 +53,7 @@ LocalSteps<Real>::LocalSteps(const LocalLaw& law, const Simplices& simplices, st
     : model_(law.model),
       vertex_count_(index_size(points)),
       elements_(local_elements<Real>(law, simplices, points)) {
-  // owned_batches knows batches of kBatch
+  // owned_batches counts in batches of kBatch elements
   const Index widths = kLocalBatch<Real> / kBatch;
   shares_ =
       owned_batches(elements_.vertices, elements_.corners * widths, ranges_of(elements_, vertex_count_));
@@ -95,7 +95,7 @@ LocalResidual LocalSteps<Real>::pass(std::span<const Real> positions, Real scale
     pass.residuals = residuals_.data() + 2 * first_copies_[part];
     run(model_, pass);
   });
-  // in the order of the batches, whatever the shares
+  // summed in the order of the batches, which does not depend on the shares
   LocalResidual sum;
   for (const Offset copy : copies_) {
     sum.primal += residuals_[2 * copy];
@@ -143,7 +143,7 @@ void LocalSteps<Real>::set_duals(std::span<const Real> duals) {
       Real* const first = duals_.data() + duals_of(copy++);
       for (Index lane = 0; lane < kLocalBatch<Real>; ++lane) {
         const Offset s = Offset{batch} * kLocalBatch<Real> + lane;
-        // of those that fill the last batch, springs have no length and tetrahedra are copies of the last one
+        // lanes that fill the last batch: springs have no length, and tetrahedra copy the last one
         const Offset from = elements_.corners == 4 ? std::min(s, last) : s;
         for (Index k = 0; k < rows; ++k) {
           first[k * kLocalBatch<Real> + lane] = from <= last ? duals[from * rows + k] : Real{0};

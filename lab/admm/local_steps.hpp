@@ -17,11 +17,11 @@ namespace meshorder {
 /// Element models of ADMM projective dynamics: an energy U of a linear function D x of the positions, and the
 /// weight w² of its local step.
 ///
-/// Springs and strain have their one minimum in closed form, halfway to the rest length or the closest
-/// rotation; where q = 0, along the rest edge and to the identity, so that a body can unfold from a point. Of
-/// the hyperelastic models it is the minimum near rest as far as the objective is convex, to about 1e-13 (of
-/// floats 2e-6; of stvk 1e-5 at Poisson's ratio 0.3 and 1e-4 at 0), and a local one elsewhere; singular
-/// values beyond 1e4 are taken for 1e4. Nothing is NaN for finite q.
+/// The local step of springs and strain is their one minimum in closed form, halfway to the rest length or to
+/// the closest rotation; for q = 0 it goes along the rest edge or to the identity, so that a body can unfold
+/// from a point. That of the hyperelastic models is the minimum near rest where the objective is convex, to
+/// about 1e-13 (of floats 2e-6; of stvk 1e-5 at Poisson's ratio 0.3 and 1e-4 at 0), and a local one
+/// elsewhere; singular values beyond 1e4 count as 1e4. Finite q never give NaN.
 enum class LocalModel : std::uint8_t {
   springs,  ///< on every edge: D x = x_a − x_b, U = ½k(‖D x‖ − ℓ₀)², w² = k
   strain,  ///< linear tetrahedral strain: D x = F, U = ½kV‖F − R‖², w² = kV (Narain, Overby, Brown 2016)
@@ -56,10 +56,10 @@ struct LocalResidual {
 /// The local steps of all elements, with their dual variables u. Elements are processed in the order of the
 /// simplices (springs by their edges, see springs_on_edges). The same bits on every run and for any number of
 /// threads.
-///
-/// Each thread adds to a range of vertices of its own, by all elements that touch it (see owned_batches), of
-/// which those on a boundary have a copy of their duals for each thread. Tetrahedra that are flat to rounding
-/// have no volume and no force; their duals are those of one nearby. A pass streams 240 bytes a tetrahedron
+/// Each thread adds to a range of vertices of its own and computes all elements that touch it (see
+/// owned_batches). An element on a boundary has a copy of its duals for each thread. A tetrahedron that is
+/// flat to rounding has no volume and no force; its duals are those of a nearby one. A pass streams 240 bytes
+/// a tetrahedron and 64 a spring in double, about half of that in float.
 /// and 64 a spring in double, half of that in float.
 template <class Real>
 class LocalSteps {
@@ -69,7 +69,7 @@ class LocalSteps {
   /// finite. O(simplices · log degree).
   LocalSteps(const LocalLaw& law, const Simplices& simplices, std::span<const Point> points);
 
-  /// Σ Dᵀw²D on the vertices: n × n, the same for x, y and z.
+  /// Returns Σ Dᵀw²D on the vertices: n × n, the same for x, y and z.
   [[nodiscard]] SparseMatrix stiffness() const;
 
   /// For every element q = D x + u, z = argmin U(z) + ½w²‖z − q‖², u = q − z; then right_hand_side[v] =
@@ -106,7 +106,7 @@ class LocalSteps {
   Index vertex_count_;
   LocalElements<Real> elements_;
   std::vector<OwnedBatches> shares_;
-  std::vector<Offset> first_copies_;  ///< of each share, whose copies follow one another
+  std::vector<Offset> first_copies_;  ///< of each share: its first copy; its copies are consecutive
   std::vector<Offset> copies_;        ///< of each batch: one of its copies
   AlignedVector<Real> duals_;
   std::vector<double> residuals_;  ///< of each copy: primal and magnitude

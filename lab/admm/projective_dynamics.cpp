@@ -133,7 +133,7 @@ StepReport ProjectiveDynamics<Real>::step() {
   return report;
 }
 
-/// x = x̄ and M x̄.
+/// Sets the iterate to x̄ and computes M x̄.
 template <class Real>
 void ProjectiveDynamics<Real>::predict() {
   const double h = options_.time_step;

@@ -35,10 +35,10 @@ struct ProjectiveBody {
 /// contacts after Overby, Brown, Li and Narain (2017). `Real` is the precision of an iteration, double or
 /// float; positions and velocities are double.
 ///
-/// A step of backward Euler minimises ½h⁻²‖x − x̄‖²_M + Σ Uᵢ(Dᵢx), x̄ = x + h v + h²M⁻¹f_ext. Each iteration
-/// first computes every element's local step, z = argmin U(z) + ½w²‖z − (Dx + u)‖² and u ← u + Dx − z, then
-/// the global one, A x = M x̄ + h² Σ Dᵀw²(z − u), where contacts hold. Its residuals are ‖W(Dx − z)‖ / ‖Wz‖
-/// and the change of the right-hand side relative to the elastic part of it.
+/// A step of backward Euler minimises ½h⁻²‖x − x̄‖²_M + Σ Uᵢ(Dᵢx), x̄ = x + h v + h²M⁻¹f_ext. An iteration
+/// first takes every element's local step, z = argmin U(z) + ½w²‖z − (Dx + u)‖² and u ← u + Dx − z, then the
+/// global step, A x = M x̄ + h² Σ Dᵀw²(z − u) subject to the contacts. Its residuals are ‖W(Dx − z)‖ / ‖Wz‖
+/// and the change of the right-hand side relative to its elastic part.
 ///
 /// Contacts are those at the end of the step: after the last iteration the global step is repeated until no
 /// vertex has a new contact that it violates.
@@ -85,9 +85,9 @@ class ProjectiveDynamics final : public Integrator {
   std::vector<double> loads_;            ///< f_ext, 3 a vertex
   AlignedVector<Real> x_;                ///< the iterate
   AlignedVector<Real> inertia_;          ///< M x̄
-  AlignedVector<Real> right_side_;       ///< h² Σ Dᵀw²(z − u), then all of it
-  AlignedVector<Real> last_right_side_;  ///< of the iteration before, where there is a tolerance
-  AlignedVector<double> widened_;        ///< x_ in double, where that is float
+  AlignedVector<Real> right_side_;       ///< h² Σ Dᵀw²(z − u), then the whole right-hand side
+  AlignedVector<Real> last_right_side_;  ///< of the previous iteration, if there is a tolerance
+  AlignedVector<double> widened_;        ///< x_ in double, if Real is float
   std::vector<Contact> free_contacts_;   ///< those of vertices that are not held
   std::vector<double> contact_forces_;   ///< of all contacts, by the last global step
 };

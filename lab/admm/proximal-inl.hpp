@@ -14,10 +14,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Newton's method for the invariants p of Z, where q = R S is to be A Z + b cof Z + γ I times R: the three
-/// elementary symmetric functions e of S − γ I are polynomials of p, A and b. Neither singular values nor
-/// vectors are needed, and nothing is singular where two values are equal. False, and nothing usable, unless
-/// all lanes converge to a strict minimum.
+/// Newton's method for the invariants p of Z in R (A Z + b cof Z + γ I) = q = R S. The three elementary
+/// symmetric functions f of S − γ I are polynomials of p, A and b. Needs neither singular values nor vectors,
+/// and is not singular where two values are equal. `solve` returns false, without a usable result, unless all
+/// lanes converge to a strict minimum.
 template <class Lanes, class Law>
 struct InvariantSteps {
   using Value = typename Lanes::Value;
@@ -29,7 +29,7 @@ struct InvariantSteps {
   HWY_INLINE bool solve(const Law& law) {
     constexpr bool kFloat = std::is_same_v<typename Lanes::Number, float>;
     constexpr int kSteps = 8;
-    // an error of that size before a step is one of rounding after it
+    // from an error of this size, one more step leaves only rounding error
     constexpr double kNear = kFloat ? 1e-3 : 1e-7;
     start(law);
     for (int step = 0;; ++step) {
@@ -52,8 +52,8 @@ struct InvariantSteps {
     }
   }
 
-  /// Z's product with R: a polynomial of S, by its Newton form's coefficients, which are free of differences
-  /// of singular values: with Δ = Π (A − b zₖ), Z = (A² + b²p₂)/Δ S' − b/Δ S'² + … I, S' = S − γ I.
+  /// Computes z = R Z. Z is a polynomial of S whose coefficients need no differences of singular values: Z =
+  /// (A² + b²p₂)/Δ S' − b/Δ S'² + … I with Δ = Π (A − b zₖ), S' = S − γ I.
   HWY_INLINE void expand(const Value (&q)[3][3], const Value (&r)[3][3], const Value (&cof)[3][3],
                          Value (&z)[3][3]) const {
     const Value& a = factors.a;
@@ -81,7 +81,7 @@ struct InvariantSteps {
   }
 
  private:
-  /// The invariants of the step of Hooke's law.
+  /// Sets p to the invariants of the step of Hooke's law.
   HWY_INLINE void start(const Law& law) {
     Value s;
     Value c;
@@ -104,7 +104,7 @@ struct InvariantSteps {
     }
   }
 
-  /// Newton's step, and the determinant of ∂e/∂p.
+  /// Computes Newton's step and returns the determinant of the equations' Jacobian.
   HWY_INLINE Value changes(Value (&change)[3]) const {
     const Value& a = factors.a;
     const Value& b = factors.b;
@@ -168,16 +168,16 @@ struct InvariantSteps {
     return determinant;
   }
 
-  /// Π (A − b zₖ): of the curvatures where two singular vectors turn against each other.
+  /// Returns Π (A − b zₖ), the product of the curvatures along opposed rotations of two singular vectors.
   HWY_INLINE Value discriminant() const {
     const Value& a = factors.a;
     const Value& b = factors.b;
     return Lanes::mul_add(a * a, a - b * p[0], b * b * Lanes::mul_add(a, p[1], Lanes::set(0.0) - b * p[2]));
   }
 
-  /// Whether the nine curvatures are well above 0, as far as products and sums of them show: A − b zₖ where
-  /// two singular vectors turn against each other, those along with each other, which have the signs of
-  /// zᵢ + zⱼ, and those of the stretches, whose product has the sign of the determinant.
+  /// Returns whether the nine curvatures are well above 0, as far as their products and sums show: A − b zₖ
+  /// for opposed rotations of two singular vectors; the curvatures for common rotations, which have the signs
+  /// of zᵢ + zⱼ; and those of the stretches, whose product has the sign of the determinant.
   [[nodiscard]] HWY_INLINE bool is_minimum(Value determinant) const {
     constexpr double kMin = 0.02;
     const Value& a = factors.a;
@@ -187,7 +187,7 @@ struct InvariantSteps {
     const Value pairs = Lanes::mul_add(a, Lanes::set(3.0) * a - (b + b) * p[0], b * b * p[1]);
     Value smallest = Lanes::min(Lanes::min(Lanes::min(sum, pairs), discriminant()),
                                 Lanes::min(determinant, Lanes::min(p[0], p[0] * p[1] - p[2])));
-    // a law that resists being turned inside out no more than being flat has other minima there
+    // such a law resists inversion no more than flattening, so it has other minima there
     if constexpr (Law::kShift) smallest = Lanes::min(smallest, Lanes::set(0.2) * p[2]);
     return Lanes::all_at_most(limit - smallest, 0.0);
   }
@@ -195,8 +195,8 @@ struct InvariantSteps {
 
 /// z = argmin Ψ(z)/κ + ½‖z − q‖² of an isotropic law.
 ///
-/// Where z = R Z, the stress of Z plus Z is S = Rᵀq: A Z + b cof Z + γ I = S. Near rest this is solved for
-/// the invariants of Z; elsewhere singular values are sought one by one.
+/// With z = R Z the condition is A Z + b cof Z + γ I = S = Rᵀq, where the left side is Z plus its stress.
+/// Near rest it is solved for the invariants of Z; elsewhere for the singular values of Z.
 template <class Lanes, class Law>
 HWY_INLINE void proximal_step(const Law& law, const typename Lanes::Value (&q)[3][3],
                               typename Lanes::Value (&z)[3][3]) {
@@ -212,7 +212,7 @@ HWY_INLINE void proximal_step(const Law& law, const typename Lanes::Value (&q)[3
       return;
     }
   }
-  // copies, so that the rest of the kernel may keep its own in registers
+  // copies, so that q and z can stay in registers in the rest of the kernel
   Value from[3][3];
   Value to[3][3];
   MESHORDER_UNROLL
@@ -222,7 +222,7 @@ HWY_INLINE void proximal_step(const Law& law, const typename Lanes::Value (&q)[3
   for (int k = 0; k < 9; ++k) z[k / 3][k % 3] = to[k / 3][k % 3];
 }
 
-/// For pass_tetrahedra.
+/// The Law of pass_tetrahedra for a hyperelastic model.
 template <class Lanes, class Law>
 struct ProximalStep {
   Law law;

@@ -18,8 +18,8 @@ namespace meshorder::HWY_NAMESPACE {
 /// Upper bound of singular values, so that no energy overflows.
 inline constexpr double kLargestStretch = 1e4;
 
-/// x with (L D Lᵀ) x = −g of a symmetric matrix, of which the upper triangle is read, with the size of each
-/// pivot in its place: x descends.
+/// Solves (L D Lᵀ) x = −g for a symmetric matrix, of which the upper triangle is read. Each pivot is replaced
+/// by its magnitude, at least kMinPivot, so that x is a descent direction.
 template <class Lanes>
 HWY_INLINE void descent_direction(const typename Lanes::Value (&h)[3][3], const typename Lanes::Value (&g)[3],
                                   typename Lanes::Value (&x)[3]) {
@@ -56,9 +56,9 @@ HWY_INLINE typename Lanes::Value objective(const Law& law, const typename Lanes:
   return Lanes::mul_add(Lanes::set(0.5), squares, law.energy(z));
 }
 
-/// Puts each pair of z in the order of σ and gives it the sign of σ's sum: that leaves the energy as it is,
-/// brings z closer to σ, and so leads from minima among the singular values to those among all matrices.
-/// Whether any lane changed.
+/// Sorts each pair of z like the pair of σ and gives its sum the sign of theirs. This keeps the energy and
+/// brings z closer to σ, so that minima among singular values become minima among all matrices. Returns
+/// whether any lane changed.
 template <class Lanes>
 HWY_INLINE bool match_order(const typename Lanes::Value (&sigma)[3], typename Lanes::Value (&z)[3]) {
   using Value = typename Lanes::Value;
@@ -81,9 +81,9 @@ HWY_INLINE bool match_order(const typename Lanes::Value (&sigma)[3], typename La
   return !Lanes::all_at_most(changed, 0.0);
 }
 
-/// A local minimum of the objective, downhill from σ, or positive values where the law needs them, or from
-/// the step of Hooke's law where that is lower: Newton's method with backtracking until no lane moves. Finite
-/// for finite σ.
+/// Finds a local minimum of the objective by Newton's method with backtracking, until no lane moves. Starts
+/// from σ (raised to positive values where the law needs them) or from the step of Hooke's law, whichever has
+/// the lower objective. Finite for finite σ.
 template <class Lanes, class Law>
 HWY_NOINLINE void minimise(const Law& law, const typename Lanes::Value (&sigma)[3],
                            typename Lanes::Value (&z)[3]) {
@@ -93,7 +93,7 @@ HWY_NOINLINE void minimise(const Law& law, const typename Lanes::Value (&sigma)[
   constexpr int kHalvings = 40;
   constexpr double kArmijo = 1e-4;
   constexpr double kRounding = 8 * static_cast<double>(std::numeric_limits<Number>::epsilon());
-  // the error after a step of that size is its square
+  // the error after a step of this size is about its square
   constexpr double kNear = std::is_same_v<Number, float> ? 1e-4 : 1e-9;
   constexpr double kMinStart = 0.2;
   const Value zero = Lanes::set(0.0);
@@ -160,14 +160,14 @@ HWY_NOINLINE void minimise(const Law& law, const typename Lanes::Value (&sigma)[
   }
 }
 
-/// z = U diag(z₁, z₂, z₃) Vᵀ for any q = U diag(σ) Vᵀ: with the rotation R closest to q, V are the
-/// eigenvectors of Rᵀq and U = R V.
+/// Computes z = U diag(z₁, z₂, z₃) Vᵀ for any q = U diag(σ) Vᵀ. V are the eigenvectors of Rᵀq, with R the
+/// rotation closest to q, and U = R V.
 template <class Lanes, class Law>
 HWY_NOINLINE void step_by_singular_values(const Law& law, const typename Lanes::Value (&q)[3][3],
                                           typename Lanes::Value (&z)[3][3]) {
   using Value = typename Lanes::Value;
   constexpr double kSmallest = std::is_same_v<typename Lanes::Number, float> ? 1e-36 : 1e-290;
-  // at most 1 in size, so that no square overflows
+  // scaled to entries of at most 1, so that no square overflows
   Value largest = Lanes::set(kSmallest);
   MESHORDER_UNROLL
   for (int k = 0; k < 9; ++k) largest = Lanes::max(largest, Lanes::abs(q[k / 3][k % 3]));

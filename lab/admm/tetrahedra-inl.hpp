@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// F = Dₛ Dₘ⁻¹ of Lanes::kCount tetrahedra, plus what f holds.
+/// Adds F = Dₛ Dₘ⁻¹ of Lanes::kCount tetrahedra to f.
 template <class Lanes>
 HWY_INLINE void add_gradients(const typename Lanes::Number* rest, const Index* vertices,
                               const typename Lanes::Number* positions, typename Lanes::Value (&f)[3][3]) {
@@ -63,8 +63,8 @@ HWY_INLINE void add_transposed(const typename Lanes::Number* rest, const Index* 
   Lanes::scatter_add(at_origin, targets, sums);
 }
 
-/// The local steps of a share's tetrahedra. A Law is made of the softness of its elements, and its
-/// step(q, z) gives z = argmin U(z) / w² + ½‖z − q‖².
+/// Takes the local steps of a share's tetrahedra. A Law is constructed from the softness of its elements; its
+/// step(q, z) computes z = argmin U(z) / w² + ½‖z − q‖².
 template <class Lanes, class Law>
 HWY_INLINE void pass_tetrahedra(const LocalPass<typename Lanes::Number>& pass) {
   using Number = typename Lanes::Number;

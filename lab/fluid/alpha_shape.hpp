@@ -12,7 +12,7 @@
 
 namespace meshorder {
 
-/// The mesh of a fluid: what is left of a triangulation where particles are near each other.
+/// The mesh of a fluid: the part of a triangulation in which particles are near each other.
 struct FluidMesh {
   std::vector<Index> corners;       ///< 4 of each tetrahedron, positively oriented
   double flat = 0;                  ///< m³; smaller tetrahedra join vertices but are not integrated

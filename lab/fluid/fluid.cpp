@@ -91,7 +91,7 @@ Fluid::Fluid(const FluidOptions& options, Particles particles, FluidOrdering ord
   volume_ = volume_at_start_ = std::accumulate(shares_.begin(), shares_.end(), 0.0);
   const double gravity = norm(options_.gravity);
   if (!(gravity > 0)) return;
-  // at rest, but for the free surface's shape
+  // hydrostatic, apart from the shape of the free surface
   double top = 0;
   for (const Point& x : positions_) top = std::max(top, -dot(x, options_.gravity) / gravity);
   for (std::size_t i = 0; i < positions_.size(); ++i)
@@ -188,7 +188,7 @@ double Fluid::next_time_step() const {
   return dt;
 }
 
-/// (M + Δt ν K) u = M u for each component.
+/// Solves (M + τν K) u' = M u for each component, with τ = `kick`.
 void Fluid::add_viscosity(double kick, StepReport& report) {
   const std::size_t n = positions_.size();
   std::vector<std::uint8_t> held(n);
@@ -236,7 +236,7 @@ void Fluid::project(double kick, double dt, StepReport& report) {
   report.seconds.motion += stopwatch.seconds();
 }
 
-/// Where particles inside move so that their distances become more even, m.
+/// Returns how inner particles move so that their distances become more even, m.
 std::vector<Point> Fluid::evening() const {
   const std::span<const Offset> offsets = system_.pattern.offsets();
   const std::span<const Index> neighbours = system_.pattern.neighbours();

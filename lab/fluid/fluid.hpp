@@ -15,11 +15,11 @@ namespace meshorder {
 /// Pin 2004): the particles are the vertices of a mesh that is made anew in each step, with linear velocities
 /// and pressures.
 ///
-/// A step: the alpha shape of the particles' Delaunay triangulation; their order; the velocity u* after
-/// viscosity, (M + τν K) u' = M u, and gravity, u* = u' + τg; the pressure p with τ/ρ ∫ ∇q·∇p = ∫ ∇q·u* for
-/// all q and p = 0 on the free surface; u = u* − τ/ρ ∇p; the particles move by Δt u, and a little apart.
-/// Velocities are those in the middle between two positions, so τ is the mean of this Δt and the last one:
-/// free particles follow their parabola, and waves keep their height. Walls are smooth: ∫ ∇q·u* knows no flow
+/// A step: the alpha shape of the particles' Delaunay triangulation; their order; the velocity after
+/// viscosity, u' with (M + τν K) u' = M u, and gravity, u* = u' + τg; the pressure p with τ/ρ ∫ ∇q·∇p = ∫
+/// ∇q·u* for all q and p = 0 on the free surface; u = u* − τ/ρ ∇p; the particles move by Δt u and slightly
+/// apart. Velocities are those midway between two positions, so τ is the mean of this Δt and the last one:
+/// free particles follow their parabola, and waves keep their height. Walls are smooth: ∫ ∇q·u* has no flow
 /// through them, and particles stay on a wall that they reach.
 ///
 /// Positions and velocities of states and balances are in the order of the particles at the start.
@@ -36,13 +36,13 @@ class Fluid : public Integrator {
   void set_state(const MotionState& state) override;
   StepReport step() override;
   [[nodiscard]] Balance balance() const override;
-  /// Without the triangulation, which another process holds.
+  /// Does not count the triangulation, which another process holds.
   [[nodiscard]] std::size_t bytes() const override;
 
   // ---- of the last step, in the order of the particles now
   /// Returns the mesh that the step was computed on.
   [[nodiscard]] const FluidMesh& mesh() const noexcept { return mesh_; }
-  /// Returns the number of each particle at the start.
+  /// Returns the number that each particle had at the start.
   [[nodiscard]] const std::vector<Index>& numbers() const noexcept { return numbers_; }
   [[nodiscard]] const std::vector<double>& pressures() const noexcept { return pressures_; }  ///< Pa
   /// Returns the volume of the mesh, m³.
@@ -69,7 +69,7 @@ class Fluid : public Integrator {
   double time_ = 0;
   double last_time_step_ = 0;  ///< s; 0 before the first step
 
-  // of the particles, moved together
+  // one entry for each particle; all are reordered together
   std::vector<Point> positions_;
   std::vector<Point> velocities_;
   std::vector<double> pressures_;

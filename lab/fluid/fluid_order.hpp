@@ -17,7 +17,7 @@ namespace meshorder {
 struct FluidOrdering {
   /// Of the particles: "original" leaves them as they start, "scrambled" mixes them at the start.
   std::string vertices = "auto";
-  std::string elements = "auto";  ///< of the tetrahedra, in each step; "original" as they are triangulated
+  std::string elements = "auto";  ///< of the tetrahedra, in each step; "original": as triangulated
   /// Steps from one order of the particles to the next; 0: a `Reorderer` decides.
   Index every = 0;
   OrderOptions options = {};
@@ -32,7 +32,7 @@ class FluidOrder {
   /// Throws InvalidArgument for unknown methods.
   explicit FluidOrder(FluidOrdering ordering);
 
-  /// Returns where the particles move before step `step`, counted from 0; nothing where they stay.
+  /// Returns where the particles move before step `step`, counted from 0; nothing if they stay in place.
   std::optional<Permutation> particles(Index step, const FluidMesh& mesh, std::span<const Point> points);
 
   /// Sorts the tetrahedra.

@@ -15,9 +15,9 @@
 namespace meshorder {
 namespace {
 
-/// Of all processes: the mesh, its triangulation and the arrays of a step.
+/// Memory of a particle in all processes: the mesh, its triangulation and the arrays of a step.
 constexpr double kBytesOfParticle = 2500;
-/// A particle has six or seven tetrahedra, whose corners are numbered, too.
+/// A particle has six or seven tetrahedra, and their corners are numbered by Index, too.
 constexpr Index kMostParticles = kMaxIndex / 32;
 constexpr double kSame = 1e-9;  ///< lengths that differ by less, relatively, are the same
 

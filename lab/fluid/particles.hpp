@@ -27,11 +27,11 @@ struct FluidOptions : MotionOptions {
   SolveOptions solve{.tolerance = 1e-5, .max_iterations = 2000};  ///< of the pressure
 };
 
-/// Particles, or tetrahedra, that a thread takes at a time; sums are made of so many parts.
+/// Particles, or tetrahedra, in a chunk: a thread takes one chunk at a time, and sums are made by chunk.
 inline constexpr Index kParticlesInChunk = 1 << 12;
 
-/// The walls that a particle lies on, along which alone it moves: bit 2 · axis of the wall at 0, bit
-/// 2 · axis + 1 of that at the basin's extent.
+/// The walls on which a particle lies; it moves only along them. Bit 2 · axis is the wall at 0, bit 2 · axis
+/// + 1 the wall at the basin's extent.
 using Walls = std::uint8_t;
 inline constexpr Walls kNoWalls = 0;
 

@@ -15,8 +15,8 @@ std::span<const double> coordinates(std::span<const Point> points) {
   return {points.data()->data(), 3 * points.size()};
 }
 
-/// Calls `work(corners, gradients, owned)` for the tetrahedra that are not flat in turn, on each thread for
-/// those that have a corner among the vertices that it owns. Only to these may it add.
+/// Calls `work(corners, gradients, owned)` for the tetrahedra that are not flat, in sequence. Each thread
+/// visits those that have a corner among the vertices that it owns, and may add only to these vertices.
 template <class Work>
 void for_each_tetrahedron(const FluidMesh& mesh, std::span<const Point> points, const Work& work) {
   const auto pass = [&](const auto& owned) {

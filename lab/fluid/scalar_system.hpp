@@ -24,7 +24,7 @@ struct ScalarSystem {
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(diagonal.size()); }
 };
 
-/// Assembles both. O(tetrahedra).
+/// Assembles K and M. O(tetrahedra).
 ScalarSystem assemble(const FluidMesh& mesh, std::span<const Point> points);
 
 /// Solves (α K + β M) x = b by conjugate gradients with the diagonal as preconditioner, x the start and the
@@ -33,14 +33,14 @@ ScalarSystem assemble(const FluidMesh& mesh, std::span<const Point> points);
 SolveReport solve(const ScalarSystem& system, double alpha, double beta, std::span<const std::uint8_t> held,
                   std::span<const double> b, std::span<double> x, const SolveOptions& options);
 
-/// ∫ ∇q·u of the piecewise linear u, for the hat function q of each vertex.
+/// Returns ∫ ∇q·u of the piecewise linear u, for the hat function q of each vertex.
 std::vector<double> divergence(const FluidMesh& mesh, std::span<const Point> points,
                                std::span<const Point> u);
 
-/// ∫ q ∇p of the piecewise linear p.
+/// Returns ∫ q ∇p of the piecewise linear p.
 std::vector<Point> gradient(const FluidMesh& mesh, std::span<const Point> points, std::span<const double> p);
 
-/// ∫ q ∇u of the piecewise linear u: row c is the gradient of its component c.
+/// Returns ∫ q ∇u of the piecewise linear u: row c is the gradient of its component c.
 std::vector<std::array<Point, 3>> gradient(const FluidMesh& mesh, std::span<const Point> points,
                                            std::span<const Point> u);
 

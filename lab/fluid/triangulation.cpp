@@ -19,7 +19,7 @@ constexpr const char* kProgram = "meshorder-delaunay";
   throw InputError(kProgram, "its answer is not that of a triangulation", "install that of this version");
 }
 
-/// The numbers of tetrahedra are 0 … count − 1, or −1 where `may_lack`.
+/// Throws unless all numbers are 0 … count − 1, or −1 if `may_lack`.
 void check_numbers(std::span<const std::array<Index, 4>> rows, Index count, bool may_lack) {
   for (const std::array<Index, 4>& row : rows) {
     for (const Index number : row) {

@@ -26,9 +26,9 @@ using Triangulate = std::function<Triangulation(std::span<const Point>)>;
 /// Returns whether there is the program `meshorder-delaunay`.
 bool has_delaunay_program();
 
-/// Returns a function that has the program `meshorder-delaunay` triangulate, which is started once. Its calls
-/// throw Error if the program ended. Throws Error if there is no such program. It is looked for beside this
-/// program and on PATH, never where a scenario says, and is trusted like this one. Its answers are checked.
+/// Returns a function that triangulates by the program `meshorder-delaunay`, which is started once. Its calls
+/// throw Error if the program ended. Throws Error if there is no such program. Looks for it beside this
+/// program and on PATH, never where a scenario says, and trusts it like this program. Checks its answers.
 Triangulate delaunay_program();
 
 }  // namespace meshorder

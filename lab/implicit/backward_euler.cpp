@@ -69,7 +69,7 @@ BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, Im
   if (options_.stiffness_damping > 0.0 && (options_.newton_iterations > 1 || moves)) {
     damping_ = system_.matrix();
   }
-  // a preconditioner may keep parts of its first matrix, which must not depend on where a run is resumed
+  // a preconditioner may keep parts of its first matrix, so that must not depend on where a run is resumed
   StepReport report;
   collect_loads(options_, steps_, system_.mass().vertices, loads_, held_);
   assemble(0, system_.elasticity().tangent, report);
@@ -92,7 +92,7 @@ MotionState BackwardEuler::state() const {
 void BackwardEuler::set_state(const MotionState& state) {
   check_state(state, system_.vertex_count());
   steps_ = state.step;
-  // in place, where they are apart from the forces (see kApart)
+  // copied into the memory that is apart from the forces (see kApart)
   const AlignedVector<double> positions = padded_positions(state.positions);
   std::copy(positions.begin(), positions.end(), positions_.begin());
   for (Index v = 0; v < system_.vertex_count(); ++v)
@@ -125,7 +125,7 @@ StepReport BackwardEuler::step() {
           report.newton_residual, largest_vertex(iterate.gradient)));
       break;
     }
-    // the first iterate is sought from the velocities of the last step
+    // for the first iterate, CG starts from the velocities of the last step
     if (k == 0) {
       iterate.step = velocities_;
       held_.set_zero(iterate.step);
@@ -146,7 +146,7 @@ StepReport BackwardEuler::step() {
   return report;
 }
 
-/// moved = xₙ + h v
+/// Sets moved_ to xₙ + h v.
 void BackwardEuler::move_to(std::span<const double> velocities) {
   for_each_chunk(system_.vertex_count(), kVerticesPerChunk, [&](Index, Index begin, Index end) {
     for (Offset v = begin; v < end; ++v) {
@@ -158,7 +158,7 @@ void BackwardEuler::move_to(std::span<const double> velocities) {
   });
 }
 
-/// The matrix M + hC + h²K at `moved_`, held vertices out of it.
+/// Assembles the matrix M + hC + h²K at `moved_`, without the held vertices.
 void BackwardEuler::assemble(Index iteration, Tangent tangent, StepReport& report) {
   const Stopwatch stopwatch;
   const double h = options_.time_step;
@@ -177,7 +177,7 @@ void BackwardEuler::assemble(Index iteration, Tangent tangent, StepReport& repor
   report.seconds.assembly += stopwatch.seconds();
 }
 
-/// g(v) = M(v − vₙ) − h(f_ext − f_int) + h C v, f_int those of the system.
+/// Computes g(v) = M(v − vₙ) − h(f_ext − f_int) + h C v, with f_int from the system.
 void BackwardEuler::compute_gradient(Iterate& iterate) {
   const double h = options_.time_step;
   std::vector<double>& g = iterate.gradient;
@@ -201,7 +201,7 @@ void BackwardEuler::compute_gradient(Iterate& iterate) {
   held_.set_zero(g);
 }
 
-/// ½(v − vₙ)ᵀM(v − vₙ) + E(xₙ + h v) − h f_extᵀv + ½h vᵀC v, of which g is the gradient.
+/// Returns ½(v − vₙ)ᵀM(v − vₙ) + E(xₙ + h v) − h f_extᵀv + ½h vᵀC v, whose gradient is g.
 double BackwardEuler::potential(std::span<const double> velocities) {
   const double h = options_.time_step;
   std::vector<double> difference(velocities.begin(), velocities.end());

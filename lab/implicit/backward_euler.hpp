@@ -39,9 +39,9 @@ struct ImplicitOptions : MotionOptions {
 
 /// Integrates the motion of an elastic body by backward Euler.
 ///
-/// A step solves g(v) = M(v − vₙ) − h(f_ext − f_int(xₙ + h v)) + h C v = 0 by Newton's method from v = 0,
-/// whose first iterate is the linearised step (M + hC + h²K) Δv = h (f_ext − f_int − h K vₙ − C vₙ). Where
-/// more iterations are allowed each is damped by a line search on the potential of which g is the gradient.
+/// A step solves g(v) = M(v − vₙ) − h(f_ext − f_int(xₙ + h v)) + h C v = 0 by Newton's method from v = 0. The
+/// first iterate is the linearised step (M + hC + h²K) Δv = h (f_ext − f_int − h K vₙ − C vₙ). If more
+/// iterations are allowed, each is damped by a line search on the potential whose gradient is g.
 class BackwardEuler final : public Integrator {
  public:
   /// The body at rest at `points`. Throws InvalidArgument, naming the problem, for a body that does not
@@ -58,7 +58,7 @@ class BackwardEuler final : public Integrator {
   [[nodiscard]] Balance balance() const override;
   [[nodiscard]] const ElasticSystem& system() const noexcept { return system_; }
   [[nodiscard]] const ImplicitOptions& options() const noexcept { return options_; }
-  /// Blocks of the matrix that an iteration of CG reads: about half of them where that is faster.
+  /// Returns the number of blocks that a CG iteration reads: about half of the matrix where that is faster.
   [[nodiscard]] Offset blocks_read() const noexcept;
 
   [[nodiscard]] std::size_t bytes() const override;
@@ -76,12 +76,12 @@ class BackwardEuler final : public Integrator {
   ImplicitOptions options_;
   ElasticSystem system_;
   std::unique_ptr<Preconditioner> preconditioner_;
-  // one of these is the copy of the matrix that CG reads, unless that is the matrix itself
+  // at most one of these is used: a copy of the matrix that CG reads instead of the matrix itself
   BlockCsrOf<float> rounded_;
   HalfBlockCsr half_;
   HalfBlockCsrOf<float> rounded_half_;
   bool stores_half_ = false;
-  BlockCsr damping_;  ///< hβK of the step's start; empty but for several Newton iterations with β > 0
+  BlockCsr damping_;  ///< hβK at the step's start; only if β > 0 and Newton iterates or held vertices move
   HeldVertices held_;
 
   Index steps_ = 0;

@@ -14,7 +14,7 @@ namespace meshorder {
 
 /// A tetrahedral mesh that meshorder can make by name.
 struct Model {
-  std::string name;            ///< "dragon"; of a procedural model that is made with its size, "grid-20"
+  std::string name;            ///< "dragon"; with the size for a procedural model that is made, "grid-20"
   std::string description;     ///< for a list of models
   bool procedural = false;     ///< made in any size, without other programs
   std::filesystem::path path;  ///< the .node file, its .ele beside it; empty until it is made
@@ -22,9 +22,9 @@ struct Model {
   Index elements = 0;          ///< 0 until it is made
 };
 
-/// Returns the folder of the models: `models` in `$MESHORDER_CACHE`, else in `$XDG_CACHE_HOME/meshorder`,
-/// else in
-/// `~/.cache/meshorder`. Throws Error if none of the variables is set.
+/// Returns the folder of the models: `models` in `$MESHORDER_CACHE`, else in
+/// `$XDG_CACHE_HOME/meshorder`, else in `~/.cache/meshorder`. Throws Error if none of the variables is
+/// set.
 std::filesystem::path models_folder();
 
 /// Returns all models: the paper's and larger ones, then the procedural ones, each without a size and then in
@@ -35,7 +35,7 @@ std::vector<Model> list_models();
 inline constexpr Index kUsualSize = 20;
 
 struct MakeOptions {
-  /// Lattice cubes across a procedural model whose name has no size, else kUsualSize. Other models take none.
+  /// Lattice cubes across a procedural model without a size in its name; else kUsualSize. Others take none.
   std::optional<Index> size = {};
   bool force = false;  ///< make it again if it exists
   /// Called with each step as it begins and the fraction of the time that has passed (below 0: unknown).

@@ -22,8 +22,8 @@ struct EnumNames<Mass> {
                                     std::pair{Mass::consistent, "consistent"}};
 };
 
-/// The lumped masses of `vertex_count` vertices, kg. `densities` in kg/m³ are one, or one for each simplex.
-/// O(simplices).
+/// Returns the lumped masses of `vertex_count` vertices, kg. `densities` in kg/m³ are one, or one for each
+/// simplex. O(simplices).
 std::vector<double> lumped_masses(const RestShapes& rest, std::span<const double> densities,
                                   Index vertex_count);
 
@@ -33,7 +33,7 @@ struct MassMatrix {
   std::vector<double> blocks;    ///< consistent: m of each block of the pattern; lumped: empty
 };
 
-/// `densities` in kg/m³ are one, or one for each simplex; `map` is that into `pattern`. O(simplices).
+/// Returns the mass matrix. `densities` as above; `map` leads into `pattern`. O(simplices).
 MassMatrix mass_matrix(Mass kind, const RestShapes& rest, std::span<const double> densities,
                        const AssemblyMap& map, const BlockCsr& pattern);
 
@@ -41,7 +41,7 @@ MassMatrix mass_matrix(Mass kind, const RestShapes& rest, std::span<const double
 void multiply(const MassMatrix& mass, const BlockCsr& pattern, std::span<const double> x,
               std::span<double> y);
 
-/// The rows begin_row … end_row − 1 of matrix = factor M, zero where M has nothing.
+/// Sets rows begin_row … end_row − 1 of `matrix` to those of factor · M, with zeros where M has no entries.
 void set_rows(const MassMatrix& mass, double factor, Index begin_row, Index end_row, BlockCsr& matrix);
 
 }  // namespace meshorder

@@ -37,7 +37,7 @@ class FrameWriter {
   void write(MotionState state);
 
   [[nodiscard]] const std::filesystem::path& collection() const noexcept { return collection_; }
-  /// Notes on what the files could not hold of the mesh.
+  /// Notes on data of the mesh that the files could not hold.
   [[nodiscard]] const Notes& notes() const noexcept { return notes_; }
 
  private:

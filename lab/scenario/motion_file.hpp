@@ -50,7 +50,7 @@ struct StepRecord {
   double shape_distance = 0;  ///< see distance_from_shape, m
 };
 
-/// A warning of one or more steps; only its numbers may differ between them.
+/// A warning of one or more steps, whose texts differ at most in their numbers.
 struct WarningRecord {
   std::string first;     ///< the text of the first time
   Index first_step = 0;  ///< counted from 1

@@ -31,7 +31,7 @@ struct VertexChoice {
     all,
     set,      ///< members of the set `name`, or the vertices of its cells
     label,    ///< vertices, or the vertices of cells, with the value `label` in the array `name`; without a
-              ///< name in the label array of the vertices, else in that of the cells
+              ///< name, in the label array of the vertices or, if there is none, of the cells
     box,      ///< vertices from `low` to `high`
     nearest,  ///< the vertex nearest to `low`
   };
@@ -39,7 +39,7 @@ struct VertexChoice {
   std::string name;
   std::int64_t label = 0;
   Point low{}, high{};      ///< relative to the bounding box: 0 … 1 along each axis
-  std::string source_path;  ///< its path in the scenario's file
+  std::string source_path;  ///< the path of this choice in the scenario's file
 };
 
 /// A range of steps, both ends included, counted from 1.
@@ -60,7 +60,7 @@ struct ScenarioMotion {
   Point velocity{};  ///< m/s
 };
 
-/// Initial positions and velocities of vertices; what is not given stays as in the mesh, at rest.
+/// Initial positions and velocities of vertices. Without a value they stay as in the mesh and at rest.
 struct ScenarioStart {
   VertexChoice on;
   std::optional<Point> velocity;  ///< m/s
@@ -73,15 +73,15 @@ struct ScenarioObstacle {
   Kind kind = Kind::half_space;
   Point place{};                 ///< a point of the plane; the centre of a sphere or bowl
   Point direction{};             ///< the plane's normal; the bowl's axis
-  double radius = 0.0;           ///< of the sphere, of the middle of the bowl's wall
+  double radius = 0.0;           ///< of the sphere, or of the middle of the bowl's wall
   double thickness = 0.0;        ///< of the bowl
   double opening = 0.0;          ///< half the opening angle of the bowl, degrees
   std::string file;              ///< of a closed surface
-  std::filesystem::path folder;  ///< that the file must lie in
+  std::filesystem::path folder;  ///< the folder that `file` must lie in
   double friction = 0.0;         ///< Coulomb's coefficient
 };
 
-/// Options of ADMM projective dynamics; obstacles are described rather than made.
+/// Options of ADMM projective dynamics, with descriptions of obstacles instead of obstacles.
 struct ProjectiveScenario : ProjectiveOptions {
   LocalModel model = LocalModel::strain;
   MatrixPrecision precision = MatrixPrecision::double_;
@@ -94,8 +94,8 @@ struct FluidScenario : FluidOptions {
 };
 
 /// A simulation: mesh, material, loads, integrator and solver. Independent of the order of vertices and
-/// elements. A fluid makes its own mesh and has neither material nor loads but gravity. docs/simulate.md
-/// describes its file.
+/// elements. A fluid makes its own mesh; it has no material and no loads except gravity. docs/simulate.md
+/// describes the file.
 struct Scenario {
   std::string file;  ///< the path it was read from
   std::string name;
@@ -109,9 +109,9 @@ struct Scenario {
   std::string vertex_order = "original";
   std::string element_order = "original";
 
-  MaterialModel model = MaterialModel::corotational;  ///< of backward Euler, as is the tangent
+  MaterialModel model = MaterialModel::corotational;  ///< for backward Euler, like `tangent`
   Tangent tangent = Tangent::exact;
-  /// The models springs and strain have their stiffness (N/m, Pa) in the place of Young's modulus.
+  /// For the models springs and strain, the stiffness (N/m, Pa) takes the place of Young's modulus.
   Material material;
   std::string regions_by;  ///< the array whose groups are the regions (see `grouping_by`); may be empty
   std::vector<RegionMaterial> regions;
@@ -123,10 +123,10 @@ struct Scenario {
   std::vector<ScenarioMotion> motions;  ///< fixed vertices have the velocity 0
   Index steps = 240;
 
-  std::vector<std::string> paper;  ///< paths in the file of values that the paper gives
+  std::vector<std::string> paper;  ///< paths, in the file, of the values that the paper gives
   std::vector<std::string> notes;
 
-  /// Returns the mesh to read: `path` is `mesh`, or where the model of that name is.
+  /// Returns the file at `path`, which is `mesh` itself or the path of the model of that name.
   [[nodiscard]] FilePath mesh_file(const std::string& path) const {
     return mesh_folder ? FilePath::in(*mesh_folder, path) : FilePath(path);
   }

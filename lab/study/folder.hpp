@@ -21,7 +21,7 @@ class StudyFolder {
       : root_(std::move(root)), named_(is_named ? root_ : root_.parent_path()) {}
 
   [[nodiscard]] const std::filesystem::path& root() const noexcept { return root_; }
-  /// Returns one of the paths below as a file to read or write, whose name is not the user's.
+  /// Returns one of the paths below as a file to read or write; the user did not choose its name.
   [[nodiscard]] FilePath file(const std::filesystem::path& path) const { return FilePath::in(named_, path); }
   [[nodiscard]] std::filesystem::path results() const { return root_ / "results.json"; }
   [[nodiscard]] std::filesystem::path data() const { return root_ / "data"; }

@@ -71,8 +71,8 @@ struct MeshRecord {
   std::vector<MeshOrderRecord>
       orders;           ///< in the sequence of StudyResults::orderings; only those that were computed
   std::string verdict;  ///< what reordering is worth, a sentence; may be empty
-  /// How many times faster the kernel that gains most runs in the order that the verdict names; 0 where
-  /// nothing is gained, and where by how much is in doubt.
+  /// Speedup, as a factor, of the kernel that gains most in the order that the verdict names; 0 if nothing is
+  /// gained or if the gain is in doubt.
   double gain = 0;
 
   bool operator==(const MeshRecord&) const = default;
@@ -97,7 +97,7 @@ struct RunRecord {
 struct TimeSummary {
   double mean = 0;
   double deviation = 0;    ///< standard deviation of the runs' sums (n − 1); 0 for one run
-  double undisturbed = 0;  ///< sum over the steps of the fastest run of each
+  double undisturbed = 0;  ///< sum over the steps of each step's fastest time
 
   bool operator==(const TimeSummary&) const = default;
 };

@@ -18,7 +18,7 @@ struct Field {
   bool free = false;
   bool optional = false;
 };
-// clang 14 deduces no aggregates by itself
+// clang 14 cannot deduce the template arguments of an aggregate
 template <class Record, class Value>
 Field(std::string_view, Value Record::*) -> Field<Record, Value>;
 template <class Record, class Value>

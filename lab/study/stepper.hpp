@@ -26,7 +26,7 @@ struct StepperTask {
   std::string cell_order = {};       ///< the same for cells
   std::vector<int> processors = {};  ///< to bind the process to; empty: not bound
   // of a fluid, which has no mesh and no files of orders
-  std::string vertex_method = {};   ///< "auto": kept by a Reorderer; others: anew in each step
+  std::string vertex_method = {};   ///< "auto": kept by a Reorderer; others: computed anew in each step
   std::string element_method = {};  ///< in each step
   double spacing = 0;               ///< of its particles, m
 };

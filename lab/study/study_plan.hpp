@@ -16,7 +16,7 @@ namespace meshorder {
 /// Returns the paper's five orderings (section 5): original, Fiedler, VF Fiedler, scrambled, VF scrambled.
 std::vector<OrderingSpec> paper_orderings();
 
-/// Returns these, and the order that `meshorder order` makes.
+/// Returns the paper's orderings and the one that `meshorder order` makes.
 std::vector<OrderingSpec> study_orderings();
 
 /// Returns the study's ordering of that name, or the one of methods given as VERTICES/ELEMENTS. Throws
@@ -48,8 +48,8 @@ std::string mesh_of_size(std::string_view size, const std::string& mesh);
 /// fluid that it wishes for.
 std::vector<std::string> study_scenarios();
 
-/// Returns the particles' distance of a study's size for a fluid, m: its own for "paper", else that of about
-/// 300,000 or two million particles. Throws InvalidArgument as `mesh_of_size`.
+/// Returns the spacing (m) of a fluid's particles in a study of that size: the fluid's own for "paper", else
+/// the spacing for about 300,000 or two million particles. Throws InvalidArgument as `mesh_of_size`.
 double spacing_of_size(std::string_view size, const FluidOptions& options);
 
 /// Returns whether a scenario fits in memory at that size. ADMM's factored matrix of a solid with two million

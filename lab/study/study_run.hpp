@@ -12,7 +12,7 @@ namespace meshorder {
 
 /// Callbacks of a study.
 struct StudyObserver {
-  /// Called at the begin of each stage, with its share of the whole.
+  /// Called at the start of each stage, with its share of the whole.
   std::function<void(const std::string& what, double from, double to)> stage = [](auto&&...) {};
   std::function<void(const std::string& message)> note = [](auto&&...) {};
   /// Called after each turn. If it returns true the study stops and loses its unfinished runs.

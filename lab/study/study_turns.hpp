@@ -33,7 +33,7 @@ struct Round {
   std::vector<std::string> motions;  ///< a file for each order's frames; empty: no frames
   std::string surfaces;              ///< a file for the surface of a fluid in the first order; empty: none
   TurnPlan plan;
-  int number = 0;  ///< index of the run; the order of index `number` modulo their number begins
+  int number = 0;  ///< index of the run; the order of index `number` modulo the number of orders begins
 };
 
 /// Runs a round. `after_turn` is called with the share of the steps that are done; if it returns false the

@@ -34,7 +34,7 @@ inline constexpr std::string_view kScenarioGuide = "docs/simulate.md";
 nlohmann::json parse_json(std::string_view text, const std::string& file,
                           std::string_view guide = kScenarioGuide);
 
-/// Bytes of the names of scenarios and meshes that become part of file names.
+/// Most bytes of the name of a scenario or mesh, which becomes part of file names.
 inline constexpr std::size_t kLongestNameInFiles = 100;
 
 /// A range of numbers; it includes its ends unless they are `open`.

@@ -13,8 +13,8 @@
 
 namespace meshorder {
 
-/// A child process that reads lines of text or bytes from its standard input and writes such to its standard
-/// output.
+/// A child process that reads lines of text, or bytes, from its standard input and writes lines or bytes to
+/// its standard output.
 /// Ctrl-C does not reach it. It ends no later than this process.
 class ChildProcess {
  public:
@@ -40,8 +40,8 @@ class ChildProcess {
   /// Sends bytes. Throws Error if the child has ended.
   void send_bytes(std::span<const std::byte> bytes);
 
-  /// Waits for as many bytes as there is room for. Throws Error, which says how the child ended, if it ends
-  /// before.
+  /// Waits until `bytes` is filled. Throws Error, which says how the child ended, if it ends before
+  /// that.
   void receive_bytes(std::span<std::byte> bytes);
 
  private:

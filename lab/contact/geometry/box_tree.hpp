@@ -43,7 +43,7 @@ struct Box {
   [[nodiscard]] bool meets_segment(const Point& a, const Point& b) const;
 };
 
-/// A tree of boxes over items at rest: halved by count along the longest axis of their centres.
+/// A tree of boxes over items at rest. Each node halves its items along the longest axis of their centres.
 class BoxTree {
  public:
   /// Builds the tree over one box for each item. O(n log n).
@@ -53,8 +53,8 @@ class BoxTree {
   /// numbers.
   std::vector<Index> renumber();
 
-  /// Calls `visit(item)` for the items that may be nearest to x: those whose squared distance from x is below
-  /// `bound`, which each visit returns anew. Nearer boxes usually come first.
+  /// Calls `visit(item)` for the items that may be nearest to x: those in leaves whose squared distance from
+  /// x is at most `bound`. Each visit returns the new bound. Nearer boxes usually come first.
   template <class Visit>
   void visit_nearest(const Point& x, Visit visit, double bound = Box::kInfinity) const {
     struct Open {
@@ -81,7 +81,7 @@ class BoxTree {
     }
   }
 
-  /// Calls `visit(item)` for all items whose box the segment from a to b meets, or nearly meets.
+  /// Calls `visit(item)` for all items whose box meets the segment from a to b, and for some others nearby.
   template <class Visit>
   void visit_on_segment(const Point& a, const Point& b, Visit visit) const {
     std::array<Index, kDeepest> open{};
@@ -117,7 +117,7 @@ class BoxTree {
   std::vector<Index> things_;
 };
 
-/// Moves the `left` items with the smallest coordinates to the front, along the longest axis of all centres;
+/// Moves the `left` items with the smallest coordinates along the longest axis of all centres to the front;
 /// ties by number. O(n).
 void halve(std::span<Index> things, Index left, std::span<const Point> centers);
 

@@ -20,8 +20,8 @@ struct TrianglePoint {
   double squared_distance = 0.0;
 };
 
-/// The point of the triangle abc nearest to x (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
-/// Triangles may be degenerate.
+/// Returns the point of the triangle abc nearest to x (Ericson, Real-Time Collision Detection, 2005, section
+/// 5.1.5). Triangles may be degenerate.
 TrianglePoint nearest_on_triangle(const Point& x, const Point& a, const Point& b, const Point& c);
 
 }  // namespace meshorder

@@ -9,8 +9,8 @@
 namespace meshorder {
 namespace {
 
-/// All that is within half the thickness of its middle: the part of a sphere about the origin at angles of
-/// `opening` and more from the axis.
+/// The points within half the thickness of the bowl's middle: the part of a sphere about the centre at angles
+/// of at least `opening` from the axis. Private functions take points relative to the centre.
 class Bowl : public Obstacle {
  public:
   Bowl(const Point& center, const Point& axis, double radius, double thickness, double opening)
@@ -42,10 +42,10 @@ class Bowl : public Obstacle {
   }
 
  private:
-  /// 1 outside of the middle's sphere, −1 within.
+  /// Returns 1 outside of the middle's sphere, −1 within.
   [[nodiscard]] double side_of(const Point& p) const { return dot(p, p) >= radius_ * radius_ ? 1.0 : -1.0; }
 
-  /// Whether the ray from the centre through p meets the middle; through the centre itself all do.
+  /// Returns whether the ray from the centre through p meets the middle; true for the centre itself.
   [[nodiscard]] bool faces_middle(const Point& p) const { return dot(p, axis_) <= cos_opening_ * norm(p); }
 
   [[nodiscard]] Point nearest_of_middle(const Point& p) const {
@@ -64,13 +64,13 @@ class Bowl : public Obstacle {
     return scaled(1.0 / norm(across), across);
   }
 
-  /// If the segment from `a` to `p` goes through the middle: the point on the side of a to which p must go
+  /// If the segment from `a` to `p` crosses the middle, returns the point on a's side to which p must go
   /// back.
   [[nodiscard]] std::optional<SurfacePoint> back_through_wall(const Point& p, const Point& a) const {
     const std::optional<Point> crossing = first_crossing(a, p);
     if (!crossing) return std::nullopt;
     const double side = side_of(a);
-    // straight back where p is behind the wall, else the way that it came
+    // straight back if p is beyond the wall, else towards where it crossed
     const bool straight = side_of(p) != side && faces_middle(p) && dot(p, p) > 0.0;
     const Point& toward = straight ? p : *crossing;
     const Point normal = scaled(side / norm(toward), toward);
@@ -78,8 +78,8 @@ class Bowl : public Obstacle {
     return SurfacePoint{plus_scaled(center_, 1.0, at), normal, dot(normal, minus(p, at))};
   }
 
-  /// Where the segment from `a` to `b` meets the middle first. Whether it does is decided by the sides on
-  /// which its ends lie, so that rounding never takes a touch for a crossing.
+  /// Returns where the segment from `a` to `b` first crosses the middle. The sides on which its ends lie
+  /// decide whether it does, so that rounding never takes a touch for a crossing.
   [[nodiscard]] std::optional<Point> first_crossing(const Point& a, const Point& b) const {
     const bool from_within = side_of(a) < 0.0;
     const bool to_within = side_of(b) < 0.0;

@@ -131,7 +131,7 @@ class ClosedSurface : public Obstacle {
     return result;
   }
 
-  /// Of faces, edges (the sum of their two faces) and corners (weighted by angles), for the sign.
+  /// Computes the normals that decide signs: of faces, edges (sum of two faces), corners (weighted by angle).
   void find_normals(std::span<const HalfEdge> half_edges) {
     face_normals_.resize(triangles_.size());
     edge_normals_.resize(triangles_.size());
@@ -173,7 +173,7 @@ class ClosedSurface : public Obstacle {
       const Triangle& corners = triangles_[t];
       const TrianglePoint here =
           nearest_on_triangle(x, points_[corners[0]], points_[corners[1]], points_[corners[2]]);
-      // of equals the first, whatever the way through the tree
+      // of equally near triangles the first, independent of the path through the tree
       if (here.squared_distance < best.squared_distance ||
           (here.squared_distance == best.squared_distance && t < triangle)) {
         best = here;
@@ -185,12 +185,12 @@ class ClosedSurface : public Obstacle {
     const Point way = minus(x, best.at);
     const double length = std::sqrt(best.squared_distance);
     const double sign = dot(way, normal) >= 0.0 ? 1.0 : -1.0;
-    // a direction of a length that rounding made is none
+    // a length that is a rounding error gives no direction
     if (best.on == TrianglePoint::On::face || length <= touching_) return {best.at, normal, sign * length};
     return {best.at, scaled(sign / length, way), sign * length};
   }
 
-  /// The crossings of the segment from a to b, from its beginning.
+  /// Returns the crossings of the segment from a to b, from its beginning.
   [[nodiscard]] std::vector<Crossing> crossings(const Point& a, const Point& b) const {
     std::vector<Crossing> result;
     const Point way = minus(b, a);
@@ -213,15 +213,15 @@ class ClosedSurface : public Obstacle {
     return result;
   }
 
-  /// If x, whose nearest point is `natural`, has come from outside through the body or too deep into it for
-  /// that to be on the side that it came from: the point where it went in.
+  /// Returns the point where x went in, if x came from outside and went through the body, or so deep into it
+  /// that its nearest point `natural` is not on the side that it came from.
   [[nodiscard]] std::optional<SurfacePoint> back_through_surface(const Point& x, const Point& from,
                                                                  const SurfacePoint& natural) const {
     Point start = from;
     const double moved = norm(minus(x, from));
     const SurfacePoint before = nearest_point(from);
     if (before.distance > moved) return std::nullopt;
-    // a vertex at rest on the surface may have been in it by a tolerance
+    // a vertex that rests on the surface may have been inside by a tolerance
     if (before.distance <= touching_) {
       if (-before.distance > moved) return std::nullopt;
       start = plus_scaled(before.at, std::max(-before.distance, touching_), before.normal);
@@ -233,7 +233,7 @@ class ClosedSurface : public Obstacle {
     const Point& normal = face_normals_[entry->triangle];
     const Point way = minus(x, start);
     if (natural.distance > 0.0) {
-      // outside again; but along a surface rounding goes in and out
+      // outside again; but rounding can take a path along the surface in and out
       const auto exit = std::find_if(entry, on_the_way.end(), [](const Crossing& c) { return !c.in; });
       const double middle = 0.5 * (entry->part + (exit == on_the_way.end() ? 1.0 : exit->part));
       if (!(nearest_point(plus_scaled(start, middle, way)).distance < -touching_)) return std::nullopt;
@@ -250,7 +250,7 @@ class ClosedSurface : public Obstacle {
   std::vector<Point> face_normals_;
   std::vector<std::array<Point, 3>> edge_normals_;
   std::vector<Point> corner_normals_;
-  double touching_ = 0.0;  // a distance that rounding may make
+  double touching_ = 0.0;  // distances up to this may be rounding errors
 };
 
 }  // namespace

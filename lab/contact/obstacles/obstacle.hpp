@@ -29,7 +29,7 @@ class Obstacle : public Polymorphic {
   [[nodiscard]] virtual std::optional<SurfacePoint> nearest(const Point& x, const Point& from,
                                                             double reach) const = 0;
 
-  /// The signed distance alone.
+  /// Returns only the signed distance of x, m.
   [[nodiscard]] virtual double distance(const Point& x) const = 0;
 };
 

@@ -32,7 +32,7 @@ class Sphere : public Obstacle {
                                                     double reach) const override {
     const Point out = minus(x, center_);
     const Point out_before = minus(from, center_);
-    // past the middle the nearest point is on the other side
+    // past the centre the nearest point is on the other side
     if (dot(out, out_before) < 0.0) {
       if (const std::optional<Point> way = way_in(out_before, out)) {
         const Point at = plus_scaled(center_, radius_, *way);
@@ -49,13 +49,13 @@ class Sphere : public Obstacle {
   [[nodiscard]] double distance(const Point& x) const override { return norm(minus(x, center_)) - radius_; }
 
  private:
-  /// The direction in which the segment from `a` to `b`, which points from the centre to either side of it,
-  /// enters; none if it passes by.
+  /// Returns the direction from the centre to where the segment from `a` to `b` enters; none if it misses the
+  /// sphere. `a` and `b` are relative to the centre and on opposite sides of it.
   [[nodiscard]] std::optional<Point> way_in(const Point& a, const Point& b) const {
     const Point step = minus(b, a);
     const double length = norm(step);
     const Point direction = scaled(1.0 / length, step);
-    const double along = -dot(a, direction);  // to the point next to the centre
+    const double along = -dot(a, direction);  // to the point nearest to the centre
     const double aside = norm(plus_scaled(a, along, direction));
     if (!(aside < radius_)) return std::nullopt;
     const double entry = along - std::sqrt((radius_ - aside) * (radius_ + aside));

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lab/contact/search/branch_motions.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// from here on compiled once for each instruction set
 #include "kernels/lanes-inl.hpp"
 
 #include <cmath>
@@ -68,7 +68,7 @@ struct Padded {
   }
 };
 
-/// The least squares fit of an affine map to the corners' motion, and the box around them: padded ends.
+/// Fits an affine map to the corners' motion by least squares; sets the ends of the box around them, padded.
 void fit_motion(std::span<const Corner> corners, const Shape& shape, const double* positions, Motion& motion,
                 double* lower_end, double* upper_end) {
   const double infinity = std::numeric_limits<double>::infinity();
@@ -128,7 +128,7 @@ HWY_EXPORT(fit_motion);
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-/// NaN or infinite where the matrix is singular.
+/// Returns the inverse; NaN or infinite if the matrix is singular.
 Matrix inverse(const Matrix& m) {
   Matrix result{};
   const Point first = cross(m[1], m[2]);
@@ -142,7 +142,7 @@ Matrix inverse(const Matrix& m) {
 
 double frobenius(const Matrix& m) { return std::sqrt(dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2])); }
 
-/// At least the spectral norm, and close to it for nearly orthogonal matrices: by the rows of m mᵀ.
+/// Returns at least the spectral norm, and close to it for nearly orthogonal matrices: by the rows of m mᵀ.
 double norm_bound(const Matrix& m) {
   double square = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -153,7 +153,7 @@ double norm_bound(const Matrix& m) {
   return std::sqrt(square);
 }
 
-/// Column by column.
+/// Returns the columns of the linear part.
 Matrix linear_part(const BranchMotions::Motion& motion) {
   Matrix result{};
   for (int k = 0; k < 3; ++k) std::copy_n(motion.columns[k].begin(), 3, result[k].begin());
@@ -199,7 +199,7 @@ void BranchMotions::update(Index branch, std::span<const double> positions, Tetr
   (corners, shapes_[branch], positions.data(), motion, lower.data(), upper.data());
   const Matrix columns = linear_part(motion);
   motion.inverse_norm = norm_bound(inverse(columns));
-  // up to here the constant is where the centre goes
+  // so far the constant is the image of the centre
   constexpr double kRoundedCorners = 1e-6;  // to floats
   constexpr double kRoundedPositions = 1e-13;
   const Shape& shape = shapes_[branch];

@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// Motions of branches of tetrahedra from their rest shape: each nearly an affine map, which preserves inside
-/// and outside. The deviation from it bounds the possible changes.
+/// Motions of branches of tetrahedra from their rest shape. Each is nearly an affine map, under which points
+/// stay inside or outside. The deviation from the map bounds how much that can change.
 class BranchMotions {
  public:
   /// x = constant + columns · X for a corner at X at rest, to within the deviation.

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lab/contact/search/clearances.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// from here on compiled once for each instruction set
 #include "kernels/lanes-inl.hpp"
 #include "lab/contact/search/lane_bits-inl.hpp"
 
@@ -15,8 +15,8 @@ namespace {
 using Doubles = hn::CappedTag<double, kBatch>;
 constexpr Index kDoubles = static_cast<Index>(MaxLanes(Doubles()));
 
-/// The points whose clearance is not more than what they and the branch's corners are apart from its affine
-/// motion, taken back to rest.
+/// Returns the points whose clearance is not greater than the sum of their own distance and the deviation of
+/// the branch's corners from the affine motion, mapped back to rest.
 std::uint64_t points_in_doubt(const PointCluster& cluster, const double* rest, const float* clearances,
                               const BranchMotions::Motion& motion) {
   const Doubles d;
@@ -35,7 +35,7 @@ std::uint64_t points_in_doubt(const PointCluster& cluster, const double* rest, c
     }
     const auto moved =
         hn::Mul(hn::Set(d, motion.inverse_norm), hn::Add(hn::Sqrt(square), hn::Set(d, motion.deviation)));
-    // not where one is NaN
+    // false if one is NaN
     const auto less = hn::Lt(moved, hn::PromoteTo(d, hn::Load(floats, clearances + i)));
     known |= std::uint64_t{bits_of(d, less)} << static_cast<unsigned>(i);
   }
@@ -62,7 +62,7 @@ HWY_EXPORT(points_in_doubt);
 
 constexpr Index kClustersAtOnce = 8;
 
-/// The mean side of the branches' boxes.
+/// Returns the mean side of the branches' boxes.
 double mean_side(const TetrahedronLeaves& tetrahedra) {
   double sum = 0.0;
   for (Index branch = 0; branch < tetrahedra.branches; ++branch) {
@@ -72,7 +72,7 @@ double mean_side(const TetrahedronLeaves& tetrahedra) {
   return sum / (3.0 * std::max(tetrahedra.branches, Index{1}));
 }
 
-/// The largest coordinate, of which floats round off a part.
+/// Returns the largest absolute coordinate, to which the rounding errors of floats are relative.
 double largest_coordinate(std::span<const Point> points) {
   double result = 0.0;
   for (const Point& p : points) result = std::max({result, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
@@ -87,7 +87,7 @@ bool meets_box(const PointCluster& cluster, const TetrahedronLeaves& tetrahedra,
   return meets;
 }
 
-/// The cluster with a box that reaches further on all sides.
+/// Returns the cluster with a box that reaches further on all sides.
 PointCluster grown(PointCluster cluster, float margin) {
   for (int c = 0; c < 3; ++c) {
     cluster.lower[c] -= margin;
@@ -107,7 +107,7 @@ Clearances::Clearances(TetrahedronLeaves& tetrahedra, BranchMotions& motions,
     update_boxes(tetrahedra, branch, positions);
   }
   for (Index leaf = 0; leaf < tetrahedra.leaves; ++leaf) update_planes(tetrahedra, leaf, positions);
-  // further away nothing is known; nearly all that boxes meet in motion is nearer
+  // of branches further away nothing is known; nearly all that boxes meet in motion are nearer
   const auto margin = static_cast<float>(0.125 * mean_side(tetrahedra));
   const float known_margin = margin - static_cast<float>(largest_coordinate(rest) * 0x1p-21);
   for_each_chunk(index_size(clusters), kClustersAtOnce, [&](Index /*chunk*/, Index begin, Index end) {

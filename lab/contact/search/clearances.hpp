@@ -10,20 +10,20 @@
 
 namespace meshorder {
 
-/// Distances at rest between vertices and tetrahedra, which show for most vertices in motion that they are
+/// Distances at rest between vertices and tetrahedra. They show for most vertices in motion that they are
 /// still outside.
 ///
-/// A vertex with a clearance c from a tetrahedron has a plane between them, at a distance c from the vertex.
-/// An affine map keeps it between them. So where the vertex and the corners are apart from one affine map of
-/// their places at rest by distances whose sum is less than c divided by the norm of the inverse map, the
-/// vertex is outside.
+/// If a vertex has the clearance c from a tetrahedron, a plane at the distance c from the vertex separates
+/// them. The image of the plane under an affine map separates their images. So the vertex is outside if its
+/// own distance from its image and the largest distance of a corner from its image add up to less than c
+/// divided by the norm of the inverse map.
 class Clearances {
  public:
-  /// Of clusters at rest from the branches near by.
+  /// Computes the clearances of clusters at rest from the branches near them.
   Clearances(TetrahedronLeaves& tetrahedra, BranchMotions& motions, std::span<PointCluster> clusters,
              std::span<const Point> rest);
 
-  /// The points of cluster c that may be inside tetrahedra of the branch: all, where nothing is known.
+  /// Returns the points of cluster c that may be inside tetrahedra of the branch: all if nothing is known.
   [[nodiscard]] std::uint64_t in_doubt(Index c, Index branch, const PointCluster& cluster,
                                        const BranchMotions& motions) const;
 

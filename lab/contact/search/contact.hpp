@@ -12,9 +12,9 @@ namespace meshorder {
 /// A linearised constraint of a vertex against an obstacle or the body itself: normal · Σ weights[k]
 /// x[vertices[k]] ≥ offset.
 ///
-/// Against an obstacle one vertex has the weight 1 and the rest are absent. In contact with the body itself
-/// the first vertex has the weight 1 and the others, the corners of a triangle of the body's surface, those
-/// of a point of it with their signs turned, so that all add up to 0.
+/// Against an obstacle one vertex has the weight 1 and the rest are absent. Against the body itself the first
+/// vertex has the weight 1; the others are corners of a triangle of the body's surface, with the negated
+/// barycentric weights of a point of it, so that all weights add up to 0.
 struct Contact {
   static constexpr Index kAbsent = -1;
 
@@ -28,7 +28,7 @@ struct Contact {
   [[nodiscard]] bool is_with_itself() const noexcept { return vertices[1] != kAbsent; }
 };
 
-/// By vertex, then obstacle, the body itself last.
+/// Orders contacts by vertex, then by obstacle, the body itself last.
 inline bool comes_before(const Contact& a, const Contact& b) {
   if (a.vertices[0] != b.vertices[0]) return a.vertices[0] < b.vertices[0];
   return !a.is_with_itself() && (b.is_with_itself() || a.with < b.with);

@@ -30,8 +30,8 @@ Contact contact_with(Index vertex, const SurfacePoint& place, double friction, s
   return contact;
 }
 
-/// Returns whether no part of an obstacle is within reach of the box around some vertices and where they
-/// were, so that none is near it nor went through it: a distance changes by at most the path length.
+/// Returns whether an obstacle is out of reach of a box around some vertices and their earlier positions.
+/// Then none is near it or went through it, since a distance changes by at most the path length.
 bool out_of_reach(const Obstacle& obstacle, const Box& box, double reach) {
   constexpr double kAboveRounding = 1.0 + 1e-9;
   const Point center = scaled(0.5, plus_scaled(box.lower, 1.0, box.upper));
@@ -39,8 +39,8 @@ bool out_of_reach(const Obstacle& obstacle, const Box& box, double reach) {
   return obstacle.distance(center) > kAboveRounding * (radius + reach);
 }
 
-/// Calls `visit(cluster)` for clusters begin … end − 1 that are not out of reach of the obstacle, of which
-/// neighbours are passed over together.
+/// Calls `visit(cluster)` for clusters begin … end − 1 that are not out of reach of the obstacle.
+/// Neighbouring clusters that are out of reach are skipped together.
 template <class Visit>
 void visit_within_reach(const Obstacle& obstacle, double reach, std::span<const Box> boxes, Index begin,
                         Index end, Visit visit) {
@@ -63,7 +63,7 @@ struct ContactFinder::State {
   Index vertex_count = 0;
   std::vector<Index> surface;  ///< its vertices, in clusters
   std::optional<SelfContact> itself;
-  /// What is looked at together.
+  /// Vertices of the surface that are searched together.
   struct Cluster {
     std::vector<Index> near;  ///< obstacles
     std::vector<Contact> found;
@@ -72,7 +72,7 @@ struct ContactFinder::State {
   std::vector<Cluster> clusters;
   std::vector<Box> boxes;  ///< around clusters
 
-  /// Finds the obstacles near each cluster, whose vertices are in these places.
+  /// Finds the obstacles near each cluster, over all of these positions of its vertices.
   void find_near(std::initializer_list<std::span<const double>> places, double reach) {
     for_each_chunk(index_size(surface), kInCluster, [&](Index c, Index begin, Index end) {
       clusters[c].near.clear();

@@ -20,8 +20,8 @@ struct ContactOptions {
   std::vector<With> obstacles;
   bool with_itself = false;
   double friction_with_itself = 0.0;
-  /// Vertices that are not yet inside but within this of an obstacle are contacts too, with a gap, m: a
-  /// solver that knows them will not let them in.
+  /// Vertices outside an obstacle but within this distance (m) of it are contacts too, with a gap, so that a
+  /// solver can keep them outside.
   double reach = 0.0;
 };
 

@@ -12,20 +12,20 @@
 namespace meshorder {
 namespace {
 
-/// Part of its depth in the body itself that a vertex which was inside at the start of a step must leave in
-/// the step. The full depth would give vertices arbitrary speeds, and the body would gain energy.
+/// Share of its depth that a vertex must lose in a step if it is inside the body itself at the step's start.
+/// Losing the full depth would give vertices arbitrary speeds, and the body would gain energy.
 constexpr double kWayOut = 0.5;
-/// Of the tolerance, how far beside the body's own surface vertices are held, so that they are not inside by
-/// rounding.
+/// Gap to the body's own surface at which vertices are held, as a share of the tolerance, so that rounding
+/// does not put them inside.
 constexpr double kClearance = 0.1;
 
-/// The gap to the body itself that a vertex must have at the end of a step which it begins with `gap`:
-/// halving the depth would never reach 0.
+/// Returns the gap to the body itself that a vertex must have at the end of a step which it begins with
+/// `gap`. The tolerance is added since halving a depth never reaches 0.
 double required_gap(double gap, double tolerance) {
   return std::min(kClearance * tolerance, (gap < 0.0 ? (1.0 - kWayOut) * gap : gap) + tolerance);
 }
 
-/// Rotates a contact with the body itself with its triangle. Returns false if the triangle is flat.
+/// Turns a contact with the body itself with its triangle. Returns false if the triangle is flat.
 bool follow_triangle(std::span<const double> positions, Contact& contact) {
   const std::optional<Point> normal =
       triangle_normal(positions, contact.vertices[1], contact.vertices[2], contact.vertices[3]);
@@ -50,7 +50,7 @@ bool ContactSet::update(std::span<const double> positions, std::span<const doubl
   const bool violates = std::any_of(found_.begin(), found_.end(), [&](const Contact& contact) {
     return depth(contact, positions) > tolerance;
   });
-  // those of the body with itself that push, where none was found for their vertex
+  // keeps contacts of the body with itself that push, if none was found for their vertex
   std::vector<Contact> kept;
   for (std::size_t i = 0; i < std::min(earlier_.size(), forces.size()); ++i) {
     if (!earlier_[i].is_with_itself() || !(forces[i] > 0.0) ||

@@ -9,7 +9,7 @@
 namespace meshorder {
 
 /// The contacts of a body during a step. A vertex that was pushed out of the body itself lies on its surface
-/// and is not found again; its contact is kept as long as it has a force, or the vertex would sink in again.
+/// and is not found again; its contact is kept while it has a force, so that it does not sink in again.
 class ContactSet {
  public:
   explicit ContactSet(ContactFinder finder) : finder_(std::move(finder)) {}
@@ -19,8 +19,8 @@ class ContactSet {
   void begin(std::span<const double> from);
 
   /// Finds the contacts at these positions, in ContactFinder's order. `forces` are those of the contacts so
-  /// far, none where nothing was solved since `begin`. Returns whether a vertex has a new contact that it
-  /// violates by more than `tolerance`, m. Vertices are held a tenth of that beside the body itself.
+  /// far; empty if nothing was solved since `begin`. Returns whether a vertex violates a new contact by more
+  /// than `tolerance`, m. Contacts with the body itself keep a gap of a tenth of `tolerance`.
   bool update(std::span<const double> positions, std::span<const double> forces, double tolerance);
 
   [[nodiscard]] std::span<const Contact> contacts() const noexcept { return contacts_; }

@@ -9,7 +9,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lab/contact/search/leaf_planes.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// from here on compiled once for each instruction set
 #include "kernels/lanes-inl.hpp"
 #include "lab/contact/search/lane_bits-inl.hpp"
 
@@ -35,7 +35,7 @@ HWY_INLINE void plane_through(const Value (&a)[3], const Value (&b)[3], const Va
 void planes_of_leaf(TetrahedronLeaves& tetrahedra, Index leaf, const double* positions) {
   // the other three corners of each face, so that they turn counterclockwise seen from inside
   constexpr int kInward[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
-  // of the sum of three products with a rounded normal, relative to a rounded point
+  // bound of rounding errors in a height: three products of a rounded normal and a rounded point
   constexpr double kPlaneRounding = 32 * 0x1p-24;
   constexpr double kTooLarge = 1e30;
   using Value = ManyLanes::Value;
@@ -71,7 +71,7 @@ void planes_of_leaf(TetrahedronLeaves& tetrahedra, Index leaf, const double* pos
       plane_through(a, p[kInward[k][1]], p[kInward[k][2]], normal);
       const Value size = ManyLanes::abs(normal[0]) + ManyLanes::abs(normal[1]) + ManyLanes::abs(normal[2]);
       const Value through = normal[0] * a[0] + normal[1] * a[1] + normal[2] * a[2];
-      // of length 1; NaN where there is no plane
+      // normals whose absolute coordinates add up to 1; NaN if there is no plane
       const Value scale = ManyLanes::set(1.0) / size;
       alignas(64) double numbers[4][kBatch];
       MESHORDER_UNROLL

@@ -16,13 +16,13 @@ struct LeafHit {
   std::uint32_t lanes = 0;
 };
 
-/// The planes of a leaf whose box is up to date.
+/// Sets the planes of a leaf. Its box must be up to date.
 void update_planes(TetrahedronLeaves& tetrahedra, Index leaf, std::span<const double> positions);
-/// Of the task's points, lowers `clearances` (one for each of the cluster) to the distance that each is
-/// beyond some plane of every tetrahedron that it is no corner of; negative where it is inside one.
+/// For each point of the task, lowers its clearance (one for each of the cluster) to the distance by which it
+/// is outside some plane of every tetrahedron of which it is no corner; negative inside one.
 void lower_clearances(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
                       std::span<const double> positions, std::span<float> clearances);
-/// Appends the points of a task that no plane of some tetrahedron keeps out, which they are no corners of.
+/// Appends the task's points that no plane of some tetrahedron keeps out, except its own corners.
 void hits_of(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
              std::span<const double> positions, std::vector<LeafHit>& hits);
 

@@ -22,8 +22,8 @@ class SelfContact {
   /// ascending vertex. Of several tetrahedra it is the one where the vertex is deepest, and then the first.
   ///
   /// The way out is through the triangle of the surface that is nearest in the rest shape, of those without
-  /// the vertex: a contact with its own triangle would ask nothing of it. Its normal is that of the triangle
-  /// as it is deformed; where that has no area there is no contact.
+  /// the vertex: a contact with its own triangle would have no effect. Its normal is that of the deformed
+  /// triangle; if that has no area, there is no contact.
   void find(std::span<const double> positions, double friction, std::vector<Contact>& contacts);
 
   struct Depth {

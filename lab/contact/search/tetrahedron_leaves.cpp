@@ -9,7 +9,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lab/contact/search/tetrahedron_leaves.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// from here on compiled once for each instruction set
 #include "kernels/lanes-inl.hpp"
 #include "lab/contact/search/lane_bits-inl.hpp"
 
@@ -103,7 +103,7 @@ void read_points(PointCluster& cluster, const double* positions) {
   }
 }
 
-/// The lanes of sixteen boxes that meet a box, as bits.
+/// Returns the lanes of sixteen boxes that meet a box, as bits.
 HWY_INLINE std::uint32_t meeting(const float* boxes, const std::array<float, 3>& lower,
                                  const std::array<float, 3>& upper) {
   const Floats d;
@@ -179,7 +179,7 @@ TetrahedronLeaves::TetrahedronLeaves(std::span<const std::array<Index, 4>> tetra
     for (int k = 0; k < 4; ++k) corners[kLeaf * (4 * (i / kLeaf) + k) + i % kLeaf] = tetrahedron[k];
     if (real) numbers[i] = tetrahedron_numbers[i];
   }
-  // empty boxes for the lanes that fill up a leaf
+  // empty boxes for the lanes without a leaf or branch
   const auto fill_up = [](AlignedVector<float>& boxes, Index groups) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     boxes.resize(Offset{6} * kLeaf * groups);

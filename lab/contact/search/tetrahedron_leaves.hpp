@@ -35,35 +35,35 @@ struct PointCluster {
   std::array<Index, kMaxPoints> vertices{};  ///< the last one repeats up to the end
   alignas(64) std::array<std::array<double, kMaxPoints>, 3> positions{};   ///< x, y, z of each
   alignas(64) std::array<std::array<float, kMaxPoints>, 3> coordinates{};  ///< the same, rounded
-  std::array<float, 3> lower{}, upper{};  ///< around them; an upper end below the lower one for none
+  std::array<float, 3> lower{}, upper{};  ///< their box; upper < lower without points
 
-  /// Of 1 … kMaxPoints vertices.
+  /// Makes a cluster of 1 … kMaxPoints vertices.
   explicit PointCluster(std::span<const Index> some);
 };
 
 /// Tetrahedra in leaves of sixteen that are neighbours at rest, and branches of kBranch leaves: the data that
 /// a search needs in motion. Ends of boxes and points are rounded alike, which keeps their order. Vertices
-/// and tetrahedra that are not finite are never met.
+/// and tetrahedra that are not finite are never found.
 struct TetrahedronLeaves {
   Index leaves = 0;
   Index branches = 0;
   /// Corner k of lane l of leaf i at 16 · (4i + k) + l. Lanes after the last tetrahedron repeat it.
   AlignedVector<Index> corners;
-  AlignedVector<Index> numbers;  ///< of the tetrahedra, as the caller knows them; −1 after the last
+  AlignedVector<Index> numbers;  ///< the caller's numbers of the tetrahedra; −1 after the last
   /// End e (the three lower ones, then the upper ones) of the box of leaf l of branch b at 16 · (6b + e) + l.
   AlignedVector<float> leaf_boxes;
   AlignedVector<float> branch_boxes;           ///< the same of branches
-  std::vector<std::array<double, 3>> centers;  ///< of leaves, that their planes are relative to
+  std::vector<std::array<double, 3>> centers;  ///< of leaves; their planes are relative to these
   /// What leaf_planes.hpp computes: of face k of lane l of leaf i the number q at 16 · (16i + 4k + q) + l:
   /// inward normal and offset, greater by the rounding errors there.
   AlignedVector<float> planes;
 
-  /// Of tetrahedra that are in the order of leaves. Boxes and planes are not yet set.
+  /// Takes tetrahedra in the order of leaves. Does not set boxes and planes.
   TetrahedronLeaves(std::span<const std::array<Index, 4>> tetrahedra,
                     std::span<const Index> tetrahedron_numbers);
 
   [[nodiscard]] Index leaves_of(Index branch) const { return std::min(kBranch, leaves - kBranch * branch); }
-  /// The ends of a leaf's box, each kLeaf floats after the one before; and of a branch's.
+  /// Returns the ends of a leaf's or a branch's box, each kLeaf floats after the previous one.
   [[nodiscard]] const float* leaf_box(Index leaf) const {
     return leaf_boxes.data() + Offset{6} * kLeaf * (leaf / kBranch) + leaf % kBranch;
   }
@@ -80,14 +80,14 @@ struct LeafTask {
   std::uint64_t points = 0;
 };
 
-/// The boxes of the branch's leaves at `positions`. O(tetrahedra of the branch).
+/// Sets the boxes of the branch's leaves at `positions`. O(tetrahedra of the branch).
 void update_boxes(TetrahedronLeaves& tetrahedra, Index branch, std::span<const double> positions);
 /// Reads the positions of the cluster's points.
 void update_points(PointCluster& cluster, std::span<const double> positions);
 /// Appends the branches whose box meets the cluster's, ascending.
 void branches_at(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
                  std::vector<Index>& branches);
-/// Appends the branch's leaves in whose box points of the cluster are, of those in the mask.
+/// Appends the branch's leaves whose boxes contain points of the mask `points` of the cluster.
 void leaves_at(const TetrahedronLeaves& tetrahedra, Index branch, const PointCluster& cluster,
                std::uint64_t points, std::vector<LeafTask>& tasks);
 

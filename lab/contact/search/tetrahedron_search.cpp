@@ -22,8 +22,8 @@ namespace {
 constexpr Index kBranchesAtOnce = 16;  // and clusters in a task
 constexpr Index kLeavesAtOnce = 256;
 
-/// The tetrahedra that are not flat at `points`, their corners turning like the unit tetrahedron's, in the
-/// order of leaves.
+/// The tetrahedra that are not flat at `points`, with corners in the sequence that gives a positive volume
+/// there, in the order of leaves.
 struct SortedTetrahedra {
   std::vector<std::array<Index, 4>> corners;
   std::vector<Index> numbers;

@@ -17,13 +17,13 @@ struct VertexInside {
   std::array<double, 4> weights{};  ///< barycentric, of the corners as `TetrahedronSearch::corners` has them
 };
 
-/// Finds the vertices that are inside tetrahedra, in any motion of the body. Exactly those which a test of
-/// every vertex against every tetrahedron finds, with the same bits, for any number of threads independent of
+/// Finds the vertices that are inside tetrahedra, in any motion of the body: exactly those that a test of
+/// every vertex against every tetrahedron finds. The same bits for any number of threads and independent of
 /// earlier calls.
 class TetrahedronSearch {
  public:
-  /// Searches for `vertices`, ascending. Tetrahedra whose corners turn the other way at `points`, where the
-  /// body is at rest, are turned; those that are flat there contain nothing.
+  /// Searches for `vertices`, ascending. Tetrahedra that have a negative volume at `points`, where the body
+  /// is at rest, get two corners swapped; those that are flat there contain nothing.
   TetrahedronSearch(const Simplices& simplices, std::span<const Point> points,
                     std::span<const Index> vertices);
   ~TetrahedronSearch();
@@ -32,11 +32,11 @@ class TetrahedronSearch {
   TetrahedronSearch(const TetrahedronSearch&) = delete;
   TetrahedronSearch& operator=(const TetrahedronSearch&) = delete;
 
-  /// Returns all of them at `positions` (kPaddedStride numbers for each vertex), by vertex and then
-  /// tetrahedron.
+  /// Sets `inside` to all of them at `positions` (kPaddedStride numbers for each vertex), sorted by vertex
+  /// and then by tetrahedron.
   void find(std::span<const double> positions, std::vector<VertexInside>& inside);
 
-  /// The corners of a tetrahedron that is not flat at rest, of positive volume there.
+  /// Returns the corners of a tetrahedron that is not flat at rest, in the sequence of positive volume.
   [[nodiscard]] std::array<Index, 4> corners(Index tetrahedron) const;
   /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;

@@ -31,7 +31,7 @@ void check_contact(const Contact& contact, std::size_t number, Index n) {
   if (contact.friction < 0.0) refuse("its friction is negative");
 }
 
-/// Two directions of length 1 that are at right angles to `normal` and each other (Duff et al. 2017).
+/// Returns two unit vectors at right angles to `normal` and to each other (Duff et al. 2017).
 std::array<Point, 2> tangents(const Point& normal) {
   const auto& [x, y, z] = normal;
   const double sign = std::copysign(1.0, z);
@@ -40,7 +40,7 @@ std::array<Point, 2> tangents(const Point& normal) {
   return {{{1.0 + sign * x * x * a, sign * b, -sign * x}, {b, sign + y * y * a, -y}}};
 }
 
-/// Σ w x, of numbers `stride` apart.
+/// Returns Σ w x, where the numbers of a vertex are `stride` apart from those of the next.
 template <class Real>
 Point weighted_sum(const std::array<Index, 4>& vertices, const std::array<double, 4>& weights, const Real* x,
                    Index stride) {

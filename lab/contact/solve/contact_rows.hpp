@@ -8,12 +8,12 @@
 
 namespace meshorder {
 
-/// Contacts as the rows of a matrix C that acts on positions: C x has the place of each contact along its
-/// normal, Σ w normal · x, then for each contact with friction the two along its surface. Cᵀ makes forces on
-/// vertices of forces of contacts.
+/// Contacts as the rows of a matrix C that acts on positions. C x holds the coordinate of each contact along
+/// its normal, normal · Σ w x, then two coordinates along the surface for each contact with friction. Cᵀ maps
+/// forces of contacts to forces on vertices.
 struct ContactRows {
   std::vector<Index> vertices;                 ///< of all contacts, ascending
-  std::vector<std::array<Index, 4>> places;    ///< of each contact's vertices among those; −1 where absent
+  std::vector<std::array<Index, 4>> places;    ///< where each contact's are in `vertices`; −1: absent
   std::vector<std::array<double, 4>> weights;  ///< of each contact; 0 where absent
   std::vector<Point> directions;               ///< of each row
   std::vector<Index> frictional;               ///< contacts with friction: number k has rows `row_of(k)`, + 1

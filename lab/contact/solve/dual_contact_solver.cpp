@@ -111,7 +111,7 @@ class ContactOperator final : public ForceOperator {
   }
 
  private:
-  /// The rows and columns of A at the vertices of contacts.
+  /// Copies the rows and columns of A at the vertices of contacts.
   void take_submatrix() {
     offsets_.assign(1, 0);
     columns_.clear();
@@ -137,7 +137,7 @@ class ContactOperator final : public ForceOperator {
   const SparseMatrix& matrix_;
   const CholeskyFactor<Real>& factor_;
   AlignedVector<Real> load_, moved_;  ///< of all vertices; 0 outside the reach
-  std::vector<Index> place_of_;       ///< of all vertices: −1 but within take_submatrix
+  std::vector<Index> place_of_;       ///< of all vertices; −1 except within take_submatrix
   std::vector<double> diagonal_;      ///< of A
   ContactRows rows_;
   typename CholeskyFactor<Real>::Reach reach_;
@@ -217,7 +217,7 @@ class Solver final : public DualContactSolver<Real> {
     }
   }
 
-  /// Sets the bounds of tangential forces to what normal forces allow, and the forces within them.
+  /// Sets the bounds of tangential forces by the normal forces, and projects the forces onto them.
   void set_radii(std::span<const Contact> contacts) {
     for (Index k = 0; k < index_size(rows().frictional); ++k) {
       const Index contact = rows().frictional[k];
@@ -268,7 +268,7 @@ class Solver final : public DualContactSolver<Real> {
     report.converged = report.converged && report.residual <= 2 * options_.tolerance;
   }
 
-  /// The gradient g − S λ with softness; returns the multiplications that it took.
+  /// Computes the gradient g − S λ with softness. Returns the number of multiplications by S.
   int take_gradient() {
     gradient_ = depths_;
     if (std::all_of(forces_.begin(), forces_.end(), [](double force) { return force == 0.0; })) return 0;

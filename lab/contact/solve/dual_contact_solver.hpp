@@ -37,14 +37,14 @@ struct ContactSolveReport {
 ///
 /// `tolerance` bounds the norm of the projected gradient relative to that of the depths g > 0: about the
 /// error of the contacts' positions relative to the depth without forces. Where contacts contradict or repeat
-/// each other, each yields by tolerance / 100 of the distance that its force moves its own vertex: repeated
-/// contacts share the force; contradicting ones end between each other, with `converged` false and the
-/// remaining depth in `violation`.
+/// each other, each gives way by tolerance / 100 of the distance by which its force moves its own vertex.
+/// Then repeated contacts share the force; contradicting ones end between each other, with `converged` false
+/// and the remaining depth in `violation`.
 ///
 /// With friction the bounds of tangential forces follow from the last round's normal forces (Tresca's fixed
-/// point; Haslinger 1983), until forces are within `tolerance` for the bounds that they imply themselves.
-/// Where the rounds do not converge (a body may jam), the last bounds are kept: tangential forces may then
-/// lie outside their cones, and `converged` is false.
+/// point; Haslinger 1983), until the forces meet `tolerance` with the bounds that they imply. If the rounds
+/// do not converge (a body may jam), the last bounds are kept: tangential forces may then lie outside their
+/// cones, and `converged` is false.
 template <class Real>
 class DualContactSolver : public Polymorphic {
  public:

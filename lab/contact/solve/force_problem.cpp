@@ -31,7 +31,7 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-/// The nearest place in a disc.
+/// Replaces a force by the nearest one in a disc.
 void shorten(Pair& force, double radius) {
   const double length = std::hypot(force[0], force[1]);
   if (length <= radius) return;

@@ -42,16 +42,16 @@ struct ForceSolveReport {
   double residual = 0.0;  ///< the projected gradient's norm, softness included
 };
 
-/// Minimises ½λᵀSλ − gᵀλ within the bounds, from λ (feasible) to λ; `gradient` is g − S λ before and after.
+/// Minimises ½λᵀSλ − gᵀλ within the bounds. Replaces λ (`forces`, feasible) and `gradient`, which is g − S λ.
 ///
-/// Repeatedly selects the positive forces, and those at 0 that would grow if these gain more; solves for them
-/// by conjugate gradients without bounds, to a tenth of the residual; and projects onto the bounds: a
-/// primal–dual active set (Hintermüller, Ito, Kunisch 2003) with the proportioning of Dostál and Schöberl
-/// (2005). The energy may increase temporarily. After some steps without a new minimum, the next one starts
-/// from the minimum and is halved until the energy decreases enough (a projected Newton step: Bertsekas
-/// 1982), so that the energy converges for any S. A force on the rim of its disc moves along the rim. If it
-/// does not converge within the multiplications or a number is not finite, λ is the best so far. Serial;
-/// O(size) besides S.
+/// Repeatedly selects the positive forces, and also those at 0 that would grow if they gain more than the
+/// positive ones; solves for the selected ones by conjugate gradients without bounds, to a tenth of the
+/// residual; and projects onto the bounds: a primal–dual active set (Hintermüller, Ito, Kunisch 2003) with
+/// the proportioning of Dostál and Schöberl (2005). The energy may increase temporarily. After some steps
+/// without a new minimum, the next one starts from the minimum and is halved until the energy decreases
+/// enough (a projected Newton step: Bertsekas 1982), so that the energy converges for any S. A force on the
+/// rim of its disc moves along the rim. If it does not converge within the multiplications or a number is not
+/// finite, λ is the best so far. Serial; O(size) besides S.
 ForceSolveReport minimise_forces(ForceOperator& matrix, const ForceBounds& bounds,
                                  const ForceSolveOptions& options, std::span<double> forces,
                                  std::span<double> gradient);
@@ -59,9 +59,9 @@ ForceSolveReport minimise_forces(ForceOperator& matrix, const ForceBounds& bound
 /// Replaces the forces by the nearest ones within the bounds.
 void project(const ForceBounds& bounds, std::span<double> forces);
 
-/// Returns the norm of the projected gradient, in units of S λ; 0 only at the minimum. A normal force counts
-/// the part of its gradient g − S λ along which it can move; one in a disc counts scale · ‖λ − P(λ + gradient
-/// / scale)‖ with P the projection, which does not jump where forces leave the rim.
+/// Returns the norm of the projected gradient, in units of S λ; 0 only at the minimum. For a normal force
+/// this is the part of g − S λ along which it can move. For a force in a disc it is scale · ‖λ − P(λ +
+/// gradient / scale)‖ with P the projection, which is continuous where forces leave the rim.
 double projected_gradient(const ForceBounds& bounds, std::span<const double> scale,
                           std::span<const double> forces, std::span<const double> gradient);
 

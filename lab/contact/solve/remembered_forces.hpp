@@ -14,8 +14,8 @@ struct ContactForce {
   Point along{};
 };
 
-/// Forces of the contacts of one call, as a first guess for those of the next that have the same first vertex
-/// and obstacle. Contacts may come in any order; of several with one key the last counts.
+/// Forces of the contacts of one call, as a first guess for contacts of the next call with the same first
+/// vertex and obstacle. Contacts may come in any order; of several with one key the last counts.
 class RememberedForces {
  public:
   void remember(std::span<const Contact> contacts, std::span<const ContactForce> forces);

@@ -40,7 +40,7 @@ class RowSweeps {
     return sum_over<Sum>([&](Index chunk) { return part(bounds_[chunk], bounds_[chunk + 1]); });
   }
 
-  /// The same of `part(chunk)`.
+  /// Returns the sum of `part(chunk)` over the chunks, in their order.
   template <class Sum, class Part>
   Sum sum_over(Part part) {
     std::vector<Sum> parts(bounds_.size() - 1);
@@ -73,7 +73,7 @@ class RowSweeps {
   bool backwards_ = false;
 };
 
-/// The chunks of a matrix's rows. O(chunks · log rows).
+/// Returns the chunks of a matrix's rows. O(chunks · log rows).
 template <class Value>
 std::vector<Index> chunks_of(const BlockCsrOf<Value>& matrix) {
   // 0.6 MB of a matrix in double: few enough chunks to cost nothing, many enough for any number of threads
@@ -86,7 +86,7 @@ std::vector<Index> chunks_of(const HalfBlockCsrOf<Value>& matrix) {
   return matrix.slabs;
 }
 
-/// q = A p in the rows of a chunk; returns their part of pᵀA p.
+/// Computes q = A p in the rows of a chunk and returns their part of pᵀA p.
 template <class Value>
 double multiply_chunk(const BlockCsrOf<Value>& matrix, const RowSweeps& rows, Index chunk,
                       std::span<const double> p, std::span<double> q) {
@@ -120,7 +120,7 @@ struct Vectors {
   explicit Vectors(std::size_t entries) : r(entries), z(entries), p(entries), q(entries) {}
 };
 
-/// The first vertex with an entry that is not finite, −1 for none.
+/// Returns the first vertex with an entry that is not finite, −1 if there is none.
 Index first_not_finite(std::span<const double> vector) {
   const auto found =
       std::find_if(vector.begin(), vector.end(), [](double entry) { return !std::isfinite(entry); });
@@ -228,8 +228,8 @@ class ConjugateGradients {
     return {status, iterations_, residual(), converged ? Index{-1} : largest_vertex(v_.r)};
   }
 
-  /// Finds the vertex where it began: first in the arguments, then in the vectors computed from them, in
-  /// which a bad row of the matrix shows first.
+  /// Reports the vertex where numbers stopped being finite. Looks first in the arguments, then in the vectors
+  /// computed from them, in the order in which a bad row of the matrix shows.
   [[nodiscard]] SolveReport not_finite() const {
     Index vertex = first_not_finite(b_);
     if (vertex < 0) vertex = first_not_finite(x_);
@@ -254,7 +254,7 @@ class ConjugateGradients {
   int iterations_ = 0;
 };
 
-/// r = b − A x; its norm.
+/// Computes r = b − A x and returns its norm.
 double compute_residual(const BlockCsr& matrix, std::span<const double> b, std::span<const double> x,
                         std::span<double> r) {
   multiply(matrix, x, r);

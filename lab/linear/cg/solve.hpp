@@ -50,24 +50,24 @@ Index largest_vertex(std::span<const double> vector);
 /// Solves A x = b by preconditioned conjugate gradients (Hestenes, Stiefel 1952), A symmetric and positive
 /// definite, x the start and the result; 3 doubles for each vertex. The preconditioner must have been updated
 /// with the matrix. In all cases x is the last valid iterate: on negative curvature the one before that
-/// search direction. The same bits for any number of threads. O(blocks) an iteration; vectors of 4 times the
+/// search direction. The same bits for any number of threads. O(blocks) an iteration; allocates 4 times the
 /// size of b. Numbers whose squares are too small for a double count as 0. Throws InvalidArgument when sizes
 /// differ or an option is negative.
 ///
-/// `Matrix` is BlockCsrOf or HalfBlockCsrOf, which differ in how they round; of double, or of float. In float
-/// an iteration reads about half as many bytes, and the system that is solved is that of the rounded matrix,
-/// whose solution differs by up to 6e-8 times the condition number; vectors and sums are in double. With half
-/// of the matrix an iteration reads little more than half as many bytes in a good order, and threads share 16
-/// slabs, two or more each.
+/// `Matrix` is BlockCsrOf or HalfBlockCsrOf, of double or float; the two round differently. In float an
+/// iteration reads about half as many bytes and solves the system of the rounded matrix, whose solution
+/// differs by up to 6e-8 times the condition number; vectors and sums are in double. HalfBlockCsrOf stores
+/// half of the matrix: in a good order an iteration reads little more than half as many bytes, and threads
+/// share 16 slabs, two or more each.
 template <class Matrix>
 SolveReport conjugate_gradients(const Matrix& matrix, const Preconditioner& preconditioner,
                                 std::span<const double> b, std::span<double> x,
                                 const SolveOptions& options = {});
 
-/// Solves A x = b to the same residual as conjugate_gradients(matrix, …), while its iterations read
-/// `rounded`, the same matrix in single precision, BlockCsrOf<float> or HalfBlockCsrOf<float>: while the
-/// residual of A itself is too large, it solves for a correction in the same way (iterative refinement,
-/// Wilkinson 1963). Reports the iterations of all corrections. Measured in docs/evidence/benchmarks.md.
+/// Solves A x = b to the same residual as conjugate_gradients(matrix, …), but its iterations read `rounded`,
+/// the same matrix in single precision, BlockCsrOf<float> or HalfBlockCsrOf<float>. While the residual of A
+/// itself is too large, it solves for a correction in the same way (iterative refinement, Wilkinson 1963).
+/// Reports the iterations of all corrections. Measured in docs/evidence/benchmarks.md.
 template <class Rounded>
 SolveReport refined_conjugate_gradients(const BlockCsr& matrix, const Rounded& rounded,
                                         const Preconditioner& preconditioner, std::span<const double> b,

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lab/linear/cg/vector_passes.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// from here on compiled once for each instruction set
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();

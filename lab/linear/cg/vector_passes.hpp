@@ -10,7 +10,7 @@ namespace meshorder::passes {
 // Vector operations of conjugate gradients for the vertices begin … end − 1, 3 doubles for each vertex. The
 // order of each sum depends only on begin and end.
 
-/// aᵀb
+/// Returns aᵀb.
 double dot(std::span<const double> a, std::span<const double> b, Index begin, Index end);
 
 /// y = b − y; returns yᵀy.

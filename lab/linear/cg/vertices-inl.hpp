@@ -21,13 +21,13 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The numbers of vertex or place number `place` in a vector of kPaddedStride for each.
+/// Returns the numbers of vertex `place` in a vector with kPaddedStride numbers for each vertex.
 template <class Real>
 HWY_INLINE Real* at(Real* x, Index place) {
   return x + Offset{kPaddedStride} * place;
 }
 
-/// Where the bytes of a factor come from in a register that starts with one for each vertex.
+/// Byte indices of a shuffle that repeats each factor of a register over the lanes of one vertex.
 template <class Real>
 struct Spread {
   alignas(64) std::uint8_t places[64] = {};
@@ -39,7 +39,7 @@ struct Spread {
   }
 };
 template <class Real>
-[[maybe_unused]] constexpr Spread<Real> kSpread;  // not where a register holds one vertex
+[[maybe_unused]] constexpr Spread<Real> kSpread;  // unused where a register holds one vertex
 
 /// The numbers of a vertex, in as many registers as they need.
 template <class Real>
@@ -114,7 +114,7 @@ struct Vertices {
     MESHORDER_UNROLL
     for (int i = 0; i < One::kParts; ++i) scatter(Tag(), part[i], x + One::kLanes * i, places);
   }
-  /// Less of[i] · factors[i] in place i. Reads 16 bytes of factors.
+  /// Subtracts of[i] · factors[i] from vertex i. Reads 16 bytes of factors.
   HWY_INLINE void subtract_products(const Real* factors, const Vertices& of) {
     const auto spread = spread_out(Tag(), factors);
     MESHORDER_UNROLL

@@ -10,8 +10,8 @@
 
 namespace meshorder {
 
-/// The part of the factor that a right-hand side reaches which is 0 except at some vertices: the columns on
-/// their paths to the roots of the elimination tree (Gilbert 1994), as panels.
+/// The part of the factor needed for right-hand sides that are 0 except at some vertices: the columns on the
+/// vertices' paths to the roots of the elimination tree (Gilbert 1994), as panels.
 struct FactorReach {
   std::vector<Index> vertices;  ///< as given
   std::vector<Index> panels;    ///< ascending
@@ -42,9 +42,9 @@ class CholeskyFactor {
   /// a vertex that does not exist. O(panels reached, times the logarithm of their number).
   [[nodiscard]] Reach reach_of(std::span<const Index> vertices) const;
 
-  /// The same solution at the vertices given to reach_of, where b may be other than 0: b and x, of the same
-  /// size as ever, are read and written there and nowhere else. They may be the same array.
-  /// O(reach.entries).
+  /// Computes the same solution at the vertices given to reach_of; b must be 0 at all others. b and x have
+  /// their full size, but only the numbers of these vertices are read and written. They may be the same
+  /// array. O(reach.entries).
   void solve(const Reach& reach, std::span<const Real> b, std::span<Real> x) const;
 
   [[nodiscard]] Index size() const noexcept;

@@ -10,11 +10,11 @@
 namespace meshorder {
 namespace {
 
-/// Smallest cost of a task: so many entries, and this part of the whole factor.
+/// Smallest cost of a task: this many entries, and at least this part of the whole factor.
 constexpr double kMinCost = 40'000;
 constexpr double kMinPart = 1.0 / 32;
 
-/// The factor while it is made: first all columns are numbered, then rows and values are filled in.
+/// Builds the factor: first numbers all columns, then fills in rows and values.
 template <class Real>
 class Builder {
  public:
@@ -26,7 +26,7 @@ class Builder {
     const SolveTasks tasks = make_solve_tasks(supernodes, std::max(kMinCost, kMinPart * cost));
 
     factor_.column_of_vertex.resize(ldl.size());
-    // those below others first
+    // children before their parents
     for (Index task = tasks.count() - 1; task >= 0; --task) {
       begin_task(tasks, task);
       for (const Index s : tasks.supernodes[task]) add_columns(columns[s]);
@@ -45,8 +45,8 @@ class Builder {
 
  private:
   const Ldl& ldl_;
-  std::vector<Index> number_;    ///< in the factor, of the columns of L
-  std::vector<Index> columns_;   ///< of L, by these numbers
+  std::vector<Index> number_;    ///< of each column of L: its number in the factor
+  std::vector<Index> columns_;   ///< of each of these numbers: the column of L
   std::vector<Index> place_of_;  ///< of some columns
   PanelFactor<Real> factor_;
   Offset rows_ = 0, values_ = 0;  ///< in all panels so far
@@ -87,7 +87,7 @@ class Builder {
     }
   }
 
-  /// The next panels: those of a supernode with this last column of L.
+  /// Fills the next panels, which are those of the supernode whose last column of L is `top`.
   void fill_panels(Index top) {
     std::vector<Index> below;
     for (Offset k = ldl_.offsets[top]; k < ldl_.offsets[top + 1]; ++k) below.push_back(number_[ldl_.rows[k]]);
@@ -121,15 +121,15 @@ class Builder {
     }
   }
 
-  /// Of column j in row r below the panel, see PanelView.
+  /// Returns the place of column j in row r below the panel; see PanelView.
   static Offset place_below(const Panel& panel, Index r, Index j) {
     const Index group = r - r % Panel::kGroup;
     const Index in_group = std::min(Panel::kGroup, panel.row_count - group);
     return panel.width * (panel.width + 1) / 2 + Offset{panel.width} * group + in_group * j + (r - group);
   }
 
-  /// Slots for rows of later tasks to the task whose panels were filled last, and to its children their
-  /// places in it.
+  /// Gives the task, whose panels were filled last, slots for rows of later tasks; gives its children's slots
+  /// their places in it.
   void give_slots(PanelTask& task) {
     const Index n = factor_.size();
     if (task.first_panel == task.end_panel) {
@@ -150,7 +150,7 @@ class Builder {
     std::transform(begin, end, begin, place);
     above_.insert(above_.end(), later.begin(), later.end());
     factor_.above_slots.resize(above_.size());
-    // all rows that a child gives to are columns of this task or among its own later rows
+    // each row that a child contributes to is a column of this task or one of its later rows
     for (const Index child : task.children) {
       for (Index slot = factor_.tasks[child].first_slot; slot < factor_.tasks[child].end_slot; ++slot) {
         factor_.above_slots[slot - n] = place(above_[slot - n]);

@@ -10,9 +10,9 @@
 
 namespace meshorder {
 
-/// Part of a solve, independent of those that are neither above nor below it in the tree of tasks. What it
-/// gives to rows above it goes to places of its own, its slots, from which the task above takes it: so that
-/// tasks can run at the same time and sums have the same order on any number of threads.
+/// A part of a solve, independent of tasks that are neither above nor below it in the tree of tasks. It adds
+/// its contributions to rows above it in places of its own, its slots, from which the task above takes them.
+/// So tasks can run at the same time, and sums have the same order on any number of threads.
 struct PanelTask {
   Index first_column, end_column;
   Index first_panel, end_panel;
@@ -31,17 +31,17 @@ struct PanelFactor {
   std::vector<Panel> panels;
   std::vector<Index> rows;  ///< places: of a column, or of a task's slot
   AlignedVector<Real> values;
-  std::vector<PanelTask> tasks;    ///< those below others come first; the last is above all
+  std::vector<PanelTask> tasks;    ///< children before their parents; the last is the root
   std::vector<Index> above_slots;  ///< for each slot, from the first: its place in the task above
 
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(vertex_of_column.size()); }
-  /// Of a vector.
+  /// Returns the number of places of a vector.
   [[nodiscard]] Index places() const noexcept { return size() + static_cast<Index>(above_slots.size()); }
   [[nodiscard]] PanelView<Real> view() const noexcept { return {panels.data(), rows.data(), values.data()}; }
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// O(entries).
+/// Arranges a factor in panels and tasks. O(entries).
 template <class Real>
 PanelFactor<Real> make_panel_factor(const Ldl& ldl);
 

@@ -55,8 +55,8 @@ class Solve {
     return {panels.data() + (begin - panels.begin()), 0, static_cast<Index>(end - begin)};
   }
 
-  /// Returns whether any panel of the task takes part. The path from one panel goes through the later ones of
-  /// its task.
+  /// Returns whether any panel of the task takes part. A path that enters a task passes through its last
+  /// panel.
   [[nodiscard]] bool takes_part(Index task) const { return panels_of(factor_.tasks[task]).count > 0; }
 
   template <class Work>

@@ -24,14 +24,14 @@ struct PanelWorkspace {
 template <class Real>
 void solve_panels(const PanelFactor<Real>& factor, const Real* b, Real* x, PanelWorkspace<Real>& workspace);
 
-/// The panels that a right-hand side reaches which is 0 but at these vertices (Gilbert 1994). O(panels
-/// reached, times the logarithm of their number).
+/// Returns the panels needed for right-hand sides that are 0 except at these vertices (Gilbert 1994).
+/// O(panels reached, times the logarithm of their number).
 template <class Real>
 FactorReach panels_reached(const PanelFactor<Real>& factor, std::span<const Index> vertices,
                            PanelWorkspace<Real>& workspace);
 
-/// The same as solve_panels for a b that is 0 elsewhere than at the vertices of `reach`; reads b and writes x
-/// there alone. O(reach.entries).
+/// Does the same as solve_panels for a b that is 0 except at the vertices of `reach`; reads b and writes x
+/// only there. O(reach.entries).
 template <class Real>
 void solve_panels(const PanelFactor<Real>& factor, const FactorReach& reach, const Real* b, Real* x,
                   PanelWorkspace<Real>& workspace);

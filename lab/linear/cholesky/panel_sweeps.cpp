@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lab/linear/cholesky/panel_sweeps.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// from here on compiled once for each instruction set
 #include "lab/linear/cg/vertices-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -14,7 +14,7 @@ namespace {
 constexpr int kGroup = Panel::kGroup;
 static_assert(kGroup % Vertices<double>::kCount == 0 && kGroup % Vertices<float>::kCount == 0);
 
-/// x = L⁻¹ x for the columns of a panel, and 1/D times that to the vector.
+/// Computes y = L⁻¹ x for the columns of a panel, and stores D⁻¹ y in the vector.
 template <int Width, class Real>
 HWY_INLINE void eliminate(const Real* values, Vertex<Real> (&y)[Width], Real* own) {
   MESHORDER_UNROLL
@@ -60,7 +60,7 @@ HWY_INLINE void panel_forwards(const Index* rows, Index row_count, const Real* v
   }
 }
 
-/// Hardware prefetches less far ahead, and hardly at all for descending addresses.
+/// Prefetches further ahead than hardware does, which hardly prefetches descending addresses at all.
 template <int Bytes, class Real>
 HWY_INLINE void ask_for_those_before(const Real* values) {
   constexpr int kBytesAhead = 4096;

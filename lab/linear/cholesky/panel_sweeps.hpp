@@ -5,7 +5,7 @@
 
 namespace meshorder {
 
-/// Some columns of L side by side, and the rows below them that any of them has.
+/// Adjacent columns of L, and the rows below them in which any of them has an entry.
 struct Panel {
   static constexpr Index kWidest = 8;
   static constexpr Index kGroup = 4;  ///< rows
@@ -18,10 +18,10 @@ struct Panel {
   Offset values;    ///< where the entries begin
 };
 
-/// Panels of a factor L D Lᵀ. The values of each are the entries left of the diagonal of its own columns, row
-/// by row; 1/D of its columns; those of the rows below in groups of kGroup rows and one of the rest, each
-/// column by column. 16 more bytes must follow the last. Vectors have kPaddedStride numbers for each column
-/// and row.
+/// Panels of a factor L D Lᵀ. The values of each panel are the entries left of the diagonal of its own
+/// columns, row by row; 1/D of its columns; and the rows below, in groups of kGroup rows and one group of the
+/// rest, each column by column. 16 more bytes must follow the last. Vectors have kPaddedStride numbers for
+/// each column and row.
 template <class Real>
 struct PanelView {
   const Panel* panels;
@@ -29,7 +29,7 @@ struct PanelView {
   const Real* values;
 };
 
-/// Which panels: those listed, or from `first` on where `list` is null.
+/// A choice of panels: those listed, or consecutive ones from `first` on if `list` is null.
 struct PanelRange {
   const Index* list;
   Index first;
@@ -38,11 +38,11 @@ struct PanelRange {
   [[nodiscard]] Index operator[](Index i) const noexcept { return list == nullptr ? first + i : list[i]; }
 };
 
-/// x = D⁻¹ L⁻¹ x at the columns of these panels, and less what they give at their rows. O(entries).
+/// x ← D⁻¹ L⁻¹ x at the columns of these panels; subtracts their contributions at their rows. O(entries).
 void sweep_forwards(const PanelView<double>& view, const PanelRange& range, double* x);
 void sweep_forwards(const PanelView<float>& view, const PanelRange& range, float* x);
 
-/// x = L⁻ᵀ x at the columns of these panels, where the rows below hold the solution. O(entries).
+/// x ← L⁻ᵀ x at the columns of these panels; the rows below must hold the solution. O(entries).
 void sweep_backwards(const PanelView<double>& view, const PanelRange& range, double* x);
 void sweep_backwards(const PanelView<float>& view, const PanelRange& range, float* x);
 

@@ -16,7 +16,7 @@ using Block = Eigen::Matrix<double, R, C, Eigen::RowMajor>;
 template <int R, int C>
 using FloatBlock = Eigen::Matrix<float, R, C, Eigen::RowMajor>;
 
-/// Calls `work(begin, end)` for shares of the rows large enough for room of the size of the matrix in each.
+/// Calls `work(begin, end)` for shares of the rows, few enough that each may allocate as much as the matrix.
 template <class Work>
 void for_each_share(Index rows, Work work) {
   constexpr Index kShares = 16;
@@ -30,7 +30,7 @@ class ColumnSet {
  public:
   explicit ColumnSet(Index columns) : place_(columns, -1) {}
 
-  /// The place of the column among those met, in the order in which they were.
+  /// Returns the place of the column in the sequence of columns met; appends it if it is new.
   Index place(Index column) {
     if (place_[column] < 0) {
       place_[column] = index_size(columns_);
@@ -49,7 +49,7 @@ class ColumnSet {
   std::vector<Index> columns_;
 };
 
-/// Rows of columns made share by share, put together.
+/// Collects the columns of rows, which are made share by share, and puts them together.
 class PatternParts {
  public:
   explicit PatternParts(Index rows) : rows_(rows) {}
@@ -71,7 +71,7 @@ class PatternParts {
   std::vector<std::vector<Index>> rows_;
 };
 
-/// Gives unknowns without a pivot one.
+/// Replaces pivots of 0 by the largest pivot, or by 1.
 void fill_pivots(double* block) {
   double largest = 0;
   for (int i = 0; i < kRigidModes; ++i) largest = std::max(largest, block[i * (kRigidModes + 1)]);

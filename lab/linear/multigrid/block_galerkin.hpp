@@ -15,19 +15,19 @@ struct ColumnBlocks {
   std::vector<Index> blocks;
 };
 
-/// O(rows + columns + blocks).
+/// Returns the blocks of each column. O(rows + columns + blocks).
 template <int R>
 ColumnBlocks column_blocks(const Prolongation<R>& prolongation);
 
-/// The pattern of Pᵀ A P, with its diagonal and ascending columns, without values. O(multiplications) without
-/// the blocks' factor.
+/// Returns the pattern of Pᵀ A P, with its diagonal and ascending columns, without values. O(products of
+/// blocks).
 template <int R>
 CoarseMatrix galerkin_pattern(const BlockView<R>& fine, const Prolongation<R>& p,
                               const ColumnBlocks& transposed);
 
-/// Pᵀ A P into that pattern, for symmetric A, in double. Unknowns that P leaves out (columns of zeros) get
-/// the largest entry of their block's diagonal, or 1, on the diagonal, so that the product is as definite as
-/// A. O(multiplications), on all threads; the same bits for any number of them.
+/// Computes Pᵀ A P into that pattern, for symmetric A, in double. Unknowns that P leaves out (columns of
+/// zeros) get the largest entry of their block's diagonal, or 1, on the diagonal, so that the product is as
+/// definite as A. O(multiplications), on all threads; the same bits for any number of them.
 template <int R>
 void galerkin_product(const BlockView<R>& fine, const Prolongation<R>& p, const ColumnBlocks& transposed,
                       CoarseMatrix& coarse);

@@ -32,7 +32,7 @@ struct BlockRows {
   }
 };
 
-/// From the rigid modes of coarse nodes to R unknowns of each finer one.
+/// Maps the rigid modes of coarse nodes to the R unknowns of each finer node.
 template <int R>
 using Prolongation = BlockRows<float, R, kRigidModes>;
 

@@ -28,7 +28,7 @@ struct Quad {
   HWY_INLINE void store(float* to) const {
     for (int i = 0; i < 4; ++i) to[i] = lanes[i];
   }
-  /// With zeros after the first `count`.
+  /// Returns the first `count` lanes, then zeros.
   HWY_INLINE Quad first(int count) const {
     Quad result = set(0);
     for (int i = 0; i < count; ++i) result.lanes[i] = lanes[i];
@@ -44,7 +44,7 @@ struct Quad {
   }
   /// c − a b
   static HWY_INLINE Quad subtract_product(Quad a, Quad b, Quad c) { return mul_add(a * set(-1), b, c); }
-  /// The sums of the lanes of each.
+  /// Returns the sum of the lanes of each of the four.
   static HWY_INLINE Quad sums(const Quad* four) {
     Quad result;
     for (int i = 0; i < 4; ++i) {
@@ -81,7 +81,7 @@ struct Quad {
 };
 #endif
 
-/// R floats, and anything after them.
+/// R floats of a node; the lanes after them may hold anything.
 template <int R>
 struct Node {
   static constexpr int kQuads = (R + 3) / 4;
@@ -104,7 +104,7 @@ struct Node {
     MESHORDER_UNROLL
     for (int q = 0; q < kQuads; ++q) part[q].store(to + 4 * q);
   }
-  /// With zeros after the R floats.
+  /// Returns the R floats with zeros after them.
   HWY_INLINE Node clean() const {
     Node result = *this;
     result.part[kQuads - 1] = part[kQuads - 1].first(R - 4 * (kQuads - 1));
@@ -156,7 +156,7 @@ struct ProductSum {
   }
 };
 
-/// y += Bᵀ x of a block B of R×C numbers, column by column, y in memory; zeros follow x
+/// y += Bᵀ x for a block B of R×C numbers, column by column; y is in memory, and zeros follow x's floats
 template <int R, int C>
 HWY_INLINE void add_transposed_product(const float* block, const Node<R>& x, float* y) {
   constexpr int kQuads = Node<C>::kQuads;

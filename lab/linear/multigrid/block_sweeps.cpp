@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lab/linear/multigrid/block_sweeps.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// from here on compiled once for each instruction set
 #include "lab/linear/multigrid/block_sweeps-inl.hpp"
 
 #ifndef MESHORDER_SWEPT_ROWS
@@ -45,7 +45,7 @@ HWY_INLINE void give(const SweptRows& rows, Index i, const Node<R>& x) {
   }
 }
 
-/// x = D⁻¹ sum in row i
+/// Sets x = D⁻¹ sum in row i and returns it.
 template <int R>
 HWY_INLINE Node<R> solve_diagonal(const SweptRows& rows, Index i, const Node<R>& sum) {
   float entries[Node<R>::kStride];
@@ -57,8 +57,8 @@ HWY_INLINE Node<R> solve_diagonal(const SweptRows& rows, Index i, const Node<R>&
   return x;
 }
 
-/// L x in row i. Prefetches blocks `Ahead` bytes from those of the row; hardware does not prefetch descending
-/// rows.
+/// Returns L x in row i. Prefetches blocks `Ahead` bytes from those of the row; hardware does not prefetch
+/// descending rows.
 template <int R, int Ahead>
 HWY_INLINE Node<R> left_product(const SweptRows& rows, Index i) {
   auto product = ProductSum<R, R>::zero();
@@ -149,7 +149,7 @@ bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
   return result;
 }
 
-/// Returns chunks that two threads can share evenly, or one chunk if there are none.
+/// Returns the smallest chunks, of `min_rows` rows doubled, that touch only adjacent ones; else one chunk.
 RowChunks sweep_chunks(const Laplacian& graph, Index min_rows) {
   for (Index rows = min_rows; rows < graph.size(); rows *= 2) {
     RowChunks chunks(graph, rows);
@@ -158,7 +158,7 @@ RowChunks sweep_chunks(const Laplacian& graph, Index min_rows) {
   return RowChunks::whole(graph.size());
 }
 
-/// A⁻¹ of a symmetric block, with the eigenvalues made positive where they are not; 0 for what is not finite.
+/// Returns the inverse of a symmetric block, its eigenvalues made positive; 0 if the block is not finite.
 template <int R>
 Eigen::Matrix<double, R, R> positive_inverse(const Eigen::Matrix<double, R, R>& block) {
   using Block = Eigen::Matrix<double, R, R>;

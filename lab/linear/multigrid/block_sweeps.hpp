@@ -10,7 +10,7 @@
 
 namespace meshorder {
 
-/// Floats from one node to the next in the vectors of a level with R unknowns a node: those after the
+/// Floats from one node to the next in the vectors of a level with R unknowns a node. The floats after the
 /// unknowns stay 0.
 template <int R>
 inline constexpr Index kNodeStride = R == 3 ? 4 : 8;
@@ -31,7 +31,7 @@ class BlockSweeps {
   /// Takes the pattern of A; the values follow by `update`. Chunks have at least `min_rows` rows.
   explicit BlockSweeps(const BlockView<R>& pattern, Index min_rows = kMinRows);
 
-  /// Takes the values. D is made positive definite where it is not. On all threads.
+  /// Takes the values, on all threads. Diagonal blocks that are not positive definite are made so.
   void update(const BlockView<R>& matrix);
 
   /// Scratch memory for contributions of rows to earlier rows: kNodeStride floats a node each.
@@ -46,7 +46,7 @@ class BlockSweeps {
   /// x ← (D + Lᵀ)⁻¹ (b − L x).
   void backwards(const AlignedVector<float>& b, AlignedVector<float>& x, Given& given) const;
 
-  /// residual = L (before − x): b − A x, where `backwards` made x of `before`.
+  /// residual = L (before − x), which is b − A x if `backwards` turned `before` into x.
   void residual_after_backwards(const AlignedVector<float>& before, const AlignedVector<float>& x,
                                 AlignedVector<float>& residual) const;
 

@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// The graph of the blocks that are not zero, with their norms for weights.
+/// Returns the graph of the blocks that are not zero, with their norms as weights.
 template <int R>
 Laplacian graph_of_norms(const BlockView<R>& matrix) {
   Laplacian graph;
@@ -35,10 +35,10 @@ Laplacian graph_of_norms(const BlockView<R>& matrix) {
   return graph;
 }
 
-/// The aggregates, larger ones where the prolongation is smoothed, without those of a single node that has no
-/// neighbour at all.
+/// Returns the aggregates of the nodes that have neighbours. They are larger if the prolongation is
+/// smoothed.
 Aggregates aggregates_of(const Laplacian& graph, Coarsening coarsening) {
-  // of the strongest neighbour
+  // relative to the strongest neighbour
   const double strength = coarsening == Coarsening::plain ? 0.25 : 0.04;
   const Aggregation all = aggregate(graph, RowChunks::whole(graph.size()), strength);
   const auto has_neighbours = [&](Index i) { return graph.offsets[i] < graph.offsets[i + 1]; };
@@ -62,10 +62,10 @@ Aggregates aggregates_of(const Laplacian& graph, Coarsening coarsening) {
   return result;
 }
 
-/// 4/3 over an estimate of the spectral radius of D⁻¹ A, by the power method.
+/// Returns 4/3 over an estimate of the spectral radius of D⁻¹ A, by the power method.
 double smoothing_of(const BlockView<kRigidModes>& matrix, const AlignedVector<float>& inverse_diagonal) {
   constexpr int kSteps = 12;
-  constexpr double kMargin = 1.1;  // the power method stays below
+  constexpr double kMargin = 1.1;  // since the power method underestimates
   using Vector = Eigen::Matrix<double, kRigidModes, 1>;
   using Square = Eigen::Matrix<double, kRigidModes, kRigidModes, Eigen::RowMajor>;
   const Eigen::Index n = Eigen::Index{kRigidModes} * matrix.rows();

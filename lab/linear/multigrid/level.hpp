@@ -25,9 +25,9 @@ struct MultigridLevel {
 /// Whether to smooth the prolongation of a level.
 enum class Coarsening : std::uint8_t { plain, smoothed };
 
-/// The level of a matrix, and the way to the next: aggregates by the norms of the blocks, of which `modes`
-/// (R×6 numbers a node, in the order of the view) gives those of the coarse nodes back. The level is the
-/// coarsest if coarsening would keep most nodes.
+/// Makes the level of a matrix and the transfer to the next level, with aggregates by the norms of the
+/// blocks. `modes` holds R×6 numbers a node, in the order of the view; on return it holds those of the coarse
+/// nodes. The level is the coarsest if coarsening would keep most nodes.
 template <int R>
 MultigridLevel<R> make_level(const BlockView<R>& matrix, Coarsening coarsening, std::vector<double>& modes);
 

@@ -19,7 +19,7 @@ namespace {
 
 using Vector = AlignedVector<float>;
 
-/// The graph of the blocks off the diagonal.
+/// Returns the graph of the blocks off the diagonal.
 CsrGraph graph_of(const BlockCsr& pattern) {
   CsrGraph graph;
   graph.offsets.reserve(pattern.offsets.size());
@@ -60,7 +60,7 @@ Eigen::MatrixXf dense_inverse(const CoarseMatrix& matrix) {
 template <int R>
 struct LevelVectors {
   Vector b, x, residual;
-  Vector before, first;  ///< of a second cycle
+  Vector before, first;  ///< for a second cycle
   typename BlockSweeps<R>::Given given;
 
   explicit LevelVectors(Index nodes) {
@@ -180,7 +180,7 @@ class Multigrid final : public Preconditioner {
   [[nodiscard]] Vector& right_side(std::size_t level) const { return coarse_vectors_[level].b; }
   [[nodiscard]] Vector& correction(std::size_t level) const { return coarse_vectors_[level].x; }
 
-  /// x ≈ A⁻¹ b on a coarse level.
+  /// Sets x ≈ A⁻¹ b on a coarse level.
   void cycle(std::size_t level) const {
     LevelVectors<kRigidModes>& here = coarse_vectors_[level];
     if (level == coarse_.size()) {
@@ -200,7 +200,7 @@ class Multigrid final : public Preconditioner {
     now.sweeps.backwards(here.b, here.x, here.given);
   }
 
-  /// A second cycle, on what the first has left.
+  /// Applies a second cycle to the residual of the first.
   void cycle_again(std::size_t level) const {
     LevelVectors<kRigidModes>& here = coarse_vectors_[level];
     coarse_[level].sweeps.residual_after_backwards(here.before, here.x, here.residual);
@@ -223,7 +223,7 @@ class Multigrid final : public Preconditioner {
   }
 
   std::vector<Point> points_;  ///< until the levels are made
-  std::vector<Index> order_;   ///< the vertices in the order of the finest level, and the way back
+  std::vector<Index> order_;   ///< the vertex of each row of the finest level; `number_` is the inverse
   std::vector<Index> number_;
   std::vector<Index> identity_;
   bool is_made_ = false;

@@ -18,8 +18,8 @@ struct Aggregates {
   [[nodiscard]] Index count() const noexcept { return index_size(starts) - 1; }
 };
 
-/// The displacements of each point in the six infinitesimal rigid motions about the mean of all, 3×6 numbers
-/// a point, row by row: translations along x, y, z, rotations about x, y, z. O(points).
+/// Returns the displacements of each point in the six infinitesimal rigid motions about the mean of all, 3×6
+/// numbers a point, row by row: translations along x, y, z, rotations about x, y, z. O(points).
 std::vector<double> rigid_modes(std::span<const Point> points);
 
 /// Result of aggregation: the prolongation and the modes of the coarse nodes.
@@ -30,11 +30,11 @@ struct RigidProlongation {
   std::vector<double> coarse_modes;
 };
 
-/// Prolongation that is zero but where a fine node meets its own aggregate, its columns the modes restricted
-/// to the aggregate and orthonormalised (Vaněk, Mandel, Brezina 1996). A mode that there is a combination
-/// of those before it (rotations of a single vertex, the rotation of a line about itself) gets a column of
-/// zeros. `modes` holds R×6 numbers for each of `fine_count` nodes; nodes in no aggregate get empty rows.
-/// O(fine nodes).
+/// Returns the prolongation in which a fine node depends only on its own aggregate. The columns of an
+/// aggregate are the modes restricted to it and orthonormalised (Vaněk, Mandel, Brezina 1996). A mode that is
+/// there a combination of earlier ones (rotations of a single vertex, the rotation of a line about itself)
+/// gets a column of zeros. `modes` holds R×6 numbers for each of `fine_count` nodes; nodes in no aggregate
+/// get empty rows. O(fine nodes).
 template <int R>
 RigidProlongation<R> rigid_prolongation(const Aggregates& aggregates, Index fine_count,
                                         std::span<const double> modes);

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lab/linear/multigrid/transfer.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// from here on compiled once for each instruction set
 #include "lab/linear/multigrid/block_sweeps-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -18,7 +18,7 @@
 namespace meshorder {
 namespace {
 
-/// a −= b · blockᵀ, all of nine entries row by row.
+/// Subtracts b · blockᵀ from a, all of nine entries row by row.
 template <class Value>
 void subtract_product(double* a, const double* b, const Value* block) {
   for (int i = 0; i < 3; ++i) {
@@ -55,8 +55,8 @@ std::vector<bool> joining_vertices(const BlockCsr& pattern, const std::vector<In
 
 IncompleteCholesky::IncompleteCholesky(const BlockCsr& pattern) : offsets_{0} {
   const Index n = pattern.size();
-  // enough for a thread to work on, not so many that most vertices join chunks, and a power of two, which any
-  // usual number of threads shares evenly
+  // rows enough for a thread's work; chunks so few that most vertices don't join them, and a power of two,
+  // which any usual number of threads shares evenly
   constexpr Index kRows = 8'000, kMaxChunks = 16;
   const auto count = static_cast<std::uint32_t>(std::clamp<Index>(n / kRows, 1, kMaxChunks));
   const std::vector<Index> chunks =
@@ -102,7 +102,7 @@ void IncompleteCholesky::update(const BlockCsr& matrix) {
     throw InvalidArgument("preconditioner: made for " + std::to_string(size()) +
                           " vertices, the matrix has " + std::to_string(matrix.size()));
   }
-  // elastic solids take about an eighth
+  // elastic solids need about an eighth
   constexpr double kFirst = 1.0 / 64.0, kFactor = std::numbers::sqrt2, kMax = 64.0;
   shift_ = 0.0;
   while (!factor(matrix, shift_)) {

@@ -14,8 +14,8 @@ namespace meshorder {
 /// diagonal blocks are enlarged and the factorisation restarts (Manteuffel 1980). Measured against Jacobi in
 /// docs/evidence/benchmarks.md.
 ///
-/// Vertices are eliminated in their order, but for those that join a chunk of rows to one before it: they
-/// come last. What is within chunks is then factored and solved on threads. The chunks depend on the pattern
+/// Vertices are eliminated in their order, except that those coupled to an earlier chunk of rows come last.
+/// The inner vertices of the chunks are then factored and solved on threads. The chunks depend on the pattern
 /// alone. In a local order few vertices join chunks; in a scrambled one most do, and threads gain nothing.
 class IncompleteCholesky final : public Preconditioner {
  public:
@@ -44,7 +44,7 @@ class IncompleteCholesky final : public Preconditioner {
   std::vector<Index> rows_;         ///< of each vertex
   std::vector<Offset> offsets_;     ///< of each row's blocks left of the diagonal
   std::vector<Index> columns_;      ///< their vertices, in the order of elimination
-  std::vector<Offset> sources_;     ///< which blocks of the matrix they come from
+  std::vector<Offset> sources_;     ///< the blocks of the matrix that they come from
   std::vector<Offset> diagonals_;   ///< the matrix's blocks on the diagonal, for each row
   AlignedVector<float> values_;     ///< L's blocks, and one more number, since vector loads read past the end
   AlignedVector<double> inverses_;  ///< D⁻¹, 6 for each vertex: 00 01 02 11 12 22

@@ -11,23 +11,23 @@ namespace meshorder {
 /// A symmetric 3×3 block by its upper triangle: 00 01 02 11 12 22.
 using SymmetricBlock = std::array<double, 6>;
 
-/// The upper triangle of a block of nine entries, row by row.
+/// Returns the upper triangle of a block of nine entries, row by row.
 inline SymmetricBlock upper_triangle(const double* block) {
   return {block[0], block[1], block[2], block[4], block[5], block[8]};
 }
 
-/// The inverse of a positive definite block; none if the block is not positive definite or singular to
-/// rounding.
+/// Returns the inverse of a positive definite block; none if the block is not positive definite or is
+/// singular to rounding.
 std::optional<SymmetricBlock> inverse_of_definite(const SymmetricBlock& block);
 
-/// 1 / |entry|, or 1 where that or the entry is not finite.
+/// Returns 1 / |entry|, or 1 if that or the entry is not finite.
 double inverse_or_one(double entry);
 
-/// The inverse of a block, or of its diagonal's absolute value where the block is not positive definite:
-/// always finite and positive definite itself.
+/// Returns the inverse of a block, or of its diagonal's absolute value if the block is not positive definite.
+/// The result is always finite and positive definite.
 SymmetricBlock definite_inverse(const SymmetricBlock& block);
 
-/// The number of the block of a vertex on the diagonal. Throws InvalidArgument when the pattern lacks it.
+/// Returns the index of a vertex's block on the diagonal. Throws InvalidArgument if the pattern lacks it.
 Offset diagonal_block(const BlockCsr& matrix, Index vertex);
 
 /// q = block · p

@@ -6,7 +6,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lab/linear/preconditioners/triangular_solve.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// from here on compiled once for each instruction set
 #include "kernels/block_rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -14,7 +14,7 @@ namespace meshorder::HWY_NAMESPACE {
 namespace {
 
 #if HWY_MAX_BYTES >= 32
-/// z −= blockᵀ · p, by rows of the block.
+/// Subtracts blockᵀ · p from z, by rows of the block.
 struct TransposedProduct {
   using Four = hn::FixedTag<double, 4>;
   hn::Vec<Four> p0, p1, p2;
@@ -26,7 +26,7 @@ struct TransposedProduct {
     auto sum = hn::Mul(row(block), p0);
     sum = hn::MulAdd(row(block + 3), p1, sum);
     sum = hn::MulAdd(row(block + 6), p2, sum);
-    // two and one, as they are loaded again
+    // two and one, the sizes in which they are loaded again
     const hn::Half<Four> two;
     hn::StoreU(hn::Sub(hn::LoadU(two, z), hn::LowerHalf(two, sum)), two, z);
     z[2] -= hn::GetLane(hn::UpperHalf(two, sum));

@@ -16,10 +16,10 @@ struct BlockFactor {
   const double* inverses;  ///< of D's blocks, 6 for each vertex: 00 01 02 11 12 22
 };
 
-/// The rows begin … end − 1 of L z = r: z at their vertices. O(blocks).
+/// Solves rows begin … end − 1 of L z = r for z at their vertices. O(blocks).
 void solve_lower(const BlockFactor& factor, const double* r, double* z, Index begin, Index end);
 
-/// The rows end − 1 … begin of Lᵀ z = y, with z on entry y less what later rows have taken from it.
+/// Solves rows end − 1 … begin of Lᵀ z = y. On entry z is y without the contributions of later rows.
 /// O(blocks).
 void solve_upper(const BlockFactor& factor, double* z, Index begin, Index end);
 

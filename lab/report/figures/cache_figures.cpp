@@ -140,7 +140,7 @@ Figure cache_figure(const StudyResults& results, const MeshRecord& mesh) {
   const int key_height = kKeyRow * (static_cast<int>(mesh.orders.size()) + 1) / 2;
   const int panels = key_height + 40;
   constexpr int kRow = 140;
-  // the first ones; a matrix has products alone
+  // the first kernels that have accesses; a matrix has only products
   const auto is_run = [&](const KernelRecord& kernel) { return kernel.accesses > 0; };
   const std::array<KernelRecord, kKernels.size()>& records = mesh.orders.front().kernels;
   const auto kernels = static_cast<std::size_t>(std::count_if(records.begin(), records.end(), is_run));

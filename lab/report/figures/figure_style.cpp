@@ -28,7 +28,7 @@ const OrderStyle* paper_style(std::string_view ordering) {
   return found == kPaperStyles.end() ? nullptr : &found->second;
 }
 
-/// `text` in lower-case letters, digits and '-', never two of these in a row.
+/// Returns `text` in lower-case letters, digits and '-', never two '-' in a row.
 std::string slug(std::string_view text) {
   std::string result;
   for (const char c : text) {

@@ -49,7 +49,7 @@ class WorkFolder {
   fs::path path_;
 };
 
-/// Text without control characters, which neither gnuplot's strings nor XML can hold.
+/// Returns text without control characters, which neither gnuplot's strings nor XML can hold.
 std::string printable(std::string_view text) {
   std::string result(text);
   for (char& c : result) {
@@ -61,7 +61,7 @@ std::string printable(std::string_view text) {
 constexpr std::ptrdiff_t kLongest = 24;   ///< characters of a text beside an axis
 constexpr std::ptrdiff_t kTicBytes = 49;  ///< that gnuplot keeps of a tic's label
 
-/// UTF-8 text of at most so many characters and bytes, with "…" in place of what is cut off.
+/// Returns UTF-8 text of at most so many characters and bytes, with "…" in place of what is cut off.
 std::string shortened(std::string_view text, std::ptrdiff_t characters, std::ptrdiff_t bytes) {
   const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; };
   if (std::count_if(text.begin(), text.end(), begins_character) <= characters && std::ssize(text) <= bytes) {
@@ -91,7 +91,7 @@ std::string with_own_ids_in(std::string tag, const std::string& prefix) {
   return tag;
 }
 
-/// Text with one blank in the place of each run of white space.
+/// Returns text with one blank in the place of each run of white space.
 std::string in_one_line(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -101,8 +101,8 @@ std::string in_one_line(std::string_view text) {
   return result;
 }
 
-/// Makes ids and references to them begin with `prefix`, and escapes '>' in what the picture says, where
-/// "]]>" is no XML.
+/// Makes ids and references to them begin with `prefix`, and escapes '>' in the picture's texts, since "]]>"
+/// there is not valid XML.
 std::string with_own_ids(const std::string& svg, const std::string& prefix) {
   std::string result;
   for (std::size_t begin = 0; begin < svg.size();) {
@@ -115,7 +115,7 @@ std::string with_own_ids(const std::string& svg, const std::string& prefix) {
   return result;
 }
 
-/// Replaces gnuplot's own head.
+/// Replaces gnuplot's own title and description, and makes the ids unique.
 std::string tidied(const std::string& svg, const Drawing& drawing) {
   const std::size_t begin = svg.find("<svg");
   const std::size_t title = svg.find("<title>", begin);
@@ -145,7 +145,7 @@ std::string draw(const Drawing& drawing) {
       "set terminal svg size {},{} fixed font 'sans-serif,13' noenhanced background '#ffffff'\n"
       "set output 'figure.svg'\n{}\nunset output\n",
       drawing.width, drawing.height, drawing.script);
-  // without the user's own settings
+  // without the user's own gnuplot settings
   const ExitStatus ended =
       run_process(program, {"--default-settings", script.string()}, folder.path(), folder.path() / "log");
   if (ended.code != 0) {

@@ -14,9 +14,9 @@
 namespace meshorder {
 namespace {
 
-/// Points of the log–log histogram, "span edges". Single bins at first; further out, where they crowd on
-/// the logarithmic axis, the mean of the bins of each tenth of a decade. Bins without edges have no
-/// logarithm.
+/// Returns the points of the log–log histogram, "span edges". First come single bins; further out, where bins
+/// crowd on the logarithmic axis, the mean of the bins of each tenth of a decade. Bins without edges are left
+/// out, as they have no logarithm.
 std::vector<std::string> histogram_points(const std::vector<Offset>& histogram, Index width) {
   std::vector<std::string> points;
   for (std::size_t begin = 0; begin < histogram.size();) {

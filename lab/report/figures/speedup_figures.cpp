@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// Scenarios in which the reference has run.
+/// Returns the scenarios in which the reference has run.
 std::vector<const ScenarioRecord*> compared_scenarios(const StudyResults& results) {
   std::vector<const ScenarioRecord*> scenarios;
   for (const ScenarioRecord& scenario : results.scenarios) {
@@ -22,7 +22,7 @@ std::vector<const ScenarioRecord*> compared_scenarios(const StudyResults& result
   return scenarios;
 }
 
-/// The orders but for the reference.
+/// Returns the orders without the reference.
 std::vector<const OrderingSpec*> compared_orders(const StudyResults& results) {
   std::vector<const OrderingSpec*> orders;
   for (const OrderingSpec& ordering : results.orderings) {
@@ -35,7 +35,7 @@ std::vector<const OrderingSpec*> compared_orders(const StudyResults& results) {
 struct Rows {
   std::size_t orders = 0;
 
-  /// The height at which an order of a scenario is drawn; a scenario is 1 high.
+  /// Returns the height at which an order of a scenario is drawn; a scenario is 1 high.
   [[nodiscard]] double at(std::size_t scenario, std::size_t order) const {
     const double place = (static_cast<double>(order) + 0.5) / static_cast<double>(orders);
     return -static_cast<double>(scenario) - (0.1 + 0.8 * place);

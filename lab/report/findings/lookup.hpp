@@ -80,7 +80,7 @@ inline Phases phases_of(const ScenarioOrderRecord& order) {
   return sum;
 }
 
-/// Returns the iterations of conjugate gradients and of ADMM, mean of the runs.
+/// Returns the iterations of conjugate gradients plus those of ADMM, mean of the runs.
 inline double mean_iterations(const ScenarioOrderRecord& order) {
   double sum = 0;
   for (const RunRecord& run : order.runs) sum += static_cast<double>(run.cg_iterations + run.admm_iterations);

@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-/// Returns a number with that many significant digits, 4: "0.04321", "12.35", "1,846"; integers with all
+/// Returns a number with that many significant digits: with 4, "0.04321", "12.35", "1,846"; integers with all
 /// digits.
 std::string with_digits(double number, int digits);
 

@@ -10,12 +10,12 @@ namespace meshorder {
 /// How far the predicted speedups of a kernel over the study's reference are from the measured ones, over all
 /// meshes and orders that have both. An error is |predicted / measured − 1|.
 struct PredictionError {
-  int speedups = 0;           ///< number of errors; 0: the others say nothing
+  int speedups = 0;           ///< number of errors; 0: the other numbers mean nothing
   double median = 0;          ///< the middle error; of an even number the mean of the two
   double of_nine_tenths = 0;  ///< the smallest that nine tenths of the errors do not exceed
   double largest = 0;
   int pairs = 0;             ///< of orders of a mesh whose measured times differ by more than 10 %
-  int pairs_told_right = 0;  ///< of these, with the order predicted that was measured
+  int pairs_told_right = 0;  ///< of these, those whose faster order was predicted
 };
 
 /// Returns the error of the predictions of `kKernels[kernel]`. O(orders² · meshes).

@@ -9,12 +9,12 @@
 
 namespace meshorder {
 
-/// Whether an order saves or costs time for certain, by the confidence interval of what it saves.
+/// Whether an order certainly saves or costs time, by the confidence interval of its saving.
 enum class Certainty {
-  unsaid,  ///< the cell is of something else
+  unsaid,  ///< the cell shows something else
   saves,   ///< the interval lies above 0
-  open,    ///< it holds 0, or there is none: no clear difference
-  costs    ///< it lies below 0
+  open,    ///< the interval contains 0, or there is none: no clear difference
+  costs    ///< the interval lies below 0
 };
 
 /// A cell of a table: its text, and the value that it shows, by which a column is sorted.
@@ -56,7 +56,7 @@ std::vector<Table> tables_of(const StudyResults& results);
 std::string to_markdown(const std::vector<Table>& tables);
 /// Returns the tables as CSV (RFC 4180), a line for each cell: table,row,column,text,value.
 std::string to_csv(const std::vector<Table>& tables);
-/// Returns text for a line of Markdown: nothing in it is markup, nor ends a cell of a table or the line.
+/// Escapes text for a line of Markdown, so that nothing in it is markup or ends a table's cell or the line.
 /// Control characters are shown as escapes.
 std::string markdown_escaped(std::string_view text);
 
