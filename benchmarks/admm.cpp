@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// admm [--scenarios a,b,…] [--steps N] [--orders a,b,…] [--json FILE]: the time steps of the ADMM scenarios
-// on their own meshes: every order in double on one and two threads, then the last order in single precision.
-// All of a scenario stand ready and take their steps in turn; what is printed are medians over the steps:
+// admm [--scenarios a,b,…] [--steps N] [--orders a,b,…] [--json FILE]: times the steps of the ADMM scenarios
+// on their own meshes, every order in double on one and two threads, then the last order in single precision.
+// The bodies of a scenario take their steps in turn. Prints medians over the steps:
 //   set-up     of the body, s; memory in bytes an element
-//   iteration  of ADMM, ms: the local steps, the global one and the search for contacts; and what local and
-//              global would take if memory gave their arrays once at the measured bandwidth
-//   step       all of it, ms, and its speedup over the first order
+//   iteration  of ADMM, ms: local steps, global step and search for contacts; and the times of the local
+//              and global steps if memory delivered their arrays once at the measured bandwidth
+//   step       whole, ms, and its speedup over the first order
 // Scenarios with obstacles are measured twice: in free flight, and after the body was put right above the
 // obstacle with the speed of its fall.
 #include "io/format.hpp"
@@ -38,7 +38,7 @@ struct Settings {
   std::string json;
 };
 
-/// Bytes that the two halves of an iteration move when every array passes through the processor once.
+/// Bytes that the two halves of an iteration move if every array passes through the processor once.
 struct IterationBytes {
   double local = 0.0, global = 0.0;
 };
@@ -58,7 +58,7 @@ IterationBytes bytes_of(const mo::Simulation& simulation) {
   return bytes_of(dynamic_cast<const mo::ProjectiveDynamics<float>&>(*simulation.body));
 }
 
-/// A simulation on a number of threads, and what its steps took, ms.
+/// A simulation on a number of threads, and the times of its steps, ms.
 struct Runner {
   std::string name;
   int threads;
@@ -85,8 +85,8 @@ Runner make_runner(const std::string& name, int threads, mo::Scenario scenario, 
   return {name, threads, mo::set_up(std::move(scenario), mesh, file)};
 }
 
-/// The body just above what it falls on, as fast as it is there. Obstacles of the scenarios reach up to
-/// `top`.
+/// Returns the scenario with the body just above the obstacles, which reach up to `top`, and as fast as it is
+/// there after its fall.
 mo::Scenario before_contact(mo::Scenario scenario, double top) {
   const double gravity = -scenario.motion().gravity[1];
   const double fall = (*scenario.bottom)[1] - top;
@@ -96,7 +96,7 @@ mo::Scenario before_contact(mo::Scenario scenario, double top) {
   return scenario;
 }
 
-/// The highest point of the obstacles: floors and bowls about the y axis.
+/// Returns the highest point of the obstacles: floors and bowls about the y axis.
 double top_of(const mo::ProjectiveScenario& options) {
   double top = 0.0;
   for (const mo::ScenarioObstacle& obstacle : options.obstacles) {
@@ -143,7 +143,7 @@ nlohmann::ordered_json run(std::vector<Runner>& runners, const std::vector<doubl
   return results;
 }
 
-/// All orders on one and two threads, and single precision in the last one.
+/// Makes runners for all orders on one and two threads, and for single precision in the last order.
 std::vector<Runner> make_runners(const mo::Scenario& scenario, const mo::Mesh& mesh, const std::string& file,
                                  const std::vector<std::string>& orders, int threads) {
   std::vector<Runner> runners;

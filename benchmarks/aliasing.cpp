@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// aliasing [--rounds N] [--orders a,b,…] [--offsets a,b,…] FILE…: what it costs that an array that is added
-// to lies some bytes beyond a multiple of 4096 from the one that is read by the same index. Springs, element
-// forces and the product with the stiffness matrix, both arrays at the start of a page of 2 MiB and the
-// second one so many bytes further on: best ms of processor time, all orders and offsets in turn, one thread.
+// aliasing [--rounds N] [--orders a,b,…] [--offsets a,b,…] FILE…: measures the cost if the addresses of an
+// array that is added to and of one that is read by the same index differ by a multiple of 4096 bytes plus an
+// offset. Springs, element forces and the product with the stiffness matrix; both arrays start at a page of 2
+// MiB, the second one an offset later. Best ms of processor time, all orders and offsets in turn, one thread.
 #include "base/stopwatch.hpp"
 #include "io/format.hpp"
 #include "kernels/elasticity.hpp"

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The cache model's misses beside those that valgrind's cachegrind counts in the running kernels.
+"""Compares the cache model's misses with those that valgrind's cachegrind counts in the running kernels.
 
-Every kernel runs once and then three times under cachegrind; the difference, halved, is a run that finds the caches
-as the run before left them. Cachegrind's caches map lines to sets, the model's do not; and a load or store across
+Every kernel runs once and then three times under cachegrind; half the difference is a run that finds the caches
+as the previous run left them. Cachegrind's caches map lines to sets, the model's do not; and a load or store across
 two lines that misses both counts once in cachegrind and twice in the model. A mesh of 46,000 vertices takes about
 twenty seconds for each kernel and order. Needs valgrind and SciPy.
 """
@@ -43,7 +43,7 @@ def ordered_mesh(arguments, order, folder):
 
 
 def predicted(arguments, path):
-    """{kernel: misses of both levels}"""
+    """Returns {kernel: misses of both levels}."""
     caches = f"{arguments.d1.split(',')[0]},{arguments.ll.split(',')[0]}"
     lines = output_of(arguments.build / "bin/cache_misses", path, "predict", caches).splitlines()
     return {line.split()[0]: [int(word) for word in line.split("misses")[1].split()] for line in lines[1:]}
@@ -55,7 +55,7 @@ def cache_option(text):
 
 
 def counted(arguments, path, kernel, runs, folder):
-    """Misses of data in the first and the last level of the whole program."""
+    """Returns the data misses of the whole program in the first and in the last level."""
     out = Path(folder) / "cachegrind.out"
     output_of("valgrind", "--tool=cachegrind", "--cache-sim=yes", f"--D1={cache_option(arguments.d1)}",
               f"--LL={cache_option(arguments.ll)}", f"--cachegrind-out-file={out}",

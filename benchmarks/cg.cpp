@@ -49,7 +49,7 @@ struct Settings {
   std::vector<std::string> files;
 };
 
-/// What is solved in one order.
+/// The system in one order, in all forms that are solved.
 struct System {
   std::string order;
   mo::BlockCsr matrix;
@@ -138,7 +138,7 @@ double product_ms(System& system) {
   return 1e3 * stopwatch.seconds() / kRepeats;
 }
 
-/// Best milliseconds of processor time on one thread, of wall-clock time on several.
+/// Lowers `best` to the milliseconds of a repeat: processor time on one thread, wall-clock time on several.
 template <class Work>
 void take_best(double& best, int threads, int repeats, Work work) {
   const mo::ThreadStopwatch thread;
@@ -211,7 +211,7 @@ void print_halves(std::vector<System>& systems, const Settings& settings) {
   }
 }
 
-/// The bytes that an iteration moves when nothing stays in caches.
+/// Returns the bytes that an iteration moves if nothing stays in caches.
 double iteration_bytes(const mo::BlockCsr& matrix, double value_bytes) {
   // p, q; r, q, r, z, diagonal; x, p, z, x, p
   constexpr double kVectors = 12;

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What the checks of `order_vertices` cost: `checks [N] [ROUNDS]`. On a lattice of N³ cubes, six tetrahedra
-// each, its vertices scrambled (N = 122 unless told: 1.86 million vertices), on one thread: the time of some
-// methods at `Check::none`, and what `fast`, `full` and arrays of other integer types add to it. Medians of
-// interleaved rounds.
+// Measures what the checks of `order_vertices` cost: `checks [N] [ROUNDS]`. On a lattice of N³ cubes, six
+// tetrahedra each, its vertices scrambled (default N = 122: 1.86 million vertices), on one thread: the time
+// of some methods at `Check::none`, and what `fast`, `full` and arrays of other integer types add to it.
+// Medians of interleaved rounds.
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include <meshorder/mesh.hpp>

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What a Fiedler vector costs: `fiedler [MESH | grid-N]…`. For each mesh (grid-N: a lattice of N cubes in
-// every direction, its vertices scrambled) the time from cells to graph, and from the graph to the vector at
-// two accuracies on one and two threads, median of five runs; the mean edge span of the order that follows;
-// the memory that the solver took, relative to the graph's.
+// Measures what a Fiedler vector costs: `fiedler [MESH | grid-N]…`. For each mesh (grid-N: a lattice of N
+// cubes in every direction, its vertices scrambled) the time from cells to graph, and from the graph to the
+// vector at two accuracies on one and two threads, median of five runs; the mean edge span of the order by
+// the vector; the memory that the solver took, relative to the graph's.
 #include "spectral/fiedler.hpp"
 
 #include "base/stopwatch.hpp"
@@ -38,7 +38,7 @@ double median_milliseconds(Work work) {
   return 1e3 * seconds[2];
 }
 
-/// Both numbers of threads in turn, so that a machine that changes its pace changes it for both.
+/// Measures five runs on one thread, then five on two, and prints both medians.
 void measure(const CsrGraph& graph, double tolerance) {
   FiedlerVectors result;
   std::array<double, 2> milliseconds{};

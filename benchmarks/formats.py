@@ -1,6 +1,6 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What reading and writing a file costs beside meshio and beside the formats' own copy tools, in one run that measures
-both sides in turns.
+"""Compares the costs of reading and writing files with those of meshio and of the formats' own copy tools, in one run that
+measures both sides in turns.
 
     build/venv/bin/python benchmarks/formats.py [--size 50] [--rounds 5] [--only xdmf-text msh …]
 
@@ -29,7 +29,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "python" / "tests"))
 from conftest import tetrahedra  # noqa: E402
 
-# what meshio calls a format, and its options for the kind of file that meshorder writes, or the nearest one
+# meshio's name of a format, and its options for the kind of file that meshorder writes, or the nearest one
 KINDS: dict[str, tuple[str, str, dict[str, object]]] = {
     "msh": (".msh", "gmsh", {"binary": False}),
     "msh-binary": (".msh", "gmsh", {"binary": True}),
@@ -49,7 +49,7 @@ KINDS: dict[str, tuple[str, str, dict[str, object]]] = {
 COPIES = {
     "exodus": (["nccopy"], ".e"),
     "xdmf": (["h5repack"], ".h5"),
-    "xdmf-gzip": (["h5repack", "-f", "GZIP=4"], ".h5"),  # otherwise it copies what is compressed as it is
+    "xdmf-gzip": (["h5repack", "-f", "GZIP=4"], ".h5"),  # without this it copies compressed data as it is
     "med": (["h5repack"], ".med"),
 }
 
@@ -70,7 +70,7 @@ def example(size: int) -> meshio.Mesh:
 def measure(name: str, mesh: meshio.Mesh, rounds: int, folder: pathlib.Path) -> None:
     suffix, kind, options = KINDS[name]
     theirs, ours = folder / ("theirs" + suffix), folder / ("ours" + suffix)
-    if name == "msh":  # which meshio 5.3.5 writes with "np.float64(…)" for numbers, where NumPy is 2
+    if name == "msh":  # with NumPy 2, meshio 5.3.5 writes "np.float64(…)" for numbers
         meshorder.write(mesh, theirs)
     else:
         meshio.write(theirs, mesh, kind, **options)

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// gather_window [ROWS, default 46316]: the product with a matrix of 12 blocks a row, whose columns are chosen
-// at random among the rows up to w before and behind it, for several w: best and median milliseconds of 25
-// runs. The matrix is the same but for these columns, so that what differs is where the product gathers from.
+// gather_window [ROWS, default 46316]: times the product with a matrix of 12 blocks a row, whose columns are
+// chosen at random among the rows at most w away, for several w: best and median milliseconds of 25 runs. The
+// matrices differ only in these columns, so times differ only by where the product gathers from.
 #include "base/median.hpp"
 #include "base/random.hpp"
 #include "base/stopwatch.hpp"

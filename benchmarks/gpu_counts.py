@@ -19,7 +19,7 @@ COUNTER = "l1tex__t_sectors_pipe_lsu_mem_global_op_red.sum"
 
 
 def measured(folder):
-    """The sectors of each order and layout."""
+    """Yields the order, the layout and the sectors of each launch."""
     launches = [line.split("\t") for line in (folder / "ncu_order.txt").read_text().splitlines()]
     name = launches[0][0]
     with open(folder / f"ncu_{name}.csv", newline="") as file:

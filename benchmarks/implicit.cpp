@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// implicit [--scenario NAME] [--steps N] [--orders a,b,…] [--preconditioners a,b,…] [--json FILE] MESH…: the
-// time steps of an implicit scenario on each mesh, on one and two threads. First every order with the
-// scenario's own solver, then every preconditioner in the last order. All stand ready and take their steps in
-// turn; what is printed are medians over the steps:
+// implicit [--scenario NAME] [--steps N] [--orders a,b,…] [--preconditioners a,b,…] [--json FILE] MESH…:
+// times the steps of an implicit scenario on each mesh, on one and two threads: every order with the
+// scenario's own solver, then every preconditioner in the last order. The bodies of each group take their
+// steps in turn. Prints medians over the steps:
 //   set-up   of the body, s; memory in bytes a tetrahedron
 //   assembly of forces and matrix, ms
-//   CG       an iteration, ms, and the rate at which it reads its matrix in per cent of the measured
-//   bandwidth step     all of it, ms, and its speedup over the first order
+//   CG       an iteration, ms, and its rate of reading the matrix, in per cent of the measured bandwidth
+//   step     whole, ms, and its speedup over the first order
 #include "io/format.hpp"
 #include "lab/scenario/simulation.hpp"
 #include "measuring.hpp"
@@ -36,7 +36,7 @@ struct Settings {
   std::vector<std::string> files;
 };
 
-/// A simulation on a number of threads, and what its steps took.
+/// A simulation on a number of threads, and the times of its steps.
 struct Runner {
   std::string name;
   int threads;
@@ -64,12 +64,12 @@ const mo::ElasticSystem& system_of(const Runner& runner) {
   return dynamic_cast<const mo::BackwardEuler&>(*runner.simulation.body).system();
 }
 
-/// Operations of forces and matrix, of a tetrahedron: counted in the source of the corotational law, its
-/// rotation's formula with it; StVK takes about as many.
+/// Operations of forces and matrix for a tetrahedron, counted in the source of the corotational law with the
+/// formula of its rotation; StVK takes about as many.
 constexpr double kAssemblyOperations = 700;
 
-/// The bytes of forces and matrix when every array passes through the processor once: what is set and then
-/// added to is written, read and written again.
+/// Returns the bytes of forces and matrix if every array passes through the processor once. An array that is
+/// set and then added to is written, read and written again.
 double assembly_bytes(const Runner& runner) {
   const mo::ElasticSystem& system = system_of(runner);
   const mo::RestShapes& rest = system.rest();
@@ -80,7 +80,7 @@ double assembly_bytes(const Runner& runner) {
          4 * 4 * sizeof(double) * system.vertex_count();
 }
 
-/// Operations of an iteration: 18 a block, and 12 for each entry of the vectors.
+/// Returns the operations of an iteration: 18 a block, and 12 for each entry of the vectors.
 double iteration_operations(const Runner& runner) {
   // as many with half of the matrix
   const mo::BlockCsr& matrix = system_of(runner).matrix();

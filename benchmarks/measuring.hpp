@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// What the benchmarks of time steps share.
+// Shared by the benchmarks of time steps.
 #include "lab/scenario/scenario.hpp"
 #include "payoff/bandwidth.hpp"
 
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-/// The parts of "a,b,c".
+/// Returns the parts of "a,b,c".
 inline std::vector<std::string> split(const std::string& list) {
   std::vector<std::string> parts;
   std::istringstream stream(list);
@@ -20,14 +20,14 @@ inline std::vector<std::string> split(const std::string& list) {
   return parts;
 }
 
-/// The upper one of two middle values.
+/// Returns the median, the upper one of two middle values.
 inline double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
-/// At what rate one and two threads read memory, 10⁹ bytes a second; printed as well.
+/// Measures and prints the rates at which one and two threads read memory, 10⁹ bytes a second.
 inline std::vector<double> measure_bandwidths() {
   std::vector<double> bandwidths;
   for (int threads = 1; threads <= 2; ++threads) {
@@ -38,7 +38,7 @@ inline std::vector<double> measure_bandwidths() {
   return bandwidths;
 }
 
-/// The scenario with its vertices in that order and its elements in the one that goes with it.
+/// Returns the scenario with its vertices in that order, and its elements in the order that goes with it.
 inline meshorder::Scenario in_order(meshorder::Scenario scenario, const std::string& order) {
   scenario.vertex_order = order;
   scenario.element_order = order == "original" || order == "scrambled" ? order : "lexmax";

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Copies memory on one processor until it is ended, and says at which rate.
+"""Copies memory on one processor until it is ended, and prints the rate.
 
-What runs on another processor then has less of the memory's bandwidth, and of the last cache if both share one:
+A program on another processor then has less of the memory's bandwidth, and of the last cache if both share one:
 
     benchmarks/memory_hog.py --processor 0 & hog=$!
     meshorder reproduce -o beside-a-hog ...

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What it costs that an output is on the disk before it takes the place of the old file, by the size of the file.
+"""Measures the cost of syncing an output to the disk before it replaces the old file, by the size of the file.
 
 Usage: output_sync.py FOLDER [--rounds N] [--largest BYTES]
 
 Each round replaces a file in FOLDER as meshorder does (write a new one, rename it), once without waiting for the disk
-and once with fsync of the file before and of the folder after. Prints medians in milliseconds, and the share of the
-processor's time, which the disk has no part in.
+and once with fsync of the file before and of the folder after. Prints medians in milliseconds, and the time of the
+processor, in which the disk has no part.
 """
 import argparse
 import os
@@ -51,7 +51,7 @@ def main():
             processor = []
             for _ in range(arguments.rounds):
                 for synced, list_of in times.items():
-                    os.sync()  # what the round before left to do
+                    os.sync()  # finishes what the previous round left to do
                     wall, busy = replace(folder, content, synced)
                     list_of.append(wall)
                     if synced:

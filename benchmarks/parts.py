@@ -11,9 +11,9 @@
   defaults; its cut depends on how the vertices are numbered: the lower one counts, of those in the file's order and in
   that of Hilbert's curve;
 - cache misses of the element force and of the matrix-vector product, predicted by `meshorder info` for caches of 32 KiB
-  and 1 MiB, in all pieces of `--pieces OUT --ghosts 0` together and in the worst one. They are over those of the same
-  pieces with their own vertices, and then the ghosts of each owner, in the serial order, and cells in the order `lexmax`,
-  for which ghosts come before own vertices, as in the pieces. A dash stands for caches that hold every piece.
+  and 1 MiB, in all pieces of `--pieces OUT --ghosts 0` together and in the worst one, relative to the misses of the same
+  pieces in the serial order: own vertices, then the ghosts of each owner, each in that order, and cells in `lexmax`,
+  which takes ghosts as coming before own vertices, as in the pieces. A dash means caches that hold every piece.
 
 Meshes have tetrahedra and one component. Needs NumPy, meshio, pymetis and peer-graph_of (MESHORDER_BENCHMARKS).
 """
@@ -35,7 +35,7 @@ HEADER = ["mesh", "parts", "mean log₂ span", "mean span", "cut", "cut over MET
 
 
 def run(*command):
-    """What a command prints."""
+    """Returns what a command prints."""
     return subprocess.run(list(map(str, command)), check=True, stdout=subprocess.PIPE, text=True,
                           env={**os.environ, "OMPI_MCA_mpi_yield_when_idle": "1"}).stdout
 
@@ -62,7 +62,7 @@ class Mesh:
         return min(pymetis.part_graph(parts, graph)[0] for graph in self.graphs)
 
     def misses(self, piece):
-        """Misses of each kernel and cache."""
+        """Returns the misses of each kernel and cache."""
         report = run(self.options.program, "info", piece, "--json", "--cache", ",".join(CACHES), "--machine", "zen3", "-q")
         return [json.loads(report)["reuse"][kernel]["misses"] for kernel in KERNELS]
 

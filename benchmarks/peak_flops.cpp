@@ -16,7 +16,7 @@ namespace HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Operations of `rounds` rounds of independent multiply-adds, enough of them to fill the pipeline.
+/// Computes rounds of independent multiply-adds, enough of them to fill the pipeline; returns the operations.
 double multiply_and_add(int rounds) {
   using Tag = hn::CappedTag<double, 8>;
   const Tag d;
@@ -31,7 +31,7 @@ double multiply_and_add(int rounds) {
   }
   auto total = sums[0];
   for (int i = 1; i < kChains; ++i) total = total + sums[i];
-  // the result is wanted
+  // keeps the compiler from dropping the computation
   volatile double sink = hn::GetLane(hn::SumOfLanes(d, total));
   static_cast<void>(sink);
   return 2.0 * kChains * static_cast<double>(hn::MaxLanes(d)) * rounds;

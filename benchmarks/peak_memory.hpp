@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// How far the process's memory rises above where it stands when this is made. Linux, with glibc.
+/// Measures by how much the process's memory rises after this is made. Linux, with glibc.
 class PeakMemory {
  public:
   PeakMemory() {
@@ -18,7 +18,7 @@ class PeakMemory {
     before_ = status("VmRSS:");
   }
 
-  /// Bytes since then at the peak.
+  /// Returns the rise in bytes, at the peak.
   [[nodiscard]] std::size_t bytes() const { return status("VmHWM:") - before_; }
 
  private:

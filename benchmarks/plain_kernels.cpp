@@ -1,14 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// plain_kernels MESH [METHOD,METHOD… [rounds]]: kernels as programs write them that do not prefetch
-// (src/kernels/plain.hpp), on a tetrahedral mesh in several orders. Elements and edges follow by their
-// largest vertex, and `springs*` has edges by their smaller end. NAME=@FILE.npy takes the order of the
-// vertices from a file, which has the old place of each new one. A mesh that does not exist is made if it is
-// named grid-N: a lattice in random order.
+// plain_kernels MESH [METHOD,METHOD… [rounds]]: times kernels as simple programs write them, without
+// prefetches (src/kernels/plain.hpp), on a tetrahedral mesh in several orders. Elements and edges are sorted
+// by their largest vertex; `springs*` has edges by their smaller end. NAME=@FILE.npy takes the order of the
+// vertices from a file, which has the old place of each new one. A mesh grid-N that is no file is made: a
+// lattice in random order.
 //
-// All orders share one memory, which each fills before its turn, so that none has luckier pages. Each round
-// has another sequence of them. A kernel runs by turns in the order and, in a memory of its own, in the first
-// one, because the pace of a shared machine changes from minute to minute. Prints medians of the ratios of
-// these times, multiplied by the median time in the first order, ms of the thread's processor time.
+// All orders share one memory, which each fills before its turn, so that all have the same pages. Each round
+// has another sequence of orders. A kernel runs alternately in the order and, in separate memory, in the
+// first order, because the speed of a shared machine changes from minute to minute. Prints medians of the
+// ratios of these times, multiplied by the median time in the first order, ms of the thread's processor time.
 #include "io/npy.hpp"
 #include "kernels/plain.hpp"
 #include "measuring.hpp"
@@ -42,7 +42,7 @@ namespace {
 using Columns = std::int32_t;
 constexpr int kFeatures = 64;
 
-/// What depends on the order.
+/// The mesh in one order.
 struct Ordered {
   std::string name;
   double jumps = 0;
@@ -77,7 +77,7 @@ double seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Moves the vertices as the file says.
+/// Moves the vertices to the order in a file.
 void move_vertices(mo::Mesh& mesh, const std::string& file) {
   std::vector<mo::Index> new_to_old;
   for (const std::int64_t old : mo::read_npy(file)) new_to_old.push_back(static_cast<mo::Index>(old));
@@ -204,7 +204,7 @@ void put(Workspace& w, const Ordered& order) {
   w.sums.assign(kFeatures * n, 0.0F);
 }
 
-/// Runs the kernel twice; returns what the second run takes.
+/// Runs the kernel twice; returns the time of the second run.
 double milliseconds(const Kernel& kernel, Workspace& w) {
   kernel.run(w);
   const double begin = seconds();

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What orders are worth in programs that others wrote, as `meshorder try` finds.
+"""Measures what orders are worth in programs that others wrote, by `meshorder try`.
 
 Usage: programs.py FOLDER [PROGRAM…] [--size SIZE] [--budget SECONDS] [--json FILE]
        programs.py --from FILE
@@ -156,7 +156,7 @@ def make(folder, file, arguments):
 
 
 def attempt(path, program, judged, budget):
-    """Returns what `try` finds."""
+    """Returns what `try` finds, or None, and its error message."""
     environment = {"WM_PROJECT_DIR": "/usr/share/openfoam", "FF_LOADPATH": "/usr/lib/freefem++",
                    **os.environ, **ONE_THREAD, "PYTHONPATH": str(HERE)}
     done = subprocess.run([MESHORDER, "try", str(path), "--budget", str(budget), "--json", "--quiet", *judged,

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// How often an order says how far it is, and how soon it stops: `progress [N] [METHOD…]`. On a lattice of N³
-// cubes, six tetrahedra each, its vertices scrambled (N = 122 unless told: 1.86 million vertices), for every
-// method: the time of the call, the longest time between two calls of the progress function (from the
-// beginning and to the end, too), and the longest time from the moment that it returns false to the
+// Measures how often an order reports its progress, and how soon it stops: `progress [N] [METHOD…]`. On a
+// lattice of N³ cubes, six tetrahedra each, its vertices scrambled (default N = 122: 1.86 million vertices),
+// for every method: the time of the call, the longest time between two calls of the progress function (from
+// the beginning and to the end, too), and the longest time from the moment that it returns false to the
 // exception, over stops at five moments of the call.
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
@@ -36,7 +36,7 @@ struct Gap {
   std::string after = "check";  ///< the stage in which it began
 };
 
-/// The longest time between two calls of the progress function while `call(run)` runs.
+/// Returns the time of `call(run)`, and the longest time between two calls of the progress function in it.
 template <class Call>
 std::pair<double, Gap> longest_gap(const Call& call) {
   const auto start = Clock::now();
@@ -57,7 +57,7 @@ std::pair<double, Gap> longest_gap(const Call& call) {
   return {seconds_since(start), longest};
 }
 
-/// The time from when the progress function first returns false, `after` seconds into the call, to Stopped.
+/// Returns the time from the first false of the progress function, `after` seconds into the call, to Stopped.
 template <class Call>
 double time_to_stop(const Call& call, double after) {
   const auto start = Clock::now();

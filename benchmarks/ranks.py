@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What `meshorder order` costs and yields on many ranks, and what that predicts for a cluster.
+"""Measures what `meshorder order` costs and yields on many ranks, and predicts from that for a cluster.
 
     benchmarks/ranks.py build/bin/meshorder --sizes 50000 200000 --ranks 1 2 4 8 --json ranks.json
     benchmarks/ranks.py build/bin/meshorder --mesh ball.vtu --ranks 1 4
@@ -12,7 +12,7 @@ mesh on several numbers of ranks. Tables go to stdout, in Markdown. --json keeps
 --model computes from those on more than one rank what 10^7 to 10^9 vertices take on 16 to 1,024 ranks; see predict().
 
 Ranks may be more than cores, so that the time on the clock means nothing. Measured is processor time, in the program
-("user") and in the system, medians of --rounds runs. That of stages is what /proc tells of each rank, in steps of 10 ms,
+("user") and in the system, medians of --rounds runs. That of stages is what /proc shows for each rank, in steps of 10 ms,
 between the ends of stages at rank 0. It includes waiting for other ranks, which polls. Bytes and messages are what Open
 MPI's monitoring counts in one more run. Needs Linux, Open MPI, NumPy, and meshorder with MESHORDER_MPI and its models.
 """
@@ -76,7 +76,7 @@ def command_of(options, ranks, mesh, output, method, more=()):
 
 
 def run_watched(command, of_children):
-    """Runs a command that prints JSON; returns that, the Watch, when it came, and what the system counted."""
+    """Runs a command that prints JSON; returns the JSON, the Watch, the time at which it came, and the resources used."""
     with subprocess.Popen(command, stdout=subprocess.PIPE, env={**os.environ, **WAITING}) as process:
         os.set_blocking(process.stdout.fileno(), False)
         watch = Watch(process.pid, of_children)
@@ -202,7 +202,7 @@ def print_tables(runs):
 
 
 def fitted(columns, values):
-    """Coefficients >= 0 of the columns by least squares; 0 for a column without which the others fit as they may."""
+    """Returns the columns' coefficients by least squares, all but the first at least 0; columns that would be below 0 get 0."""
     used = list(range(columns.shape[1]))
     while True:
         coefficients = numpy.linalg.lstsq(columns[:, used], values, rcond=None)[0]
@@ -226,13 +226,13 @@ class PerVertex:
         self.coefficients = fitted(numpy.array(columns), numpy.array(values))
 
     def at(self, ranks, own):
-        """The least, which is that of the nearest runs, and the most, which grows on beyond them."""
+        """Returns the least cost, that of the nearest runs, and the most, which grows on beyond them."""
         nearest = [numpy.clip(ranks, *self.ranks), numpy.clip(own, *self.own)]
         beyond = [max(ranks, self.ranks[0]), max(own, self.own[0])]
         return numpy.array([[1.0, *numpy.log2(place)] for place in (nearest, beyond)]) @ self.coefficients
 
     def measured(self):
-        """What it is in the runs with most ranks and vertices a rank, and what doublings of these add."""
+        """Returns the cost in the runs with most ranks and vertices a rank, and what doublings of these add."""
         return [float(self.at(self.ranks[1], self.own[1])[0]), *map(float, self.coefficients[1:])]
 
 
@@ -241,7 +241,7 @@ def own_vertices(run):
 
 
 class Constants:
-    """What the runs of a method say."""
+    """The constants of the model, from the runs of a method."""
 
     def __init__(self, runs, method):
         own = [run for run in of(runs, method) if run["ranks"] > 1]
@@ -259,7 +259,7 @@ class Constants:
 
 
 def predict(options, constants, vertices, ranks):
-    """Seconds and bytes of a rank with a core of its own, the least and the most.
+    """Returns seconds and bytes of a rank with a core of its own, the least and the most.
 
     A stage takes what it took the busiest rank in the program, per vertex of a rank: as in the runs with the nearest numbers
     of ranks and of vertices a rank, or growing on with their logarithms as it did in the runs. So do the bytes that a rank

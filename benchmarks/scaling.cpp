@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What one order costs, in a process of its own, so that its peak memory is its own too; scaling.py runs it.
+// Measures what one order costs, in a process whose peak memory is only the order's; scaling.py runs it.
 //   scaling make CUBES FILE               a grid of tetrahedra, CUBES across, scrambled
 //   scaling vertices|elements METHOD FILE prints vertices, elements, seconds, MB before, MB at the peak
 // Elements are ordered after the vertices' Hilbert order. Memory counts the mesh and its graph.
@@ -21,7 +21,7 @@ namespace mo = meshorder;
 
 namespace {
 
-/// A line of /proc/self/status that counts kilobytes, in MB.
+/// Returns a line of /proc/self/status that counts kilobytes, in MB.
 double megabytes(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {

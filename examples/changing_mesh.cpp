@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Keeps the order of a mesh fresh that is refined in each step, where a wave passes.
+// Keeps the order of a mesh fresh. The mesh is refined in each step where a wave passes.
 #include <meshorder/changing.hpp>
 #include <meshorder/order.hpp>
 #include <meshorder/quality.hpp>

@@ -83,7 +83,7 @@ bool is_right() {
   const double length_before = length(surface);
   Eigen::VectorXd height = surface.points.col(2);
 
-  // a mesh: points and faces move, and what else belongs to vertices
+  // a mesh: points and faces move, and so do the other data of vertices
   const mo::MeshOrder order = mo::reorder(surface.points, surface.faces);
   mo::move_rows(order.vertices.permutation, height);
   const bool mesh_is_same = is_near(length(surface), length_before) && height == surface.points.col(2);

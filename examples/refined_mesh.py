@@ -3,7 +3,7 @@
 
     python refined_mesh.py [LEVELS]
 
-prints how long the product takes that conjugate gradients repeat, with a Reorderer and without.
+Prints the time of the matrix-vector product in conjugate gradients, with a Reorderer and without.
 """
 
 import sys
@@ -22,7 +22,7 @@ def load(w, at):
 
 
 def in_fresh_order(mesh, before, reorderer):
-    """Returns `mesh`, whose first `before` vertices are those of the last call."""
+    """Returns `mesh` in a fresh order. Its first `before` vertices are those of the last call."""
     previous = numpy.arange(mesh.p.shape[1])
     previous[before:] = -1  # new vertices
     update = reorderer.update({"triangle": mesh.t.T}, points=mesh.p.T, previous=previous)

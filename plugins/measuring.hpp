@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-/// What the measuring programs of the plugins share: a mesh by TetGen, and fair timing.
+/// Shared by the measuring programs of the plugins: a mesh by TetGen, and fair timing.
 namespace measuring {
 
 struct Tetrahedra {

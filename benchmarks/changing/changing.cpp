@@ -1,16 +1,16 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What it costs to keep the order of a changing mesh fresh, and how near to a fresh one it stays:
+// Measures what it costs to keep the order of a changing mesh fresh, and how close to a fresh one it stays:
 //
 //   changing [--traces stir,churn,refine,cut,dam] [--methods hilbert,hilbert-fronts,rcm,fiedler]
 //            [--points 50000] [--steps 120] [--threads 1]
 //
 // For each trace (see traces.hpp), scrambled at first, and each method: `fresh` orders all vertices in each
-// step, `kept` is a Reorderer, `carried` one that never orders anew after the first step. Prints the means of
-// log2 spans above those of the fresh orders, in the mean of the steps and in the worst one, and what orders
-// cost beside the fresh ones: from the graph, without a check, and from cells, where the fresh orders include
-// building the graph. Each kind of repair has its median cost. Processor time of the calls; with several
-// threads wall-clock time. Needs meshorder-delaunay beside it.
+// step, `kept` is a Reorderer, `carried` a Reorderer that never orders anew after the first step. Prints by
+// how much mean log2 spans exceed those of the fresh orders (mean of the steps, worst step), and the costs of
+// orders relative to fresh ones: from the graph, without a check, and from cells, where fresh orders include
+// building the graph. Prints the median cost of each kind of repair. Processor time of the calls; with
+// several threads wall-clock time. Needs meshorder-delaunay beside it.
 #include "base/random.hpp"
 #include "base/stopwatch.hpp"
 #include "benchmarks/changing/traces.hpp"
@@ -40,7 +40,7 @@ using namespace meshorder;
 
 int threads = 1;
 
-/// Calls, and adds the seconds that it took.
+/// Makes the call and adds the seconds that it took.
 template <class Call>
 auto timed(double& seconds, const Call& call) {
   const Stopwatch wall;
@@ -54,7 +54,7 @@ auto timed(double& seconds, const Call& call) {
 
 OrderOptions options() { return {.check = Check::none, .run = {.threads = threads}}; }
 
-/// A step as a program has it whose arrays are in an order of its own.
+/// A step in the arrays of a program, which has an order of its own.
 struct Arrays {
   std::vector<Point> points;
   std::vector<Index> corners;
@@ -63,7 +63,7 @@ struct Arrays {
   [[nodiscard]] CellsView cells() const { return CellsView::uniform(Shape::tetrahedron, 4, corners); }
 };
 
-/// Which point of the trace is at each place of a program's arrays.
+/// For each place of a program's arrays, the point of the trace that is there.
 class Places {
  public:
   /// Returns the arrays of a step, before it is ordered.
@@ -166,7 +166,7 @@ class Strategy {
   Reorderer reorderer_;
 };
 
-/// "+0.7 %, +3.5 %": in the mean, and in the worst step.
+/// Returns "+0.7 %, +3.5 %": by how much spans exceed the fresh ones in the mean, and in the worst step.
 std::string above(const Strategy& strategy, const Strategy& fresh) {
   double sum = 0;
   double worst = -1;

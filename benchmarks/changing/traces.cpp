@@ -19,10 +19,10 @@ namespace {
 
 constexpr double kJitter = 0.3;  // of a spacing
 
-/// The cells of a cube that has about that many, along an edge.
+/// Returns the number of cells along an edge of a cube of about `count` cells.
 Index along_edge(Index count) { return static_cast<Index>(std::lround(std::cbrt(count))); }
 
-/// A point near the middle of each cell of a lattice in the unit cube.
+/// Returns a point near the middle of each cell of a lattice in the unit cube.
 std::vector<Point> jittered_lattice(Index edge, Random& random) {
   std::vector<Point> points;
   const double spacing = 1.0 / edge;
@@ -39,7 +39,7 @@ std::vector<Point> jittered_lattice(Index edge, Random& random) {
   return points;
 }
 
-/// What the traces in the unit cube share.
+/// Base of the traces in the unit cube.
 class InCube : public Trace {
  protected:
   explicit InCube(Index count)
@@ -47,7 +47,7 @@ class InCube : public Trace {
         points_(jittered_lattice(along_edge(count), random_)),
         spacing_(1.0 / along_edge(count)) {}
 
-  /// Tetrahedra without the thin ones along the cube's faces.
+  /// Returns the tetrahedra without the thin ones along the cube's faces.
   [[nodiscard]] std::vector<Index> corners(const std::vector<Point>& points) const {
     constexpr double kHoles = 1.5;
     const std::vector<Walls> walls(points.size(), kNoWalls);
@@ -79,7 +79,7 @@ class Stir : public InCube {
   }
 
  private:
-  /// By the velocity of Taylor's and Green's rolls, at most 1.
+  /// Moves the points by the velocity of Taylor–Green rolls, at most 1.
   void move() {
     constexpr double kCourant = 0.3;
     constexpr double kPi = std::numbers::pi;

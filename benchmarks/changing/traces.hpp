@@ -14,10 +14,10 @@ namespace meshorder {
 struct TraceStep {
   std::vector<Point> points = {};
   std::vector<Index> corners = {};  ///< 4 of each tetrahedron
-  /// The number of each point in the step before, −1 for a new one; empty: as before.
+  /// The number of each point in the previous step, −1 for a new one; empty: as before.
   std::vector<Index> previous = {};
-  /// For each number of the step before the one that has its place in a program's arrays now, −1 if the place
-  /// is closed; empty: the same. Points that no place has come last.
+  /// For each number of the previous step, the number that takes its place in a program's arrays now, or −1
+  /// if the place is closed; empty: the same. Points without a place come last.
   std::vector<Index> successors = {};
 };
 
@@ -37,7 +37,7 @@ class Trace {
 
 /// Returns a trace of about `count` points:
 /// stir    points of a jittered lattice turn in rolls, at most 0.3 spacings a step
-/// churn   the same, and 2 % of them vanish in each step, whose places others take that appear elsewhere
+/// churn   the same, and in each step 2 % of them vanish; points that appear elsewhere take their places
 /// refine  a ball with eight times as many points travels
 /// cut     the tetrahedra along a plane are taken out, a few in each step
 /// dam     a dam break, the scenario `splash`

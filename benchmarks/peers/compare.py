@@ -10,7 +10,7 @@ search comes first and is remembered in the work folder. Then all run in turn, r
 own that solves up to three times within a second; a solver's time is the best of all, without start and reading.
 
 Debian's packages: libspectra-dev libslepc-real-dev libhypre-dev python3-scipy python3-networkx. PyAMG is no package of
-Debian's; where the Python that runs this has it, it takes part. What is missing is left out with a word.
+Debian's; if the Python that runs this has it, it takes part. Peers that are missing are skipped with a message.
 
     cmake -B build -DMESHORDER_BENCHMARKS=ON && cmake --build build
     benchmarks/peers/compare.py dragon.node
@@ -65,7 +65,7 @@ class Problem:
         self.eigenspace = vectors[:, 1:][:, values[1:] < self.lambda2 * (1 + 1e-6)]
 
     def judged(self, y):
-        """How good a vector is, whoever found it."""
+        """Returns how good a vector is, by the same rule for all solvers."""
         y = y / numpy.linalg.norm(y)
         product = self.laplacian @ y
         value = y @ product
@@ -90,7 +90,7 @@ class TooSlow(Failure):
 
 
 def run(name, problem, tolerance, options):
-    """One process of a solver: its seconds, and how good the vector is."""
+    """Runs one process of a solver; returns its seconds, and how good the vector is."""
     vector = problem.folder / "vector"
     vector.unlink(missing_ok=True)
     if name in PROGRAMS:
@@ -151,7 +151,7 @@ def chosen_tolerances(problem, accuracy, options):
             chosen[name] = accuracy
             continue
         if key not in known:
-            # what was found for a lower accuracy bounds what to look for
+            # the tolerance found for a lower accuracy is an upper bound
             start = min([known[f"{name} {lower:g}"] for lower in options.accuracy
                          if lower > accuracy and isinstance(known.get(f"{name} {lower:g}"), float)], default=1.0)
             try:

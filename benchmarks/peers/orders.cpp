@@ -51,7 +51,7 @@ BoostGraph boost_graph_of(const mo::CsrGraph& graph) {
   return {boost::edges_are_sorted, edges.begin(), edges.end(), static_cast<BoostVertex>(graph.size())};
 }
 
-/// Runs one of Boost's, which are called alike.
+/// Runs one of Boost's methods, which are all called alike.
 template <class Run>
 Order by_boost(const Problem& problem, Run run) {
   const BoostGraph& graph = problem.boost_graph;

@@ -7,7 +7,7 @@
 
 The first partitions the vertex graph of each mesh. All begin with the vertices in Hilbert's order, each rank with a range of it. Sphynx,
 of Trilinos' Zoltan2, runs with each of its preconditioners; METIS, of pymetis, is serial. DOLFINx cuts elements by PT-Scotch into as many
-parts as ranks, and numbers the vertices within each; its table tells whole pipelines, from elements and points to a numbered mesh.
+parts as ranks, and numbers the vertices within each; its table shows whole pipelines, from elements and points to new numbers.
 The second partitions a box of hexahedra, beside parRSB, of Nek5000, which takes nothing else: the graph is that of
 elements with a common face.
 
@@ -20,7 +20,7 @@ sources:
 
     cmake -B build -DMESHORDER_BENCHMARKS=ON -DMESHORDER_MPI=ON "-DCMAKE_PREFIX_PATH=PARRSB/install;GSLIB/build"
 
-What is missing is left out with a word.
+Peers that are missing are skipped with a message.
 """
 import argparse
 import importlib.util
@@ -115,7 +115,7 @@ def by_dolfinx(options, problem, ranks):
 
 
 def measured(options, peers):
-    """Runs all peers in turn, round by round; returns what is told of each, with medians of its times."""
+    """Runs all peers in turn, round by round; returns for each the medians of its results."""
     results, failures = {name: [] for name in peers}, {}
     for _ in range(options.rounds):
         for name, run in peers.items():

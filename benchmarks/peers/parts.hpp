@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What the programs that partitions.py runs under mpirun have in common: they read folders of .npy files,
-// time their partitioner, and write the part of each vertex or element. C++17, as Trilinos' headers are.
+// Shared by the programs that partitions.py runs under mpirun: they read folders of .npy files, time their
+// partitioner, and write the part of each vertex or element. C++17, as Trilinos' headers are.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct Range {
   std::int64_t end;
 };
 
-/// Returns this rank's share of so many: ranges as equal as can be.
+/// Returns this rank's share of `count` things: ranges as equal as can be.
 Range own_range(std::int64_t count);
 
 /// Partitions, prints the processor seconds of all ranks together, in the program, and writes the parts.
@@ -29,7 +29,7 @@ Range own_range(std::int64_t count);
 /// @param partition  returns the parts of this rank's range
 void measure_parts(const std::string& path, const std::function<std::vector<int>()>& partition);
 
-/// Calls `solve` with errors told on stderr; an error of one rank ends all.
+/// Calls `solve` and prints errors on stderr; an error of one rank ends all.
 void run_on_ranks(const std::function<void()>& solve);
 
 }  // namespace peer

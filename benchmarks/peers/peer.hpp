@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What the programs that compare.py runs have in common: `peer-NAME GRAPH TOLERANCE VECTOR` reads the folder
-// that `peer-graph_of` wrote, times its solver, and writes the vector.
+// Shared by the programs that compare.py runs: `peer-NAME GRAPH TOLERANCE VECTOR` reads the folder that
+// `peer-graph_of` wrote, times its solver, and writes the vector.
 #pragma once
 
 #include "base/stopwatch.hpp"
@@ -48,7 +48,7 @@ struct Matrix {
   std::vector<double> values;
 };
 
-/// The graph's Laplacian with `shift` added to its diagonal.
+/// Returns the graph's Laplacian with `shift` added to its diagonal.
 inline Matrix laplacian(const CsrGraph& graph, double shift = 0) {
   Matrix result;
   result.size = static_cast<int>(graph.size());
@@ -88,7 +88,7 @@ void measure(const std::filesystem::path& vector, const Solve& solve) {
   fmt::print("{}\n", best);
 }
 
-/// What a peer's `main` does: `solver(arguments)` with errors told on stderr. Returns the exit status.
+/// Runs `solver(arguments)` as a peer's `main`; prints errors on stderr. Returns the exit status.
 template <class Solver>
 int run(int argc, char** argv, const Solver& solver) {
   try {

@@ -49,12 +49,12 @@ def smoothed_aggregation(laplacian):
 
 
 def eigsh(laplacian, tolerance):
-    """ARPACK on the inverse, factored as SciPy does when left alone."""
+    """ARPACK on the inverse, factored with SciPy's defaults."""
     return scipy.sparse.linalg.eigsh(laplacian, k=2, sigma=-SHIFT, tol=tolerance)[1][:, 1]
 
 
 def eigenpairs(laplacian, count, tolerance):
-    """The lowest eigenvalues, rising, and their vectors: the same with SuperLU told that the matrix is symmetric."""
+    """Returns the lowest eigenvalues, rising, and their vectors: as eigsh, with SuperLU told that the matrix is symmetric."""
     factors = scipy.sparse.linalg.splu(shifted(laplacian), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0,
                                        options={"SymmetricMode": True})
     inverse = scipy.sparse.linalg.LinearOperator(laplacian.shape, factors.solve, dtype=float)
@@ -85,7 +85,7 @@ SOLVERS = {
 
 
 def prepared(name, folder):
-    """What the solver takes: the Laplacian, or for networkx a graph of its own."""
+    """Returns the solver's input: the Laplacian, or for networkx a graph of its own."""
     laplacian = laplacian_of(numpy.load(folder + "/offsets.npy"), numpy.load(folder + "/neighbours.npy"))
     if not name.startswith("networkx"):
         return laplacian

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""How well times are predicted on this machine: by the costs that ship, and by its own calibration.
+"""Measures how well times are predicted on this machine: by the costs that ship, and by its own calibration.
 
     judge.py MEASURE [--budget SECONDS] [--threads N] [--table TABLE.csv] [--calibrations FILE FILE] [MESH …]
 
@@ -30,7 +30,7 @@ SAME = 1.05
 
 
 def measured(arguments):
-    """By kernel and mesh: (vertices, by order (one half, the other, predicted…)); by kernel and mesh: auto's order."""
+    """Returns by kernel and mesh (vertices, by order (one half, the other, predicted…)); and by kernel and mesh auto's order."""
     lines = arguments.table.read_text().splitlines() if arguments.table and arguments.table.exists() else []
     for mesh in arguments.meshes:
         if any(line.startswith(f"{mesh},") for line in lines):
@@ -73,7 +73,7 @@ def regrets(orders, pick_in):
 
 
 def regret(meshes, pick):
-    """Of the order that `pick(mesh, orders, half)` names for each mesh."""
+    """Returns the mean and the largest regret of the order that `pick(mesh, orders, half)` names for each mesh."""
     of_all = [one for mesh, (_, orders) in meshes.items()
               for one in regrets(orders, lambda half, mesh=mesh, orders=orders: pick(mesh, orders, half))]
     return f"{100 * statistics.mean(of_all):.1f} % | {100 * max(of_all):.0f} %"
@@ -90,14 +90,14 @@ def verdict(orders, column, same):
 
 
 def nothing_to_gain(meshes, column, same):
-    """How often a verdict says that there is nothing to gain, and how often an order is faster by more than that."""
+    """Returns how many verdicts of nothing to gain are wrong, an order being faster by more than that, and of how many."""
     said = [orders for _, orders in meshes.values() if verdict(orders, column, same) == OWN]
     wrong = sum(min(orders[OWN][:2]) >= same * min(min(times[:2]) for times in orders.values()) for orders in said)
     return f"{wrong} of {len(said)}"
 
 
 def print_regrets(results, chosen, column):
-    """The table of what choices cost."""
+    """Prints the table of what choices cost."""
     print("\n| kernel | choice | regret: mean | largest | \"nothing to gain\" wrong |")
     print("| --- | --- | ---: | ---: | ---: |")
     for kernel, title in KERNELS.items():

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// measure MESH BUDGET THREADS MACHINES VERTICES/ELEMENTS…: times the plain kernels in these orders, and in
-// those that `auto` takes for each kernel, in interleaved rounds, twice over, the second time on other pages
-// of memory, and predicts them for machines whose names are separated by commas ("zen3", "this"; "prior":
-// what stands in for this machine where it is not calibrated; with a slash: the file of a calibration, whose
-// costs of all threads are taken where THREADS are as many; with a colon after it, those of one). Prints
-// mesh, vertices, order, kernel, the best milliseconds of each half, then the milliseconds predicted for each
-// machine; and mesh, vertices, "auto", kernel, the order that `auto` takes.
+// measure MESH BUDGET THREADS MACHINES VERTICES/ELEMENTS…: times the plain kernels in these orders and in
+// those that `auto` takes for each kernel, in interleaved rounds, in two halves on different pages of memory,
+// and predicts the times. MACHINES are names separated by commas: "zen3", "this", "prior" (assumed for this
+// machine if it is not calibrated), or the file of a calibration, with a slash in its path: its costs of all
+// threads if THREADS are as many; with a colon after it, those of one. Prints mesh, vertices, order, kernel,
+// the best milliseconds of each half, then the milliseconds predicted for each machine; and mesh, vertices,
+// "auto", kernel, the order that `auto` takes.
 //
 // MESH is the name of a model, "grid-20", "dragon", or a file; with "-skin" after it, the triangles on its
 // surface. judge.py calls this.
@@ -39,8 +39,8 @@ namespace {
 
 constexpr std::string_view kSkin = "-skin";
 
-/// The triangles that belong to one tetrahedron alone, in the order of the tetrahedra, on their vertices in
-/// the order of the mesh.
+/// Returns the triangles that belong to only one tetrahedron, in the order of the tetrahedra, on their
+/// vertices in the order of the mesh.
 mo::Mesh skin(const mo::Mesh& mesh) {
   const auto for_each_face = [&](const auto& visit) {
     for (mo::Index cell = 0; cell < mesh.cell_count(); ++cell) {
@@ -84,7 +84,7 @@ mo::Mesh mesh_of(std::string name) {
   return skinned ? skin(mesh) : mesh;
 }
 
-/// What the name of a machine stands for: a calibration's costs of one thread or of all.
+/// Returns the costs that a machine's name means; of a calibration, those of one thread or of all.
 mo::CostModel machine_named(const std::string& name, int threads) {
   if (name.ends_with(':')) return machine_named(name.substr(0, name.size() - 1), 1);
   if (name.find('/') != std::string::npos) {

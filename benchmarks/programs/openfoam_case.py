@@ -39,7 +39,7 @@ def write_tetrahedra(path, size):
 
 
 def write(case, size, pressure, cubes):
-    """Tetrahedra of that size as Gmsh leaves them, or cubes as blockMesh does; the pressure by PCG or GAMG."""
+    """Writes a case: tetrahedra of that size as Gmsh leaves them, or blockMesh's cubes; the pressure by PCG or GAMG."""
     solution = SOLUTION.format(pressure=PRESSURE[pressure], corrections=0 if cubes else 1)
     schemes = {} if cubes else {"fvSchemes": SCHEMES_OF_TETRAHEDRA}
     foam_cases.write_settings(case, fvSolution=solution, controlDict=CONTROL.format(end=STEPS * 0.004, step=0.004), **schemes)

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What the programs in Python share."""
+"""Shared by the programs in Python."""
 from scipy.sparse import diags
 from scipy.sparse.linalg import cg
 
@@ -31,7 +31,7 @@ def gradients_of_petsc(matrix, right, preconditioner):
 
 
 def report(seconds, energy, iterations=None):
-    """What `meshorder try` reads."""
+    """Prints what `meshorder try` reads."""
     print(f"compute: {seconds:.6f} s")
     print("energy:", energy)
     if iterations is not None:

@@ -37,8 +37,8 @@ struct StressFactors {
   typename Lanes::Value of_shift[3];  ///< ∂γ/∂p
 };
 
-/// The step of Hooke's law, which all laws share near rest: Z = s S + c I divides the deviatoric part of S −
-/// I by 1 + 2m and the mean of S − I by 4.
+/// The step of Hooke's law, which all laws share near rest: Z = s S + c I divides the deviatoric part of
+/// S − I by 1 + 2m and the mean of S − I by 4.
 template <class Lanes>
 HWY_INLINE void hookean_step(typename Lanes::Value m, typename Lanes::Value trace, typename Lanes::Value& s,
                              typename Lanes::Value& c) {

@@ -56,11 +56,11 @@ struct LocalResidual {
 /// The local steps of all elements, with their dual variables u. Elements are processed in the order of the
 /// simplices (springs by their edges, see springs_on_edges). The same bits on every run and for any number of
 /// threads.
+///
 /// Each thread adds to a range of vertices of its own and computes all elements that touch it (see
 /// owned_batches). An element on a boundary has a copy of its duals for each thread. A tetrahedron that is
 /// flat to rounding has no volume and no force; its duals are those of a nearby one. A pass streams 240 bytes
 /// a tetrahedron and 64 a spring in double, about half of that in float.
-/// and 64 a spring in double, half of that in float.
 template <class Real>
 class LocalSteps {
  public:

@@ -15,7 +15,7 @@ double determinant(const Point& a, const Point& b, const Point& c) {
          a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/// Barycentric coordinates by Cramer's rule; not finite in a flat tetrahedron.
+/// Returns barycentric coordinates by Cramer's rule; not finite in a flat tetrahedron.
 std::array<double, 4> weights_of(const Point& at, const std::array<Point, 4>& corners) {
   const Point a = difference(corners[1], corners[0]);
   const Point b = difference(corners[2], corners[0]);

@@ -92,7 +92,7 @@ std::uint64_t checksum_of(const ProjectiveOptions& options, const ProjectiveScen
   sum.add(options.iterations);
   sum.add(options.tolerance);
   sum.add(options.keep_duals);
-  sum.add(0);  // options that are gone, here and below, at their defaults: fingerprints stay valid
+  sum.add(0);  // defaults of removed options, here and below, so that fingerprints stay valid
   for (const ScenarioObstacle& obstacle : scenario.obstacles) add_obstacle(obstacle, sum);
   sum.add(options.contact.with_itself);
   sum.add(options.contact.friction_with_itself);

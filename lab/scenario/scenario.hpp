@@ -31,7 +31,7 @@ struct VertexChoice {
     all,
     set,      ///< members of the set `name`, or the vertices of its cells
     label,    ///< vertices, or the vertices of cells, with the value `label` in the array `name`; without a
-              ///< name, in the label array of the vertices or, if there is none, of the cells
+              ///< name, first in the label array of the vertices, then in that of the cells
     box,      ///< vertices from `low` to `high`
     nearest,  ///< the vertex nearest to `low`
   };

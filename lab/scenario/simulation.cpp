@@ -87,7 +87,7 @@ void bind_loads(const Scenario& scenario, const Mesh& mesh, std::span<const Inde
   }
 }
 
-/// Where the vertices are when the motion starts.
+/// Returns the state in which the motion starts.
 MotionState start_of(const Scenario& scenario, const Mesh& mesh, std::span<const Index> candidates) {
   MotionState state;
   state.positions = mesh.points;
@@ -103,7 +103,7 @@ MotionState start_of(const Scenario& scenario, const Mesh& mesh, std::span<const
   return state;
 }
 
-/// Springs and strain were given their stiffness as Young's modulus, with ν = 0: it is 2μ.
+/// For springs and strain the stiffness was given as Young's modulus with ν = 0, which equals 2μ.
 LocalLaw local_law_of(const SimplexMaterials& materials, LocalModel model, Offset simplices) {
   LocalLaw law;
   law.model = model;
@@ -221,7 +221,7 @@ void require_volume_cells(const Mesh& mesh, const std::string& file) {
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const OrderOptions& ordering) {
   require_volume_cells(mesh, file);
   const Stopwatch ordering_time;
-  mesh.cell_blocks.clear();  // they are a file's layout, and would keep cells from their places
+  mesh.cell_blocks.clear();  // blocks are a file's layout and would restrict the order of the cells
   MeshOrder order =
       compute_reordering(mesh, vertex_graph(mesh),
                          {.methods = {scenario.vertex_order, scenario.element_order}, .order = ordering});

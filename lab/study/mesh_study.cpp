@@ -20,11 +20,11 @@ namespace meshorder {
 namespace {
 
 constexpr Offset kMostExact = 1'000'000;
-/// The share of the time that orders and simulated caches take where kernels are timed, about.
+/// About the share of the time that orders and simulated caches take if kernels are timed.
 constexpr double kUntilTiming = 0.5;
 
-/// Seconds of the call on the arena's threads, the best of three where one takes less than a second.
-/// `prepare` comes before each and does not count.
+/// Returns the seconds of the call on the arena's threads, the best of three if one takes less than a second.
+/// `prepare` runs before each call and does not count.
 template <class Prepare, class Call>
 double best_seconds(tbb::task_arena& threads, Prepare prepare, Call call) {
   constexpr double kLong = 1.0;
@@ -41,7 +41,7 @@ double best_seconds(tbb::task_arena& threads, Prepare prepare, Call call) {
   return best;
 }
 
-/// The mesh's kernels in one order.
+/// Makes the mesh's kernels in one order.
 std::unique_ptr<KernelBench> bench_of(const Mesh& mesh, const CsrGraph& graph, const MeshOrder& order) {
   Mesh ordered = mesh;
   apply_reordering(ordered, order);
@@ -100,7 +100,7 @@ class MeshStudy {
   OrderedMesh result() && { return std::move(result_); }
 
  private:
-  /// Returns what the order costs.
+  /// Computes the order and returns its cost, s.
   double compute(const OrderingSpec& ordering, MeshOrder& order) {
     Mesh moved;
     const double seconds = best_seconds(

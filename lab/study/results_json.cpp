@@ -126,16 +126,16 @@ void check_record(const Caches& caches, const JsonValue& value) {
   }
 }
 
-/// Throws unless bins are counted, every order comes once and misses are those of every hierarchy and level,
-/// or none.
+/// Throws unless `span_bin` is positive, every order occurs once, and misses are given for every hierarchy
+/// and level, or for none.
 void check_record(const MeshRecord& mesh, const JsonValue& value) {
   expect_positive(mesh.span_bin, value, "span_bin");
   unique_names(mesh.orders, &MeshOrderRecord::ordering, value, "orders", "ordering");
   for (const JsonValue& order : value["orders"].items()) expect_misses(mesh.hierarchies, order);
 }
 
-/// Throws unless every order comes once, every run has the scenario's steps and every frame its difference,
-/// if there are any.
+/// Throws unless every order occurs once, every run has the scenario's steps, and there is a difference for
+/// every frame, or none.
 void check_record(const ScenarioRecord& scenario, const JsonValue& value) {
   expect_positive(scenario.steps, value, "steps");
   expect_positive(scenario.turn, value, "turn");

@@ -14,14 +14,14 @@ namespace meshorder {
 namespace {
 
 constexpr double kConfidence = 0.95;
-/// So many times the variance that turns explain is not theirs.
+/// Ratio of the variance of the runs' sums to the one that turns explain, above which whole runs differ.
 constexpr double kRunsDiffer = 3.0;
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 double mean(const std::vector<double>& values) { return sum(values) / static_cast<double>(values.size()); }
 
-/// Of a sample; 0 of one value.
+/// Returns the variance of a sample; 0 for one value.
 double variance(const std::vector<double>& values) {
   if (values.size() < 2) return 0.0;
   const double middle = mean(values);
@@ -36,7 +36,7 @@ void expect_same_length(const std::vector<RunRecord>& runs, std::size_t steps) {
   }
 }
 
-/// Seconds of each turn of a run.
+/// Returns the seconds of each turn of a run.
 std::vector<double> turns_of(const RunRecord& run, Index turn) {
   std::vector<double> turns;
   for (std::size_t step = 0; step < run.step_seconds.size(); ++step) {
@@ -46,7 +46,7 @@ std::vector<double> turns_of(const RunRecord& run, Index turn) {
   return turns;
 }
 
-/// Entry by entry, the values that lists of the same length have there.
+/// Returns for each position the values that the lists, all of the same length, have there.
 std::vector<std::vector<double>> transposed(const std::vector<std::vector<double>>& lists) {
   std::vector<std::vector<double>> result(lists.front().size());
   for (const std::vector<double>& list : lists) {
@@ -61,7 +61,7 @@ std::vector<double> differences(const std::vector<double>& from, const std::vect
   return result;
 }
 
-/// Half the interval's width in seconds, from what each of two or more runs saved in every turn.
+/// Returns half the interval's width in seconds, from the savings of each of two or more runs in every turn.
 double half_width_of_runs(const std::vector<std::vector<double>>& saved_by_run) {
   const auto runs = static_cast<double>(saved_by_run.size());
   double of_turns = 0;
@@ -75,7 +75,7 @@ double half_width_of_runs(const std::vector<std::vector<double>>& saved_by_run) 
   return student_t(index_size(saved_by_run.front()) * more_runs, kConfidence) * std::sqrt(of_turns / runs);
 }
 
-/// The same of the turns of one run in an order and in the reference.
+/// Returns the same for one run, from its turns in an order and in the reference.
 double half_width_of_ratio(const std::vector<double>& turns, const std::vector<double>& reference) {
   const double ratio = sum(turns) / sum(reference);
   double squares = 0;
@@ -105,7 +105,7 @@ std::optional<Index> break_even_step(const std::vector<double>& saved_by_step, d
   return std::nullopt;
 }
 
-/// What an order cost that mesh; infinite where it is not known.
+/// Returns the cost of an order of that mesh, s; infinite if it is not known.
 double order_seconds(const StudyResults& results, const std::string& mesh, const std::string& ordering) {
   for (const MeshRecord& record : results.meshes) {
     if (record.name != mesh) continue;
@@ -136,7 +136,7 @@ void summarise(const StudyResults& results, ScenarioRecord& scenario) {
   }
 }
 
-/// The probability of |t| ≤ √degrees · tan angle.
+/// Returns the probability of |t| ≤ √degrees · tan angle.
 double probability_within(double angle, Index degrees) {
   const bool odd = degrees % 2 == 1;
   const double cosine = std::cos(angle);

@@ -135,7 +135,7 @@ class Stepping {
   std::optional<SurfaceFile> surfaces_;  ///< of a fluid
 };
 
-/// Returns a text as it is where it is UTF-8, else, as a path may be of any bytes, their numbers.
+/// Returns a text as it is if it is UTF-8; else the numbers of its bytes, since a path may hold any bytes.
 nlohmann::json bytes_in_json(const std::string& text) {
   if (is_utf8(text)) return text;
   auto numbers = nlohmann::json::array();

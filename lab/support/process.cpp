@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What the child does between fork and exec, where only system calls are allowed.
+/// Runs in the child between fork and exec, where only system calls are allowed.
 [[noreturn]] void become(const char* program, char* const* arguments, int socket, bool fixed_addresses,
                          pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -36,7 +36,7 @@ namespace {
   struct sigaction ignore {};
   ignore.sa_handler = SIG_IGN;
   ::sigaction(SIGINT, &ignore, nullptr);
-  // where standard streams are closed the socket may have one of their numbers, and would be closed by exec
+  // if standard streams are closed, the socket may have one of their numbers, and exec would close it
   if (socket <= STDERR_FILENO) socket = ::fcntl(socket, F_DUPFD, STDERR_FILENO + 1);
   ::dup2(socket, STDIN_FILENO);
   ::dup2(socket, STDOUT_FILENO);
@@ -77,7 +77,7 @@ bool is_program(const fs::path& path) {
   throw std::system_error(code, std::generic_category(), program.string());
 }
 
-/// What the child finds instead of the terminal: no input, and one file for both kinds of output.
+/// A child's streams instead of the terminal: no input, and one file for both kinds of output.
 class Redirections {
  public:
   Redirections(const fs::path& folder, const fs::path& log) {
@@ -163,7 +163,7 @@ void ChildProcess::receive_bytes(std::span<std::byte> bytes) {
     errno = 0;
     const std::size_t received = std::fread(bytes.data(), 1, bytes.size(), replies_);
     bytes = bytes.subspan(received);
-    // a signal that the parent takes note of interrupts the wait
+    // a signal that the parent handles interrupts the wait
     if (!bytes.empty() && errno != EINTR) throw_ended();
   }
 }
@@ -172,7 +172,7 @@ std::string ChildProcess::receive() {
   char* buffer = nullptr;
   std::size_t capacity = 0;
   ssize_t length = -1;
-  do {  // a signal that the parent takes note of interrupts the wait
+  do {  // a signal that the parent handles interrupts the wait
     std::clearerr(replies_);
     errno = 0;
     length = ::getline(&buffer, &capacity, replies_);

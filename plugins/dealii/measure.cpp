@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What orders are worth in deal.II: −Δu + u = 1 by FE_Q(1) on the hexahedra that the tetrahedra of a mesh of
-// TetGen are cut into, four each.
+// Measures what orders are worth in deal.II: −Δu + u = 1 by FE_Q(1), on a mesh of TetGen whose tetrahedra are
+// cut into four hexahedra each.
 //
 //   dealii_measure PREFIX ROUNDS
 #include "../measuring.hpp"
@@ -44,7 +44,7 @@ struct Hexahedra {
   std::vector<dealii::CellData<3>> cells;
 };
 
-// Cuts each tetrahedron at the middles of its edges and faces, and its own.
+// Cuts each tetrahedron at the middles of its edges and faces and at its own middle.
 Hexahedra hexahedra_of(const measuring::Tetrahedra& mesh) {
   Hexahedra hexahedra;
   std::map<std::vector<int>, unsigned int> middles;
@@ -65,7 +65,7 @@ Hexahedra hexahedra_of(const measuring::Tetrahedra& mesh) {
     return found->second;
   };
   for (std::size_t p = 0; p < mesh.points.size(); ++p) middle({static_cast<int>(p)});
-  // at each corner a: the other three, turning to the right seen from it
+  // for each corner: itself, then the other three, clockwise as seen from it
   constexpr std::array<std::array<std::size_t, 4>, 4> corners{
       {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
   for (const auto& cell : mesh.cells) {

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Orders of degrees of freedom and of a triangulation's cells: which way they go, and that the solution
-// stays.
+// Tests orders of degrees of freedom and of a triangulation's cells: their direction, and that the solution
+// stays the same.
 #include <meshorder/dealii.hpp>
 
 #include <deal.II/base/function.h>

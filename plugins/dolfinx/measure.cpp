@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What orders are worth in DOLFINx: −Δu + u = 1 + x by linear tetrahedra, on a mesh of TetGen.
+// Measures what orders are worth in DOLFINx: −Δu + u = 1 + x by linear tetrahedra, on a mesh of TetGen.
 //
 //   dolfinx_measure PREFIX ROUNDS
 #include "problem.hpp"
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
     std::deque<problem::System> systems;
     std::vector<measuring::Case> cases;
     for (const Orders& order : orders) {
-      // the orders' own time, counted where they are called
+      // the time that the orders take, measured in each call
       double seconds = 0;
       const auto counted = [&seconds](const problem::Reorder& reorder) -> problem::Reorder {
         return [&seconds, &reorder](const auto& graph) {

@@ -28,8 +28,8 @@
 #include <utility>
 #include <vector>
 
-/// What the test and the measuring program share: −Δu + u = 1 + x by linear tetrahedra, on meshes whose
-/// orders are given.
+/// Shared by the test and the measuring program: −Δu + u = 1 + x by linear tetrahedra, on meshes in given
+/// orders.
 namespace problem {
 
 /// Takes a graph and returns the new index of each node, as DOLFINx wants it.

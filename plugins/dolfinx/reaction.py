@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-# The forms that the test and the measuring program assemble, for ffcx: −Δu + u = 1 + x, with free ends.
+# The forms that the test and the measuring program assemble, for ffcx: −Δu + u = 1 + x, natural boundary conditions.
 from ufl import (FiniteElement, FunctionSpace, Mesh, SpatialCoordinate, TestFunction, TrialFunction, VectorElement, dx,
                  grad, inner, tetrahedron)
 

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Orders for DOLFINx: which way they go, and that the solution stays.
+// Tests orders for DOLFINx: their direction, and that the solution stays the same.
 #include "problem.hpp"
 #include "reaction.h"
 #include <meshorder/dolfinx.hpp>
@@ -99,7 +99,7 @@ void test_direction() {
   EXPECT(bandwidth(wrong->geometry().dofmap()) > 7);
 }
 
-// u at the points, by their coordinates.
+// Returns u at the points, by their coordinates.
 std::map<std::array<double, 3>, double> solution(const problem::Reorder& order) {
   const auto mesh = problem::create_mesh(bar(9, 5), order, order);
   const auto space = linear_space(mesh, order);

@@ -32,11 +32,11 @@ PETSC_EXTERN PetscErrorCode MeshorderMatOrderingRegister(void);
  * cell type, so that strata stay what they are.
  *
  * @param dm      a mesh that is not distributed, or on one process; not changed
- * @param method  name of a vertex method without "meshorder_", "auto" among them; methods by coordinates take
- * the means of the cells' coordinates
+ * @param method  name of a vertex method without "meshorder_", such as "auto"; methods by coordinates use
+ *                the means of the cells' coordinates
  * @param perm    perm[old point number] = new point number, as DMPlexPermute wants it; the caller destroys it
  *
- * DMPlexGetOrdering does not look at the type that it is given, and knows no order but its own.
+ * DMPlexGetOrdering ignores the type that it is given and computes only its own order.
  */
 PETSC_EXTERN PetscErrorCode MeshorderDMPlexOrdering(DM dm, const char* method, IS* perm);
 

@@ -2,8 +2,8 @@
 #include "meshorder_petsc.h"
 #include "order.h"
 
-/* Returns in `centres`, to be freed, the centre of each point, the mean of the centres that bound it, or null
- * for a mesh without coordinates. */
+/* Returns in `centres` (to be freed) each point's centre, which is the mean of the centres of the points that
+ * bound it; null for a mesh without coordinates. */
 static PetscErrorCode Centres(DM dm, PetscInt begin, PetscInt end, PetscInt* dimension, double** centres) {
   PetscSection section;
   Vec coordinates;
@@ -45,7 +45,7 @@ static PetscErrorCode Centres(DM dm, PetscInt begin, PetscInt end, PetscInt* dim
   PetscFunctionReturn(0);
 }
 
-/* The points of a mesh by kind, which is their depth and cell type: what may take each other's numbers. */
+/* The points of a mesh by kind (depth and cell type). Points of one kind may take each other's numbers. */
 typedef struct Kinds {
   PetscInt* kind;    /* of each point */
   PetscInt* numbers; /* the points' numbers, kind after kind, ascending in each */
@@ -74,7 +74,7 @@ static PetscErrorCode KindsCreate(DM dm, PetscInt begin, PetscInt end, Kinds* ki
   for (PetscInt point = begin; point < end; ++point) {
     kinds->numbers[kinds->next[kinds->kind[point - begin]]++] = point;
   }
-  /* each next is the end of its kind now, which is where the one after it begins */
+  /* each `next` is the end of its kind now, which is where the next kind begins */
   for (PetscInt k = kinds->count; k > 0; --k) kinds->next[k] = kinds->next[k - 1];
   kinds->next[0] = 0;
   PetscFunctionReturn(0);
@@ -111,7 +111,7 @@ static PetscErrorCode OrderCells(DM dm, PetscInt begin, PetscInt end, PetscInt f
   PetscFunctionReturn(0);
 }
 
-/* Numbers all points: cells in their order, then those of each lower depth as the ones above them meet them.
+/* Numbers all points: cells in their order, then points of each lower depth as those above meet them.
  */
 static PetscErrorCode NumberPoints(DM dm, PetscInt begin, PetscInt end, PetscInt cell_count,
                                    const PetscInt* cells, PetscInt first_cell, PetscInt* old_to_new) {

@@ -65,7 +65,7 @@ static PetscErrorCode CreateSimplices(PetscInt dimension, const PetscInt faces[3
       PetscInt* const cell = cells + filled;
       cell[0] = v;
       for (PetscInt step = 0; step < dimension; ++step) cell[step + 1] = cell[step] + strides[axes[step]];
-      /* PETSc's triangles turn to the left, its tetrahedra the other way than most */
+      /* PETSc's triangles are counterclockwise; its tetrahedra are oriented unlike most programs' */
       if (dimension == 2 ? k == 1 : k < 3) {
         const PetscInt swapped = cell[1];
         cell[1] = cell[2];
@@ -125,14 +125,14 @@ static PetscErrorCode CheckFirstUse(DM dm) {
     }
     PetscCall(DMPlexRestoreTransitiveClosure(dm, cell, PETSC_TRUE, &size, &closure));
     for (PetscInt d = 0; d <= depth; ++d) {
-      CHECK(most[d] <= last[d] + found[d]); /* what is new has the numbers that follow */
+      CHECK(most[d] <= last[d] + found[d]); /* new points have the numbers that follow */
       last[d] = PetscMax(last[d], most[d]);
     }
   }
   PetscFunctionReturn(0);
 }
 
-/* Sums over the cells: volume, volume times centre, and the points on the boundary by their coordinates. */
+/* Sums volume, and volume times centre, over the cells; counts the facets on the boundary. */
 static PetscErrorCode Measure(DM dm, PetscReal* volume, PetscReal moment[3], PetscInt* boundary) {
   PetscInt begin, end;
   DMLabel label;
@@ -148,7 +148,7 @@ static PetscErrorCode Measure(DM dm, PetscReal* volume, PetscReal moment[3], Pet
     *volume += size;
     for (int axis = 0; axis < 3; ++axis) moment[axis] += size * centre[axis];
   }
-  /* a point that is marked has its support within the boundary, as it had before */
+  /* a facet is marked if it has only one cell, as before */
   *boundary = 0;
   PetscCall(DMGetLabel(dm, "marker", &label));
   PetscCall(DMPlexGetHeightStratum(dm, 1, &begin, &end));

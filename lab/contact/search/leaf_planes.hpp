@@ -22,7 +22,7 @@ void update_planes(TetrahedronLeaves& tetrahedra, Index leaf, std::span<const do
 /// is outside some plane of every tetrahedron of which it is no corner; negative inside one.
 void lower_clearances(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
                       std::span<const double> positions, std::span<float> clearances);
-/// Appends the task's points that no plane of some tetrahedron keeps out, except its own corners.
+/// Appends the task's points that no plane of some tetrahedron keeps out; not those that are its corners.
 void hits_of(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
              std::span<const double> positions, std::vector<LeafHit>& hits);
 

@@ -11,8 +11,8 @@
 namespace meshorder {
 
 /// A part of a solve, independent of tasks that are neither above nor below it in the tree of tasks. It adds
-/// its contributions to rows above it in places of its own, its slots, from which the task above takes them.
-/// So tasks can run at the same time, and sums have the same order on any number of threads.
+/// its contributions to rows above it into places of its own, its slots, from which the task above takes
+/// them. So tasks can run at the same time, and sums have the same order on any number of threads.
 struct PanelTask {
   Index first_column, end_column;
   Index first_panel, end_panel;

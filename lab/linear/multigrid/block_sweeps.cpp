@@ -149,7 +149,7 @@ bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
   return result;
 }
 
-/// Returns the smallest chunks, of `min_rows` rows doubled, that touch only adjacent ones; else one chunk.
+/// Returns chunks of rows that touch only adjacent chunks, as small as `min_rows` allows, or one chunk.
 RowChunks sweep_chunks(const Laplacian& graph, Index min_rows) {
   for (Index rows = min_rows; rows < graph.size(); rows *= 2) {
     RowChunks chunks(graph, rows);

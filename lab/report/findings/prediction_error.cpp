@@ -11,7 +11,7 @@
 namespace meshorder {
 namespace {
 
-/// Pairs nearer to each other than this are not worth telling apart.
+/// Pairs of orders whose measured times differ by a smaller factor are not counted.
 constexpr double kApart = 1.1;
 
 void count_pairs(const MeshRecord& mesh, std::size_t kernel, PredictionError& error) {

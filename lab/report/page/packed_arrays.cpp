@@ -17,9 +17,9 @@
 namespace meshorder {
 namespace {
 
-constexpr double kSteps = 65535;       // that 16 bits number
+constexpr double kSteps = 65535;       // the largest number of 16 bits
 constexpr double kStepsOfBody = 4096;  // along the longest side of a body that moves
-constexpr double kNoExtent = 1;        // what is flat needs any step
+constexpr double kNoExtent = 1;        // a flat extent may have any step
 
 std::string compressed(const std::vector<char>& bytes) {
   std::string result(compressBound(bytes.size()), '\0');
@@ -78,7 +78,7 @@ void describe(nlohmann::ordered_json& array, const Quantisation& quantisation) {
 nlohmann::ordered_json PackedArrays::add_bytes(const std::vector<char>& bytes, std::string_view type,
                                                const std::vector<std::size_t>& shape, bool delta) {
   const std::string text = to_base64(compressed(bytes));
-  // whoever unpacks them takes arrays of one element for the same numbers
+  // arrays that share an element must have the same type and encoding
   const auto [known, is_new] = ids_.try_emplace(fmt::format("{} {} {}", type, delta ? "delta" : "", text),
                                                 fmt::format("blob-{}", ids_.size() + 1));
   const std::string& id = known->second;

@@ -42,7 +42,7 @@ PageMesh page_mesh(const std::string& name, const Mesh& mesh,
                    const std::vector<std::pair<std::string, Permutation>>& orders, const PageDetail& detail) {
   PageMesh result;
   result.name = name;
-  // of a matrix the page shows patterns alone
+  // for a matrix the page shows only patterns
   if (stored_matrix(mesh) == nullptr) result.surface = surface_view(mesh, detail.mesh_triangles);
   result.points = points_of(result.surface, mesh);
   const CsrGraph graph = vertex_graph(mesh);

@@ -13,10 +13,10 @@ namespace meshorder {
 namespace {
 
 constexpr float kAnyError = std::numeric_limits<float>::max();
-/// A surface that keeps so many times more triangles than asked for, to keep its topology, may lose that.
+/// If keeping the topology leaves more than this many times the triangles asked for, the topology may change.
 constexpr std::size_t kTooMany = 2;
 
-/// The coordinates that the simplifier needs: in single precision, which offsets must not use up.
+/// Returns coordinates for the simplifier, relative to the box, so that floats do not lose digits to offsets.
 std::vector<float> coordinates(const Mesh& mesh, const std::vector<Index>& vertices) {
   const BoundingBox box = bounding_box(mesh.points, vertices);
   const double longest = std::max(box.longest_side(), std::numeric_limits<double>::min());
@@ -29,7 +29,7 @@ std::vector<float> coordinates(const Mesh& mesh, const std::vector<Index>& verti
   return result;
 }
 
-/// Fewer triangles over the same vertices, all of them corners of `corners`.
+/// Returns fewer triangles over the same vertices, all of them corners of `corners`.
 std::vector<unsigned> simplified(const std::vector<unsigned>& corners, const std::vector<float>& places,
                                  std::size_t most_corners) {
   std::vector<unsigned> result(corners.size());
@@ -45,7 +45,7 @@ std::vector<unsigned> simplified(const std::vector<unsigned>& corners, const std
   return result;
 }
 
-/// Neighbours together, in a graphics card's cache as in what compresses the numbers.
+/// Puts neighbours next to each other, for a graphics card's cache and for the compression of the numbers.
 void order_for_drawing(std::vector<unsigned>& corners, std::vector<Index>& vertices) {
   meshopt_optimizeVertexCache(corners.data(), corners.data(), corners.size(), vertices.size());
   std::vector<unsigned> places(vertices.size());

@@ -11,7 +11,7 @@
 namespace meshorder {
 namespace {
 
-/// As a field of a CSV file.
+/// Returns text as a field of a CSV file.
 std::string csv_escaped(std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
   std::string result = "\"";
@@ -22,7 +22,7 @@ std::string csv_escaped(std::string_view text) {
   return result + '"';
 }
 
-/// Whether the column's cells are numbers, but for pale ones.
+/// Returns whether all cells of the column are numbers, apart from pale ones.
 bool has_numbers(const Table& table, std::size_t column) {
   return !table.rows.empty() && std::all_of(table.rows.begin(), table.rows.end(), [column](const auto& row) {
     return row[column].value || row[column].weak;
@@ -43,7 +43,7 @@ std::string_view words_of(Certainty certainty) {
   return {};
 }
 
-/// Returns what the page's style sheet calls it.
+/// Returns the class of a certainty in the page's style sheet.
 std::string_view class_of(Certainty certainty) {
   return certainty == Certainty::open ? std::string_view("open") : words_of(certainty);
 }

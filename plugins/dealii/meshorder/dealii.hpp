@@ -26,10 +26,10 @@ inline namespace v0_3 {
 /// Orders the degrees of freedom by the graph of those that share a cell.
 ///
 /// @param dof_handler  with distributed degrees of freedom, all on this process
-/// @param method       name of a vertex method; those by coordinates take the support points, where the
-/// element has
-///                     them and all cells have one shape
-/// @param constraints  as for `make_sparsity_pattern`: hanging nodes couple what they are constrained to
+/// @param method       name of a vertex method; methods by coordinates use the support points, if the
+///                     element has some and all cells have one shape; otherwise they are refused, as
+///                     for a graph without points
+/// @param constraints  as for `make_sparsity_pattern`; a hanging node couples those that it depends on
 /// @param options      see `OrderOptions`
 /// @return `permutation.old_to_new()` is what `DoFHandler::renumber_dofs` takes
 /// @throws as `order_vertices`; dealii::ExcMessage where degrees of freedom are on several processes
@@ -68,7 +68,7 @@ Order order_dofs(const dealii::DoFHandler<dim, spacedim>& dof_handler, std::stri
                         points.empty() ? PointsView{} : PointsView(points, spacedim));
 }
 
-/// Renumbers the degrees of freedom in the order of a method: see `order_dofs`. To be called after
+/// Renumbers the degrees of freedom in the order of a method: see `order_dofs`. Call it after
 /// `distribute_dofs`, before constraints, patterns and vectors are made.
 template <int dim, int spacedim>
 void renumber_dofs(dealii::DoFHandler<dim, spacedim>& dof_handler, std::string_view method = "auto",

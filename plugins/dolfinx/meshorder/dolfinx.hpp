@@ -16,11 +16,11 @@ inline namespace v0_3 {
 /// Returns a function that orders graphs for DOLFINx, in place of its `reorder_gps` or `reorder_rcm`: it
 /// takes an `AdjacencyList<std::int32_t>` and returns, for each node, its new index.
 ///
-/// `create_functionspace` and `create_geometry` take it as `reorder_fn`, newer versions' `create_mesh`, too.
-/// Checked with DOLFINx 0.5.2. The graph has no coordinates, so methods that need them are refused.
+/// `create_functionspace` and `create_geometry` take it as `reorder_fn`; so does `create_mesh` of newer
+/// versions. Checked with DOLFINx 0.5.2. The graph has no coordinates, so methods that need them are refused.
 ///
 /// @param method   name of a vertex method
-/// @param options  see `OrderOptions`; what its views show must live as long as the function
+/// @param options  see `OrderOptions`; the arrays that its views refer to must outlive the function
 /// @return a function that throws as `order_vertices` does
 inline auto dolfinx_reorder(std::string method = "auto", OrderOptions options = {}) {
   return [method = std::move(method),
