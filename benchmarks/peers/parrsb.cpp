@@ -6,7 +6,7 @@
 #include "parts.hpp"
 
 #include <mpi.h>
-#include <parRSB.h>  // behind mpi.h, which it includes as if it were C
+#include <parRSB.h>  // must follow mpi.h, which it includes as if it were C
 
 #include <cstdio>
 #include <stdexcept>

@@ -14,7 +14,7 @@ void ok(PetscErrorCode code) {
   if (code != 0) throw std::runtime_error("PETSc error " + std::to_string(code));
 }
 
-/// The matrix as PETSc's, on the given arrays, with constants as its near null space for multigrid.
+/// Returns the matrix as PETSc's, on the given arrays, with constants as its near null space for multigrid.
 Mat petsc_matrix(peer::Matrix& matrix) {
   Mat result = nullptr;
   ok(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, matrix.size, matrix.size, matrix.offsets.data(),

@@ -84,7 +84,7 @@ def fastest(orders, column):
 
 
 def verdict(orders, column, same):
-    """The order with the least predicted time, or the file's own where that is no worse."""
+    """Returns the order with the least predicted time, or the file's own if that is no worse."""
     best = fastest(orders, column)
     return OWN if orders[OWN][column] < same * orders[best][column] else best
 

@@ -43,12 +43,12 @@ struct LocalElements {
   }
 };
 
-/// The elements of tetrahedra at rest at the points: see LocalSteps. O(simplices · log degree).
+/// Makes the elements of tetrahedra at rest at the points: see LocalSteps. O(simplices · log degree).
 template <class Real>
 LocalElements<Real> local_elements(const LocalLaw& law, const Simplices& simplices,
                                    std::span<const Point> points);
 
-/// Σ Dᵀw²D on n vertices. O(elements · log degree).
+/// Returns Σ Dᵀw²D on n vertices. O(elements · log degree).
 template <class Real>
 SparseMatrix stiffness_of(const LocalElements<Real>& elements, Index n);
 

@@ -64,18 +64,18 @@ struct LocalResidual {
 template <class Real>
 class LocalSteps {
  public:
-  /// The elements of `simplices` (tetrahedra) at rest at `points`, with duals 0. Throws InvalidArgument,
-  /// naming the problem, for simplices that are not tetrahedra and numbers that are out of range or not
-  /// finite. O(simplices · log degree).
+  /// Makes the elements of `simplices` (tetrahedra) at rest at `points`, with duals 0. Throws
+  /// InvalidArgument, naming the problem, for simplices that are not tetrahedra and numbers that are out of
+  /// range or not finite. O(simplices · log degree).
   LocalSteps(const LocalLaw& law, const Simplices& simplices, std::span<const Point> points);
 
   /// Returns Σ Dᵀw²D on the vertices: n × n, the same for x, y and z.
   [[nodiscard]] SparseMatrix stiffness() const;
 
-  /// For every element q = D x + u, z = argmin U(z) + ½w²‖z − q‖², u = q − z; then right_hand_side[v] =
-  /// scale · Σ Dᵀw²(z − u) at each vertex v. Both vectors have kPaddedStride numbers for each vertex (see
-  /// padded_positions); the right-hand side has `room()` vertices, of which those after the mesh's are
-  /// scratch. O(elements).
+  /// Takes the local step of every element, q = D x + u, z = argmin U(z) + ½w²‖z − q‖², u = q − z; then sets
+  /// right_hand_side[v] = scale · Σ Dᵀw²(z − u) at each vertex v. Both vectors have kPaddedStride numbers for
+  /// each vertex (see padded_positions); the right-hand side has `room()` vertices, and those after the
+  /// mesh's are scratch. O(elements).
   LocalResidual pass(std::span<const Real> positions, Real scale, std::span<Real> right_hand_side);
 
   /// Returns the number of vertices that the right-hand side must hold, at least n.

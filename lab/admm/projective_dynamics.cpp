@@ -31,7 +31,7 @@ const ProjectiveOptions& checked(const ProjectiveOptions& options, Index vertex_
   return options;
 }
 
-/// Σ (a − b)²
+/// Returns Σ (a − b)².
 template <class Real>
 double squared_distance(std::span<const Real> a, std::span<const Real> b) {
   return sum_over_chunks<double>(static_cast<Index>(a.size()), 4 * kVertices, [&](Index begin, Index end) {

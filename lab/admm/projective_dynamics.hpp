@@ -45,11 +45,11 @@ struct ProjectiveBody {
 template <class Real>
 class ProjectiveDynamics final : public Integrator {
  public:
-  /// The body at rest at `points`. Throws InvalidArgument, naming the problem, for a body that does not
-  /// consist of tetrahedra, numbers that are not finite or out of range.
+  /// Makes the body, at rest at `points`. Throws InvalidArgument, naming the problem, for a body that does
+  /// not consist of tetrahedra, numbers that are not finite or out of range.
   ProjectiveDynamics(std::span<const Point> points, const ProjectiveBody& body, ProjectiveOptions options);
 
-  /// `memory` holds the duals if they are kept.
+  /// Returns the state; its `memory` holds the duals if they are kept.
   [[nodiscard]] MotionState state() const override;
   void set_state(const MotionState& state) override;
   StepReport step() override;

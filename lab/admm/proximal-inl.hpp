@@ -193,7 +193,7 @@ struct InvariantSteps {
   }
 };
 
-/// z = argmin Ψ(z)/κ + ½‖z − q‖² of an isotropic law.
+/// Computes z = argmin Ψ(z)/κ + ½‖z − q‖² of an isotropic law.
 ///
 /// With z = R Z the condition is A Z + b cof Z + γ I = S = Rᵀq, where the left side is Z plus its stress.
 /// Near rest it is solved for the invariants of Z; elsewhere for the singular values of Z.

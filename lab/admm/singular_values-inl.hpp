@@ -42,7 +42,7 @@ HWY_INLINE void descent_direction(const typename Lanes::Value (&h)[3][3], const 
   x[0] = y0 * d0 - l10 * x[1] - l20 * x[2];
 }
 
-/// The law's energy plus ½‖z − σ‖².
+/// Returns the law's energy plus ½‖z − σ‖².
 template <class Lanes, class Law>
 HWY_INLINE typename Lanes::Value objective(const Law& law, const typename Lanes::Value (&sigma)[3],
                                            const typename Lanes::Value (&z)[3]) {

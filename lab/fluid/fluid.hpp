@@ -29,7 +29,7 @@ class Fluid : public Integrator {
   /// triangulated.
   Fluid(const FluidOptions& options, FluidOrdering ordering, Triangulate triangulate);
 
-  /// The same with particles of the caller's.
+  /// Does the same with the caller's own particles.
   Fluid(const FluidOptions& options, Particles particles, FluidOrdering ordering, Triangulate triangulate);
 
   [[nodiscard]] MotionState state() const override;

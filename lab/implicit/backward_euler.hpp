@@ -44,15 +44,15 @@ struct ImplicitOptions : MotionOptions {
 /// iterations are allowed, each is damped by a line search on the potential whose gradient is g.
 class BackwardEuler final : public Integrator {
  public:
-  /// The body at rest at `points`. Throws InvalidArgument, naming the problem, for a body that does not
-  /// consist of tetrahedra, a vertex without mass, numbers that are not finite or out of range.
+  /// Makes the body, at rest at `points`. Throws InvalidArgument, naming the problem, for a body that does
+  /// not consist of tetrahedra, a vertex without mass, numbers that are not finite or out of range.
   BackwardEuler(std::span<const Point> points, const Body& body, ImplicitOptions options);
 
   [[nodiscard]] MotionState state() const override;
   void set_state(const MotionState& state) override;
 
-  /// If CG meets negative curvature, the step uses the positive semi-definite part of the tangent instead and
-  /// adds a warning.
+  /// Takes one step. If CG meets negative curvature, uses the positive semi-definite part of the tangent
+  /// instead and adds a warning.
   StepReport step() override;
 
   [[nodiscard]] Balance balance() const override;

@@ -26,11 +26,11 @@ class ElasticSystem {
   /// uses. O(simplices · log degree).
   ElasticSystem(std::span<const Point> points, const Body& body, Mass mass);
 
-  /// forces() = −∂E/∂x at the positions (see padded_positions), and matrix() = mass_factor M +
+  /// Computes forces() = −∂E/∂x at the positions (see padded_positions), and matrix() = mass_factor M +
   /// stiffness_factor K + `added` (of the same pattern, where given). O(simplices).
   void assemble(std::span<const double> positions, Tangent tangent, double mass_factor,
                 double stiffness_factor, const BlockCsr* added = nullptr);
-  /// The forces alone. O(simplices).
+  /// Computes only the forces. O(simplices).
   void compute_forces(std::span<const double> positions);
 
   [[nodiscard]] const BlockCsr& matrix() const noexcept { return matrix_; }

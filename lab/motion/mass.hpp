@@ -37,7 +37,7 @@ struct MassMatrix {
 MassMatrix mass_matrix(Mass kind, const RestShapes& rest, std::span<const double> densities,
                        const AssemblyMap& map, const BlockCsr& pattern);
 
-/// y = M x, 3 doubles for each vertex. O(vertices), or O(blocks) for a consistent matrix.
+/// Computes y = M x, 3 doubles for each vertex. O(vertices), or O(blocks) for a consistent matrix.
 void multiply(const MassMatrix& mass, const BlockCsr& pattern, std::span<const double> x,
               std::span<double> y);
 

@@ -24,7 +24,7 @@ struct Fingerprint {
 std::uint64_t checksum_of(const std::vector<Point>& points, const Simplices& simplices);
 std::uint64_t checksum_of(const MeshOrder& order);
 std::uint64_t checksum_of(const FluidOptions& options);
-/// Of a body that starts in that state.
+/// Returns the checksum of a body that starts in that state.
 std::uint64_t checksum_of(const ImplicitOptions& options, const Body& body, const MotionState& start);
 /// Obstacles and precision are taken from `scenario`: `options` holds the obstacles only as opaque objects.
 std::uint64_t checksum_of(const ProjectiveOptions& options, const ProjectiveScenario& scenario,

@@ -103,7 +103,7 @@ MotionState start_of(const Scenario& scenario, const Mesh& mesh, std::span<const
   return state;
 }
 
-/// For springs and strain the stiffness was given as Young's modulus with ν = 0, which equals 2μ.
+/// Returns the law. The stiffness of springs and strain was given as Young's modulus with ν = 0, which is 2μ.
 LocalLaw local_law_of(const SimplexMaterials& materials, LocalModel model, Offset simplices) {
   LocalLaw law;
   law.model = model;

@@ -42,7 +42,7 @@ void require_volume_cells(const Mesh& mesh, const std::string& file);
 /// for unknown methods. O(size of the mesh) and the order's cost.
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const OrderOptions& ordering = {});
 
-/// The same in a given order instead of the scenario's. Throws InvalidArgument if it is of another mesh.
+/// Does the same in a given order. Throws InvalidArgument if the order is of another mesh.
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, MeshOrder order);
 
 }  // namespace meshorder

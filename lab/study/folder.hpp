@@ -32,28 +32,28 @@ class StudyFolder {
   [[nodiscard]] std::filesystem::path figure(std::string_view name) const {
     return root_ / "figures" / (std::string(name) + ".svg");
   }
-  /// A mesh in its own order: points and cells only.
+  /// Returns the path of a mesh in its own order: points and cells only.
   [[nodiscard]] std::filesystem::path mesh(std::string_view mesh) const {
     return data() / (std::string(mesh) + ".vtu");
   }
-  /// The rank of each vertex or cell in an order: old_to_new, a NumPy array.
+  /// Returns the path of the rank of each vertex or cell in an order: old_to_new, a NumPy array.
   [[nodiscard]] std::filesystem::path vertex_order(std::string_view mesh, std::string_view ordering) const {
     return data() / (std::string(mesh) + "-" + std::string(ordering) + ".vertices.npy");
   }
   [[nodiscard]] std::filesystem::path cell_order(std::string_view mesh, std::string_view ordering) const {
     return data() / (std::string(mesh) + "-" + std::string(ordering) + ".cells.npy");
   }
-  /// Frames of a scenario, with vertices in the mesh's own order: a NumPy array of single precision, frames ×
-  /// vertices × 3.
+  /// Returns the path of a scenario's frames, with vertices in the mesh's own order: a NumPy array of single
+  /// precision, frames × vertices × 3.
   [[nodiscard]] std::filesystem::path motion(std::string_view scenario) const {
     return data() / (std::string(scenario) + "-motion.npy");
   }
-  /// The surface of a fluid in the frames: a NumPy array of rows (frame, three vertices); no such file for a
-  /// body.
+  /// Returns the path of a fluid's surface in the frames: a NumPy array of rows (frame, three vertices); no
+  /// such file for a body.
   [[nodiscard]] std::filesystem::path surfaces(std::string_view scenario) const {
     return data() / (std::string(scenario) + "-surfaces.npy");
   }
-  /// The obstacles of a scenario as a surface mesh; no such file without obstacles.
+  /// Returns the path of a scenario's obstacles as a surface mesh; no such file without obstacles.
   [[nodiscard]] std::filesystem::path obstacles(std::string_view scenario) const {
     return data() / (std::string(scenario) + "-obstacles.vtu");
   }

@@ -100,7 +100,7 @@ class Study {
     add(std::move(subject));
   }
 
-  /// A fluid's mesh at the start is studied under the scenario's name.
+  /// Adds a fluid. Its mesh at the start is studied under the scenario's name.
   void choose_fluid(Subject subject) {
     if (!plan_.mesh.empty())
       throw InvalidArgument(subject.scenario.name + " makes its own mesh: leave out --mesh, or the scenario");

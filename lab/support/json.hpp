@@ -53,7 +53,7 @@ class JsonValue {
       : value_(&value), file_(std::move(file)), guide_(guide) {}
 
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
-  /// "forces[0].newtons"; "the file" for the outermost value.
+  /// Returns "forces[0].newtons"; "the file" for the outermost value.
   [[nodiscard]] std::string path() const { return path_.empty() ? "the file" : path_; }
   [[nodiscard]] InputError error(const std::string& what, const std::string& remedy) const {
     return {file_, path() + ": " + what, remedy};

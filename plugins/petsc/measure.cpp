@@ -19,7 +19,7 @@
 
 namespace {
 
-// ends the program: the errors of PETSc are those of a measurement
+// ends the program if PETSc reports an error
 void must(PetscErrorCode code) { PetscCallAbort(PETSC_COMM_SELF, code); }
 
 DM create_mesh(const measuring::Tetrahedra& tetrahedra) {

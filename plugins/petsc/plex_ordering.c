@@ -137,7 +137,7 @@ static PetscErrorCode NumberPoints(DM dm, PetscInt begin, PetscInt end, PetscInt
       sequence[taken++] = cone[c];
     }
   }
-  for (PetscInt point = begin; point < end; ++point) { /* those of no cell */
+  for (PetscInt point = begin; point < end; ++point) { /* points of no cell */
     if (old_to_new[point - begin] < 0) {
       old_to_new[point - begin] = kinds.numbers[kinds.next[kinds.kind[point - begin]]++];
     }

@@ -41,7 +41,7 @@ struct Padded {
     MESHORDER_UNROLL
     for (Index i = 0; i < kParts; ++i) hn::Store(parts[i], Part(), to + i * (kPaddedStride / kParts));
   }
-  /// this + factor · other
+  /// Returns this + factor · other.
   HWY_INLINE Padded plus(double factor, const Padded& other) const {
     Padded result;
     MESHORDER_UNROLL

@@ -36,7 +36,7 @@ struct Penetration {
 /// threads, independent of earlier calls.
 class ContactFinder {
  public:
-  /// The body at rest at `points`. Throws InvalidArgument for simplices that are no tetrahedra.
+  /// Takes the body at rest at `points`. Throws InvalidArgument for simplices that are no tetrahedra.
   ContactFinder(const Simplices& simplices, std::span<const Point> points, ContactOptions options);
   ~ContactFinder();
   ContactFinder(ContactFinder&&) noexcept;
@@ -44,10 +44,10 @@ class ContactFinder {
   ContactFinder(const ContactFinder&) = delete;
   ContactFinder& operator=(const ContactFinder&) = delete;
 
-  /// The contacts of the surface's vertices at `positions`, which were at `from` when the step began (both
-  /// kPaddedStride numbers for each vertex, see padded_positions), by ascending first vertex and then
-  /// obstacle, the body itself last. A vertex inside a tetrahedron that it is no corner of is in contact with
-  /// the point of the surface that is nearest to its place in the rest shape.
+  /// Finds the contacts of the surface's vertices at `positions`; the vertices were at `from` when the step
+  /// began. Both have kPaddedStride numbers for each vertex (see padded_positions). Sorted by first vertex
+  /// and then obstacle, the body itself last. A vertex inside a tetrahedron that it is no corner of is in
+  /// contact with the point of the surface that is nearest to its place in the rest shape.
   void find(std::span<const double> positions, std::span<const double> from, std::vector<Contact>& contacts);
 
   [[nodiscard]] Penetration penetration(std::span<const double> positions);

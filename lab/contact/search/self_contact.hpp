@@ -36,7 +36,7 @@ class SelfContact {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  /// The way out of the rest shape, by all triangles or those without the corner `left_out`.
+  /// Returns the way out of the rest shape, by all triangles or those without the corner `left_out`.
   [[nodiscard]] RestSurface::Place way_out(const VertexInside& inside, Index left_out) const;
 
   std::vector<Point> rest_;

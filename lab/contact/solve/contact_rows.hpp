@@ -34,14 +34,14 @@ void check_vectors(Index n, std::size_t b, std::size_t from, std::size_t x);
 /// Returns the rows of `contacts`, which must pass check_contacts. O(contacts · log contacts).
 ContactRows contact_rows(std::span<const Contact> contacts);
 
-/// result = C x, of positions with kPaddedStride numbers for each of the n vertices.
+/// Computes result = C x, of positions with kPaddedStride numbers for each of the n vertices.
 template <class Real>
 void multiply(const ContactRows& rows, std::span<const Real> x, std::span<double> result);
 
-/// result = C x, of 3 numbers for each of rows.vertices.
+/// Computes result = C x, of 3 numbers for each of rows.vertices.
 void multiply_touched(const ContactRows& rows, std::span<const double> x, std::span<double> result);
 
-/// result = Cᵀ forces, 3 numbers for each of rows.vertices.
+/// Computes result = Cᵀ forces, 3 numbers for each of rows.vertices.
 void multiply_transposed(const ContactRows& rows, std::span<const double> forces, std::span<double> result);
 
 /// Returns the depth of a contact, offset − normal · Σ w x, in m; positive if it is violated.

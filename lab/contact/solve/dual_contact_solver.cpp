@@ -74,8 +74,8 @@ class ContactOperator final : public ForceOperator {
     meshorder::multiply(rows_, std::span<const Real>(moved_), result);
   }
 
-  /// W C D⁻¹ A D⁻¹ Cᵀ W with D the diagonal of A and W that of (C D⁻¹ Cᵀ)⁻¹: the lumped preconditioner with
-  /// weights by stiffness (Rixen, Farhat 1999).
+  /// Multiplies by W C D⁻¹ A D⁻¹ Cᵀ W with D the diagonal of A and W that of (C D⁻¹ Cᵀ)⁻¹: the lumped
+  /// preconditioner with weights by stiffness (Rixen, Farhat 1999).
   void precondition(std::span<const double> moves, std::span<double> result) override {
     for (std::size_t k = 0; k < weighed_.size(); ++k) weighed_[k] = moves[k] / scale_[k];
     multiply_transposed(rows_, weighed_, touched_);
@@ -92,7 +92,7 @@ class ContactOperator final : public ForceOperator {
     for (std::size_t k = 0; k < weighed_.size(); ++k) result[k] /= scale_[k];
   }
 
-  /// result = b + Cᵀ forces
+  /// Computes result = b + Cᵀ forces.
   void add_forces(std::span<const double> forces, std::span<const Real> b, std::span<Real> result) {
     multiply_transposed(rows_, forces, touched_);
     std::copy(b.begin(), b.end(), result.begin());

@@ -159,7 +159,7 @@ class Minimiser {
     }
   }
 
-  /// result = S vector, with the softness.
+  /// Computes result = S vector, with the softness.
   void multiply(std::span<const double> vector, std::span<double> result) {
     matrix_.multiply(vector, result);
     for (std::size_t i = 0; i < vector.size(); ++i)
@@ -167,7 +167,7 @@ class Minimiser {
     ++report_.multiplications;
   }
 
-  /// z ≈ (S + stiffening)⁻¹ r on the face. The preconditioner ignores the stiffening along rims.
+  /// Computes z ≈ (S + stiffening)⁻¹ r on the face. The preconditioner ignores the stiffening along rims.
   void precondition() {
     for (std::size_t i = 0; i < r_.size(); ++i) product_[i] = freedom_[i] == Freedom::all ? r_[i] : 0.0;
     matrix_.precondition(product_, z_);

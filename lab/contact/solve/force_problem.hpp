@@ -21,10 +21,10 @@ struct ForceBounds {
 /// The symmetric positive semidefinite matrix S that maps contact forces to displacements.
 class ForceOperator : public Polymorphic {
  public:
-  /// result = S forces
+  /// Computes result = S forces.
   virtual void multiply(std::span<const double> forces, std::span<double> result) = 0;
 
-  /// result = about S⁻¹ moves, by a symmetric matrix.
+  /// Computes result ≈ S⁻¹ moves, by a symmetric matrix.
   virtual void precondition(std::span<const double> moves, std::span<double> result) = 0;
 };
 

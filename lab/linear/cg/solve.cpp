@@ -174,10 +174,10 @@ class ConjugateGradients {
   }
 
  private:
-  // rows of which r, z, q fit into the nearest cache beside what preconditions them
+  // rows whose r, z, q fit into the nearest cache together with the preconditioner's data
   static constexpr Index kTile = 128;
 
-  /// r = b − A x.
+  /// Computes r = b − A x.
   void start() {
     norms_.rr = rows_.sum_over<double>([&](Index chunk) {
       (void)multiply_chunk(matrix_, rows_, chunk, x_, v_.r);
@@ -186,20 +186,20 @@ class ConjugateGradients {
     first_rr_ = norms_.rr;
   }
 
-  /// z = M⁻¹ r.
+  /// Computes z = M⁻¹ r.
   void precondition() {
     preconditioner_.apply(v_.r, v_.z);
     norms_.rz =
         rows_.sum<double>([&](Index begin, Index end) { return passes::dot(v_.r, v_.z, begin, end); });
   }
 
-  /// q = A p; returns pᵀq.
+  /// Computes q = A p; returns pᵀq.
   double multiply_direction() {
     return rows_.sum_over<double>(
         [&](Index chunk) { return multiply_chunk(matrix_, rows_, chunk, v_.p, v_.q); });
   }
 
-  /// r −= α q, z = M⁻¹ r.
+  /// Computes r −= α q and z = M⁻¹ r.
   void reduce_residual(double alpha) {
     if (local_ == nullptr) {
       norms_.rr = rows_.sum<double>(

@@ -13,16 +13,16 @@ namespace meshorder::passes {
 /// Returns aᵀb.
 double dot(std::span<const double> a, std::span<const double> b, Index begin, Index end);
 
-/// y = b − y; returns yᵀy.
+/// Computes y = b − y; returns yᵀy.
 double subtract_from(std::span<const double> b, std::span<double> y, Index begin, Index end);
 
-/// r −= α q; returns rᵀr.
+/// Computes r −= α q; returns rᵀr.
 double subtract(double alpha, std::span<const double> q, std::span<double> r, Index begin, Index end);
 
-/// x += α p
+/// Computes x += α p.
 void add(double alpha, std::span<const double> p, std::span<double> x, Index begin, Index end);
 
-/// x += α p, then p = z + β p.
+/// Computes x += α p, then p = z + β p.
 void step(double alpha, double beta, std::span<const double> z, std::span<double> p, std::span<double> x,
           Index begin, Index end);
 

@@ -97,7 +97,7 @@ struct Vertices {
     for (int i = 0; i < One::kParts; ++i) result.part[i] = hn::Zero(Tag());
     return result;
   }
-  /// The same vertex in all places.
+  /// Returns the same vertex in all places.
   static HWY_INLINE Vertices all(const One& vertex) {
     Vertices result;
     MESHORDER_UNROLL
@@ -180,7 +180,7 @@ struct Vertices {
       return sum_of(half, hn::Add(hn::LowerHalf(half, vertices), hn::UpperHalf(half, vertices)));
     }
   }
-  /// factors[0] four times, factors[1] four times …
+  /// Returns factors[0] four times, factors[1] four times …
   template <class D>
   static HWY_INLINE hn::Vec<D> spread_out(D d, const Real* factors) {
     if constexpr (kCount == 1) {

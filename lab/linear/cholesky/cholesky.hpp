@@ -32,8 +32,8 @@ class CholeskyFactor {
   /// or singular to rounding. For meshes O(n^3/2) operations in the plane and O(n²) in space.
   explicit CholeskyFactor(const SparseMatrix& matrix);
 
-  /// x = A⁻¹ b, kPaddedStride numbers for each vertex (see padded_positions) of which the last is 0 in both.
-  /// They may be the same array, but not overlap otherwise. Throws InvalidArgument for other sizes.
+  /// Computes x = A⁻¹ b, kPaddedStride numbers for each vertex (see padded_positions), of which the last is 0
+  /// in both. They may be the same array, but not overlap otherwise. Throws InvalidArgument for other sizes.
   /// O(entries).
   void solve(std::span<const Real> b, std::span<Real> x) const;
 
@@ -48,7 +48,7 @@ class CholeskyFactor {
   void solve(const Reach& reach, std::span<const Real> b, std::span<Real> x) const;
 
   [[nodiscard]] Index size() const noexcept;
-  /// Entries of the factor that are not 0 by its pattern, diagonal included.
+  /// Returns the number of entries of the factor that its pattern allows, diagonal included.
   [[nodiscard]] Offset entries() const noexcept;
   /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const;

@@ -23,7 +23,7 @@ Real* at(Real* x, Index place) {
 template <class Real>
 class Solve {
  public:
-  /// `reach` may be null: all panels.
+  /// Takes all panels if `reach` is null.
   Solve(const PanelFactor<Real>& factor, const FactorReach* reach, const Real* b, Real* x, Real* work)
       : factor_(factor),
         reach_(reach),

@@ -89,7 +89,7 @@ Supernodes find_supernodes(const Ldl& ldl, const PanelCosts& costs) {
 SolveTasks make_solve_tasks(const Supernodes& supernodes, double min_cost) {
   const Index n = supernodes.count();
   std::vector<double> cost = supernodes.cost;                 // of a supernode and all below it
-  std::vector<std::vector<Index>> below(std::size_t(n) + 1);  // the last is that of all roots
+  std::vector<std::vector<Index>> below(std::size_t(n) + 1);  // the last entry lists all roots
   for (Index s = 0; s < n; ++s) {
     const Index parent = supernodes.parent[s];
     if (parent >= 0) cost[parent] += cost[s];

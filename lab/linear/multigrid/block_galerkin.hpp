@@ -32,8 +32,8 @@ template <int R>
 void galerkin_product(const BlockView<R>& fine, const Prolongation<R>& p, const ColumnBlocks& transposed,
                       CoarseMatrix& coarse);
 
-/// (I − ω D⁻¹ A) P₀ with D the blocks of A's diagonal (Vaněk, Mandel, Brezina 1996): the pattern without
-/// values, and the values. `inverse_diagonal` holds the blocks of D⁻¹. O(multiplications).
+/// Compute (I − ω D⁻¹ A) P₀ with D the blocks of A's diagonal (Vaněk, Mandel, Brezina 1996): first its
+/// pattern, then its values. `inverse_diagonal` holds the blocks of D⁻¹. O(multiplications).
 Prolongation<kRigidModes> smoothed_pattern(const BlockView<kRigidModes>& matrix,
                                            const Prolongation<kRigidModes>& tentative);
 void smooth_prolongation(const BlockView<kRigidModes>& matrix, std::span<const float> inverse_diagonal,

@@ -37,12 +37,12 @@ struct Quad {
   HWY_INLINE Quad operator+(Quad b) const { return mul_add(*this, set(1), b); }
   HWY_INLINE Quad operator-(Quad b) const { return mul_add(b, set(-1), *this); }
   HWY_INLINE Quad operator*(Quad b) const { return mul_add(*this, b, set(0)); }
-  /// a b + c
+  /// Returns a b + c.
   static HWY_INLINE Quad mul_add(Quad a, Quad b, Quad c) {
     for (int i = 0; i < 4; ++i) c.lanes[i] += a.lanes[i] * b.lanes[i];
     return c;
   }
-  /// c − a b
+  /// Returns c − a b.
   static HWY_INLINE Quad subtract_product(Quad a, Quad b, Quad c) { return mul_add(a * set(-1), b, c); }
   /// Returns the sum of the lanes of each of the four.
   static HWY_INLINE Quad sums(const Quad* four) {
@@ -136,7 +136,7 @@ struct ProductSum {
     for (int c = 0; c < C; ++c) result.of_column[c] = Node<R>::zero();
     return result;
   }
-  /// += B x, x in memory
+  /// Adds B x, with x in memory.
   HWY_INLINE void add(const float* block, const float* x) {
     MESHORDER_UNROLL
     for (int c = 0; c < C; ++c) {
@@ -156,7 +156,7 @@ struct ProductSum {
   }
 };
 
-/// y += Bᵀ x for a block B of R×C numbers, column by column; y is in memory, and zeros follow x's floats
+/// Adds Bᵀ x to y for a block B of R×C numbers, column by column. y is in memory; zeros follow x's floats.
 template <int R, int C>
 HWY_INLINE void add_transposed_product(const float* block, const Node<R>& x, float* y) {
   constexpr int kQuads = Node<C>::kQuads;

@@ -39,14 +39,14 @@ class BlockSweeps {
     AlignedVector<float> from_below, from_above;
   };
 
-  /// x = (L + D)⁻¹ b, and residual = b − A x = −Lᵀ x.
+  /// Computes x = (L + D)⁻¹ b, and residual = b − A x = −Lᵀ x.
   void forwards(const AlignedVector<float>& b, AlignedVector<float>& x, AlignedVector<float>& residual,
                 Given& given) const;
 
-  /// x ← (D + Lᵀ)⁻¹ (b − L x).
+  /// Replaces x by (D + Lᵀ)⁻¹ (b − L x).
   void backwards(const AlignedVector<float>& b, AlignedVector<float>& x, Given& given) const;
 
-  /// residual = L (before − x), which is b − A x if `backwards` turned `before` into x.
+  /// Computes residual = L (before − x), which is b − A x if `backwards` turned `before` into x.
   void residual_after_backwards(const AlignedVector<float>& before, const AlignedVector<float>& x,
                                 AlignedVector<float>& residual) const;
 
@@ -60,7 +60,7 @@ class BlockSweeps {
   RowChunks chunks_;
   std::vector<Offset> offsets_{0};  ///< of L
   std::vector<Index> columns_;
-  std::vector<Index> sources_;   ///< of each block of L, that of Lᵀ in the matrix
+  std::vector<Index> sources_;   ///< of each block of L: the index of its transpose in the matrix
   AlignedVector<float> values_;  ///< blocks column by column, and room for a load past the last
   AlignedVector<float> inverse_diagonal_;
 };

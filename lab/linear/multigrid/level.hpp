@@ -35,12 +35,12 @@ MultigridLevel<R> make_level(const BlockView<R>& matrix, Coarsening coarsening, 
 template <int R>
 void update_level(const BlockView<R>& matrix, MultigridLevel<R>& level);
 
-/// result = Pᵀ residual
+/// Computes result = Pᵀ residual.
 template <int R>
 void restrict_residual(const MultigridLevel<R>& level, const AlignedVector<float>& residual,
                        AlignedVector<float>& result);
 
-/// x += P correction
+/// Adds P correction to x.
 template <int R>
 void add_prolonged(const MultigridLevel<R>& level, const AlignedVector<float>& correction,
                    AlignedVector<float>& x);

@@ -228,7 +228,7 @@ class Multigrid final : public Preconditioner {
   std::vector<Index> identity_;
   bool is_made_ = false;
   MultigridLevel<3> finest_;
-  std::vector<MultigridLevel<kRigidModes>> coarse_;  ///< those that are swept
+  std::vector<MultigridLevel<kRigidModes>> coarse_;  ///< the levels that are swept
   Eigen::MatrixXf coarsest_inverse_;                 ///< empty where the last level is swept
   mutable LevelVectors<3> finest_vectors_;
   mutable std::vector<LevelVectors<kRigidModes>> coarse_vectors_;

@@ -7,8 +7,8 @@
 
 namespace meshorder {
 
-/// One cycle of algebraic multigrid by aggregation with the rigid-body modes as near-null space (Vaněk,
-/// Mandel, Brezina 1996), for elasticity.
+/// Makes a preconditioner for elasticity: one cycle of algebraic multigrid by aggregation, with the
+/// rigid-body modes as near-null space (Vaněk, Mandel, Brezina 1996).
 ///
 /// Vertices are gathered in aggregates by the strength of their blocks; each aggregate is a node of the next
 /// level with six unknowns, its rigid motions, and so on to a level that is solved exactly. The prolongation

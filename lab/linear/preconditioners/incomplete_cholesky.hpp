@@ -19,7 +19,7 @@ namespace meshorder {
 /// alone. In a local order few vertices join chunks; in a scrambled one most do, and threads gain nothing.
 class IncompleteCholesky final : public Preconditioner {
  public:
-  /// For matrices of that pattern, which is copied. Throws InvalidArgument when a row lacks its diagonal.
+  /// Takes and copies the pattern of the matrices. Throws InvalidArgument when a row lacks its diagonal.
   explicit IncompleteCholesky(const BlockCsr& pattern);
 
   /// O(blocks · row length). Throws InvalidArgument when the matrix has another size.

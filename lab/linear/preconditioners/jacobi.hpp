@@ -13,7 +13,7 @@ class LocalPreconditioner : public Preconditioner {
   /// Throws InvalidArgument if a size differs.
   void apply(std::span<const double> r, std::span<double> z) const final;
 
-  /// z ≈ A⁻¹ r for the vertices begin … end − 1; r and z as in `apply`.
+  /// Computes z ≈ A⁻¹ r for the vertices begin … end − 1; r and z as in `apply`.
   virtual void apply_rows(const double* r, double* z, Index begin, Index end) const = 0;
 
  protected:

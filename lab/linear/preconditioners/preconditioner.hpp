@@ -21,7 +21,7 @@ class Preconditioner : public Polymorphic {
   /// after the matrix has changed.
   virtual void update(const BlockCsr& matrix) = 0;
 
-  /// z ≈ A⁻¹ r, 3 doubles for each vertex.
+  /// Computes z ≈ A⁻¹ r, 3 doubles for each vertex.
   virtual void apply(std::span<const double> r, std::span<double> z) const = 0;
 
   /// Returns the memory held, in bytes.

@@ -30,7 +30,7 @@ SymmetricBlock definite_inverse(const SymmetricBlock& block);
 /// Returns the index of a vertex's block on the diagonal. Throws InvalidArgument if the pattern lacks it.
 Offset diagonal_block(const BlockCsr& matrix, Index vertex);
 
-/// q = block · p
+/// Computes q = block · p.
 inline void multiply(const double* block, const double* p, double* q) {
   const double p0 = p[0], p1 = p[1], p2 = p[2];
   q[0] = block[0] * p0 + block[1] * p1 + block[2] * p2;

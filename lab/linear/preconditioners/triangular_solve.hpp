@@ -23,7 +23,7 @@ void solve_lower(const BlockFactor& factor, const double* r, double* z, Index be
 /// O(blocks).
 void solve_upper(const BlockFactor& factor, double* z, Index begin, Index end);
 
-/// z = D⁻¹ z at the vertices of the rows begin … end − 1.
+/// Computes z = D⁻¹ z at the vertices of the rows begin … end − 1.
 void solve_diagonal(const BlockFactor& factor, double* z, Index begin, Index end);
 
 }  // namespace meshorder

@@ -32,7 +32,7 @@ std::string compressed(const std::vector<char>& bytes) {
   return result;
 }
 
-/// The `width` lowest bytes of a number, the lowest first.
+/// Appends the `width` lowest bytes of a number, the lowest first.
 void append(std::vector<char>& bytes, std::uint32_t number, int width) {
   for (int i = 0; i < width; ++i) bytes.push_back(static_cast<char>((number >> (8 * i)) & 0xFFU));
 }

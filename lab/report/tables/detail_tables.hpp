@@ -13,7 +13,7 @@ Table phases_table(const StudyResults& results);
 Table motions_table(const StudyResults& results);
 /// Returns a table for each cache hierarchy, in the sequence of the meshes.
 std::vector<Table> misses_tables(const StudyResults& results);
-/// How far the predicted speedups of the kernels are from the measured ones.
+/// Returns how far the predicted speedups of the kernels are from the measured ones.
 Table prediction_table(const StudyResults& results);
 Table kernels_table(const StudyResults& results);
 Table machine_table(const StudyResults& results);
