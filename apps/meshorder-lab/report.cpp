@@ -157,11 +157,10 @@ std::string title_of(const Page& page) {
 
 /// Throws InvalidArgument for the name of another kind of file, such as a mesh, which the page would
 /// overwrite.
-void check_name_of_page(const std::string& output) {
+void check_name_of_page(const std::string& output, const char* of) {
   const std::string extension = fs::path(output).extension().string();
-  if (extension.empty() || same_but_for_case(extension, ".html") || same_but_for_case(extension, ".htm"))
-    return;
-  throw InvalidArgument("-o " + output + " names the page on meshes: give a name that ends in .html");
+  if (same_but_for_case(extension, ".html") || same_but_for_case(extension, ".htm")) return;
+  throw InvalidArgument("-o " + output + " names the page on " + of + ": give a name that ends in .html");
 }
 
 FilePath output_or(const ReportArguments& arguments, const char* usual) {
@@ -171,7 +170,7 @@ FilePath output_or(const ReportArguments& arguments, const char* usual) {
 void report_on_meshes(Console& console, const ReportArguments& arguments) {
   const FilePath file = output_or(arguments, "report.html");
   const std::string output = file.string();
-  check_name_of_page(output);
+  if (!fs::path(output).extension().empty()) check_name_of_page(output, "meshes");
   (void)OutputFile(file);  // fail before the work if it cannot be written
   Progress progress(!console.quiet());
   Page page;
@@ -277,10 +276,7 @@ nlohmann::ordered_json savings_json(const ComparedStudy& a, const ComparedStudy&
 
 void compare_studies(Console& console, const ReportArguments& arguments) {
   const FilePath output = output_or(arguments, "comparison.html");
-  const fs::path& page = output.path();
-  if (page.extension() != ".html" && page.extension() != ".htm")
-    throw InvalidArgument("-o " + page.string() +
-                          " names the page on two studies: give a name that ends in .html");
+  check_name_of_page(output.path().string(), "two studies");
   const auto read = [](const std::string& input) {
     const FilePath file = results_of(input);
     return ComparedStudy{file.string(), read_results(file)};

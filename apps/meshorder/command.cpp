@@ -49,7 +49,8 @@ CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest, const s
             if (!is_digits(digits)) return "'" + text + "' is not a whole number";
             std::uint64_t number = 0;
             const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-            if (negative ? number > 0 || lowest > 0 : error == std::errc() && number < lowest)
+            const bool is_zero = error == std::errc() && number == 0;
+            if (negative ? !is_zero || lowest > 0 : error == std::errc() && number < lowest)
               return refusal(text, if_less);
             return error != std::errc() || number > highest ? refusal(text, if_more) : std::string();
           },

@@ -104,7 +104,8 @@ std::vector<Column> columns_of(const Comparison& comparison, const KernelTable& 
 void print_speedups(const Console& console, const Comparison& comparison, const KernelTable& table,
                     Workload told) {
   const std::vector<Column> columns = columns_of(comparison, table);
-  const std::size_t judged = told == Workload::all ? 0 : kernel_of(told) + 1;
+  // a matrix has one column, a mesh one for all kernels before the others
+  const std::size_t judged = comparison.is_matrix() || told == Workload::all ? 0 : kernel_of(told) + 1;
   const auto width = [](const Column& c) { return std::max<std::size_t>(7, c.title.size() + 1); };
   std::string heads = fmt::format("{:<26} {:>8}", "order", "cost");
   for (const Column& c : columns) heads += fmt::format("{:>{}} ", c.title, width(c));

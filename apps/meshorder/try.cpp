@@ -50,7 +50,9 @@ void check_command(const TrialOptions& options, const TrialSubject& subject) {
     throw InvalidArgument(
         "the command has no {}, which stands for the mesh: write it where the program takes it");
   }
-  if (!options.keep.empty() && fs::exists(options.keep) && !fs::is_empty(options.keep))
+  const bool is_new_or_empty =
+      !fs::exists(options.keep) || (fs::is_directory(options.keep) && fs::is_empty(options.keep));
+  if (!options.keep.empty() && !is_new_or_empty)
     throw InputError(options.keep, "it is there already", "name a folder that is new or empty");
 }
 

@@ -126,7 +126,10 @@ StepReport ProjectiveDynamics<Real>::step() {
     complete_right_side();
     solve(last, report);
   }
-  if (contacts_ && report.admm_iterations < options_.iterations) solve(true, report);
+  if (contacts_ && report.admm_iterations < options_.iterations) {
+    complete_right_side();
+    solve(true, report);
+  }
   finish(report);
   report.time_step = options_.time_step;
   report.seconds.total = stopwatch.seconds();

@@ -34,7 +34,7 @@ void add_obstacle(const ScenarioObstacle& obstacle, Checksum& sum) {
   sum.add(obstacle.direction);
   for (const double number : {obstacle.radius, obstacle.thickness, obstacle.opening, obstacle.friction})
     sum.add(number);
-  sum.add_all(obstacle.file);
+  if (!obstacle.file.empty()) sum.add_all(FilePath::in(obstacle.folder, obstacle.file).read());
 }
 
 }  // namespace

@@ -172,7 +172,8 @@ ScenarioObstacle obstacle(const JsonValue& value) {
     result.place = (*bowl)["center"].vector();
     result.direction = direction((*bowl)["axis"]);
     result.radius = (*bowl)["radius"].number(kPositive);
-    result.thickness = (*bowl)["thickness"].number({.min = 0, .max = 2 * result.radius, .min_open = true});
+    result.thickness =
+        (*bowl)["thickness"].number({.min = 0, .max = 2 * result.radius, .min_open = true, .max_open = true});
     result.opening = (*bowl)["opening"].number({.min = 0, .max = 180, .min_open = true, .max_open = true});
   } else {
     result.kind = Kind::surface;

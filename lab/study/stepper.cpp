@@ -194,15 +194,15 @@ StepperReady stepper_ready(const nlohmann::json& message) {
 
 nlohmann::json to_json(const StepperTurn& turn) {
   return {{"steps", turn.steps},
-          {"frames", turn.frames},
+          {"frames", bytes_in_json(turn.frames)},
           {"frame_every", turn.frame_every},
           {"last", turn.last},
-          {"surfaces", turn.surfaces}};
+          {"surfaces", bytes_in_json(turn.surfaces)}};
 }
 
 StepperTurn stepper_turn(const nlohmann::json& message) {
-  return {message.at("steps"), message.at("frames"), message.at("frame_every"), message.at("last"),
-          message.at("surfaces")};
+  return {message.at("steps"), bytes_of(message.at("frames")), message.at("frame_every"), message.at("last"),
+          bytes_of(message.at("surfaces"))};
 }
 
 nlohmann::json to_json(const StepperTimes& times) {

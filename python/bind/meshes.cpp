@@ -23,7 +23,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -188,8 +187,7 @@ EntitySet set_of(const std::string& name, bool of_vertices, const Array& members
   const IndexView view = index_view(members);
   set.members.reserve(view.size());
   for (std::size_t i = 0; i < view.size(); ++i) {
-    const bool fits = view[i] <= std::numeric_limits<Index>::max();
-    set.members.push_back(fits ? static_cast<Index>(view[i]) : Index{-1});
+    set.members.push_back(std::in_range<Index>(view[i]) ? static_cast<Index>(view[i]) : Index{-1});
   }
   return set;
 }

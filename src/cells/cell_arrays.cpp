@@ -268,6 +268,9 @@ CellArrays cell_arrays(const CellsView& view, std::size_t vertex_count, Check ch
   if (view.is_mixed()) {
     take_mixed(view, check == Check::none, cells);
   } else {
+    if (!view.vertices().empty())
+      throw InvalidArgument(
+          "cells: vertices without offsets; m cells have m + 1 offsets, the first of them 0");
     take_blocks(view, cells);
   }
   if (check != Check::none) {

@@ -40,8 +40,9 @@ struct Format {
   Permutation (*settle_cells)(Mesh&) = nullptr;
   bool single_file = true;  ///< whether a mesh is one file; several files do not fit one stream
   int first_number = 0;     ///< number of the first vertex and the first cell of a mesh without ids
-  /// Returns this number for a mesh that came from the format. Null: it is the same in all files.
-  std::int64_t (*first_number_of)(const Mesh&) = nullptr;
+  /// Returns this number of vertices or cells for a mesh that came from the format. Null: it is the same in
+  /// all files.
+  std::int64_t (*first_number_of)(const Mesh&, Association) = nullptr;
   bool holds_ids = true;          ///< whether files can give vertices and cells any numbers
   std::string_view library = {};  ///< name of the library that parses the files; empty: none, meshorder does
 

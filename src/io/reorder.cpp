@@ -23,24 +23,23 @@ namespace meshorder {
 namespace {
 
 /// Returns the number of the first vertex and the first cell in the mesh's file, if the mesh has no ids.
-std::int64_t first_number(const Mesh& mesh) {
+std::int64_t first_number(const Mesh& mesh, Association of) {
   const std::span<const Format> formats = all_formats();
   const auto own = std::find_if(formats.begin(), formats.end(),
                                 [&](const Format& format) { return format.key() == mesh.format; });
   if (own == formats.end()) return 0;
-  return own->first_number_of != nullptr ? own->first_number_of(mesh) : own->first_number;
+  return own->first_number_of != nullptr ? own->first_number_of(mesh, of) : own->first_number;
 }
 
 /// Makes ids of the numbers that a file gives by position, so that they move with vertices and cells.
 void write_down_ids(Mesh& mesh, bool of_vertices, bool of_cells) {
-  const std::int64_t first = first_number(mesh);
   if (of_vertices && mesh.vertex_ids.empty()) {
     mesh.vertex_ids.resize(mesh.points.size());
-    std::iota(mesh.vertex_ids.begin(), mesh.vertex_ids.end(), first);
+    std::iota(mesh.vertex_ids.begin(), mesh.vertex_ids.end(), first_number(mesh, Association::vertices));
   }
   if (of_cells && mesh.cell_ids.empty()) {
     mesh.cell_ids.resize(mesh.cells.shapes.size());
-    std::iota(mesh.cell_ids.begin(), mesh.cell_ids.end(), first);
+    std::iota(mesh.cell_ids.begin(), mesh.cell_ids.end(), first_number(mesh, Association::cells));
   }
 }
 

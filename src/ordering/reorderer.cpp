@@ -79,7 +79,7 @@ class Reorderer::Inside {
     ReordererState next = memory_;
     const VertexChanges changes = changes_of(previous, hood.size(), memory_.count);
     Update update;
-    update.added = static_cast<Index>(memory_.begun == 0 ? hood.size() : std::ssize(changes.added));
+    update.added = static_cast<Index>(memory_.count == 0 ? hood.size() : std::ssize(changes.added));
     update.removed = changes.removed;
     const bool is_first = memory_.begun == 0 || update.added == hood.size();
     const bool all_stay = is_first || changes.places.empty();

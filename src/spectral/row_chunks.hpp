@@ -4,6 +4,7 @@
 #include "base/parallel.hpp"
 #include "graph/laplacian.hpp"
 
+#include <algorithm>
 #include <vector>
 
 namespace meshorder {
@@ -52,7 +53,9 @@ class RowChunks {
   static RowChunks whole(Index rows);
 
   /// Returns the number of rows in a chunk, a power of two; the last chunk may have fewer.
-  [[nodiscard]] Index size() const noexcept { return Index{1} << shift_; }
+  [[nodiscard]] Index size() const noexcept {
+    return static_cast<Index>(std::min(Offset{1} << shift_, Offset{kMaxIndex}));
+  }
   [[nodiscard]] Index count() const noexcept { return chunk_count(rows_, size()); }
   [[nodiscard]] Index chunk_of(Index row) const noexcept { return row >> shift_; }
 

@@ -114,7 +114,8 @@ std::unique_ptr<Obstacle> bowl(const Point& center, const Point& axis, double ra
   if (!is_finite(center) || !std::isfinite(length) || length == 0.0)
     throw InvalidArgument("bowl: center and axis must be finite and the axis not 0");
   if (!std::isfinite(radius) || !(thickness > 0.0) || !(thickness < 2.0 * radius))
-    throw InvalidArgument("bowl: radius and thickness must be positive and the wall thinner than the radius");
+    throw InvalidArgument(
+        "bowl: radius and thickness must be positive and the wall thinner than twice the radius");
   if (!(opening >= 0.0 && opening <= std::numbers::pi))
     throw InvalidArgument("bowl: the opening must be an angle from 0 to pi");
   return std::make_unique<Bowl>(center, scaled(1.0 / length, axis), radius, thickness, opening);

@@ -51,7 +51,9 @@ std::string headlines_of(const StudyResults& results) {
     if (results.meshes.size() > 1) html += fmt::format("<h3>{}</h3>", xml_escaped(mesh.name));
     if (mesh.gain > 1)
       html += fmt::format("<p class=\"gain\">{}× <span>faster at best</span></p>", with_digits(mesh.gain, 2));
-    html += fmt::format("<p class=\"answer\">{}.</p></div>\n", prose_as_html(mesh.verdict));
+    if (!mesh.verdict.empty())
+      html += fmt::format("<p class=\"answer\">{}.</p>", prose_as_html(mesh.verdict));
+    html += "</div>\n";
     if (!of_kernels.empty()) {
       html += fmt::format(
           "<div><dl>{}</dl>\n<p class=\"hint\">Best time of one run of each kernel, measured here.</p></div>",

@@ -367,7 +367,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   note_other_companions(path, "does not fit the mesh that was just written beside it", notes);
 }
 
-std::int64_t first_number_of(const Mesh& mesh) {
+std::int64_t first_number_of(const Mesh& mesh, Association /*of*/) {
   const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   return own == nullptr ? 0 : own->base;
 }

@@ -42,6 +42,9 @@ class VegaWriter {
   void write() {
     choose_sections();
     note_losses();
+    for (const Section& section : sections_) {
+      if (section.kind == Kind::set) names_.push_back(name_of(set_of(section)));
+    }
     for (const Section& section : sections_) write_section(section);
     if (native_) out_.write(native_->closing_comments);
     out_.commit();
@@ -172,10 +175,9 @@ class VegaWriter {
       case Kind::elements:
         return write_elements();
       case Kind::set:
-        return write_set(section.set < mesh_.sets.size() ? mesh_.sets[section.set]
-                                                         : label_sets_[section.set - mesh_.sets.size()]);
+        return write_set(set_of(section));
       case Kind::region:
-        return out_.print("*REGION\n{}, {}\n\n", section.region_set, section.region_material);
+        return out_.print("*REGION\n{}, {}\n\n", written_name(section.region_set), section.region_material);
       case Kind::material:
         out_.print("*MATERIAL {}\n", section.title);
         break;
@@ -231,6 +233,22 @@ class VegaWriter {
     return fits ? native_->element_word : usual;
   }
 
+  [[nodiscard]] const EntitySet& set_of(const Section& section) const {
+    return section.set < mesh_.sets.size() ? mesh_.sets[section.set]
+                                           : label_sets_[section.set - mesh_.sets.size()];
+  }
+
+  /// Returns the name under which the set of that name is written.
+  [[nodiscard]] std::string written_name(const std::string& of_set) const {
+    std::size_t k = 0;
+    for (const Section& section : sections_) {
+      if (section.kind != Kind::set) continue;
+      if (set_of(section).name == of_set) return names_[k];
+      ++k;
+    }
+    return of_set;  // all elements
+  }
+
   /// Returns a name that a line of Vega can hold.
   std::string name_of(const EntitySet& set) {
     const std::string name = plain_name(set.name, "#");
@@ -242,7 +260,7 @@ class VegaWriter {
 
   void write_set(const EntitySet& set) {
     constexpr std::size_t kPerLine = 8;
-    out_.print("*SET {}\n", name_of(set));
+    out_.print("*SET {}\n", names_[sets_written_++]);
     for (std::size_t i = 0; i < set.members.size(); ++i) {
       const bool last = i + 1 == set.members.size();
       const bool full = (i + 1) % kPerLine == 0;
@@ -259,6 +277,8 @@ class VegaWriter {
   std::vector<Section> sections_;
   std::vector<EntitySet> label_sets_;
   DistinctNames set_names_;
+  std::vector<std::string> names_;  ///< of the sets, in the order of their sections
+  std::size_t sets_written_ = 0;
 };
 
 std::string vega_conflict(const Mesh& mesh) {
@@ -272,9 +292,10 @@ void write_vega(const Mesh& mesh, const FilePath& path, Notes& notes) {
   VegaWriter(mesh, path, notes).write();
 }
 
-std::int64_t first_number_of(const Mesh& mesh) {
+std::int64_t first_number_of(const Mesh& mesh, Association of) {
   const auto* const own = dynamic_cast<const vega::Metadata*>(mesh.format_metadata.get());
-  return own == nullptr ? 0 : own->vertex_base;
+  if (own == nullptr) return 1;
+  return of == Association::vertices ? own->vertex_base : own->element_base;
 }
 
 }  // namespace

@@ -295,6 +295,10 @@ class LegacyReader {
               cells.vertices[i] = static_cast<Index>(numbers[i]);
             }
             if (missing == 0) return;
+            // a number of a polyhedron may be no point; one that fits in no Index is a fault in any cell
+            for (std::size_t i = 0; i < numbers.size(); ++i) {
+              if (!std::in_range<Index>(numbers[i])) cells.vertices[i] = -1;
+            }
             const auto wrong = std::find_if(numbers.begin(), numbers.end(), [&](Number vertex) {
               return std::cmp_less(vertex, 0) || std::cmp_greater_equal(vertex, limit);
             });

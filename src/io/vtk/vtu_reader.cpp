@@ -63,10 +63,9 @@ class VtuReader {
   /// Reads the pieces of a file.
   void read_grid(const VtuDocument& file, const VtuElement& grid) {
     file_ = &file;
-    if (!metadata_->vtu) {
-      metadata_->vtu = file.encoding();
-      version_ = file.version();
-    }
+    is_first_ = !metadata_->vtu.has_value();
+    if (is_first_) metadata_->vtu = file.encoding();
+    if (pieces_ == 0) version_ = file.version();
     for (const VtuElement& element : grid.children) {
       if (element.name == "FieldData") {
         read_fields(element);
@@ -472,7 +471,7 @@ class VtuReader {
       }
       DataArray field = read_array(element, {}, file_->count(element, "NumberOfTuples"));
       const auto [known, is_new] = fields_.try_emplace(field.name, metadata_->fields.size());
-      if (pieces_ == 0 || is_new) {
+      if (is_first_ || is_new) {
         metadata_->fields.push_back(std::move(field));
       } else if (metadata_->fields[known->second].values != field.values) {
         notes_.push_back("left out: the field '" + field.name +
@@ -537,8 +536,9 @@ class VtuReader {
   const FilePath& path_;
   Notes& notes_;
   const VtuDocument* file_ = nullptr;          ///< the file that is being read
-  int version_ = 0;                            ///< of the first file, times ten
+  int version_ = 0;                            ///< of the first file that is not empty, times ten
   std::map<std::string, std::size_t> fields_;  ///< places of the fields, by name
+  bool is_first_ = true;                       ///< of the files, the one that is read now
   int pieces_ = 0;                             ///< that are not empty
   Mesh mesh_;
   std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
+#include "base/text.hpp"
 #include "io/xdmf/writer.hpp"
 #include "mesh/values.hpp"
 
@@ -93,8 +94,7 @@ void Writer::write_points(const Field& field) {
 }
 
 int Writer::dimension_of(const Field& field) const {
-  const std::string type = attribute(element_of(field), "GeometryType", "Type");
-  return type == "XY" || type == "xy" ? 2 : 3;
+  return same_but_for_case(attribute(element_of(field), "GeometryType", "Type"), "XY") ? 2 : 3;
 }
 
 bool Writer::are_floats() const {
@@ -107,7 +107,7 @@ bool Writer::are_floats() const {
 void Writer::write_topology(const Field& field) {
   const std::vector<Index>& rows = rows_[static_cast<std::size_t>(field.part)];
   pugi::xml_node topology = element_of(field);
-  const bool was_mixed = attribute(topology, "TopologyType", "Type") == "Mixed";
+  const bool was_mixed = same_but_for_case(attribute(topology, "TopologyType", "Type"), "Mixed");
   const TopologyType* const type = was_mixed ? nullptr : common_type(rows);
   const auto nodes =
       type == nullptr ? std::size_t{1} : static_cast<std::size_t>(mesh_.cells.vertex_count(rows.front()));
