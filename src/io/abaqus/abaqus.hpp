@@ -21,41 +21,41 @@ enum class Part : std::uint8_t { text, nodes, elements };
 /// A card of a deck.
 struct Section {
   Part part = Part::text;
-  /// All lines of the card, as they are in the file; of nodes and elements those of the keyword, and comments
-  /// between the data.
+  /// All lines of the card, as in the file. For nodes and elements: only the keyword lines and the comments
+  /// between the data lines.
   std::string text = {};
-  Index first = 0;  ///< of the file's nodes or elements that the card has
+  Index first = 0;  ///< position in the file of the card's first node or element
   Index count = 0;
-  ElementKind kind = {};  ///< of elements
+  ElementKind kind = {};  ///< of the card's elements
 };
 
-/// What a deck says, in its own order.
+/// The contents of a deck, in its own order.
 struct Deck {
   std::vector<Section> sections;
   IdMap nodes;                  ///< numbers in the order of the file
-  IdMap elements;               ///< of those that are cells
+  IdMap elements;               ///< likewise, of the elements that are cells
   std::vector<EntitySet> sets;  ///< of the deck; members are positions in the file
-  /// What the lines of some nodes have after their coordinates, and those of some elements after the nodes of
-  /// their type, from the comma on; by positions in the file.
+  /// Further text of some lines, from the comma on, by position in the file: of nodes, after the coordinates;
+  /// of elements, after the last node that the type has.
   std::map<Index, std::string> more_of_nodes;
   std::map<Index, std::string> more_of_elements;
   std::string line_end = "\n";
-  /// Cards that may name nodes or elements by number and are not understood: "*USER ELEMENT (line 12)". With
-  /// one of them all numbers must stay.
+  /// Cards that may name nodes or elements by number but are not understood: "*USER ELEMENT (line 12)". If
+  /// there are any, all numbers must stay.
   std::vector<std::string> unknown;
   std::vector<std::string> contents;  ///< what other formats lose
 };
 
-/// A deck, and where its nodes and elements are in the mesh.
+/// A deck, and the positions of its nodes and elements in the mesh.
 using Metadata = DeckMetadata<Deck>;
 
-/// Returns the deck that a mesh can be written into; null if it came from elsewhere or no longer fits. Valid
+/// Returns the deck that a mesh was read from; null if there is none or if the mesh no longer fits it. Valid
 /// as long as the mesh. O(cells).
 const Metadata* own_deck(const Mesh& mesh);
 
 Mesh read(const FilePath& path, Notes& notes);
 
-/// Writes a mesh into its deck; notes what has no place.
+/// Writes a mesh as its deck, in the present order; notes the parts of the mesh that have no place in it.
 void write_into_deck(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes);
 
 }  // namespace meshorder::abaqus

@@ -29,7 +29,7 @@ std::string_view without_end(std::string_view line) { return line.substr(0, line
 
 bool is_comment_line(std::string_view line) { return trimmed(line).starts_with("**"); }
 
-/// Returns the length of the comments and blank lines at the front.
+/// Returns the length in bytes of the comments and blank lines at the front.
 std::size_t skipped_lines(std::string_view lines) {
   std::size_t length = 0;
   while (length < lines.size()) {
@@ -40,7 +40,7 @@ std::size_t skipped_lines(std::string_view lines) {
   return length;
 }
 
-/// A part of a keyword line between commas; a comma in quotes is none. Comments before it belong to no part.
+/// A part of a keyword line between commas; commas in quotes do not count. Comments belong to no part.
 struct Piece {
   std::size_t begin;
   std::size_t end;
@@ -84,9 +84,9 @@ std::string_view trimmed_of_ends(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
-/// Returns whether a line after a comma at the end of a keyword line has further parameters, as in Abaqus:
-/// one with a value, or some of those without that change what the data lines are. CalculiX continues no
-/// keyword line, so that all else must be data: numbers and names of sets.
+/// Returns whether the line after a keyword line that ends with a comma has further parameters, as in Abaqus.
+/// It must begin with a parameter that has a value, or with one of those without value that change the data
+/// lines. All else is data (numbers, names of sets), as CalculiX does not continue keyword lines.
 bool continues_keyword(std::string_view line) {
   constexpr std::array<std::string_view, 6> kWithoutValue{"GENERATE", "INTERNAL", "REMOVE",
                                                           "RIKS",     "TABULAR",  "UNSORTED"};
@@ -191,8 +191,8 @@ std::string capitals(std::string_view text) {
 
 namespace {
 
-/// Which fields of a data line are nodes (n), elements (e) and neither (-); the last letter holds for all
-/// further fields where a + follows.
+/// Which fields of a data line are nodes (n), elements (e) or neither (-). A final + repeats the last letter
+/// for all further fields.
 struct Layout {
   std::string_view keyword;
   std::string_view fields;
@@ -234,15 +234,15 @@ constexpr std::array<std::string_view, 115> kPlain{
     // clang-format on
 };
 
-/// Returns the fields of cards that name nodes only if they have some parameter; none for others.
+/// Returns the fields of a card that names nodes because of one of its parameters; none for other cards.
 std::optional<std::string_view> fields_with_parameter(const Card& card) {
   if (card.keyword == "CLEARANCE" && card.has("TABULAR")) return "n";
   if (card.keyword == "EQUATION" && card.has("REMOVE")) return "n";
-  if (card.keyword == "STATIC" && card.has("RIKS")) return "-----n";  // whose displacement ends the step
+  if (card.keyword == "STATIC" && card.has("RIKS")) return "-----n";  // the step may end at its displacement
   return {};
 }
 
-/// Returns the fields of the cards whose parameters decide them; none for other cards.
+/// Returns the fields of a card whose TYPE or DEFINITION decides them; none for other cards.
 std::optional<std::string_view> fields_by_parameters(const Card& card) {
   const std::string type = compact(card.value("TYPE"));
   if (card.keyword == "SURFACE") {
@@ -289,7 +289,7 @@ class ReferenceFinder {
  public:
   ReferenceFinder(const Card& card, std::string_view lines) : card_(card), lines_(lines) {}
 
-  /// See the function of that name.
+  /// See `pairs_sets` in cards.hpp.
   [[nodiscard]] bool pairs_sets() const {
     const bool is_mpc = card_.keyword == "MPC";
     if (!is_mpc && card_.keyword != "EQUATION") return false;
@@ -349,7 +349,7 @@ class ReferenceFinder {
                       static_cast<std::size_t>(field.data() - lines_.data()), field.size(), number});
   }
 
-  /// REF NODE=17 and the like, and the element of a pre-tension section.
+  /// Adds parameters such as REF NODE=17, and the element of a pre-tension section.
   void add_parameters(std::string_view keyword) {
     for (const Piece piece : pieces_of(keyword)) {
       const std::string_view text = keyword.substr(piece.begin, piece.end - piece.begin);
@@ -365,7 +365,7 @@ class ReferenceFinder {
   }
 
   void add_fields(std::string_view line, std::string_view fields) {
-    bool through_fluid = false;  // CalculiX: the third field is a node of the fluid
+    bool through_fluid = false;  // the third field is a node of the fluid, in CalculiX
     for (std::size_t k = 0; !line.empty(); ++k) {
       const std::string_view field = next_field(line);
       add(through_fluid && k == 2 ? 'n' : field_at(fields, k), field);
@@ -373,14 +373,14 @@ class ReferenceFinder {
     }
   }
 
-  /// Returns whether a label of a load is one of CalculiX's for networks: F1FC of *FILM, P1NP of *DLOAD.
+  /// Returns whether a load's label is one for CalculiX's fluid networks: F1FC of *FILM, P1NP of *DLOAD.
   [[nodiscard]] bool names_fluid(std::string_view label) const {
     const std::string text = capitals(label);
     return (card_.keyword == "FILM" && text.ends_with("FC")) ||
            (card_.keyword == "DLOAD" && text.ends_with("NP"));
   }
 
-  /// A line of *EQUATION: the number of terms, or terms of node, direction and coefficient.
+  /// Reads a line of *EQUATION: the number of terms, or terms (node, direction, coefficient).
   void add_terms(std::string_view line) {
     if (terms_left_ == 0) {
       terms_left_ = number_of(next_field(line));
@@ -397,8 +397,8 @@ class ReferenceFinder {
   const Card& card_;
   std::string_view lines_;
   std::vector<Reference> found_;
-  std::int64_t terms_left_ = 0;  // of an equation
-  int in_term_ = 0;              // fields of the present term so far
+  std::int64_t terms_left_ = 0;  // of the present equation
+  int in_term_ = 0;              // number of fields read of the present term
 };
 
 }  // namespace

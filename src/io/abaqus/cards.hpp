@@ -25,29 +25,29 @@ struct Card {
   std::string keyword;  ///< in capitals, without blanks and asterisk: "NODEPRINT"
   std::vector<Parameter> parameters;
 
-  /// Returns the parameter of that name, null if it is not there. Valid as long as the card.
+  /// Returns the parameter of that name, null if the card has none. Valid as long as the card.
   [[nodiscard]] const Parameter* find(std::string_view name) const;
   [[nodiscard]] bool has(std::string_view name) const { return find(name) != nullptr; }
-  /// Returns the value of that parameter, an empty text without it. Valid as long as the card.
+  /// Returns the value of that parameter, an empty text if the card has none. Valid as long as the card.
   [[nodiscard]] std::string_view value(std::string_view name) const;
 };
 
-/// Returns the keyword line at the front and the lines that continue it: after a comma at its end, those of
-/// parameters, with comments and blank lines between. A line of numbers or of a set's name is data. O(bytes
-/// returned and skipped).
+/// Returns the keyword line at the front and the lines that continue it. A line continues the one before if
+/// that ends with a comma and it holds parameters; comments and blank lines may lie between. A line of
+/// numbers or set names is data. O(bytes returned and skipped).
 std::string_view keyword_lines(std::string_view lines);
 
 /// Returns the card of a keyword line and the lines that continue it.
 Card parse_card(std::string_view lines);
 
-/// Returns a keyword line, and the lines that continue it, without that parameter and the comma before it.
+/// Returns `lines`, which begin with a keyword line, without the parameter `name` and the comma before it.
 std::string without_parameter(std::string_view lines, std::string_view name);
 
 /// Removes the next field from the front of a data line and returns it without blanks around it.
 std::string_view next_field(std::string_view& line);
 
-/// Returns a field as the number of a node or element: digits, perhaps after the name of an instance and a
-/// dot. 0 for all else.
+/// Parses a field as the number of a node or element: digits, or the name of an instance, a dot and digits.
+/// Returns 0 for anything else.
 std::int64_t number_of(std::string_view field);
 
 /// Returns `text` in capitals.
@@ -68,17 +68,17 @@ bool has_other_file(const Card& card);
 /// if the card is not known.
 std::optional<std::vector<Reference>> references(const Card& card, std::string_view lines);
 
-/// Returns whether a card, given with its lines, ties the nodes of several sets to each other: the first of
-/// one set, by its number, to the first of another. Other numbers would tie other nodes.
+/// Returns whether a card, given with its lines, pairs the nodes of several sets in the order of their
+/// numbers: first with first, and so on. New numbers would pair other nodes.
 bool pairs_sets(const Card& card, std::string_view lines);
 
 /// Returns whether the effect of a card depends on the order of node and element numbers, even if it names
-/// none: cyclic symmetry, for which CalculiX 2.20 interpolates between sides of different meshes in
-/// triangles that follow the numbers, and reading data of an earlier analysis.
+/// none. Such cards read data of an earlier analysis or define cyclic symmetry: for sides with different
+/// meshes, CalculiX 2.20 interpolates in triangles that depend on the numbers.
 bool depends_on_numbers(const Card& card);
 
-/// Returns all whole numbers above 0 that are the value of a parameter of a card, given with its lines, or
-/// the whole content of a field below its keyword.
+/// Returns all positive whole numbers in the lines of a card that are the value of a parameter, or the whole
+/// content of a field below its keyword.
 std::vector<std::int64_t> numbers_in(std::string_view lines);
 
 }  // namespace meshorder::abaqus

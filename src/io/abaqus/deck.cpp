@@ -6,7 +6,7 @@
 namespace meshorder::abaqus {
 namespace {
 
-/// Returns whether the cells that a card's elements are have the card's type.
+/// Returns whether the cells of a card's elements still have the type of the card.
 bool has_kind(const Mesh& mesh, const Metadata& metadata, const Section& section) {
   for (Index k = section.first; k < section.first + section.count; ++k) {
     const Index c = metadata.cell(k);

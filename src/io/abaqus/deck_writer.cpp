@@ -23,7 +23,7 @@
 namespace meshorder::abaqus {
 namespace {
 
-/// Takes the next word of a card, in capitals; names in quotes may have several.
+/// Takes the next word of a card and returns it in capitals; a name in quotes may have several words.
 std::string next_word_in_capitals(std::string_view& text) { return capitals(next_word(text, " \t,=\"\r\n")); }
 
 class DeckWriter {
@@ -64,7 +64,7 @@ class DeckWriter {
  private:
   using TextByPlace = std::unordered_map<Index, std::string_view>;
 
-  /// Returns texts of the file's nodes or elements by their positions in the mesh.
+  /// Changes the keys of `texts` from positions in the file to positions in the mesh.
   static TextByPlace by_place(const std::map<Index, std::string>& texts, const FileNumbers& numbers) {
     TextByPlace result;
     for (const auto& [k, text] : texts) result.emplace(numbers.place(k), text);
@@ -117,8 +117,8 @@ class DeckWriter {
     return places;
   }
 
-  /// Writes as many nodes as the card had, in the order of the mesh. Where they are not its own any more, the
-  /// card does not name their set; `write_sets_of_cards` does.
+  /// Writes as many nodes as the card had, in the order of the mesh. If these are no longer the card's own
+  /// nodes, its NSET is left out, and `write_sets_of_cards` writes the set.
   void write_nodes(const Section& section) {
     if (has_its_nodes(section)) {
       out_.text(section.text);
@@ -146,8 +146,8 @@ class DeckWriter {
            (places.front() == section.first && index_size(places) == places.back() + 1 - section.first);
   }
 
-  /// Whether a card has the first word of a set that is still to be written. Linear in the card, however many
-  /// sets there are.
+  /// Returns whether a card contains the first word of the name of a set that is still to be written. O(bytes
+  /// of the card), for any number of sets.
   [[nodiscard]] bool may_use_set_of_cards(std::string_view text) const {
     while (!sets_of_cards_.empty() && !text.empty()) {
       if (words_of_sets_.contains(next_word_in_capitals(text))) return true;
@@ -155,7 +155,7 @@ class DeckWriter {
     return false;
   }
 
-  /// Writes the sets that *NODE named so far: after the last of these cards, or before a card that uses one.
+  /// Writes the sets that `write_nodes` left out so far. Called after the last *NODE and before users of one.
   void write_sets_of_cards() {
     for (const auto& [set, section] : sets_of_cards_) {
       std::vector<std::int64_t> members;
@@ -201,8 +201,8 @@ class DeckWriter {
     out_.text(std::string_view(text).substr(done));
   }
 
-  /// Writes a set of ranges: as it is if the ranges hold the same items still, else as a list before the
-  /// comments. `is_path`: the order of the items matters.
+  /// Writes a set of ranges: unchanged if the ranges still hold the same items, else as a list, with the
+  /// comments after it. `is_path`: the order of the items matters.
   void write_generated(const std::string& text, const FileNumbers& numbers, bool is_path) {
     std::vector<std::int64_t> now;
     std::string comments;
@@ -252,8 +252,8 @@ class DeckWriter {
   TextByPlace more_of_nodes_;
   TextByPlace more_of_elements_;
   bool same_numbers_;
-  std::vector<std::pair<std::string, const Section*>> sets_of_cards_;  ///< that are still to be written
-  std::unordered_set<std::string> words_of_sets_;  ///< the first of each of their names, in capitals
+  std::vector<std::pair<std::string, const Section*>> sets_of_cards_;  ///< sets still to be written
+  std::unordered_set<std::string> words_of_sets_;  ///< first word of each of their names, in capitals
 };
 
 }  // namespace

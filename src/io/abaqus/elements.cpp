@@ -15,10 +15,10 @@
 namespace meshorder::abaqus {
 namespace {
 
-/// What the digits in the name of a type say.
+/// What the digits in a type's name mean: the number of nodes, or for beams the interpolation.
 enum class Family : std::uint8_t { solid, surface, line, beam };
 
-/// Names of types without the number of nodes and what follows it.
+/// The part of a type's name before the digits.
 struct Prefix {
   std::string_view name;
   Family family;
@@ -77,8 +77,8 @@ std::optional<ElementKind> with_nodes(const Kinds& kinds, int nodes) {
   return found == kinds.end() ? std::nullopt : std::optional(*found);
 }
 
-/// Returns the nodes of a beam whose name has these digits: the last one is the order of its interpolation,
-/// where 3 is a cubic one between two nodes.
+/// Returns the number of nodes of a beam whose name has these digits. The last digit is the order of
+/// interpolation: 1 and 3 (cubic) have two nodes, 2 has three.
 int nodes_of_beam(int digits) { return digits % 10 == 2 ? 3 : 2; }
 
 std::optional<ElementKind> kind_in_family(Family family, int digits) {
@@ -97,7 +97,7 @@ std::optional<ElementKind> kind_in_family(Family family, int digits) {
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-/// Returns the digits at the front as a number; none if there are none.
+/// Returns the digits at the front as a number; none if the text does not begin with a digit.
 std::optional<int> leading_number(std::string_view rest) {
   int number = 0;
   const auto [end, code] = std::from_chars(rest.data(), rest.data() + rest.size(), number);

@@ -53,7 +53,7 @@ struct RealText {
       text =
           without_padding(begin, std::to_chars(begin, end, value, std::chars_format::scientific, digits).ptr);
       std::from_chars(text.data(), text.data() + text.size(), rounded);
-      if (text.size() <= kMostCharacters) write(rounded);  // without zeros at its end
+      if (text.size() <= kMostCharacters) write(rounded);  // drops trailing zeros
     }
     is_rounded = rounded != value;
   }
@@ -68,7 +68,7 @@ struct RealText {
   }
 };
 
-/// Returns a name that decks can have and that is not taken yet, in any case; takes it.
+/// Returns a valid name that is not in `taken`, where case does not matter, and adds it to `taken`.
 std::string name_for(const std::string& given, std::set<std::string>& taken, NameNumbers& numbers) {
   constexpr std::size_t kLongest = 80;
   std::string name = plain_name(given, " ,\"=*.");

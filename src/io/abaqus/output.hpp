@@ -26,16 +26,16 @@ class DeckOutput {
     if (!text.empty()) within_line_ = text.back() != '\n' && text.back() != '\r';
   }
 
-  /// What a line of a node or an element has: its number and, for elements, those of the nodes; then `more`.
+  /// The content of a line: the number of the node or element, an element's nodes, and the text at its end.
   struct Row {
     std::int64_t number = 0;
     std::vector<std::int64_t> nodes;
     std::string_view more;
   };
-  /// Fills in row i. Called on all threads; the row may have the nodes of one before.
+  /// Fills in row i. Called on all threads; `row` may still hold the content of another row.
   using Rows = std::function<void(Row& row, Index i)>;
 
-  /// Writes the lines of nodes with `dimension` coordinates.
+  /// Writes the lines of nodes, each with `dimension` coordinates.
   void nodes(std::span<const Point> points, int dimension, const Rows& rows);
   /// Writes `count` elements, 16 numbers on a line.
   void elements(Index count, const Rows& rows);
@@ -48,7 +48,7 @@ class DeckOutput {
   void note_rounded(Notes& notes) const;
 
  private:
-  /// Ends a line that was left without an end.
+  /// Ends the present line if `text` left it without an end.
   void begin_line();
 
   OutputFile& out_;
@@ -57,12 +57,12 @@ class DeckOutput {
   std::int64_t rounded_ = 0;
 };
 
-/// Returns the text of a number in at most 20 characters, all that Abaqus and CalculiX read; it reads back to
-/// the same bits unless it had to be rounded.
+/// Returns the text of a number in at most 20 characters, as Abaqus and CalculiX read no more. It reads back
+/// to the same bits unless it had to be rounded.
 std::string short_real(double value);
 
-/// Writes the sets that `is_written` accepts under names that decks can have; notes names that change, and
-/// sets without members, which are left out.
+/// Writes the sets under names that are valid in decks. Notes the names that change, and the sets without
+/// members, which are left out.
 ///
 /// @param vertex_number, cell_number  number of a vertex and of a cell by its position
 void write_sets(DeckOutput& out, const std::vector<EntitySet>& sets,

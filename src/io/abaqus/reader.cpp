@@ -41,8 +41,8 @@ void skip_blanks(std::string_view& line) {
   while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
 }
 
-/// Takes the next field of a data line if it is a plain number of type T; returns false and leaves it there
-/// otherwise. Reads each byte once, where `next_field` and a parser read it several times.
+/// Takes the next field of a data line if it is a plain number of type T; otherwise returns false and leaves
+/// the line as it is. Faster than `next_field` and a parser, which read each byte several times.
 template <class T>
 bool take_plain(std::string_view& line, T& value) {
   std::string_view rest = line;
@@ -66,7 +66,7 @@ bool take_plain(std::string_view& line, T& value) {
   return true;
 }
 
-/// The same of the number of a node or element.
+/// Takes the next field if it is a plain number that a node or element can have, 1 to kMaxIndex.
 bool take_plain_number(std::string_view& line, Index& number) {
   std::int64_t value = 0;
   if (!take_plain(line, value) || value < 1 || value > kMaxIndex) return false;
@@ -74,7 +74,7 @@ bool take_plain_number(std::string_view& line, Index& number) {
   return true;
 }
 
-/// Returns why a card keeps a deck from being read; an empty text if it does not.
+/// Returns why a deck with this card cannot be read; an empty text if it can.
 std::string_view fault_of(std::string_view keyword) {
   constexpr std::array<std::string_view, 6> kGenerators{"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY"};
   if (std::find(kGenerators.begin(), kGenerators.end(), keyword) != kGenerators.end()) {
@@ -83,15 +83,15 @@ std::string_view fault_of(std::string_view keyword) {
   return {};
 }
 
-/// A node of an element that no card before it has.
+/// A node that an element names before a card defines it.
 struct UnknownNode {
-  Offset entry;  ///< of Cells::vertices
+  Offset entry;  ///< place in Cells::vertices
   Index number;
   std::int64_t line;
   std::int32_t file;
 };
 
-/// A line of a node.
+/// A data line of *NODE.
 struct NodeLine {
   std::int64_t line = 0;
   Index number = 0;
@@ -99,7 +99,7 @@ struct NodeLine {
   Point point{0, 0, 0};
 };
 
-/// A line of an element.
+/// A data line of *ELEMENT.
 struct ElementLine {
   std::int64_t line = 0;
   Index number = 0;
@@ -141,7 +141,7 @@ class DeckReader {
     return section;
   }
 
-  /// Takes a line into the text of the last card.
+  /// Takes a line and appends it to the text of the last card.
   void add_line() {
     if (deck_->sections.empty() || deck_->sections.back().part != Part::text) {
       begin_section(Part::text, {}, lines_.at().line());
@@ -182,7 +182,7 @@ class DeckReader {
     }
   }
 
-  /// Checks that the deck has one part at most, in one instance.
+  /// Follows the cards of parts and assemblies; fails for a second part or instance.
   void follow_parts(const Card& card) {
     constexpr std::string_view kRemedy =
         "write the deck without parts and assemblies: in Abaqus/CAE a choice of Model > Edit Attributes";
@@ -209,8 +209,8 @@ class DeckReader {
     lines_.include(std::string(name), line_);
   }
 
-  /// Gives the next line of the present card, not yet taken, those of an *INCLUDE among them; returns false
-  /// at the next keyword.
+  /// Gives the next line of the present card but does not take it; follows *INCLUDE. Returns false at the
+  /// next other keyword.
   bool peek_in_card(std::string_view& line) {
     while (lines_.peek(line)) {
       if (!is_keyword(line)) return true;
@@ -221,7 +221,7 @@ class DeckReader {
     return false;
   }
 
-  /// Opens the file of the parameter INPUT, whose lines come inline. Returns the keyword's lines without it.
+  /// Includes the file of the parameter INPUT, if there is one; returns the keyword lines without INPUT.
   std::string with_input(const Card& card, std::string text) {
     if (!card.has("INPUT")) return text;
     include(card.value("INPUT"));
@@ -230,8 +230,8 @@ class DeckReader {
 
   // ---- data lines
 
-  /// Gives the next data line of nodes or elements, not yet taken; returns false at the next keyword.
-  /// Comments go to `comments`; blank lines are dropped.
+  /// Gives the next data line of nodes or elements but does not take it; returns false at the next keyword.
+  /// Appends comments to `comments`; drops blank lines.
   bool peek_data(std::string_view& line, std::string& comments) {
     while (peek_in_card(line)) {
       if (line.empty()) {
@@ -245,7 +245,7 @@ class DeckReader {
     return false;
   }
 
-  /// Makes a section of comments that came after the last data line.
+  /// Makes a section of the comments after the last data line, if there are any.
   void end_data(std::string comments) {
     if (!comments.empty()) begin_section(Part::text, std::move(comments), lines_.at().line());
   }
@@ -297,14 +297,14 @@ class DeckReader {
     end_data(std::move(comments));
   }
 
-  /// Adds the number of a node or element that a line of the present file has.
+  /// Adds the number of a node or element; fails at `line` of the present file if it is taken.
   void add_number(IdMap& numbers, Index number, std::int64_t line, std::string_view what) {
     if (!numbers.add(number)) {
       lines_.fail(line, fmt::format("{} {} is given twice", what, number), "numbers must differ");
     }
   }
 
-  /// Reads nodes on all threads, as far as their lines are regular. Returns whether it read any.
+  /// Reads nodes on all threads, up to the first irregular line. Returns whether it read any.
   bool read_regular_nodes() {
     const Index most = lines_.lines_to_take();
     if (most == 0) return false;
@@ -370,8 +370,8 @@ class DeckReader {
     end_data(std::move(comments));
   }
 
-  /// Reads elements on all threads, as far as each has one line, and nodes that are known. Returns whether it
-  /// read any.
+  /// Reads elements on all threads, up to the first that does not fit on one line or names an unknown node.
+  /// Returns whether it read any.
   bool read_regular_elements(ElementKind kind) {
     const auto nodes = static_cast<std::size_t>(kind.nodes);
     const Index most = nodes < kNumbersOnLine ? lines_.lines_to_take() : 0;
@@ -402,7 +402,7 @@ class DeckReader {
     return count > 0;
   }
 
-  /// Reads an element, which goes on in the next lines until it has all nodes, and takes its lines.
+  /// Reads an element and takes its lines: as many as it needs to have all nodes.
   void read_element(ElementKind kind, const std::string& type, std::string_view line, std::string& comments) {
     const Index number = take_number(line, "the number of an element");
     add_number(deck_->elements, number, lines_.at().line(), "element");
@@ -427,7 +427,7 @@ class DeckReader {
           break;
         }
         const Index node = take_number(line, "a node of the element");
-        // the k-th node of the element is the same vertex of the cell
+        // `node_place` is its own inverse: it also gives the vertex of the cell for a node of the element
         const std::size_t k = node_place(kind, given++);
         cell[k] = deck_->nodes.find(node);
         if (cell[k] < 0) {
@@ -446,14 +446,14 @@ class DeckReader {
     mesh_.cells.push_back(kind.shape, {cell.data(), nodes});
   }
 
-  /// Returns the number of the present file for `unknown_nodes_`.
+  /// Returns the position of the present file in `files_`, for `unknown_nodes_`.
   std::int32_t file_number() {
     const std::string& file = lines_.at().file();
     if (files_.empty() || files_.back() != file) files_.push_back(file);
     return static_cast<std::int32_t>(files_.size()) - 1;
   }
 
-  /// Keeps elements of a type that is not known, as they are.
+  /// Keeps the lines of elements of an unknown type as text.
   void keep_elements(const std::string& type, const Card& card, std::string text) {
     text = with_input(card, std::move(text));
     begin_section(Part::text, std::move(text), line_);
@@ -476,7 +476,7 @@ class DeckReader {
     }
   }
 
-  /// Remembers types that a mesh of another format would not be written as.
+  /// Remembers a type that `type_of` does not return for this kind, as other formats lose it.
   void note_type(const std::string& type, ElementKind kind) {
     const bool usual = type == type_of(kind, true) || type == type_of(kind, false);
     if (usual || std::find(types_.begin(), types_.end(), type) != types_.end()) return;
@@ -538,7 +538,7 @@ class DeckReader {
 
   static std::string no_mesh() { return "it may be cut short, or its mesh be in another file"; }
 
-  /// Finds nodes that come after the elements that name them.
+  /// Fills in the nodes that are defined after the elements that name them.
   void resolve_nodes() {
     for (const UnknownNode& unknown : unknown_nodes_) {
       const Index v = deck_->nodes.find(unknown.number);
@@ -571,7 +571,7 @@ class DeckReader {
     if (!deck_->more_of_nodes.empty()) contents.emplace_back("fields after the coordinates of nodes");
   }
 
-  /// Lists the cards that may have numbers where nothing here looks for them.
+  /// Lists the cards that may name nodes or elements in places that `references` does not know.
   void find_unknown_cards() {
     for (std::size_t i = 0; i < deck_->sections.size(); ++i) {
       const Section& section = deck_->sections[i];
@@ -601,17 +601,17 @@ class DeckReader {
   SetReader sets_;
   std::vector<std::int64_t> lines_of_sections_;
   std::vector<UnknownNode> unknown_nodes_;
-  std::vector<NodeLine> node_lines_;                 // of regular lines
+  std::vector<NodeLine> node_lines_;                 // buffer for regular lines
   std::vector<ElementLine> element_lines_;           // likewise
-  std::vector<Index> element_nodes_;                 // of each of these
-  std::vector<std::string> files_;                   // of unknown_nodes_
-  std::unordered_set<std::int64_t> other_elements_;  // that are no cells
-  std::vector<std::string> other_types_;             // the first of these, for a message
+  std::vector<Index> element_nodes_;                 // their vertices, in the order of cells
+  std::vector<std::string> files_;                   // those that unknown_nodes_ refers to
+  std::unordered_set<std::int64_t> other_elements_;  // numbers of elements that are not cells
+  std::vector<std::string> other_types_;             // the first of their types, for a message
   std::vector<std::string> types_;
   std::int64_t line_ = 0;  // of the last keyword
   int parts_ = 0;
   int instances_ = 0;
-  bool in_assembly_ = false;  // outside of its instance
+  bool in_assembly_ = false;  // in *ASSEMBLY but not in *INSTANCE
   bool has_card_ = false;
   bool has_third_coordinate_ = false;
 };

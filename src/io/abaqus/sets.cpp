@@ -27,13 +27,13 @@ class SetReader::Repeats {
   /// @param items  vertices or cells of the mesh
   explicit Repeats(Index items) : last_turn_(static_cast<std::size_t>(items), 0) {}
 
-  /// Appends members; some of them may repeat others until the next `drop`. Amortised O(members).
+  /// Appends members; repeated ones may stay until the next `drop`. Amortised O(members).
   void append(EntitySet& set, std::span<const Index> members) {
     set.members.insert(set.members.end(), members.begin(), members.end());
     if (set.members.size() > 2 * last_turn_.size()) drop(set);
   }
 
-  /// Removes all but the first of members that are given several times. O(members).
+  /// Removes repeated members; the first of each stays. O(members).
   void drop(EntitySet& set) {
     ++turn_;
     std::erase_if(set.members,

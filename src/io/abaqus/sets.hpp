@@ -17,27 +17,27 @@
 
 namespace meshorder::abaqus {
 
-/// The node and element sets of a deck: what its cards add to them, in their order, and then their members.
+/// Collects what the cards of a deck add to its node and element sets, then resolves it into their members.
 class SetReader {
  public:
-  /// Where a card of a set is.
+  /// The position of a card in the deck.
   struct Place {
     std::string file;
     std::int64_t line = 0;
   };
 
-  /// Sets of the assembly and of its part have names of their own.
+  /// Says whether the next cards are inside the assembly, whose sets have names apart from the part's.
   void enter_assembly(bool inside) { in_assembly_ = inside; }
 
-  /// Adds nodes or elements first, first + 1, … in the order of the file to the set of that name.
+  /// Adds `count` nodes or elements of the file, from position `first` on, to the set of that name.
   void add_block(Association association, std::string_view name, Index first, Index count);
   /// Begins a card *NSET or *ELSET, whose lines follow.
   void begin_card(Association association, const Card& card, Place place);
-  /// Adds a data line; returns what is wrong with it, an empty text if nothing is.
+  /// Adds a data line of the last card; returns the fault of the line, an empty text if it has none.
   std::string add_line(std::string_view line);
 
-  /// Returns the sets with their members. Notes names and numbers that do not exist; `others` are elements
-  /// that are no cells.
+  /// Returns the sets with their members. Notes names and numbers that do not exist. `others`: numbers of
+  /// elements that are not cells; sets may name them but do not get them.
   std::vector<EntitySet> members(const IdMap& nodes, const IdMap& elements,
                                  const std::unordered_set<std::int64_t>& others, const Cells& cells,
                                  Notes& notes);
@@ -48,18 +48,18 @@ class SetReader {
     std::size_t set = 0;
     Association association = Association::vertices;
     bool in_assembly = false;
-    bool of_instance = false;  ///< names and numbers are those of the part
+    bool of_instance = false;  ///< its names and numbers are those of the part
     Place place = {};
     bool generate = false;
-    Index first = 0;  ///< a block
+    Index first = 0;  ///< position of the block that `add_block` adds
     Index count = 0;
     std::vector<Index> numbers;
     std::vector<std::array<std::int64_t, 3>> ranges;  ///< from, to, step
     std::vector<std::string> names;
-    std::string nodes_of;  ///< an element set
+    std::string nodes_of;  ///< name of an element set whose nodes are added
   };
   class Repeats;
-  using Key = std::tuple<Association, bool, std::string>;  ///< bool: of the assembly
+  using Key = std::tuple<Association, bool, std::string>;  ///< bool: whether of the assembly
 
   std::size_t set_named(Association association, std::string_view name);
   [[nodiscard]] const EntitySet* find(Association association, const Addition& from,

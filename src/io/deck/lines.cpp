@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostFiles = 10000;
 constexpr std::size_t kMostNested = 16;
-constexpr std::size_t kLineBytes = 64;  // of a line that may be regular, for how far to look
+constexpr std::size_t kLineBytes = 64;  // assumed for each line when estimating how many follow
 
 bool is_space(char c) { return c == ' ' || c == '\t'; }
 
@@ -40,7 +40,7 @@ bool DeckLines::peek(std::string_view& line) {
     files_.pop_back();
   }
   line = at().peek_line();
-  // plain loops: this is done for every line of a mesh
+  // plain loops for speed: this runs for every line of a mesh
   while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
   while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
   return true;
@@ -76,7 +76,7 @@ Index DeckLines::take_regular(Index most,
   constexpr std::size_t kPartBytes = std::size_t{1} << 20;
   OpenFile& file = files_.back();
   const auto read = [&](Scanner& at, Index k) {
-    // a line of a text in which none ends in CR alone
+    // lines end in LF or CR LF here: no text in which a line ends in CR alone is read on all threads
     const std::string_view rest = at.all().substr(static_cast<std::size_t>(at.byte()));
     std::string_view line = rest.substr(0, rest.find('\n'));
     if (line.ends_with('\r')) line.remove_suffix(1);

@@ -14,42 +14,42 @@
 
 namespace meshorder {
 
-/// The lines of a deck and, in place, of the files that it includes.
+/// Reads the lines of a deck; the lines of an included file come in place of the line that includes it.
 class DeckLines {
  public:
   explicit DeckLines(const FilePath& path);
 
-  /// Gives the next line without its end and blanks around it, and does not take it; returns false at the end
-  /// of the deck. The line is valid until the next call.
+  /// Gives the next line, without its end and the blanks around it, but does not take it. Returns false at
+  /// the end of the deck. The line is valid until the next call.
   bool peek(std::string_view& line);
-  /// Takes the line and returns it with its end, which the last line of the deck may lack. Valid until the
-  /// next call.
+  /// Takes the next line and returns it with its end; only the last line of the deck may have none. Valid
+  /// until the next call.
   std::string_view take();
-  /// Returns how many of the next lines of the present file may be taken by `take_regular`, at most 262,144:
-  /// 0 where few come before the next `*`, or where a line was not regular a short while ago. O(1) on
-  /// average.
+  /// Estimates how many of the next lines of the present file `take_regular` may take, at most 262,144.
+  /// Returns 0 if few lines precede the next `*`, or if one of the last lines was irregular. Amortised O(1)
+  /// for each line.
   Index lines_to_take();
-  /// Takes the next lines of the present file that have something on them, on all threads, as far as they are
-  /// regular. The caller reads the others one after another.
+  /// Takes the next nonblank lines of the present file on all threads, up to the first irregular one. The
+  /// caller then reads on line by line.
   ///
   /// @param most   as `lines_to_take` returned, > 0
-  /// @param parse  `parse(line, number, k)` gets line k of those, without its end and blanks before it, and
-  /// its
-  ///               number in the file; false: it is not regular. May be called again for k. An error makes a
-  ///               line irregular
-  /// @return how many, at most `most`
+  /// @param parse  `parse(line, number, k)` parses the k-th of these lines, given without its end and leading
+  ///               blanks;
+  ///               `number` is its line number in the file. Returns false if the line is irregular; an error
+  ///               means the same. May be called several times for one k
+  /// @return the number of lines taken, at most `most`
   Index take_regular(Index most, const std::function<bool(std::string_view, std::int64_t, Index)>& parse);
-  /// Returns what is left of the present file, from the next line on. Valid until the next call.
+  /// Returns the rest of the present file, from the next line on. Valid until the next call.
   [[nodiscard]] std::string_view rest() { return at().all().substr(static_cast<std::size_t>(at().byte())); }
-  /// Goes on with the lines of a file that the deck may include. Fails, at that line of the present file, for
-  /// others, for one that does not exist or includes itself, and for too many.
+  /// Continues with the lines of the file `name`. Fails, with `line` of the present file as the place, if the
+  /// deck may not include that file, if it does not exist or includes itself, or if there are too many files.
   void include(const std::string& name, std::int64_t line);
 
   /// Throws InputError at that line of the present file.
   [[noreturn]] void fail(std::int64_t line, const std::string& what, const std::string& remedy) const;
-  /// Returns the scanner whose position errors report.
+  /// Returns the scanner of the present file; errors report its position.
   [[nodiscard]] Scanner& at() { return *files_.back().scanner; }
-  /// Returns the end of the deck's lines.
+  /// Returns the line end that the deck uses: "\n", "\r\n" or "\r".
   [[nodiscard]] const std::string& line_end() const noexcept { return line_end_; }
   /// Returns the names of the files included so far.
   [[nodiscard]] const std::vector<std::string>& included() const noexcept { return included_; }
@@ -62,15 +62,15 @@ class DeckLines {
 
     FilePath path;
     std::unique_ptr<Scanner> scanner;
-    bool has_other_blanks;             ///< form feeds or vertical tabs, which a Scanner skips
-    std::int64_t next_try = 0;         ///< byte from which on `take_regular` tries again
-    Index lines_at_once = kMostLines;  ///< half as many after each line that is not regular
+    bool has_other_blanks;             ///< has form feeds or vertical tabs, which a Scanner skips
+    std::int64_t next_try = 0;         ///< `lines_to_take` returns 0 before this byte
+    Index lines_at_once = kMostLines;  ///< halved after an irregular line, else doubled again
   };
 
   FilePath main_;
   std::vector<OpenFile> files_;
   std::string line_end_;
-  std::string last_line_;  // of an included file, with an end
+  std::string last_line_;  // of an included file, with the line end that it lacked
   std::vector<std::string> included_;
 };
 

@@ -11,18 +11,18 @@
 
 namespace meshorder {
 
-/// A deck, or another file that stays whole while its nodes and elements move, and where these are in the
-/// mesh.
+/// The contents of a deck or a similar file, and the positions of its nodes and elements in the mesh. The
+/// contents stay the same while the mesh is reordered.
 ///
-/// @tparam Deck  what the file says, in its own order. Of its members, `contents` lists what other formats
-///               lose, and `unknown` what may name nodes or elements by number and is not understood: with
-///               one of these all numbers must stay.
+/// @tparam Deck  contents of the file, in its own order. Two members are used: `contents` lists what other
+///               formats lose; `unknown` lists the parts that may name nodes or elements by number but are
+///               not understood. If there are any of these, all numbers must stay.
 template <class Deck>
 struct DeckMetadata final : FormatMetadata {
   std::shared_ptr<const Deck> deck;
-  std::vector<Index> vertex_of;  ///< of each node of the file; empty if they are in its order
-  std::vector<Index> cell_of;    ///< of each element of the file; likewise
-  bool whole = true;             ///< false after cells were left out: the deck no longer fits the mesh
+  std::vector<Index> vertex_of;  ///< vertex of each node of the file; empty if both have the same order
+  std::vector<Index> cell_of;    ///< cell of each element of the file; empty likewise
+  bool whole = true;             ///< false once vertices or cells are left out: the deck no longer fits
 
   [[nodiscard]] std::vector<std::string> contents() const override { return deck->contents; }
   [[nodiscard]] bool binds_ids() const override { return whole && !deck->unknown.empty(); }
@@ -36,7 +36,7 @@ struct DeckMetadata final : FormatMetadata {
     return result;
   }
 
-  /// Returns the cell that the k-th element of the file is.
+  /// Returns the cell of the k-th element of the file.
   [[nodiscard]] Index cell(Index k) const { return cell_of.empty() ? k : cell_of[k]; }
 };
 

@@ -48,7 +48,7 @@ std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::in
 
 namespace {
 
-/// Returns whether a set of the mesh has the members that the deck says.
+/// Returns whether a set of the mesh has the same members as in the deck, in any order.
 bool is_as_in_deck(const EntitySet& set, const EntitySet& of_deck, const FileNumbers& numbers) {
   if (set.members.size() != of_deck.members.size()) return false;
   std::vector<Index> members = set.members;

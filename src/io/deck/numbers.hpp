@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// The numbers that the nodes and elements of a deck have, in the deck and in a mesh whose items moved.
+// Numbers of a deck's nodes and elements: those in the deck, and those in the reordered mesh.
 
 #include "io/format.hpp"
 #include "io/stream/file_path.hpp"
@@ -18,18 +18,18 @@
 
 namespace meshorder {
 
-/// Moves the places of items; `moves` is empty where all stay. Returns whether all still have a place.
+/// Replaces each place p by moves[p]; empty `moves`: all stay. Returns whether every item still has a place.
 bool move_places(std::vector<Index>& places, std::span<const Index> moves);
 
-/// Returns whether ids can be the numbers of nodes or elements: `smallest` to `largest`, and each given once.
-/// False for none. O(n log n).
+/// Returns whether ids are valid numbers of nodes or elements: from `smallest` to `largest`, each only once.
+/// False if there are no ids. O(n log n).
 bool can_be_numbers(std::vector<std::int64_t> ids, std::int64_t largest, std::int64_t smallest = 1);
 
-/// Returns the positions, in the file, of items whose numbers are from, from + step, … ≤ to; ascending by
-/// number. `step` is 1 or more. O(numbers), or O(items) if these are fewer.
+/// Returns the positions in the file of the items numbered from, from + step, … ≤ to, ascending by number.
+/// `step` is at least 1. O(numbers) if they are fewer than the items, else O(items log items).
 std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step);
 
-/// The numbers that the nodes or elements of a file have in a mesh.
+/// Maps the nodes or elements of a file to their positions and numbers in a mesh.
 class FileNumbers {
  public:
   FileNumbers(const IdMap& of_file, const std::vector<Index>& places, const std::vector<std::int64_t>& ids)
@@ -41,7 +41,7 @@ class FileNumbers {
   [[nodiscard]] std::int64_t at(Index place) const {
     return ids_.empty() ? place + std::int64_t{1} : ids_[place];
   }
-  /// Returns the present number of the item that had this one in the file; the same where there was none.
+  /// Returns the present number of the item that the file gave `number`; `number` itself if there is none.
   [[nodiscard]] std::int64_t now(std::int64_t number) const {
     const Index k = of_file_.find(number);
     return k < 0 ? number : at(place(k));
@@ -60,7 +60,7 @@ class FileNumbers {
   const std::vector<std::int64_t>& ids_;
 };
 
-/// The sets of a mesh by name; of several with one name, the first. The names must stay where they are.
+/// Finds the sets of a mesh by name; if several have one name, the first. The sets must outlive this object.
 class SetsByName {
  public:
   explicit SetsByName(const std::vector<EntitySet>& sets) {
@@ -78,22 +78,22 @@ class SetsByName {
   std::map<std::pair<Association, std::string_view>, const EntitySet*> sets_;
 };
 
-/// Returns the sets of a mesh that its deck does not have. Notes those that are no longer as the deck has
-/// them.
+/// Returns the sets of a mesh that its deck does not have. Notes the deck's sets that are missing or
+/// different in the mesh.
 ///
-/// @param nodes, elements  of the deck, in the mesh
+/// @param nodes, elements  numbers of the deck's nodes and elements in the mesh
 std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
                                    const std::vector<EntitySet>& of_mesh, const FileNumbers& nodes,
                                    const FileNumbers& elements, Notes& notes);
 
-/// Notes the ids of a mesh that are not written: those that `can_be_numbers` refuses.
+/// Notes that ids of a mesh are not written if they are not valid numbers (see `can_be_numbers`).
 void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes,
                     std::int64_t smallest = 1);
 
-/// Throws InputError where `unknown` cards may name nodes or elements by number, so that these cannot change.
+/// Throws InputError if there are `unknown` cards: they may name items by number, so no number can change.
 void require_known_references(const std::vector<std::string>& unknown, const FilePath& path);
 
-/// Notes that all numbers stay, for cards that may name nodes or elements; nothing where there are none.
+/// Notes that all numbers stay because of `unknown` cards, which may name nodes or elements; nothing if none.
 void note_kept_numbers(const std::vector<std::string>& unknown, Notes& notes);
 
 }  // namespace meshorder
