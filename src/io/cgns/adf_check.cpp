@@ -13,11 +13,11 @@
 #include <set>
 #include <utility>
 
-// Checks a file of ADF before libcgns reads it, which follows the pointers in it. The layout: Advanced Data
-// Format software library, "ADF file layout" (NASA, https://cgns.github.io/CGNS_docs_current/adf/). Numbers
-// are hexadecimal digits; a pointer is 8 digits of a block of 4,096 bytes and 4 of a byte in it. In files of
-// version B…, which libcgns writes where it was configured for 64 bits, pointers and dimensions are binary
-// numbers of as many bytes (ADF_internals.c of libcgns).
+// Checks a file of ADF before libcgns reads it, as libcgns follows its pointers unchecked. Layout: Advanced
+// Data Format software library, "ADF file layout" (NASA, https://cgns.github.io/CGNS_docs_current/adf/).
+// Numbers are hexadecimal digits. A pointer has 8 digits for a block of 4,096 bytes and 4 for a byte in it.
+// In files of version B…, which libcgns writes if it is configured for 64 bits, pointers and dimensions are
+// binary numbers: a byte in place of each digit (ADF_internals.c of libcgns).
 
 namespace meshorder::cgns {
 namespace {
@@ -28,7 +28,7 @@ constexpr std::size_t kTag = 4;
 constexpr std::size_t kPointer = 12;
 constexpr std::size_t kName = 32;
 constexpr std::size_t kMostLengths = 12;
-constexpr std::size_t kDigits = 8;  // of a count, a dimension and a block
+constexpr std::size_t kDigits = 8;  // digits of a count, of a dimension, and of the block in a pointer
 constexpr std::uint64_t kVersionAt = 25;
 constexpr std::uint64_t kByteOrderAt = 100;
 constexpr std::uint64_t kRootPointerAt = 134;
@@ -74,7 +74,7 @@ class AdfCheck {
     return value;
   }
 
-  /// Returns a number that is binary in files of version B….
+  /// Returns a number that is binary in files of version B… and hexadecimal in others.
   template <class T>
   std::uint64_t wide(std::uint64_t at) {
     return binary_ ? number_at<T>(bytes(at, sizeof(T)).data(), order_) : number(at, sizeof(T));
@@ -161,7 +161,7 @@ class AdfCheck {
   const InputFile& file_;
   bool binary_ = false;
   std::endian order_ = std::endian::little;  // of binary numbers
-  std::set<std::uint64_t> seen_;             // nodes
+  std::set<std::uint64_t> seen_;             // offsets of nodes
 };
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include <type_traits>
 #include <utility>
 
-// Makes arrays of the values of nodes, one of those that have one name and belong to different vertices or
-// cells.
+// Makes arrays from the values of nodes. Values with the same name that belong to different vertices or cells
+// become one array.
 
 namespace meshorder::cgns {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 /// Pieces that become one array.
 using Group = std::vector<Piece*>;
 
-/// Returns whether the pieces have values of one type, for different vertices or cells.
+/// Returns whether the pieces have values of one type, and no vertex or cell has two.
 bool fit_together(const Group& group, std::size_t total) {
   std::vector<bool> taken(total);
   for (const Piece* const piece : group) {
@@ -55,7 +55,7 @@ class ArrayMaker {
                                                 : reading_.mesh.cells.shapes.size();
   }
 
-  /// Makes one array, or one for each solution (level 0) and each zone of it (level 1) where they overlap.
+  /// Makes one array of a group. If pieces overlap, splits it by solution (level 0), then by node (level 1).
   void make_of(const Group& group, int level) {
     const Piece& first = *group.front();
     if (group.size() == 1 || fit_together(group, total(first.association))) {
@@ -106,7 +106,7 @@ class ArrayMaker {
     reading_.mesh.data.push_back(std::move(array));
   }
 
-  /// Puts the values of an array that has one for each vertex or cell in the order of these.
+  /// Makes an array dense if it has a value for each vertex or cell: sorts the values into their order.
   void make_dense(DataArray& array) const {
     if (array.indices.size() != total(array.association)) return;
     if (!std::is_sorted(array.indices.begin(), array.indices.end())) {

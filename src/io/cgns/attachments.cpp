@@ -16,7 +16,7 @@
 #include <span>
 #include <utility>
 
-// Reads what names vertices or cells: solutions, boundary conditions, connectivities of zones, parents.
+// Reads nodes that refer to vertices or cells: solutions, conditions, connectivities of zones, parents.
 
 namespace meshorder::cgns {
 namespace {
@@ -28,12 +28,12 @@ bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
 constexpr std::array<std::string_view, 5> kContainers{"FlowSolution_t", "DiscreteData_t", "GridCoordinates_t",
                                                       "ArbitraryGridMotion_t", "ZoneSubRegion_t"};
 constexpr std::array<std::string_view, 2> kVertexLocations{"Vertex", "Null"};
-/// Nodes of a zone whose parts other formats have a place for.
+/// Labels of the nodes of a zone whose contents other formats can hold.
 constexpr std::array<std::string_view, 8> kHeldByOthers{"ZoneType_t",     "GridCoordinates_t", "Elements_t",
                                                         "FlowSolution_t", "DiscreteData_t",    "ZoneBC_t",
                                                         "Ordinal_t",      "ZoneSubRegion_t"};
 
-/// Returns the texts of a node of characters, one for each row of its last dimension.
+/// Returns the texts of a C1 node, one for each row of `dimensions.front()` characters, without filling.
 std::vector<std::string> rows_of_text(const Node& node) {
   std::vector<std::string> rows;
   if (node.type != "C1" || node.dimensions.empty() || node.dimensions.front() < 1) return rows;
@@ -64,7 +64,7 @@ class AttachmentReader {
   }
 
  private:
-  /// A set before it has a name of its own.
+  /// A set whose name may still be that of another one.
   struct FoundSet {
     int list;
     std::string name;
@@ -72,9 +72,9 @@ class AttachmentReader {
 
   ZonePlaces& zone() { return reading_.zones[zone_]; }
 
-  // ---- what is where
+  // ---- positions of numbers
 
-  /// Returns the cell of an element number in a zone, −1 if there is none.
+  /// Returns the cell of an element number in a zone, −1 if the number has no cell.
   [[nodiscard]] Index cell_of(const ZonePlaces& of_zone, std::int64_t number) const {
     const auto after =
         std::upper_bound(of_zone.sections.begin(), of_zone.sections.end(), number,
@@ -107,7 +107,7 @@ class AttachmentReader {
     return cell;
   }
 
-  /// Reads numbers of vertices or elements, or the first and the last of them, and returns the list's place.
+  /// Reads a node that lists vertices or elements by number or as a range. Returns the index of the list.
   int read_list(Node& node, int of_zone, Association association, const std::string& path) {
     const ZonePlaces& owner = reading_.zones[of_zone];
     PointList list{.zone = of_zone, .association = association};
@@ -159,7 +159,7 @@ class AttachmentReader {
     }
   }
 
-  /// Reads the list that a node has, −1 for none; `children` of these names list vertices or elements.
+  /// Reads the child of a node that lists vertices or elements. Returns the index of the list, −1 if none.
   int read_own_list(Node& node, Association association, const std::string& path) {
     int place = -1;
     for (Node& child : node.children) {
@@ -173,7 +173,7 @@ class AttachmentReader {
     return place;
   }
 
-  /// Returns whether a node may have values for what it lists, one after another.
+  /// Returns whether a node may have values for the members of its list, in the order of the list.
   static bool has_data_of_list(const Node& node) {
     constexpr std::array<std::string_view, 5> kLabels{"BCDataSet_t", "BCData_t", "DataArray_t",
                                                       "InwardNormalList_t", "UserDefinedData_t"};
@@ -183,7 +183,7 @@ class AttachmentReader {
     });
   }
 
-  /// Marks the lists of a zone as those that may have data in a part of the zone that names one of them.
+  /// Marks all lists of the zone as ordering data: a ZoneSubRegion_t may have data for any of them.
   void mark_lists_of_zone() {
     for (PointList& list : metadata_.lists) list.orders_data = list.orders_data || list.zone == zone_;
   }
@@ -197,7 +197,7 @@ class AttachmentReader {
     }
   }
 
-  /// Returns the vertices or the cells of a zone that have values where no list names them.
+  /// Returns all vertices, or all cells of the base's dimension, of the zone: those of values without a list.
   std::shared_ptr<const std::vector<Index>> all_rows(Association association) {
     auto& known = rows_[{zone_, association}];
     if (known == nullptr) {
@@ -215,7 +215,7 @@ class AttachmentReader {
     const Association association = location_of(node, Association::vertices);
     const int list = read_own_list(node, association, path);
     if (node.label == "ZoneSubRegion_t") {
-      if (list < 0) {  // it is that of a boundary condition or a connectivity
+      if (list < 0) {  // the list is that of a boundary condition or a connectivity
         has_named_part_ = has_named_part_ || has_data_of_list(node);
         return;
       }
@@ -262,7 +262,7 @@ class AttachmentReader {
     reading_.pieces.push_back({solution, name, zone_, association, rows, std::move(values), field});
   }
 
-  /// Reads data of users whose meaning is not known: they move where they say where they belong.
+  /// Reads user data, whose meaning is not known. They are reordered only if they give a GridLocation_t.
   void read_user_data(Node& node, const std::string& path) {
     if (node.child_of_label("GridLocation_t") != nullptr) return read_container(node, path);
     const int list = read_own_list(node, Association::vertices, path);
@@ -367,8 +367,8 @@ class AttachmentReader {
     }
   }
 
-  /// Returns what added to the numbers of the parents of polygons gives those of elements: 0, or where they
-  /// count the polyhedra from 1 what the section of these begins with.
+  /// Returns the number to add to the parents of polygons to get element numbers: 0, or if they count the
+  /// polyhedra from 1, the first number of the section of polyhedra less 1.
   [[nodiscard]] std::int64_t shift_of_parents(std::span<const std::int64_t> numbers,
                                               const std::string& path) {
     const auto wrong = std::find_if(numbers.begin(), numbers.end(), [&](std::int64_t number) {
@@ -483,7 +483,7 @@ class AttachmentReader {
     reading_.mesh.sets.push_back(std::move(set));
   }
 
-  /// Makes sets of the sections of boundaries unless all cells are in sets: some programs name boundaries so.
+  /// Makes a set of each boundary section, as some programs name boundaries so, unless sets have its cells.
   void add_section_sets() {
     std::vector<bool> is_named(reading_.mesh.cells.shapes.size());
     std::set<std::string> names;
@@ -496,7 +496,7 @@ class AttachmentReader {
       for (std::size_t k = 0; k < owner.sections.size(); ++k) {
         const Section& section = metadata_.sections[owner.sections[k]];
         const Index first = owner.first_cells[k];
-        // polygons between cells are no boundary
+        // a section with polygons between cells is not a boundary
         if (owner.cell_counts[k] < section.count) continue;
         const auto begin = is_named.begin() + first;
         if (std::all_of(begin, begin + section.count, [](bool named) { return named; }) ||
@@ -548,7 +548,7 @@ class AttachmentReader {
   Reading& reading_;
   Metadata& metadata_;
   int zone_ = 0;
-  bool has_named_part_ = false;  // whether a part of the zone has data for a list that it names
+  bool has_named_part_ = false;  // a ZoneSubRegion_t of the zone has data for a list of another node
   std::map<std::pair<int, Association>, std::shared_ptr<const std::vector<Index>>> rows_;
   std::vector<FoundSet> sets_;
   NameNumbers numbers_;

@@ -6,15 +6,15 @@
 // Format: "The CFD General Notation System: Standard Interface Data Structures" (SIDS),
 // https://cgns.github.io/CGNS_docs_current/sids/. Node orders of elements are those of its section 3.3.
 //
-// In a Mesh, element sections are the blocks of cells, zone after zone and by their numbers. A boundary
-// condition or a ZoneSubRegion_t is a set of its name, "ZONE.NAME" where several zones have that name. A
-// solution gives arrays of the names that it has, "SOLUTION.NAME" where two have values for the same vertices
-// or cells, and "NAME step K" where the file says that it belongs to one of several times. Arrays at cell
-// centres belong to the cells of the base's dimension. All other nodes are kept as they are.
+// Element sections become blocks of cells, zone by zone, in the order of their element numbers. A boundary
+// condition or a ZoneSubRegion_t becomes a set of the same name, "ZONE.NAME" if several have that name. An
+// array of a solution keeps its name; it is "SOLUTION.NAME" if two solutions have values for the same
+// vertices or cells, and "NAME step K" if the file assigns its solution to one of several times. Arrays at
+// cell centres belong to the cells of the base's dimension. All other nodes are kept as they are.
 //
-// Polyhedra are the cells that their faces make: tetrahedra, pyramids, wedges and hexahedra if they can, else
-// cells of the shape polyhedron. Of the polygons, those are cells that fewer than two
-// polyhedra have and those that a condition or a solution names; the others lie between two cells and follow
+// Polyhedra become tetrahedra, pyramids, wedges or hexahedra if their faces form one, else cells of the shape
+// polyhedron. A polygon becomes a cell if it is a face of fewer than two polyhedra,
+// or if a condition or a solution lists it; the others lie between two cells and are ordered by
 // these.
 
 #include "io/cgns/tree.hpp"
@@ -49,7 +49,7 @@ struct ElementType {
 const ElementType* element_type(std::int64_t number);
 /// Returns the type of cells of this shape, null if there is none.
 const ElementType* element_type_of(Shape shape, int nodes);
-/// Returns the place in the file of each node of a cell; empty if they are in the order of a Mesh.
+/// Returns the place in the file of each vertex of a cell; empty if the file has the order of a Mesh.
 std::span<const int> file_order(Shape shape, int nodes);
 
 // ---- what a file has besides the mesh
@@ -57,8 +57,8 @@ std::span<const int> file_order(Shape shape, int nodes);
 /// A zone.
 struct Zone {
   std::string name;
-  std::string number_type = "I4";  ///< of its size
-  std::int64_t cell_count = 0;     ///< that it gives, whatever it counts
+  std::string number_type = "I4";  ///< type of the node with its size
+  std::int64_t cell_count = 0;     ///< number of cells as given in the file, not checked
 };
 
 /// A section of elements.
@@ -67,19 +67,19 @@ struct Section {
   std::string name;
   int type = 0;            ///< number of the element type, `kMixedElements`, `kPolygons` or `kPolyhedra`
   std::int64_t first = 1;  ///< number of its first element in the file
-  Index count = 0;         ///< of elements in the file
+  Index count = 0;         ///< number of its elements in the file
   std::string range_type = "I4";
   std::string number_type = "I4";
-  std::string offset_type = {};  ///< of elements of several sizes: empty where the file has no offsets
-  Index first_item = 0;          ///< of polygons, polyhedra: place of its first one in `Polyhedra`
+  std::string offset_type = {};  ///< type of ElementStartOffset, empty if the section has none
+  Index first_item = 0;          ///< of polygons or polyhedra: place of the first one in `Polyhedra`
 };
 
-/// The polygons and polyhedra of all zones, section after section. Does not change with the order.
+/// The polygons and polyhedra of all zones, section by section. Stays the same when the mesh is reordered.
 struct Polyhedra {
-  std::vector<Offset> corner_starts{0};  ///< polygons + 1
+  std::vector<Offset> corner_starts{0};  ///< of each polygon in `corners`, and their end
   std::vector<Index> corners;            ///< of polygons: vertices by their places in the file
-  std::vector<Offset> face_starts{0};    ///< polyhedra + 1
-  /// Of polyhedra: 1 + the place of a polygon, negative where its normal points into the polyhedron.
+  std::vector<Offset> face_starts{0};    ///< of each polyhedron in `faces`, and their end
+  /// Faces of polyhedra: ±(1 + place of the polygon), negative if its normal points into the polyhedron.
   std::vector<Index> faces;
 
   [[nodiscard]] Index polygon_count() const { return static_cast<Index>(corner_starts.size() - 1); }
@@ -101,31 +101,31 @@ struct Polyhedra {
   }
 };
 
-/// Vertices or cells that a node lists by their numbers in a zone.
+/// Vertices or cells that a node of the file lists by number.
 struct PointList {
   int zone = 0;
   Association association = Association::vertices;
   std::vector<Index> members = {};  ///< positions in the mesh
-  std::string set = {};             ///< of the mesh, with the same members; empty if there is none
-  bool is_range = false;            ///< the file gave the first and the last number
+  std::string set = {};             ///< name of the mesh's set with the same members; empty if there is none
+  bool is_range = false;            ///< the file gave only the first and the last number
   std::string number_type = "I4";
-  bool is_shortened = false;  ///< members were left out
-  bool orders_data = false;   ///< something has values for the members in their order
+  bool is_shortened = false;  ///< members were left out or replaced
+  bool orders_data = false;   ///< other nodes may have values for the members, in the same order
 };
 
-/// Cells on both sides of the elements of a section.
+/// The parents of a section's elements: the cells on both sides of each.
 struct Parents {
   int section = 0;
   std::size_t columns = 2;              ///< values of an element: 2, or 4 with the numbers of faces
-  std::vector<Index> rows = {};         ///< the cell, of polygons the polygon, that each row belongs to
-  std::vector<Index> cells = {};        ///< two for each row; −1 for none
-  std::vector<std::int64_t> rest = {};  ///< the values of other columns, column by column
+  std::vector<Index> rows = {};         ///< the cell of each row; in a section of polygons, the polygon
+  std::vector<Index> cells = {};        ///< the two columns of parents, one after the other; −1: none
+  std::vector<std::int64_t> rest = {};  ///< the values of the other columns, column by column
   bool of_polygons = false;
-  bool from_one = false;  ///< cells have numbers from 1, whatever those of their section
+  bool from_one = false;  ///< parents are counted from 1, not by the element numbers of their section
   std::string number_type = "I4";
 };
 
-/// What the values of a node are.
+/// What the values of a node are, and where they are in the mesh.
 struct Field {
   enum class Role : std::uint8_t {
     zone_size,
@@ -138,17 +138,17 @@ struct Field {
     parents
   };
   Role role = Role::values;
-  int place = 0;           ///< of the zone, the section, the list or the parents
+  int place = 0;           ///< index of the zone, the section, the list or the parents
   int axis = 0;            ///< of a coordinate
-  std::string type = {};   ///< of values and coordinates
-  std::string array = {};  ///< of the mesh
+  std::string type = {};   ///< type of values and coordinates in the file
+  std::string array = {};  ///< name of the mesh's array
   Index component = 0;     ///< of the array
   Association association = Association::vertices;
-  int section = -1;  ///< of the cells that have values, in their order; −1: see `list`
-  int list = -1;     ///< of the vertices or cells that have values, in their order; −1: all
+  int section = -1;  ///< section whose cells have the values, in their order; −1: see `list`
+  int list = -1;     ///< list whose members have the values, in their order; −1: all of the zone
 };
 
-/// The nodes of a file without the values that are in the mesh, and where these go.
+/// The nodes of a file, without the values that the mesh holds, and the fields that these values belong to.
 struct Metadata final : FormatMetadata {
   std::shared_ptr<const Tree> tree;
   int cell_dimension = 3;
@@ -163,10 +163,10 @@ struct Metadata final : FormatMetadata {
   std::shared_ptr<const Polyhedra> polyhedra;  ///< null if there are none
   std::vector<Index> cell_of_polygon;          ///< −1: none
   std::vector<Index> cell_of_polyhedron;       ///< −1: left out
-  std::vector<Index> vertex_places;            ///< of the vertices of the file; empty: where they were
+  std::vector<Index> vertex_places;            ///< position of each vertex of the file; empty: unchanged
   std::vector<std::string> lost;               ///< see `contents`
 
-  /// Returns where the vertex of that place in the file is now.
+  /// Returns the present position of the vertex at `place` in the file.
   [[nodiscard]] Index vertex_at(Index place) const {
     return vertex_places.empty() ? place : vertex_places[static_cast<std::size_t>(place)];
   }
@@ -176,22 +176,22 @@ struct Metadata final : FormatMetadata {
                                                             std::span<const Index> cells) const override;
 };
 
-/// Name of the node that holds the label of the cells of a section, and of the array of a cell's zone.
+/// Name of the node with the label of a section's cells, and name of the array with the zone of each cell.
 inline constexpr std::string_view kSectionLabel = "label";
 inline constexpr std::string_view kZone = "zone";
-/// Name of the node of a section that holds values of its cells: solutions are on those of the base's
-/// dimension only.
+/// Name of a section's node with values of its cells. It is for cells of lower dimensions, as solutions hold
+/// only values of cells of the base's dimension.
 inline constexpr std::string_view kSectionValues = "CellValues";
 
-/// Returns the metadata of a mesh that came from CGNS, null if it did not.
+/// Returns the metadata of a mesh that was read from CGNS, null for other meshes.
 const Metadata* own_metadata(const Mesh& mesh);
 
-/// Returns what a file of a mesh of another format has: one zone with a section for each type and label.
-/// `add_missing` adds what belongs to sets and arrays.
+/// Makes the nodes of a file for a mesh of another format: one zone with a section for each type and label.
+/// Sets and arrays are left to `add_missing`.
 std::shared_ptr<Metadata> layout_of(const Mesh& mesh);
 
-/// Adds to a copy of the nodes of a file the arrays and sets that none of its fields has. Notes what has no
-/// place.
+/// Adds nodes to `metadata` for the arrays and sets that it has no fields or lists for. Notes those that CGNS
+/// has no place for.
 void add_missing(const Mesh& mesh, Metadata& metadata, Notes& notes);
 
 Mesh read(const FilePath& path, Notes& notes);

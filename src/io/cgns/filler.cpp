@@ -125,7 +125,7 @@ std::int64_t Filler::number_of_cell(Index c) const {
 
 namespace {
 
-/// Numbers that become the values of a node, each at its place, 0 until then.
+/// Writes numbers one by one into the values of a node; those not written are 0.
 template <class Number>
 class NodeValues {
  public:
@@ -241,7 +241,7 @@ void Filler::fill_offsets(Node& node, int s) const {
   put_whole(node, metadata_.sections[s].offset_type, {std::ssize(offsets)}, offsets);
 }
 
-// ---- what belongs to it
+// ---- values, lists and parents
 
 std::vector<Index> Filler::rows_of(const Field& field) const {
   if (field.section >= 0) return cells_of_section_[field.section];
@@ -284,7 +284,7 @@ void Filler::put_values(Node& node, const std::string& type, const std::vector<O
 
 namespace {
 
-/// Returns whether a type of CGNS has each of the values.
+/// Returns whether a type of CGNS represents each of the values exactly; always true for R8.
 bool can_hold(std::string_view type, const Values& values) {
   if (type == "R4") return are_exact<float>(values);
   if (type == "B1") return are_exact<std::uint8_t>(values);
@@ -295,8 +295,8 @@ bool can_hold(std::string_view type, const Values& values) {
   return type == "R8";
 }
 
-/// Returns the type in which values are written that had a type in the file: this one if it has each of them,
-/// else a wider one.
+/// Returns the type in which values are written: their type in the file if it can hold all of them, else a
+/// wider one.
 std::string written_type(const std::string& of_file, const Values& values) {
   if (can_hold(of_file, values)) return of_file;
   return !of_file.starts_with('R') && can_hold("I8", values) ? "I8" : "R8";

@@ -10,20 +10,20 @@
 
 namespace meshorder::cgns {
 
-/// Gives the nodes of a file their values, for the order that the mesh has now.
+/// Fills the nodes of a file with their values, in the present order of the mesh.
 class Filler {
  public:
   Filler(const Mesh& mesh, const Metadata& metadata);
-  /// Whether the vertices of each zone follow those of the one before.
+  /// Returns whether the vertices are in the order of their zones.
   [[nodiscard]] bool has_vertices_in_order() const;
   void fill(Node& node);
-  /// Returns whether a node has anything to write: sections and lists may have lost all their cells.
+  /// Returns whether a node has nothing to write: an empty section or list, or an array that is gone.
   [[nodiscard]] bool is_gone(const Field& field) const;
 
  private:
   void place_vertices();
   void place_cells();
-  /// Returns the number of elements that a section has in the file: polygons between cells are no cells.
+  /// Returns the number of elements of a section in the file, including polygons that are not cells.
   [[nodiscard]] Index element_count(int s) const;
   [[nodiscard]] Index vertex_count(int zone) const;
   [[nodiscard]] Index vertex_at(int zone, Index number) const;
@@ -33,7 +33,7 @@ class Filler {
   template <class Number>
   static void put(Node& node, std::string type, std::vector<std::int64_t> dimensions,
                   const std::vector<Number>& numbers);
-  /// Puts whole numbers of 32 bits where the type has so many and all fit, else of 64.
+  /// Puts whole numbers: I8 if `type` has 64 bits or a number does not fit 32, else I4.
   static void put_whole(Node& node, const std::string& type, std::vector<std::int64_t> dimensions,
                         const std::vector<std::int64_t>& numbers);
 
@@ -47,7 +47,7 @@ class Filler {
   [[nodiscard]] std::vector<std::int64_t> offsets_of(int s) const;
   void fill_offsets(Node& node, int s) const;
 
-  /// Returns the vertices or cells that have values in a node.
+  /// Returns the vertices or cells that have values in a node, in the order of the values.
   [[nodiscard]] std::vector<Index> rows_of(const Field& field) const;
   template <class Number, class Old>
   static void put_values(Node& node, const std::string& type, const std::vector<Old>& values,
@@ -61,11 +61,11 @@ class Filler {
   const Metadata& metadata_;
   PolyhedraOrder polyhedra_;
   std::vector<std::vector<Index>> vertices_of_zone_;
-  std::vector<Index> number_of_vertex_;  ///< in its zone; empty for one zone
+  std::vector<Index> number_of_vertex_;  ///< in its zone, from 1; empty for one zone
   std::vector<std::vector<Index>> cells_of_section_;
   std::vector<Index> rank_of_cell_;
   std::vector<std::int64_t> first_numbers_;
-  std::vector<std::int64_t> counts_;  ///< of cells with values at their centres, by zone
+  std::vector<std::int64_t> counts_;  ///< number of cells of the base's dimension, by zone
   bool is_whole_ = true;
 };
 

@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-// Checks a file of HDF5 before libcgns reads it, which trusts the lengths of names and the sizes of data.
+// Checks a file of HDF5 before libcgns reads it, as libcgns trusts its lengths of names and sizes of data.
 
 namespace meshorder::cgns {
 namespace {
@@ -23,7 +23,7 @@ constexpr int kMostLevels = 64;
 constexpr std::size_t kMostLetters = 32;
 constexpr std::string_view kDataSet = " data";
 
-/// An attribute of every node and the most bytes that libcgns has room for.
+/// An attribute that every node has, and the most bytes that libcgns has room for.
 struct NodeAttribute {
   const char* name;
   std::size_t most;
@@ -113,7 +113,7 @@ class Hdf5Check {
     }
   }
 
-  /// Throws unless the type that a node names has the size of the values that it has.
+  /// Throws unless the type given by the attribute of a node has the size of its stored values.
   void check_type(hid_t group, const std::string& path, std::size_t alternative) const {
     // in the order of Values
     constexpr std::array<std::size_t, 10> kSizes{8, 4, 1, 1, 2, 2, 4, 4, 8, 8};

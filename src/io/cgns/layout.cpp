@@ -17,7 +17,7 @@
 #include <set>
 #include <utility>
 
-// Makes the nodes of a file: for a mesh of another format, and for arrays and sets that a file had not.
+// Makes the nodes of a file: all for a mesh of another format, else those for new arrays and sets.
 
 namespace meshorder::cgns {
 namespace {
@@ -29,7 +29,7 @@ int bind(Metadata& metadata, Field field) {
   return static_cast<int>(metadata.fields.size()) - 1;
 }
 
-/// Gives children of one node names that CGNS allows: up to 32 characters, no slash, each once.
+/// Chooses valid names for the children of one node: up to 32 characters, no slash, all different.
 class NodeNames {
  public:
   explicit NodeNames(const Node& parent) {
@@ -59,7 +59,7 @@ class NodeNames {
 
 // ---- a file for a mesh of another format
 
-/// Returns the names of the sets that have all cells of a run, by its first cell and the number of its cells.
+/// Returns, for the first cell of each run, the name of the smallest set that has all cells of the run.
 std::map<Index, std::string> names_of_runs(const Mesh& mesh, const std::vector<Index>& starts) {
   std::map<Index, std::string> names;
   std::map<Index, std::size_t> sizes;
@@ -112,7 +112,7 @@ class Layout {
 
  private:
   static Node version() {
-    constexpr float kVersion = 3.3F;  // what is written has been the same since
+    constexpr float kVersion = 3.3F;  // later versions have the same form of the nodes written here
     Node node{.name = "CGNSLibraryVersion", .label = "CGNSLibraryVersion_t", .type = "R4", .dimensions = {1}};
     node.bytes.resize(sizeof(kVersion));
     std::memcpy(node.bytes.data(), &kVersion, sizeof(kVersion));
@@ -129,7 +129,7 @@ class Layout {
     return node;
   }
 
-  /// Makes a section of each run of cells of one label, or set, and type.
+  /// Makes a section of each run of cells that have the same type and the same label or sets.
   void add_sections(Node& zone) {
     const CellDivision division = divide_cells(mesh_, {.sets = true});
     const Labels labels = labels_of(mesh_, Association::cells);
@@ -191,7 +191,7 @@ class Layout {
   std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
 };
 
-// ---- arrays and sets that a file had not
+// ---- arrays and sets that the file did not have
 
 std::string type_of_values(const Values& values) {
   return std::visit(
@@ -207,7 +207,7 @@ std::string type_of_values(const Values& values) {
       values);
 }
 
-/// Returns what follows the name of an array in the name of one of its components.
+/// Returns the suffix that turns the name of an array into the name of one of its components.
 std::string suffix_of(const DataArray& array, Index component) {
   constexpr std::array<std::string_view, 6> kSymmetric{"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
   const auto k = static_cast<std::size_t>(component);
@@ -219,7 +219,7 @@ std::string suffix_of(const DataArray& array, Index component) {
   return fmt::format("_{}", component + 1);
 }
 
-/// Returns the name of the location of elements of a dimension.
+/// Returns the GridLocation of elements of this dimension.
 std::string_view location_name(int dimension, int cell_dimension) {
   if (dimension == cell_dimension) return "CellCenter";
   return dimension == 2 ? "FaceCenter" : "EdgeCenter";
@@ -275,7 +275,7 @@ class Addition {
     return metadata_.zone_of_vertex.empty() ? 0 : metadata_.zone_of_vertex[position];
   }
 
-  /// Returns the names of the children of a zone, or of a node in it or in one of its sections.
+  /// Returns the names of the children of `parent`: a zone, or a node in it or in one of its sections.
   NodeNames& names_below(const Node& parent, int zone, int section = -1) {
     const std::string path = &parent == zones_[zone] ? fmt::format("{}", zone)
                                                      : fmt::format("{}/{}/{}", zone, section, parent.name);
@@ -284,7 +284,7 @@ class Addition {
 
   [[nodiscard]] int dimension_of(Index cell) const { return dimension(mesh_.cells.shapes[cell]); }
 
-  /// Returns the vertices or cells that have values, by zone and the dimension of cells (0 for vertices).
+  /// Divides the members by zone and by the dimension of the cells (0 for vertices).
   [[nodiscard]] std::map<std::pair<int, int>, std::vector<Index>> parts_of(
       Association association, const std::vector<Index>& members) const {
     std::map<std::pair<int, int>, std::vector<Index>> parts;
@@ -295,7 +295,7 @@ class Addition {
     return parts;
   }
 
-  /// Returns the number of the vertices, or of the cells of the base's dimension, of a zone.
+  /// Returns the number of vertices of a zone, or of its cells of the base's dimension.
   [[nodiscard]] Index full_count(Association association, int zone) {
     if (full_counts_.empty()) {
       for (const Association of : {Association::vertices, Association::cells}) {
@@ -335,7 +335,7 @@ class Addition {
     }
   }
 
-  /// Adds a node for each component of an array; `rows` says for which vertices or cells.
+  /// Adds a node for each component of an array. `rows` gives the vertices or cells that have the values.
   void add_components(const DataArray& array, Node& parent, const Field& rows) {
     NodeNames& names = names_below(parent, rows.place, rows.section);
     for (Index k = 0; k < array.components; ++k) {
@@ -350,7 +350,7 @@ class Addition {
     }
   }
 
-  /// Adds values of cells of lower dimensions to their sections, where all cells of a section have one.
+  /// Adds values of cells of lower dimensions to the sections of which all cells have a value.
   void add_to_sections(const DataArray& array, const std::vector<Index>& members) {
     std::map<int, Index> counts;
     for (const Index member : members) ++counts[metadata_.section_of_cell[member]];
@@ -371,7 +371,7 @@ class Addition {
     }
   }
 
-  /// Returns the number of cells that a section has now.
+  /// Returns the present number of cells of a section.
   [[nodiscard]] Index section_count(int s) {
     if (section_counts_.empty()) {
       section_counts_.resize(metadata_.sections.size());
@@ -392,7 +392,7 @@ class Addition {
     return zones_[zone]->children.back();
   }
 
-  /// Returns the solution on all vertices or cells that this object has added to a zone.
+  /// Returns the solution on all vertices or cells of a zone; adds it at the first call.
   Node& full_solution(int zone, Association association) {
     const bool on_vertices = association == Association::vertices;
     std::string& name = full_solutions_[{zone, association}];
@@ -415,7 +415,7 @@ class Addition {
     return node;
   }
 
-  /// Returns a solution on some vertices or cells of a zone.
+  /// Returns a solution on exactly these vertices or cells of a zone; adds it if there is none.
   Node& part_solution(int zone, Association association, const std::vector<Index>& members) {
     const std::string_view location = association == Association::vertices ? "Vertex" : "CellCenter";
     for (const std::string& name : part_solutions_[zone]) {
@@ -463,7 +463,7 @@ class Addition {
     }
   }
 
-  /// Adds a family of that name, by which programs know the parts of a boundary, unless there is one.
+  /// Adds a family of that name unless there is one; programs identify the parts of a boundary by families.
   void add_family(const std::string& name) {
     if (family_names_.insert(name).second) families_.push_back({.name = name, .label = "Family_t"});
   }
@@ -480,7 +480,7 @@ class Addition {
   std::vector<Node*> zones_;
   std::vector<Node> families_;
   std::set<std::string> family_names_;
-  std::map<std::string, NodeNames> names_;  // of the children of a node, by its path
+  std::map<std::string, NodeNames> names_;  // names of the children of a node, by the node's path
   std::map<std::pair<Association, int>, Index> full_counts_;
   std::vector<Index> section_counts_;
   std::map<std::pair<int, Association>, std::string> full_solutions_;

@@ -17,8 +17,8 @@ class CornersOfPolyhedra {
   CornersOfPolyhedra(const Metadata& metadata, Index vertex_count)
       : metadata_(metadata), polyhedron_with_(static_cast<std::size_t>(vertex_count), -1) {}
 
-  /// Returns whether a cell has the corners of the faces of a polyhedron, each once, and no others. Compares
-  /// each polyhedron once.
+  /// Returns whether the vertices of a cell are the corners of a polyhedron's faces, each once. To be called
+  /// only once for each polyhedron.
   bool are_those_of(std::span<const Index> cell, Index polyhedron) {
     std::size_t corners = 0;
     for (const Index face : metadata_.polyhedra->faces_of(polyhedron)) {
@@ -36,7 +36,7 @@ class CornersOfPolyhedra {
 
  private:
   const Metadata& metadata_;
-  std::vector<Index> polyhedron_with_;  ///< the last polyhedron that had each vertex
+  std::vector<Index> polyhedron_with_;  ///< for each vertex, the last polyhedron that has it as a corner
 };
 
 }  // namespace

@@ -16,28 +16,28 @@ bool polyhedra_fit(const Mesh& mesh, const Metadata& metadata);
 
 /// The polygons and polyhedra of a file in their new order.
 ///
-/// Polygons that are cells have the order of these. The others, between two cells, stay where they are in
-/// their section if no polyhedron moved, else they are sorted by the lower, then by the higher of the two.
-/// Cells keep the places of cells, and the others those of others. Polygons without a cell on either side
-/// are left out.
+/// Polygons that are cells have the order of their cells. The others lie between two cells: they keep their
+/// order in the section if the polyhedra did, else they are sorted by the lower, then by the higher cell.
+/// Places of cells in a section still hold cells, the other places the others. Polygons are left out if they
+/// are not cells and have no cell on either side.
 class PolyhedraOrder {
  public:
-  /// `metadata` must outlive this object, and `polyhedra_fit`. O(polygons · log polygons).
+  /// `metadata` must outlive this object and fit its mesh, see `polyhedra_fit`. O(polygons · log polygons).
   explicit PolyhedraOrder(const Metadata& metadata);
 
-  /// Returns the polygons of a section.
+  /// Returns the polygons of a section in their new order.
   [[nodiscard]] const std::vector<Index>& polygons_of(int section) const { return polygons_[section]; }
-  /// Returns the place of a polygon in its section, −1 for one that is left out.
+  /// Returns the new place of a polygon in its section, −1 if it is left out.
   [[nodiscard]] Index rank_of(Index polygon) const { return ranks_[polygon]; }
 
-  /// Returns ElementConnectivity of a section of polygons. `number_of`: the number of a vertex.
+  /// Returns ElementConnectivity of a section of polygons. `number_of` returns the number of a vertex.
   [[nodiscard]] std::vector<std::int64_t> corner_numbers(
       int section, const std::function<std::int64_t(Index)>& number_of) const;
-  /// Returns ElementConnectivity of a section of polyhedra, which are these cells. `first_numbers`: of the
-  /// elements of each section.
+  /// Returns ElementConnectivity of a section of polyhedra. `cells`: the cells of the section;
+  /// `first_numbers`: the number of the first element of each section.
   [[nodiscard]] std::vector<std::int64_t> face_numbers(int section, const std::vector<Index>& cells,
                                                        const std::vector<std::int64_t>& first_numbers) const;
-  /// Returns ElementStartOffset of a section of polygons, or of polyhedra, which are `cells`.
+  /// Returns ElementStartOffset of a section of polygons or polyhedra. `cells`: the polyhedra's cells.
   [[nodiscard]] std::vector<std::int64_t> offsets(int section, const std::vector<Index>& cells) const;
 
  private:
@@ -47,7 +47,7 @@ class PolyhedraOrder {
   const Metadata& metadata_;
   std::vector<std::vector<Index>> polygons_;  ///< by section
   std::vector<Index> ranks_;                  ///< by polygon
-  std::vector<Index> polyhedron_of_cell_;     ///< −1: none
+  std::vector<Index> polyhedron_of_cell_;     ///< −1: the cell is not a polyhedron
 };
 
 }  // namespace meshorder::cgns

@@ -9,16 +9,16 @@
 #include <algorithm>
 #include <type_traits>
 
-// Reads sections of polygons (NGON_n) and polyhedra (NFACE_n). From version 3.4 of CGNS, ElementStartOffset
-// says where the members of an element begin; in older files the number of members precedes them.
+// Reads sections of polygons (NGON_n) and polyhedra (NFACE_n). Since version 3.4 of CGNS, ElementStartOffset
+// gives the first member of each element; in older files, the number of members precedes them.
 
 namespace meshorder::cgns {
 namespace {
 
 constexpr std::uint8_t kBothSides = 2;
 
-/// Returns the corners of faces, each once, in the order in which the faces have them. `corners` is memory
-/// to use again.
+/// Returns the corners of faces, each once, in the order of their first appearance. The result is in
+/// `corners`, whose memory is reused.
 std::span<const Index> corners_of(std::span<const PolyhedronFace> faces, std::vector<Index>& corners) {
   corners.clear();
   for (const PolyhedronFace& face : faces) {
@@ -37,7 +37,7 @@ bool is_list_of_elements(const Node& node) {
   return node.name == "ElementList" || node.name == "ElementRange" || node.name == "CellListDonor";
 }
 
-/// Collects the elements that the nodes of a zone list.
+/// Collects the elements that nodes of the zones list by number.
 class ListedElements {
  public:
   explicit ListedElements(const Reading& reading) : reading_(reading), ranges_(reading.zones.size()) {}
@@ -67,7 +67,7 @@ class ListedElements {
     }
   }
 
-  /// Returns the zone of that name, or of that path; `otherwise` if there is none.
+  /// Returns the zone of that name or path; `otherwise` if there is none.
   [[nodiscard]] std::size_t zone_named(std::string_view name, std::size_t otherwise) const {
     name.remove_prefix(name.rfind('/') + 1);
     for (std::size_t z = 0; z < reading_.zones.size(); ++z) {
@@ -114,7 +114,7 @@ void PolyhedraReader::read(const NumberRanges& listed) {
   }
 }
 
-/// Throws for polygons between cells that the file does not describe.
+/// Throws if the zone has polygons with ParentElements, but neither polyhedra nor other elements.
 void PolyhedraReader::require_cells() const {
   if (reading_.metadata->cell_dimension < 3) return;
   for (const FoundSection& found : sections_) {
@@ -230,7 +230,7 @@ void PolyhedraReader::add_polyhedron(const FoundSection& found, std::span<const 
   polyhedra.face_starts.push_back(static_cast<Offset>(polyhedra.faces.size()));
 }
 
-/// Returns the place of the polygon of an element number, −1 if there is none.
+/// Returns the polygon with that element number, −1 if there is none.
 Index PolyhedraReader::polygon_of(std::uint64_t number) const {
   for (const FoundSection& found : sections_) {
     const auto first = static_cast<std::uint64_t>(found.section.first);
@@ -318,7 +318,7 @@ void PolyhedraReader::append_polyhedra(const FoundSection& found) {
   turn_by_volumes(first, found.path, contradictions, vote.sign_of_volumes());
 }
 
-/// Turns cells from `first` on: where signs of faces contradict, those of volume < 0; else all if `sign` < 0.
+/// Turns cells from `first` on inside out: those of volume < 0 if signs contradict, else all if `sign` < 0.
 void PolyhedraReader::turn_by_volumes(Index first, const std::string& path, Index contradictions, int sign) {
   Mesh& mesh = reading_.mesh;
   if (contradictions > 0) {

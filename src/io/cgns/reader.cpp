@@ -21,7 +21,7 @@ void Reading::fail(const std::string& place, const std::string& what, const std:
 
 int Reading::bind(Node& node, Field field) {
   node.field = static_cast<int>(metadata->fields.size());
-  std::string().swap(node.bytes);  // an assignment would keep the memory
+  std::string().swap(node.bytes);  // releases the memory, which an assignment would keep
   metadata->fields.push_back(std::move(field));
   return node.field;
 }
@@ -300,7 +300,7 @@ class MeshReader {
         numbers_of(connectivity));
   }
 
-  /// Appends a cell from numbers in the order of the file.
+  /// Appends a cell, given by its vertex numbers in the order of the file.
   template <class Number>
   void add_cell(const ZonePlaces& zone, const ElementType& type, const Number* numbers, std::size_t entry,
                 const std::string& path) {
@@ -375,7 +375,7 @@ class MeshReader {
   std::vector<Index> cell_;
 };
 
-/// Makes blocks of the elements of boundaries that are given as ranges, so that they stay ranges.
+/// Makes blocks of boundary elements that the file lists as ranges, so that these stay ranges.
 void keep_ranges(Reading& reading) {
   Mesh& mesh = reading.mesh;
   std::vector<Index> starts = mesh.cell_blocks;
@@ -391,7 +391,7 @@ void keep_ranges(Reading& reading) {
   if (starts.size() > 1) mesh.cell_blocks = std::move(starts);
 }
 
-/// Returns the version that a file gives, 0 for none that is a number of 32 bits.
+/// Returns the version number in a node, 0 if its type is not R4.
 float version_of(const Node& node) {
   float version = 0;
   if (node.type == "R4" && node.bytes.size() >= sizeof version) {
@@ -400,8 +400,8 @@ float version_of(const Node& node) {
   return version;
 }
 
-/// Fails for elements of types whose numbers version 3.0 alone had: those after PYRA_5, 12, and before
-/// NGON_n, 22.
+/// Fails for element types whose numbers have another meaning in version 3.0: those between PYRA_5 (12) and
+/// NGON_n (22).
 void refuse_types_of_version_30(const Reading& reading, const Node& node, const std::string& path) {
   std::int32_t type = 0;
   if (node.label == "Elements_t" && node.type == "I4" && node.bytes.size() >= sizeof type) {

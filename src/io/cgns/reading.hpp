@@ -20,14 +20,14 @@ struct ZonePlaces {
   Index first_vertex = 0;
   Index vertices = 0;
   std::vector<int> sections = {};       ///< ascending by their numbers
-  std::vector<Index> first_cells = {};  ///< of these sections
-  std::vector<Index> cell_counts = {};  ///< likewise: of cells in the mesh
+  std::vector<Index> first_cells = {};  ///< first cell of each of these sections
+  std::vector<Index> cell_counts = {};  ///< number of cells in the mesh of each of these sections
   std::vector<Index> centred_cells =
-      {};  ///< those of the base's dimension, which have values at their centres
-  std::map<std::string, int> steps = {};  ///< of solutions and coordinates, from 1, where there are several
+      {};  ///< cells of the base's dimension, which have values at their centres
+  std::map<std::string, int> steps = {};  ///< time step of solutions and grids, from 1, if there are several
 };
 
-/// Values of some vertices or cells, of one node.
+/// The values of one node, which belong to the vertices or cells `rows`.
 struct Piece {
   std::string solution;
   std::string name;
@@ -38,12 +38,12 @@ struct Piece {
   int field = 0;
 };
 
-/// A file that is being read, and what has been found so far.
+/// A file that is being read, and the results so far.
 struct Reading {
   Reading(const FilePath& path, Notes& warnings) : file(path.string()), notes(warnings) {}
 
   [[noreturn]] void fail(const std::string& place, const std::string& what, const std::string& remedy) const;
-  /// Gives a node a field instead of its bytes, and returns the place of the field.
+  /// Replaces the bytes of a node by a field, and returns the index of the field.
   int bind(Node& node, Field field);
 
   std::string file;
@@ -64,30 +64,30 @@ struct FoundSection {
   std::int64_t last = 0;
 };
 
-/// Returns the values of a node of whole numbers; throws InputError for others.
+/// Returns the values of a node as whole numbers; throws InputError if they are of another type.
 std::vector<std::int64_t> whole_numbers(const Reading& reading, const Node& node, const std::string& path);
 
-/// Returns the numbers of a node in their own type; of text there are none.
+/// Returns the numbers of a node in their own type; an empty vector of strings if it holds no numbers.
 Values numbers_of(const Node& node);
 
-/// Returns what values and lists of a node belong to; cells also for their faces and edges.
+/// Returns whether values and lists of a node belong to vertices or cells; faces and edges count as cells.
 Association location_of(const Node& node, Association inherited);
 
-/// First and last numbers of elements.
+/// Ranges of element numbers: first and last.
 using NumberRanges = std::vector<std::pair<std::int64_t, std::int64_t>>;
 
-/// Returns the elements of each zone that conditions, solutions and connectivities list by their numbers.
+/// Returns, for each zone, the elements that conditions, solutions and connectivities list by number.
 std::vector<NumberRanges> listed_elements(const Reading& reading);
 
-/// Reads the polygons and polyhedra of a zone. Throws InputError for what is damaged.
+/// Reads the polygons and polyhedra of a zone. Throws InputError if they are damaged.
 class PolyhedraReader {
  public:
   /// `sections`: those of the zone, ascending by their numbers.
   PolyhedraReader(Reading& reading, const ZonePlaces& zone, std::vector<FoundSection>& sections)
       : reading_(reading), zone_(zone), sections_(sections) {}
 
-  /// Reads all sections of polygons and polyhedra into `reading.polyhedra`. `listed`: elements that are cells
-  /// in any case.
+  /// Reads all sections of polygons and polyhedra into `reading.polyhedra`. `listed`: elements that become
+  /// cells even if they lie between two polyhedra.
   void read(const NumberRanges& listed);
   /// Appends the cells of a section to the mesh.
   void append_cells(const FoundSection& found);
@@ -111,13 +111,13 @@ class PolyhedraReader {
   std::vector<FoundSection>& sections_;
   Index first_polygon_ = 0;
   Index first_polyhedron_ = 0;
-  std::vector<std::uint8_t> uses_ = {};  ///< of the zone's polygons by its polyhedra; 0 for those listed
+  std::vector<std::uint8_t> uses_ = {};  ///< polyhedra that have each polygon as a face; 0 if it is listed
 };
 
-/// Reads solutions, boundary conditions and everything else in the zones that names vertices or cells.
+/// Reads all nodes of the zones that refer to vertices or cells: solutions, boundary conditions and others.
 void read_attachments(Reading& reading);
 
-/// Makes arrays of the pieces.
+/// Makes the arrays of the mesh from the pieces; pieces of one name become one array if they can.
 void add_arrays(Reading& reading);
 
 }  // namespace meshorder::cgns

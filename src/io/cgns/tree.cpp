@@ -32,18 +32,18 @@ namespace fs = std::filesystem;
 
 constexpr int kDeepest = 64;
 
-/// Room for a text of a node: ADF gives more bytes than CGIO promises where a file is damaged.
+/// Buffer for a text of a node. In a damaged file, ADF may give more bytes than CGIO promises.
 using Text = std::array<char, 1024>;
 
-/// Returns a text as CGIO takes it, which reads 33 bytes of names and labels and 3 of types, however long
-/// these are.
+/// Returns a text padded with zeros for CGIO, which always reads 33 bytes of a name or label and 3 of a
+/// type.
 Text padded(std::string_view text) {
   Text result{};
   std::copy_n(text.begin(), std::min(text.size(), result.size() - 1), result.begin());
   return result;
 }
 
-/// Returns a text that CGIO gives, without the blanks that fill up its place in a file.
+/// Returns a text from CGIO without the blanks that fill it up in the file.
 std::string without_filling(const Text& text) {
   const std::string_view whole(text.data());
   return std::string(whole.substr(0, whole.find_last_not_of(' ') + 1));
@@ -73,7 +73,7 @@ class CgioFile {
     return id;
   }
 
-  /// Throws InputError with the library's words if a call failed.
+  /// Throws InputError with the library's message if a call failed.
   void check(int status, const std::string& place) const {
     if (status == CGIO_ERR_NONE) return;
     Text message{};
@@ -180,7 +180,7 @@ class TreeReader {
 
   const CgioFile& file_;
   std::uint64_t bytes_;
-  bool compressed_;  ///< values may take fewer bytes in the file; how many there are has been checked
+  bool compressed_;  ///< values may be compressed, so that the file's size does not bound them
   std::uint64_t nodes_left_;
 };
 
@@ -211,7 +211,7 @@ class TreeWriter {
     }
     double id = 0;
     const auto rank = static_cast<int>(node.dimensions.size());
-    // values of no length have no place in ADF
+    // ADF cannot hold values of length 0
     const bool has_values = rank > 0 && !node.bytes.empty();
     const Text name = padded(node.name);
     const Text label = padded(node.label);
@@ -262,7 +262,7 @@ void write_to_disk(const Tree& tree, const fs::path& path, const std::string& na
   const double root = file.root();
   for (const Node& node : tree.root.children) writer.write(node, root, "");
   file.close();
-  session.require_no_fault(name);  // the library does not look at all of its results
+  session.require_no_fault(name);  // the library does not check all results of its own calls
 }
 
 }  // namespace

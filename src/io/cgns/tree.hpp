@@ -25,7 +25,7 @@ struct Node {
   std::vector<std::int64_t> dimensions = {};  ///< the first one runs fastest
   std::string bytes = {};                     ///< values in the machine's byte order
   std::vector<Node> children = {};
-  int field = -1;  ///< place in `Metadata::fields` of what the values are; −1: they are `bytes`
+  int field = -1;  ///< index in `Metadata::fields` of the field with the values; −1: they are in `bytes`
 
   /// Returns the number of values.
   [[nodiscard]] std::uint64_t size() const;
@@ -47,29 +47,29 @@ Node integer_node(std::string name, std::string label, const std::vector<std::in
 /// Returns the bytes of one value of a type, 0 for an unknown type.
 std::size_t size_of_type(std::string_view type);
 
-/// In which kind of file the nodes are.
+/// The kind of file that stores the nodes.
 enum class Storage : std::uint8_t { hdf5, adf };
 
-/// The nodes of a file: the root is without a name.
+/// The nodes of a file. The root has no name.
 struct Tree {
   Node root;
   Storage storage = Storage::hdf5;
 };
 
-/// Reads all nodes of a file. Throws InputError for a damaged file, for links to other files, and for values
-/// of a type that is not known.
+/// Reads all nodes of a file. Throws InputError for a damaged file, for links to other nodes, and for values
+/// of an unknown type.
 Tree read_tree(const FilePath& path);
 
-/// Writes a file, which appears complete or not at all. `fill(node, copy)` gives a copy of a node with a
-/// `field` its type, dimensions and bytes.
+/// Writes a file, which appears complete or not at all. `fill(node)` sets the type, dimensions and bytes of a
+/// node that has a `field`; it may change its name and label. It gets a copy without children.
 void write_tree(const Tree& tree, const FilePath& path, const std::function<void(Node&)>& fill);
 
-/// Throws InputError unless libcgns can read a file of HDF5 safely: groups with the attributes of nodes, of
-/// the lengths that it expects, and data that are there. `path` is on disk, `name` is for messages.
+/// Throws InputError unless libcgns can read a file of HDF5 safely: each node is a group whose attributes
+/// have the expected lengths, and its data are in the file. `path` is on disk, `name` is for messages.
 void check_hdf5(const std::filesystem::path& path, const std::string& name);
 
-/// Throws InputError unless libcgns can read a file of ADF safely: nodes, their lists of children and values
-/// are where the file says that they are, each node once. O(nodes · log nodes).
+/// Throws InputError unless libcgns can read a file of ADF safely: all pointers lead to nodes, lists of
+/// children and values within the file, and each node has one parent. O(nodes · log nodes).
 void check_adf(const InputFile& file, const std::string& name);
 
 }  // namespace meshorder::cgns

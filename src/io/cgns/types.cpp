@@ -8,7 +8,7 @@
 namespace meshorder::cgns {
 namespace {
 
-// where two types share shape and count, the first one is written
+// if two types have the same shape and number of nodes, the first one is written
 constexpr std::array kTypes{
     ElementType{2, "NODE", Shape::vertex, 1},
     ElementType{3, "BAR_2", Shape::line, 2},
@@ -64,9 +64,9 @@ constexpr std::array kTypes{
     ElementType{56, "HEXA_125", Shape::hexahedron, 125},
 };
 
-// the edges between the two ends come before those of the upper end
+// file: nodes on the edges between the two triangles precede those on the edges of the upper triangle
 constexpr std::array kWedge{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17};
-// and the faces below, in front, right, behind, left and above before the centre
+// likewise; then the nodes on the faces bottom, front, right, back, left and top, then the centre
 constexpr std::array kHexahedron{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
                                  18, 19, 12, 13, 14, 15, 24, 22, 21, 23, 20, 25, 26};
 

@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-// Chooses the nodes of a file, and writes these with the values that are in the mesh.
+// Chooses the nodes of a file and writes them with the values of the mesh.
 
 namespace meshorder::cgns {
 namespace {
@@ -23,7 +23,7 @@ void move_positions(std::vector<Index>& positions, std::span<const Index> places
   }
 }
 
-/// Returns the values, one for each vertex or cell, at their new places; those of place −1 are left out.
+/// Moves the values, one for each vertex or cell, to their new places; drops those with place −1.
 std::vector<Index> moved_values(const std::vector<Index>& values, std::span<const Index> places) {
   std::vector<Index> result(values.size());
   Index kept = 0;
@@ -41,7 +41,7 @@ void move_parents(Parents& parents, std::span<const Index> cells) {
   move_positions(parents.cells, cells);
 }
 
-/// Returns the members without repeated ones.
+/// Returns the members in their order, each once.
 std::vector<Index> unique_members(const std::vector<Index>& members) {
   std::vector<Index> sorted = members;
   std::sort(sorted.begin(), sorted.end());
@@ -54,7 +54,7 @@ std::vector<Index> unique_members(const std::vector<Index>& members) {
   return result;
 }
 
-/// Returns whether a mesh still has the vertices, cells and types of cells that its metadata are of.
+/// Returns whether the vertices, the cells and their types still agree with the metadata.
 bool still_fits(const Mesh& mesh, const Metadata& metadata) {
   if (index_size(metadata.section_of_cell) != mesh.cell_count()) return false;
   if (!metadata.zone_of_vertex.empty() && index_size(metadata.zone_of_vertex) != mesh.vertex_count()) {
@@ -73,8 +73,8 @@ bool still_fits(const Mesh& mesh, const Metadata& metadata) {
   return polyhedra_fit(mesh, metadata);
 }
 
-/// Takes over the members of sets that are not those of their lists any more, and marks lists whose members
-/// are others now.
+/// Updates the lists whose sets have changed in the mesh, and marks them as shortened. Clears the lists whose
+/// sets are gone.
 void take_sets(const Mesh& mesh, Metadata& metadata) {
   for (PointList& list : metadata.lists) {
     if (list.set.empty()) continue;
@@ -86,7 +86,7 @@ void take_sets(const Mesh& mesh, Metadata& metadata) {
       continue;
     }
     if (unique_members(list.members) == set->members) continue;
-    // only those of its zone: conditions belong to one
+    // only members of the list's zone, as a condition belongs to one zone
     list.members.clear();
     for (const Index member : set->members) {
       const Index zone = list.association == Association::cells
@@ -99,8 +99,8 @@ void take_sets(const Mesh& mesh, Metadata& metadata) {
   }
 }
 
-/// Removes the nodes that have nothing to write any more: sections without cells, conditions and solutions
-/// without members, arrays that the mesh has not. Notes data that belonged to a list by its order.
+/// Removes nodes that have nothing left to write: sections without cells, conditions and solutions without
+/// members, and arrays that are gone. Also removes data in the order of a list that changed, and notes these.
 class Pruner {
  public:
   Pruner(const Metadata& metadata, const Filler& filler, Notes& notes)
@@ -162,7 +162,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
   return type->number <= kLastOfSecondOrder || own != nullptr;
 }
 
-/// Cells of lower dimensions, with which sets name boundaries, follow the others.
+/// Returns the places of cells in the file: cells of lower dimensions, the boundaries, follow the others.
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
   return places_by_division(divide_cells(mesh, {.sets = true}), blocks);
 }

@@ -49,9 +49,9 @@ void plan_blocks(Writing& writing, bool is_own) {
     if (plan.id >= 0 || plan.record != nullptr) continue;
     plan.id = ids.empty() ? 1 : std::max<std::int64_t>(1, *ids.rbegin() + 1);
     ids.insert(plan.id);
-    if (division.by_sets) plan.cells.label = plan.id;  // no labels are lost
+    if (division.by_sets) plan.cells.label = plan.id;  // a division by sets has no labels to keep
   }
-  // blocks of the file without elements keep their places before the next one that has some
+  // blocks of the file without elements stay before the next block that has elements
   std::size_t next = 0;
   for (const BlockRecord& record : writing.metadata.blocks) {
     const bool is_there = std::any_of(found.begin(), found.end(),
@@ -148,7 +148,7 @@ std::vector<std::int32_t> connectivity(const Mesh& mesh, const Block& block, Ind
   return result;
 }
 
-/// Returns the values of an attribute for the elements of a block, 0 where it has none.
+/// Returns the values of an attribute for the elements of a block, 0 for elements without a value.
 std::vector<double> values_in(const Mesh& mesh, const Block& block, const DataArray& array) {
   std::vector<double> result(static_cast<std::size_t>(block.count), 0);
   const std::vector<Index> places = row_table(array, mesh.cell_count());

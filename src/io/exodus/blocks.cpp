@@ -6,14 +6,14 @@
 #include <cstdint>
 #include <utility>
 
-// The blocks that the cells of a mesh are divided into.
+// Divides the cells of a mesh into blocks.
 
 namespace meshorder::exodus {
 
 CellDivision divide(const Mesh& mesh) {
   const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
   if (own == nullptr) return divide_cells(mesh, {.sets = true});
-  // a file with ids of 64 bits is of a kind that holds them
+  // if the file already has 64-bit ids, its kind of netCDF can hold them
   const bool has_wide_labels =
       std::any_of(own->blocks.begin(), own->blocks.end(),
                   [](const BlockRecord& block) { return !std::in_range<std::int32_t>(block.label); });

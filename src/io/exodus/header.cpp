@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// The header of netCDF-3 files, as "The NetCDF Classic Format Specification" has it. netCDF's library reads
-// zeros where a file ends too early; this finds such files.
+// Checks the header of netCDF-3 files, see "The NetCDF Classic Format Specification". Finds files that end
+// too early: netCDF's library would read zeros.
 #include "io/exodus/netcdf.hpp"
 
 #include <fmt/format.h>
@@ -13,11 +13,11 @@
 namespace meshorder::exodus {
 namespace {
 
-/// Thrown where the bytes that were read so far end.
+/// Thrown if the header continues beyond the bytes that were read so far.
 struct Ended {};
 
 constexpr std::uint64_t kStreaming = 0xFFFFFFFFU;
-constexpr std::uint64_t kNameBytes = 256;  // netCDF's library copies longer ones beyond the place for them
+constexpr std::uint64_t kNameBytes = 256;  // longer names overflow a buffer in netCDF's library
 
 class HeaderReader {
  public:
@@ -57,7 +57,7 @@ class HeaderReader {
 
   std::uint64_t count() { return integer(wide_ ? 8 : 4); }
 
-  /// Passes over bytes and the zeros that fill them up to a multiple of four.
+  /// Skips bytes and the zeros that fill them up to a multiple of four.
   void skip(std::uint64_t bytes) {
     if (bytes > size_) fail("the header names more bytes than the file has", "the file may be cut short");
     at_ += (bytes + 3) / 4 * 4;
@@ -74,7 +74,7 @@ class HeaderReader {
     return std::string(bytes_.substr(begin, length));
   }
 
-  /// Reads the tag and the length of a list, of which each item has at least `least` bytes.
+  /// Reads the tag of a list and returns its length. Each item of the list has at least `least` bytes.
   std::uint64_t list(std::uint64_t tag, std::uint64_t least, const char* of) {
     const std::uint64_t found = integer(4);
     const std::uint64_t length = count();
@@ -112,8 +112,8 @@ class HeaderReader {
     }
   }
 
-  /// Returns the bytes of a variable, of one record where it has records. Throws InputError if they are more
-  /// than the file has.
+  /// Returns the number of bytes of a variable, or of one of its records if it has records. Throws InputError
+  /// if the file has fewer.
   std::uint64_t bytes_of(const std::string& name, const std::vector<std::uint64_t>& places,
                          std::uint64_t width) {
     std::uint64_t bytes = width;
@@ -121,7 +121,7 @@ class HeaderReader {
       if (places[i] >= lengths_.size())
         fail(name + " has a dimension that is not there", "the file may be damaged");
       const std::uint64_t length = lengths_[places[i]];
-      if (i == 0 && length == 0) continue;  // the records
+      if (i == 0 && length == 0) continue;  // the dimension of records
       if (length > size_ / std::max<std::uint64_t>(1, bytes)) {
         fail(fmt::format("{} has more values than the file has bytes", name), "the file may be cut short");
       }
@@ -151,7 +151,7 @@ class HeaderReader {
       for (std::uint64_t k = 0; k < rank; ++k) places.push_back(count());
       skip_attributes();
       const std::uint64_t width = width_of_type();
-      (void)count();  // the size, which is limited to 32 bits
+      (void)count();  // the stored size, which large variables exceed
       part.begin = integer(wide_offsets_ ? 8 : 4);
       part.bytes = bytes_of(part.name, places, width);
       part.in_records = !places.empty() && lengths_[places.front()] == 0;
@@ -162,7 +162,7 @@ class HeaderReader {
       parts.push_back(std::move(part));
     }
     for (const Part& part : parts) {
-      // one variable alone has its records without gaps
+      // the records of a single variable follow each other without gaps
       const std::uint64_t step = record_variables == 1 ? part.bytes : record;
       if (part.in_records && (records_ == 0 || part.bytes == 0)) continue;
       const std::uint64_t before = part.in_records ? records_ - 1 : 0;

@@ -7,9 +7,9 @@
 
 namespace meshorder::exodus {
 
-/// Keeps other threads out of libnetcdf, and out of libhdf5 below it, as long as it lives; meanwhile no
-/// plug-ins are loaded. The first one starts libnetcdf, which otherwise reads settings of the current folder
-/// and of HOME (.ncrc, .daprc, .dodsrc) and the credentials of clouds.
+/// While an object of this class lives, other threads cannot enter libnetcdf or libhdf5, and no plug-ins are
+/// loaded. The first object starts libnetcdf so that it does not read settings in the current folder or in
+/// HOME (.ncrc, .daprc, .dodsrc) or cloud credentials.
 class Library {
  public:
   Library();
@@ -24,12 +24,12 @@ class Library {
   unsigned plugins_ = 0;
 };
 
-/// Throws InputError unless all that a file of HDF5 holds is in the file itself, as it is in a mesh's:
-/// libnetcdf follows links, and reads values in other files, wherever they lead. To be called while a Library
+/// Throws InputError if a file of HDF5 has groups, links to other files, or values in other files: libnetcdf
+/// would follow them wherever they lead. A mesh needs none of them. To be called while a Library object
 /// lives.
 ///
-/// @param path   the file, or empty
-/// @param bytes  the file in memory where there is no path
+/// @param path   the file; empty if it is in memory
+/// @param bytes  the content of the file if `path` is empty
 /// @param name   for messages
 void require_whole_hdf5(const std::string& path, const std::string& bytes, const std::string& name);
 

@@ -29,9 +29,9 @@ const NcType kDouble = NC_DOUBLE;
 
 namespace {
 
-constexpr const char* kNameInMemory = "mesh";  // others could mean an address in the net
+constexpr const char* kNameInMemory = "mesh";  // netCDF could take other names for an address in the net
 constexpr std::string_view kDamaged = "the file may be damaged";
-constexpr std::uint64_t kMostExpansion = 1032;  // of deflate
+constexpr std::uint64_t kMostExpansion = 1032;  // largest ratio that deflate can reach
 constexpr std::size_t kBuffer = std::size_t{1} << 18;
 
 std::size_t product(const std::vector<std::size_t>& lengths) {
@@ -208,7 +208,7 @@ void NcInput::check_chunks(const Variable& variable) const {
   std::vector<std::size_t> lengths(variable.dimensions.size());
   if (nc_inq_var_chunking(id_, variable.id, &storage, lengths.data()) != NC_NOERR || storage != NC_CHUNKED)
     return;
-  // as it is stored, and as it is read
+  // twice: as it is stored, and as it is read
   std::uint64_t size = 2 * std::max<std::size_t>(1, size_of(variable.type));
   for (const std::size_t length : lengths) size = bytes_for(size, length);
   const std::string fault = refused_for_a_while(size, "a chunk of " + variable.name);
@@ -451,9 +451,9 @@ int creation_mode(int kind) {
 NcOutput::NcOutput(const FilePath& path, const Storage& storage)
     : name_(path.string()), out_(path), is_in_memory_(path.store() != nullptr), storage_(storage) {
   if (is_in_memory_) {
-    // an initial size would be the least that the file gets
+    // initial size 0, as the file would not become smaller than an initial size
     check(nc_create_mem(kNameInMemory, NC_CLOBBER | creation_mode(storage.kind), 0, &id_), "");
-    // filled at first: bytes between variables, which the library does not write, would be what memory held
+    // fill mode stays on: the library does not write the bytes between variables, so they would be arbitrary
   } else {
     out_->close();
     create(out_->temporary());
@@ -491,7 +491,7 @@ bool NcOutput::holds_wide_integers() const noexcept {
 }
 
 void NcOutput::put_attribute(int variable, const Attribute& attribute, const std::string& of) const {
-  if (attribute.name == "_NCProperties") return;  // netCDF's own
+  if (attribute.name == "_NCProperties") return;  // netCDF writes it itself
   if (attribute.type == kChar) {
     check(nc_put_att_text(id_, variable, attribute.name.c_str(), attribute.count, attribute.bytes.data()),
           of);

@@ -18,11 +18,11 @@
 #include <utility>
 #include <vector>
 
-/// Files of netCDF, read and written through its C library, of which one call at a time is allowed: an object
-/// of these classes holds a lock of the whole process.
+/// Files of netCDF, read and written through its C library. The library allows one call at a time, so that an
+/// object of these classes holds a lock of the whole process.
 namespace meshorder::exodus {
 
-/// The number types of netCDF, with its own numbers (netcdf.h).
+/// A type of values in netCDF, with its number in netcdf.h.
 using NcType = int;
 extern const NcType kChar;
 extern const NcType kInt;
@@ -32,13 +32,13 @@ extern const NcType kDouble;
 
 /// Returns whether values of the type are whole numbers.
 bool is_whole(NcType type);
-/// Returns the bytes of a value, 0 for strings and types that a file defines.
+/// Returns the bytes of a value, 0 for strings and user-defined types.
 std::size_t size_of(NcType type);
-/// Returns whether a type has each of the values, to the last digit; NaN is one of the real types only.
+/// Returns whether a type can hold each of the values exactly. Only the real types can hold NaN.
 /// O(values).
 bool can_hold(NcType type, const Values& values);
 
-/// A named value of a file or a variable.
+/// An attribute of a file or a variable: a name with values.
 struct Attribute {
   std::string name;
   NcType type;
@@ -65,23 +65,23 @@ struct Variable {
 
 /// How values are stored.
 struct Storage {
-  int kind;              ///< of the file: as nc_inq_format says
+  int kind;              ///< of the file, as nc_inq_format returns it
   int deflate = 0;       ///< level of compression, 0 to 9
   bool shuffle = false;  ///< bytes are sorted before compression
 };
 
-/// Returns the storage of new files: netCDF-3 with 64-bit offsets, or CDF-5 for what does not fit that.
+/// Returns the storage of new files: netCDF-3 with 64-bit offsets, or CDF-5 if `large`.
 Storage plain_storage(bool large);
 
-/// Throws InputError unless the first bytes of a file, all that `at` gives, are a header of netCDF-3 whose
-/// variables end within the file's size. O(size of the header).
+/// Throws InputError unless a file begins with a valid header of netCDF-3 and all values lie within `size`
+/// bytes. `first_bytes(n)` returns the first n bytes of the file, or all. O(size of the header).
 void check_classic_header(const std::string& file, const std::function<std::string(std::size_t)>& first_bytes,
                           std::uint64_t size);
 
 /// A file that is read.
 class NcInput {
  public:
-  /// Throws InputError if it is not there or not one of netCDF's.
+  /// Opens a file. Throws InputError if it does not exist or is not a file of netCDF.
   explicit NcInput(const FilePath& path);
   ~NcInput();
   NcInput(const NcInput&) = delete;
@@ -95,26 +95,26 @@ class NcInput {
   [[nodiscard]] const Variable* find(const std::string& name) const;
   /// Returns the length of a dimension, 0 if there is none.
   [[nodiscard]] std::size_t length(const std::string& name) const;
-  /// Returns the length of a dimension that counts parts of the file. Throws InputError if it is larger than
-  /// the file.
+  /// Returns the length of a dimension that counts items of the file. Throws InputError if it exceeds the
+  /// file's size in bytes.
   [[nodiscard]] std::size_t count(const std::string& dimension) const;
   /// Returns the lengths along a variable's dimensions.
   [[nodiscard]] std::vector<std::size_t> shape(const Variable& variable) const;
   /// Returns the number of values. Throws InputError if the file is too small to hold them.
   [[nodiscard]] std::size_t size(const Variable& variable) const;
-  /// Returns `count`. Throws InputError if as many values, of so many bytes each, are beyond the limit on
-  /// what the file may claim.
+  /// Returns `count`. Throws InputError if `count` values of `bytes_each` bytes exceed the limit on memory
+  /// for what a file claims.
   [[nodiscard]] std::size_t claimed(std::string_view what, std::size_t count, std::size_t bytes_each) const;
 
-  /// Returns the attributes of a variable, of the file where it is null. Those of types that a file defines
-  /// are left out, and named in `lost`.
+  /// Returns the attributes of a variable, or of the file if it is null. Leaves out those of user-defined
+  /// types or of several strings, and appends their names to `lost`.
   [[nodiscard]] std::vector<Attribute> attributes(const Variable* variable,
                                                   std::vector<std::string>& lost) const;
-  /// Returns a text that a variable has, empty if there is none.
+  /// Returns the text of an attribute of a variable, empty if there is none.
   [[nodiscard]] std::string text(const Variable& variable, const std::string& attribute) const;
 
-  /// Reads a part of the values, `counts` from `starts` along each dimension, as 32-bit integers; throws
-  /// InputError where one does not fit or is not whole.
+  /// Reads a part of the values as 32-bit integers: along each dimension `counts` values from `starts` on.
+  /// Throws InputError if the type is not whole or a value does not fit.
   void read(const Variable& variable, const std::vector<std::size_t>& starts,
             const std::vector<std::size_t>& counts, std::int32_t* values) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const Variable& variable) const;
@@ -122,14 +122,14 @@ class NcInput {
                                                    const std::vector<std::size_t>& starts,
                                                    const std::vector<std::size_t>& counts) const;
   [[nodiscard]] std::vector<double> reals(const Variable& variable) const;
-  /// Returns a part of them.
+  /// Returns a part of the values, as `read`.
   [[nodiscard]] std::vector<double> reals(const Variable& variable, const std::vector<std::size_t>& starts,
                                           const std::vector<std::size_t>& counts) const;
   /// Returns the bytes of all values in the byte order of this machine.
   [[nodiscard]] std::string bytes(const Variable& variable) const;
   /// Returns the rows of a table of characters, each up to its zero byte and without blanks at its end.
   [[nodiscard]] std::vector<std::string> texts(const Variable& variable) const;
-  /// Returns values of a part, `counts` from `starts` along each dimension, in the type of the file.
+  /// Returns a part of the values, as `read`, in the type of the file.
   [[nodiscard]] Values values(const Variable& variable, const std::vector<std::size_t>& starts,
                               const std::vector<std::size_t>& counts) const;
 
@@ -142,13 +142,13 @@ class NcInput {
  private:
   void check(int status, const std::string& what) const;
   void inquire();
-  /// Throws InputError where the library would take more memory for a chunk than the file may claim.
+  /// Throws InputError if the library would take more memory for a chunk than the file may claim.
   void check_chunks(const Variable& variable) const;
 
   Library library_;
   std::string name_;
   std::optional<InputFile> file_;
-  std::string memory_;  // of a file that is not on disk
+  std::string memory_;  // the content of a file that is not on disk
   std::uint64_t size_ = 0;
   int id_ = -1;
   std::vector<Dimension> dimensions_;
@@ -158,7 +158,7 @@ class NcInput {
 
 class NcOutput;
 
-/// Writes values of a variable that was declared.
+/// Writes the values of a declared variable.
 class NcSink {
  public:
   NcSink(const NcOutput& file, std::string name, int variable)
@@ -167,7 +167,7 @@ class NcSink {
   void integers(const std::vector<std::int64_t>& values) const;
   void integers(const std::vector<std::int32_t>& values) const;
   void reals(const std::vector<double>& values) const;
-  /// Write the part of `counts` values from `starts` on.
+  /// Write a part: along each dimension `counts` values from `starts` on.
   void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
             const std::vector<double>& values) const;
   void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
@@ -178,7 +178,7 @@ class NcSink {
             const std::vector<std::uint64_t>& values) const;
   void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
             const std::vector<std::int32_t>& values) const;
-  /// Writes the part of `counts` values from 0 on, in the variable's own type.
+  /// Writes the first `counts` values along each dimension, given as bytes in the variable's type.
   void bytes(const std::vector<std::size_t>& counts, const std::string& values) const;
 
  private:
@@ -187,13 +187,13 @@ class NcSink {
   int variable_;
 };
 
-/// A file that exists, and that somebody else puts in place once it is written.
+/// A file that exists, and that the caller puts in place once it is written.
 struct UnfinishedFile {
   std::filesystem::path path;
   std::string name;  ///< in messages
 };
 
-/// A file that is written: first all is declared, then `finish` writes the values.
+/// Writes a file: first the caller declares all dimensions and variables, then `finish` writes the values.
 class NcOutput {
  public:
   NcOutput(const FilePath& path, const Storage& storage);
@@ -205,19 +205,19 @@ class NcOutput {
   NcOutput& operator=(NcOutput&&) = delete;
 
   void attribute(const Attribute& attribute);
-  /// Declares a dimension; the same one may be declared again. Returns false if it is there with another
+  /// Declares a dimension, which may be declared several times. Returns false if it exists with another
   /// length.
   bool dimension(const Dimension& dimension);
-  /// Declares a variable. Its values are to be written by what is given to `later`.
+  /// Declares a variable. A function given to `later` writes its values.
   NcSink variable(const std::string& name, NcType type, const std::vector<std::string>& dimensions,
                   const std::vector<Attribute>& attributes = {});
-  /// Has `finish` call `put`.
+  /// Adds a function that `finish` calls.
   void later(std::function<void()> put) { puts_.push_back(std::move(put)); }
   [[nodiscard]] bool has_variable(const std::string& name) const { return declared_.contains(name); }
   /// Returns whether the file can hold 64-bit integers.
   [[nodiscard]] bool holds_wide_integers() const noexcept;
 
-  /// Writes all values, and puts the file in place unless others do.
+  /// Writes all values, and puts the file in place unless the caller does.
   void finish();
 
  private:
@@ -228,7 +228,7 @@ class NcOutput {
   friend class NcSink;
   Library library_;
   std::string name_;
-  std::optional<OutputFile> out_;  ///< none: others put the file in place
+  std::optional<OutputFile> out_;  ///< none: the caller puts the file in place
   bool is_in_memory_;
   Storage storage_;
   int id_ = -1;

@@ -13,7 +13,7 @@
 #include <numeric>
 #include <tuple>
 
-// Reads a file: points, elements and their numbers, and all that is kept as it is.
+// Reads a file: points, elements and their numbers, and the variables that are kept as they are.
 
 namespace meshorder::exodus {
 
@@ -78,7 +78,7 @@ Index checked_length(const NcInput& file, const std::string& dimension) {
   return static_cast<Index>(length);
 }
 
-/// Refuses files whose content cannot follow an order.
+/// Throws InputError if a file has blocks or sets of edges or faces, which cannot be reordered.
 void refuse_unknown_kinds(const NcInput& file) {
   for (const Dimension& dimension : file.dimensions()) {
     constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kKinds{{
@@ -95,8 +95,8 @@ void refuse_unknown_kinds(const NcInput& file) {
   }
 }
 
-/// Leaves out what a piece of a decomposed mesh (Nemesis) says of the others: an order does not change the
-/// numbers in it.
+/// Leaves out the communication maps of a piece of a decomposed mesh (Nemesis): reordering would not update
+/// the numbers in them.
 void leave_out_decomposition(Reading& reading) {
   constexpr std::array<std::string_view, 9> kCommunication{"node_mapi",   "node_mapb",   "node_mape",
                                                            "elem_mapi",   "elem_mapb",   "n_comm_nids",
@@ -120,7 +120,7 @@ void leave_out_decomposition(Reading& reading) {
   reading.notes.emplace_back("is a piece of a decomposed mesh: its communication maps are left out");
 }
 
-/// Counts nodes and elements, and finds which of them are read.
+/// Reads the numbers of nodes and elements, and sets the ranges to read.
 void read_counts(Reading& reading) {
   const NcInput& file = reading.file;
   reading.nodes = checked_length(file, "num_nodes");
@@ -171,7 +171,7 @@ void read_points(Reading& reading) {
   }
 }
 
-/// Reads those elements of a block that are in the range into the mesh.
+/// Appends the elements of a block that are in the range to the mesh.
 void read_elements(Reading& reading, const Variable& connect, std::size_t b) {
   const NcInput& file = reading.file;
   const BlockRecord& block = reading.metadata->blocks[b];
@@ -192,7 +192,7 @@ void read_elements(Reading& reading, const Variable& connect, std::size_t b) {
   for (std::size_t e = 0; e < elements; ++e) {
     Index* const row = cells.vertices.data() + begin + e * nodes;
     for (std::size_t k = 0; k < nodes; ++k) {
-      // numbers below 1 become large
+      // as unsigned numbers, those below 1 become large
       const std::uint32_t place = static_cast<std::uint32_t>(row[k]) - 1;
       if (place >= count) {
         file.fail(fmt::format("{}, element {}: node {} does not exist", connect.name, first + e + 1, row[k]),
@@ -233,13 +233,13 @@ void read_cells(Reading& reading) {
   if (!mesh.cell_blocks.empty()) mesh.cell_blocks.insert(mesh.cell_blocks.begin(), 0);
 }
 
-/// An attribute of elements.
+/// An attribute of elements, collected from several blocks.
 struct AttributeColumn {
   DataArray array;
-  Index rows = 0;  ///< for all elements, not those of the range only
+  Index rows = 0;  ///< number of elements with a value in the whole mesh, not only in the range
 };
 
-/// Reads the columns of attributes of a block; `columns` receives the arrays by name.
+/// Reads the attributes of a block and appends them to `columns`, by name of the array.
 void read_attributes(Reading& reading, std::size_t b, std::map<std::string, AttributeColumn>& columns) {
   const NcInput& file = reading.file;
   BlockRecord& block = reading.metadata->blocks[b];
@@ -250,7 +250,7 @@ void read_attributes(Reading& reading, std::size_t b, std::map<std::string, Attr
   const MeshRange own = reading.own_of_block(b);
   const auto first = static_cast<std::size_t>(own.first - reading.block_ends[b]);
   const std::vector<std::size_t> shape = file.shape(*variable);
-  // a single attribute may go without the second dimension
+  // a single attribute may lack the second dimension
   const std::size_t count = shape.size() == 1 ? 1 : shape.size() == 2 ? shape[1] : 0;
   if (count == 0 || shape[0] != elements)
     reading.require_shape(*variable, {elements, std::max<std::size_t>(count, 1)});
@@ -283,7 +283,7 @@ void read_attributes(Reading& reading, std::size_t b, std::map<std::string, Attr
   }
 }
 
-/// Gives the mesh labels by the blocks' ids, or by a property that holds labels.
+/// Gives the cells labels: the blocks' ids, or the values of a property that holds labels.
 void label_cells(Reading& reading) {
   Metadata& metadata = *reading.metadata;
   auto& names = metadata.block_properties;
@@ -336,7 +336,7 @@ void name_blocks(Reading& reading) {
   }
 }
 
-/// Fills in the record of a block, from 0, by its variable, which may not be there.
+/// Fills in the record of block `b`, counted from 0. `connect`: its connectivity, null if there is none.
 void read_block(Reading& reading, std::size_t b, const Variable* connect) {
   const NcInput& file = reading.file;
   BlockRecord& block = reading.metadata->blocks[b];
@@ -370,7 +370,7 @@ void read_block(Reading& reading, std::size_t b, const Variable* connect) {
   block.connect_type = connect->type;
 }
 
-/// Reads what the file says of its blocks, not their elements.
+/// Reads the records of the blocks, without elements.
 void read_blocks(Reading& reading) {
   const NcInput& file = reading.file;
   Metadata& metadata = *reading.metadata;
@@ -403,7 +403,7 @@ void read_data_of_blocks(Reading& reading) {
   label_cells(reading);
   name_blocks(reading);
   for (auto& [name, column] : attributes) {
-    if (column.rows == 0) continue;  // of blocks without elements
+    if (column.rows == 0) continue;  // only blocks without elements have it
     const bool is_partial = column.rows != reading.elements;
     if (!is_partial) column.array.indices.clear();
     reading.add_array(std::move(column.array), {is_partial});
@@ -430,7 +430,7 @@ void read_nodal_attributes(Reading& reading) {
   }
 }
 
-/// Returns the numbers of nodes or elements; of all of them none if they are 1, 2, … or not there.
+/// Returns the numbers of nodes or elements; none if the file has none. Of a whole mesh, drops 1, 2, …
 std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& name, Association of,
                                        bool& is_there) {
   const Variable* const variable = reading.take(name);
@@ -492,7 +492,7 @@ void read_maps(Reading& reading) {
   read_named_maps(reading, "elem", "em", Association::cells, metadata.element_maps);
 }
 
-/// Returns whether a dimension's length depends on which nodes or elements there are.
+/// Returns whether a dimension counts nodes or elements, so that its variables depend on their order.
 bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension) {
   constexpr std::array<std::string_view, 6> kWhole{"num_nodes", "num_elem", "num_edge",
                                                    "num_face",  "num_node", "num_elements"};
@@ -510,12 +510,12 @@ bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension)
   if (std::any_of(kNumbered.begin(), kNumbered.end(), is_numbered)) return true;
   if (dimension.unlimited || std::find(kFixed.begin(), kFixed.end(), name) != kFixed.end()) return false;
   if (name.ends_with("_var") || name.ends_with("_sets") || name == "num_el_blk") return false;
-  // another name for them
+  // it may count nodes or elements under another name
   return dimension.length == static_cast<std::size_t>(reading.nodes) ||
          dimension.length == static_cast<std::size_t>(reading.elements);
 }
 
-/// Keeps the dimensions and variables that nothing has been made of, where an order does not change them.
+/// Keeps the variables and dimensions that are not understood, unless they depend on the order of the mesh.
 void keep_others(Reading& reading) {
   const NcInput& file = reading.file;
   Metadata& metadata = *reading.metadata;
@@ -561,7 +561,7 @@ void keep_others(Reading& reading) {
     reading.notes.push_back(fmt::format("the attribute {} is left out", name));
 }
 
-/// Counts the steps; none where no variable has values at them.
+/// Reads the number of steps; 0 if no variable has values at steps.
 void read_steps(Reading& reading) {
   const auto& dimensions = reading.file.dimensions();
   const auto found = std::find_if(dimensions.begin(), dimensions.end(),
@@ -576,7 +576,7 @@ void read_steps(Reading& reading) {
   reading.metadata->steps_unlimited = found->unlimited;
 }
 
-/// Reads what the file says of its mesh before any of its values.
+/// Reads the sizes of the mesh and its blocks, but no values.
 void read_header(Reading& reading) {
   Metadata& metadata = *reading.metadata;
   metadata.storage = reading.file.storage();
@@ -598,7 +598,7 @@ void read_geometry(Reading& reading) {
   read_cells(reading);
 }
 
-/// Reads all that belongs to points and cells.
+/// Reads all data of points and cells: attributes, numbers, maps, sets, variables and others.
 void read_data(Reading& reading) {
   read_data_of_blocks(reading);
   read_maps(reading);

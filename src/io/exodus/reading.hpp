@@ -13,40 +13,40 @@
 
 namespace meshorder::exodus {
 
-/// A file that is being read, the whole or a part of it, and what has been found so far.
+/// A file that is being read, completely or in part, and the results so far.
 struct Reading {
-  /// @param wanted  what is read; null: all. Outlives this object
+  /// @param wanted  the ranges to read; null: all. Must outlive this object
   Reading(const FilePath& path, const MeshRanges* wanted, Notes& warnings)
       : file(path), ranges_wanted(wanted), metadata(std::make_shared<Metadata>()), notes(warnings) {}
 
-  /// Returns the variable of that name, which is understood with that; null if there is none.
+  /// Returns the variable of that name, null if there is none, and marks it as understood.
   const Variable* take(const std::string& name);
-  /// Returns the texts of a table of names, empty ones where it is not there.
+  /// Returns `count` texts of a table of names; empty texts if the table does not exist.
   std::vector<std::string> take_names(const std::string& name, std::size_t count);
   /// Throws InputError unless the variable has these lengths along its dimensions.
   void require_shape(const Variable& variable, const std::vector<std::size_t>& expected) const;
 
   /// Adds an array, under a name that no other array has, and returns that name.
   std::string add_array(DataArray array, MeshPart::ArrayRows rows = {});
-  /// Adds a set likewise.
+  /// Adds a set, likewise.
   std::string add_set(EntitySet set, MeshPart::SetRows rows = {});
 
   [[nodiscard]] bool is_whole() const noexcept { return ranges_wanted == nullptr; }
-  /// Returns the vertices or cells that are read.
+  /// Returns the range of the vertices or cells that are read.
   [[nodiscard]] MeshRange range(Association association) const {
     return association == Association::vertices ? part.ranges.vertices : part.ranges.cells;
   }
-  /// Returns how many the whole mesh has.
+  /// Returns the number of vertices or cells of the whole mesh.
   [[nodiscard]] Index count(Association association) const {
     return association == Association::vertices ? nodes : elements;
   }
-  /// Returns those of the cells of a block that are read.
+  /// Returns the range of a block's cells that are read.
   [[nodiscard]] MeshRange own_of_block(std::size_t b) const {
     return MeshRange{block_ends[b], block_ends[b + 1]}.common(part.ranges.cells);
   }
   /// Returns the block of a cell of the whole mesh. O(log blocks).
   [[nodiscard]] const BlockRecord& block_of(Index cell) const;
-  /// Returns the most values of a list that are read at a time where a part of them is wanted.
+  /// Returns the largest number of values of a list to read at a time; unlimited if all are wanted.
   [[nodiscard]] std::size_t values_at_once() const noexcept {
     return is_whole() ? std::numeric_limits<std::size_t>::max() : std::size_t{1} << 18;
   }
@@ -59,14 +59,14 @@ struct Reading {
   std::set<std::string> taken;
   Index nodes = 0;                   ///< of the whole mesh
   Index elements = 0;                ///< of the whole mesh
-  std::vector<Index> block_ends{0};  ///< blocks + 1: block b has the cells from entry b to entry b + 1
+  std::vector<Index> block_ends{0};  ///< block b has the cells block_ends[b] to block_ends[b + 1] − 1
 
  private:
   UniqueNames arrays_;
   UniqueNames sets_;
 };
 
-/// Returns the names of properties besides the ids, and gives each object's values to `put(object, value)`.
+/// Returns the names of the properties except ID, and calls `put(object, value)` for each of their values.
 template <class Put>
 std::vector<std::string> read_properties(Reading& reading, const std::string& prefix, std::size_t objects,
                                          Put put) {
@@ -81,10 +81,10 @@ std::vector<std::string> read_properties(Reading& reading, const std::string& pr
   }
 }
 
-/// Returns the ids of blocks, sets or maps; 1, 2, … where the file has none or gives one twice.
+/// Returns the ids of blocks, sets or maps; 1, 2, … if the file has none or gives one twice.
 std::vector<std::int64_t> read_ids(Reading& reading, const std::string& variable, std::size_t objects);
 
-/// Returns the place of a range in a variable: where it begins, and how much of it there is.
+/// Return the start and the number of values of a range, as reading a variable of one dimension needs them.
 inline std::vector<std::size_t> start_of(MeshRange range) { return {static_cast<std::size_t>(range.first)}; }
 inline std::vector<std::size_t> count_of(MeshRange range) { return {static_cast<std::size_t>(range.size())}; }
 

@@ -17,8 +17,8 @@
 namespace meshorder::exodus {
 namespace {
 
-/// Returns one component of an array for `count` vertices or cells from `first` on; NaN, or 0 of whole
-/// numbers, where it has no row.
+/// Returns one component of an array for `count` vertices or cells from `first` on. Those without a row get
+/// NaN, or 0 if Number is an integer type.
 template <class Number>
 std::vector<Number> column(const DataArray& array, Index component, const std::vector<Index>& table,
                            Index first, Index count) {
@@ -37,8 +37,8 @@ std::vector<Number> column(const DataArray& array, Index component, const std::v
   return result;
 }
 
-/// Writes values of one step for `count` vertices or cells from `first` on, along the last dimension of the
-/// variable; nothing but NaN or 0 where there is no array.
+/// Writes the values of one step for `count` vertices or cells from `first` on, along the last dimension of
+/// the variable. If `array` is null, writes NaN, or 0 for integer types.
 void put(const NcSink& sink, NcType type, std::vector<std::size_t> starts, const DataArray* array,
          Index component, const std::vector<Index>& table, Index first, Index count) {
   std::vector<std::size_t> counts(starts.size(), 1);
@@ -57,12 +57,12 @@ void put(const NcSink& sink, NcType type, std::vector<std::size_t> starts, const
   put_as(std::numeric_limits<double>::quiet_NaN());
 }
 
-/// Returns the type in which an array is written where no file gave it one.
+/// Returns the type in which an array is written if it did not come from an Exodus file.
 NcType type_for(const DataArray& array) {
   return std::holds_alternative<std::vector<float>>(array.values) ? kFloat : kDouble;
 }
 
-/// Returns the names of the variables that the components of an array become.
+/// Returns the names of the variables for the components of an array.
 std::vector<std::string> names_of_components(const DataArray& array) {
   constexpr std::array<std::string_view, 3> kAxes{"X", "Y", "Z"};
   const auto count = static_cast<std::size_t>(array.components);
@@ -160,7 +160,7 @@ std::vector<std::string> names_of_series(const std::vector<SeriesPlan>& series) 
   return names;
 }
 
-/// Returns the type of all variables where they are in one variable of the file.
+/// Returns the type of the variable "vals_nod_var", which holds all nodal variables.
 NcType type_of_all(const std::vector<SeriesPlan>& series) {
   const NcType first = series.front().type;
   const bool is_one =
@@ -189,13 +189,13 @@ std::vector<Index> rows_in_blocks(const Writing& writing, const DataArray& array
   return rows;
 }
 
-/// What a block has of a variable.
+/// How a variable appears in a block.
 struct Presence {
   bool in_table = false;
   bool declared = false;
 };
 
-/// Returns what each block has of a variable: values, or what it had in its file without any.
+/// Returns how a variable appears in each block: if it has no values there, as in the file it came from.
 std::vector<Presence> presence(Writing& writing, const SeriesPlan& series) {
   std::vector<Presence> result(writing.blocks.size());
   for (std::size_t b = 0; b < result.size(); ++b) {

@@ -18,30 +18,30 @@
 namespace meshorder::exodus {
 namespace {
 
-/// Entries of a list of nodes or elements: those that name one which is read.
+/// The entries of a list of nodes or elements whose members are in the range that is read.
 struct Entries {
   std::vector<Index> places;   ///< in the list, ascending
-  std::vector<Index> members;  ///< numbers in the whole mesh
+  std::vector<Index> members;  ///< positions in the whole mesh
 };
 
 /// Entries of a list of sides.
 struct SideEntries : Entries {
   std::vector<int> sides;
-  // of a list of factors that has as many for each side as this has nodes
+  // for a list of factors with one factor for each node of a side
   std::vector<Offset> first_factors;
   std::vector<int> nodes;
-  Offset factors = 0;  ///< of all entries of the list
-  int most_nodes = 0;  ///< of any entry of the list
+  Offset factors = 0;  ///< number of factors of all entries of the list, read or not
+  int most_nodes = 0;  ///< largest number of nodes of an entry of the list, read or not
 };
 
-/// A set of sides, element by element.
+/// A side set, element by element.
 struct Sides {
-  Entries cells;                    ///< by the entries that name them first
-  std::vector<std::int32_t> masks;  ///< their sides: bit s − 1 for side s
+  Entries cells;                    ///< each cell once, with the place of its first entry
+  std::vector<std::int32_t> masks;  ///< sides of each cell: bit s − 1 for side s
   std::vector<Index>
-      row_of_entry;  ///< of each entry of the file: its place in `cells`, −1 for a repeated one
-  std::vector<int> rank_of_entry;  ///< its place among the sides of the cell
-  int most_sides = 0;              ///< of a cell
+      row_of_entry;  ///< for each entry, the place of its cell in `cells`; −1 if it is repeated
+  std::vector<int> rank_of_entry;  ///< for each entry, its place among the sides of the cell
+  int most_sides = 0;              ///< largest number of sides of a cell
 };
 
 /// Pieces of a list, ascending: lengths[i] values from begins[i] on.
@@ -54,8 +54,8 @@ Pieces single_values(const std::vector<Index>& places) {
   return {{places.begin(), places.end()}, std::vector<int>(places.size(), 1)};
 }
 
-/// Returns the values of pieces of a list, one after another; `read(first, count)` returns values of the
-/// list.
+/// Returns the values of pieces of a list, one after another. `read(first, count)` returns values of the
+/// list; pieces that lie within `most` values are read together.
 template <class Read>
 Values chosen(const Pieces& pieces, std::size_t most, const Read& read) {
   Values result = read(0, 0);
@@ -88,7 +88,7 @@ int bit_count(std::int32_t mask) {
   return count;
 }
 
-/// Returns one row for each cell: the values of its sides, ascending, each filled up to `width`.
+/// Returns one row for each cell: the values of its sides, ascending by side, each side filled up to `width`.
 template <class Number>
 std::vector<Number> packed(const Sides& sides, const std::vector<Number>& values,
                            const std::vector<int>& counts, int width) {
@@ -111,8 +111,8 @@ std::vector<Number> packed(const Sides& sides, const std::vector<Number>& values
   return result;
 }
 
-/// Returns the table of which object, a block or a set, has values of which variable, row by row; empty where
-/// the file has none.
+/// Returns the table that says which block or set (row) has values of which variable (column), row by row.
+/// Empty if the file has no table.
 std::vector<std::int64_t> read_table(Reading& reading, const std::string& of, std::size_t objects,
                                      std::size_t variables) {
   const Variable* const table = reading.take(of + "_var_tab");
@@ -146,7 +146,7 @@ class SetReader {
     const std::vector<std::int64_t> table = read_names_of_variables();
     (void)file.claimed(
         "the records of " + prefix, count,
-        sizeof(SetRecord) + family_.variables.size() * 2 * sizeof(Series));  // and what they own
+        sizeof(SetRecord) + family_.variables.size() * 2 * sizeof(Series));  // twice for their strings
     for (std::size_t s = 0; s < count; ++s) {
       SetRecord& set = family_.sets[s];
       set.id = ids[s];
@@ -163,7 +163,7 @@ class SetReader {
   }
 
  private:
-  /// Returns the table of which set has values of which variable, empty where the file has none.
+  /// Reads the names of the family's variables. Returns the table of variables, see `read_table`.
   std::vector<std::int64_t> read_names_of_variables() {
     const std::string of(kind_.variable);
     const std::size_t count = reading_.file.count("num_" + of + "_var");
@@ -171,19 +171,19 @@ class SetReader {
     return read_table(reading_, of, family_.sets.size(), count);
   }
 
-  /// Returns the name of the variable with the values of variable `v`, from 0, on a set, from 1.
+  /// Returns the name of the netCDF variable with the values of variable `v` (from 0) on a set (from 1).
   [[nodiscard]] std::string name_of_values(std::size_t v, std::size_t set) const {
     return fmt::format("vals_{}_var{}{}{}", kind_.variable, v + 1, kind_.prefix, set);
   }
 
-  /// Reads the numbers that a list names, from 1 on, and calls `take(first, numbers)` for one piece of the
-  /// list after another.
+  /// Reads a list of numbers, which count from 1, piece by piece. Calls `take(first, numbers)` for each
+  /// piece; `first` is its place in the list.
   template <class Take>
   void for_numbers(const Variable& variable, const Take& take) const {
     const NcInput& file = reading_.file;
     const std::vector<std::size_t> shape = file.shape(variable);
     if (shape.size() != 1) file.fail(variable.name + " is no list", "the file may be damaged");
-    // and the set that is made of them
+    // twice: for the list and for the set
     const std::size_t count = file.claimed(variable.name, file.size(variable), 2 * sizeof(Index));
     std::vector<std::int32_t> numbers;
     for (std::size_t first = 0; first < count; first += numbers.size()) {
@@ -193,7 +193,7 @@ class SetReader {
     }
   }
 
-  /// Returns the number, from 0, for one that a list has. Throws InputError if there is none.
+  /// Converts a number of a list to a position from 0. Throws InputError if the item does not exist.
   [[nodiscard]] Index place_of(std::int32_t number, const Variable& variable, std::size_t entry) const {
     const auto limit = static_cast<std::uint32_t>(reading_.count(kind_.association));
     const std::uint32_t place = static_cast<std::uint32_t>(number) - 1;
@@ -226,12 +226,12 @@ class SetReader {
     }
   }
 
-  /// Adds a set without members; one of sides has no array.
+  /// Adds a set without members. An empty side set gets no array.
   void add_empty(SetRecord& set) {
     set.in_mesh = is_sides_ ? "" : reading_.add_set({set.in_mesh, kind_.association, {}});
   }
 
-  /// Notes that entries of a list are kept once; leaves it to those who know all parts where this is one.
+  /// Notes that repeated entries are dropped. If only a part is read, records the counts for the caller.
   void note_repeated(const SetRecord& set, std::size_t size, std::size_t kept) {
     const std::string name = title(kind_, set.in_mesh);
     if (!reading_.is_whole()) {
@@ -257,7 +257,7 @@ class SetReader {
     return own;
   }
 
-  /// Returns the entries without those that name a member again.
+  /// Returns the entries without repeated members; the first of each stays.
   static Entries without_repeated(const Entries& own) {
     std::vector<Index> entries = index_range(0, index_size(own.members));
     std::stable_sort(entries.begin(), entries.end(),
@@ -297,14 +297,14 @@ class SetReader {
     });
   }
 
-  /// Returns the entries with members counted from the first one that is read.
+  /// Returns the entries with members counted from the start of the range that is read.
   [[nodiscard]] Entries in_range(Entries entries) const {
     const Index first = reading_.range(kind_.association).first;
     for (Index& member : entries.members) member -= first;
     return entries;
   }
 
-  /// Adds an array with a row for each member that the entries name.
+  /// Adds an array with a row for each of the entries; returns its name.
   std::string add_rows(const std::string& name, const Entries& rows, Values values, Index components = 1) {
     return reading_.add_array({.name = name,
                                .association = kind_.association,
@@ -316,7 +316,7 @@ class SetReader {
 
   // ---- sides
 
-  /// Throws InputError unless elements of a block have a side.
+  /// Throws InputError if elements of the block have no side of that number.
   void require_side(const BlockRecord& block, std::int64_t side, const Variable& variable,
                     std::size_t entry) const {
     const bool known = side >= 1 && side <= kMostSides &&
@@ -362,7 +362,7 @@ class SetReader {
     std::sort(entries.begin(), entries.end(), [&](Index a, Index b) {
       return std::tuple(cells[a], sides[a], a) < std::tuple(cells[b], sides[b], b);
     });
-    // the first entry of each cell, which decides the place of its row
+    // the first entry of each cell, which decides the order of rows, and its place in `entries`
     std::vector<std::pair<Index, std::size_t>> groups;
     for (std::size_t i = 0; i < count; ++i) {
       if (i == 0 || cells[entries[i]] != cells[entries[i - 1]]) {
@@ -407,7 +407,7 @@ class SetReader {
     });
   }
 
-  /// Adds an array of values of sides, a row for each cell; returns its name.
+  /// Adds an array of values of sides, with a row for each cell; returns its name.
   std::string add_packed(const std::string& name, const Sides& sides, const Values& values,
                          const std::vector<int>& counts, int width) {
     return std::visit(
@@ -422,8 +422,8 @@ class SetReader {
         values);
   }
 
-  /// Adds the factors of the nodes of each side: as many as the side's type has nodes, or the same number for
-  /// each side.
+  /// Adds an array of the factors of a side set. The file has a factor for each node of a side, or the same
+  /// number for each side; other lists are left out with a note.
   void add_factors(SetRecord& set, std::size_t size, const SideEntries& own, const Sides& sides,
                    const Variable& variable) {
     const std::size_t values = reading_.file.size(variable);
@@ -482,7 +482,7 @@ class SetReader {
 
 // ---- variables of nodes and elements
 
-/// Returns the values as 32-bit integers if the array is one of labels, which other formats have as integers.
+/// Returns labels as 32-bit integers, as other formats have them, if they are whole; other arrays unchanged.
 Values as_labels(const std::string& name, Values values) {
   const auto* const reals = std::get_if<std::vector<double>>(&values);
   if (name != kLabel || reals == nullptr) return values;
@@ -531,7 +531,7 @@ void read_nodal(Reading& reading) {
                                                  .components = is_vector ? static_cast<Index>(shape[2]) : 1,
                                                  .values = as_labels(name, values)}));
     }
-    // a vector is written as scalar variables, as the format has them
+    // a vector gets no series: it is written as scalar variables, as the format has only these
     if (!is_vector) metadata.nodal.push_back(std::move(series));
   }
 }
@@ -553,13 +553,13 @@ Values as_reals(const Values& values) {
 struct ElementVariable {
   std::string name;
   std::vector<const Variable*> of_block;  ///< null for blocks without
-  Index rows = 0;                         ///< in the whole mesh
-  bool is_of_one_type = true;             ///< in blocks that have elements
-  std::vector<Index> indices;             ///< of the rows that are read
+  Index rows = 0;                         ///< elements with values, in the whole mesh
+  bool is_of_one_type = true;             ///< whether all blocks with elements have the same type
+  std::vector<Index> indices;             ///< cells with values in the range that is read
 };
 
-/// Returns the values of an element variable at a step: as real numbers if they are not of one type in all
-/// blocks. `keeps_digits` becomes false where real numbers do not hold them.
+/// Returns the values of an element variable at a step; as real numbers if blocks have different types.
+/// `keeps_digits` becomes false if real numbers cannot hold them exactly.
 Values values_at(const Reading& reading, const ElementVariable& variable, NcType type, std::size_t step,
                  bool& keeps_digits) {
   std::optional<Values> result;
@@ -585,7 +585,7 @@ Values values_at(const Reading& reading, const ElementVariable& variable, NcType
   return result ? *std::move(result) : Values();
 }
 
-/// Finds the variables of the file that hold an element variable, the v-th, and fills in its series.
+/// Finds the netCDF variables with the values of element variable `v`, and fills in its series.
 ElementVariable find_element_variable(Reading& reading, std::size_t v, const std::vector<std::int64_t>& table,
                                       std::size_t count, Series& series) {
   const std::size_t blocks = reading.metadata->blocks.size();

@@ -17,7 +17,7 @@
 namespace meshorder::exodus {
 namespace {
 
-/// Finds rows of arrays that cover few vertices or cells.
+/// Finds the rows of an array for vertices or cells, in memory proportional to its rows.
 class SparseRows {
  public:
   explicit SparseRows(const DataArray& array) {
@@ -27,7 +27,7 @@ class SparseRows {
     is_dense_ = array.is_dense();
   }
 
-  /// Returns −1 if there is none.
+  /// Returns the row of a vertex or cell, −1 if it has none. O(log rows).
   [[nodiscard]] Index find(Index place) const {
     if (is_dense_) return place;
     const auto found = std::lower_bound(rows_.begin(), rows_.end(), std::pair{place, Index{0}});
@@ -39,7 +39,7 @@ class SparseRows {
   bool is_dense_ = false;
 };
 
-/// Returns the number that a text of up to nine digits is, −1 for other texts.
+/// Parses a text of one to nine digits as a number; returns −1 for other texts.
 std::int64_t number_of(std::string_view text) {
   std::int64_t value = -1;
   const bool digits = !text.empty() && text.size() <= 9 &&
@@ -88,7 +88,7 @@ class FamilyPlanner {
     add_factors(plan, array.name);
   }
 
-  /// Adds sets without sides, which have no array.
+  /// Adds a side set without sides, which has no array in the mesh.
   void add_empty(const SetRecord& record) {
     plans_.push_back({.id = record.id, .name = record.name, .record = &record});
     plans_.back().variables.resize(family_.variables.size());
@@ -147,7 +147,7 @@ class FamilyPlanner {
     return usable ? found : nullptr;
   }
 
-  /// Finds the factors of sides, and how many each side has.
+  /// Finds the array of factors of a side set, and the number of factors of each side.
   void add_factors(SetPlan& plan, const std::string& in_mesh) {
     const DataArray* const factors = find_factors(in_mesh);
     if (factors == nullptr || plan.members.empty()) return;
@@ -179,11 +179,11 @@ class FamilyPlanner {
   const SetKind& kind_;
   const SetFamily& family_;
   std::vector<SetPlan> plans_;
-  std::optional<SideNodes> nodes_;  ///< of sides with factors, if there are any
+  std::optional<SideNodes> nodes_;  ///< made when the first side set with factors is added
 };
 
-/// Returns the values of an array for the members of a set: `counts` of each, or one. Members without a row
-/// get `missing`.
+/// Returns the values of an array for the members of a set: counts[i] for member i, or one if `counts` is
+/// empty. Members without a row get `missing`.
 template <class Number>
 std::vector<Number> values_of_members(const SetPlan& plan, const DataArray& array, int width,
                                       const std::vector<int>& counts, Number missing) {
@@ -300,8 +300,8 @@ class FamilyWriter {
                        [](const DataArray* array) { return array != nullptr; });
   }
 
-  /// Returns whether the table of variables says that a set has values, which it may have said before without
-  /// any.
+  /// Returns whether the table of variables shall say that a set has values: it has some, or the table in the
+  /// file said so without any.
   static bool is_in_table(const SetPlan& plan, std::size_t v) {
     if (has_values(plan, v)) return true;
     if (plan.record == nullptr) return false;

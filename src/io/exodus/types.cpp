@@ -16,7 +16,7 @@ struct TypeName {
 
 constexpr Shape kVertex = Shape::vertex;
 
-// by their first letters; SHELL is identified by its nodes
+// by the first letters of a type; the shape of SHELL depends on its number of nodes
 constexpr std::array kTypeNames{
     TypeName{"SPHERE", kVertex},     TypeName{"CIRCLE", kVertex},         TypeName{"POINT", kVertex},
     TypeName{"NODE", kVertex},       TypeName{"BAR", Shape::line},        TypeName{"BEAM", Shape::line},
@@ -35,7 +35,7 @@ struct WrittenType {
   std::string_view name;
 };
 
-// of the names that the format knows, those that meshio reads, too
+// of the names that the format defines, those that meshio reads as well
 constexpr std::array kWrittenTypes{
     WrittenType{Shape::vertex, 1, "SPHERE"},        WrittenType{Shape::line, 2, "BAR2"},
     WrittenType{Shape::line, 3, "BEAM3"},           WrittenType{Shape::triangle, 3, "TRI3"},
@@ -49,9 +49,9 @@ constexpr std::array kWrittenTypes{
     WrittenType{Shape::hexahedron, 20, "HEX20"},    WrittenType{Shape::hexahedron, 27, "HEX27"},
 };
 
-// the edges between the two ends come before those of the upper end
+// file: nodes on the edges between the two triangles precede those on the edges of the upper triangle
 constexpr std::array kWedge{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17};
-// and the centre before the faces below, above, left, right, in front and behind
+// likewise; then the centre, then the nodes on the faces bottom, top, left, right, front and back
 constexpr std::array kHexahedron{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
                                  18, 19, 12, 13, 14, 15, 23, 24, 25, 26, 21, 22, 20};
 
@@ -59,7 +59,7 @@ bool begins_with(std::string_view type, std::string_view word) {
   return same_but_for_case(type.substr(0, word.size()), word);
 }
 
-/// Returns the nodes of a face of `corners` corners in an element of that order.
+/// Returns the number of nodes of a face with `corners` corners.
 int nodes_of_face(int corners, bool quadratic, bool has_centre) {
   return (quadratic ? 2 * corners : corners) + (has_centre ? 1 : 0);
 }
@@ -69,7 +69,7 @@ int nodes_of_face(int corners, bool quadratic, bool has_centre) {
 const Shape* shape_of(std::string_view type, int nodes, int dimension) {
   const Shape* shape = nullptr;
   if (begins_with(type, kShell)) {
-    // in a plane a shell is a line
+    // in two dimensions, a shell of up to three nodes is a line
     const int corners = dimension < 3 && nodes <= 3 ? 2 : nodes == 3 || nodes == 6 || nodes == 7 ? 3 : 4;
     shape = &kShellShapes[static_cast<std::size_t>(corners) - 2];
   } else {

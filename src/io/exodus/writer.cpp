@@ -14,15 +14,15 @@
 #include <cstring>
 #include <utility>
 
-// Writes a file: points, numbers, maps, and all that is kept as it is; other files write blocks, sets and
-// series.
+// Writes a file: points, numbers, maps and variables that are kept as they are. Other source files write
+// blocks, sets and series.
 
 namespace meshorder::exodus {
 namespace {
 
 constexpr std::size_t kLongestName = 255;
 
-/// Returns a name as a table of names can hold it: readers take blanks at its ends for padding.
+/// Returns a name as a table of names can hold it, without blanks at its ends, which readers would drop.
 std::string held_name(const std::string& name) {
   return std::string(utf8_prefix(trimmed(plain_name(name)), kLongestName));
 }
@@ -111,7 +111,7 @@ Attribute integer_attribute(std::string name, std::int32_t value) {
   return attribute;
 }
 
-/// Whether a file needs CDF-5: for numbers of 64 bits, or for a variable of 4 GiB.
+/// Returns whether a file needs CDF-5: for 64-bit numbers of vertices or cells, or for variables of 4 GiB.
 bool is_large(const Mesh& mesh) {
   constexpr std::size_t kMostBytes = 0xFFFFFFF0U;
   const auto fit = [](const std::vector<std::int64_t>& ids) {
@@ -122,7 +122,7 @@ bool is_large(const Mesh& mesh) {
          mesh.points.size() > kMostBytes / sizeof(double) || !fit(mesh.vertex_ids) || !fit(mesh.cell_ids);
 }
 
-/// Returns what a file of a mesh of another format has.
+/// Returns the metadata of a new file, for a mesh of another format.
 Metadata new_metadata(const Mesh& mesh) {
   constexpr float kVersion = 7.14F;
   Metadata result;
@@ -184,7 +184,7 @@ void write_numbers(Writing& writing, const char* variable, const char* dimension
   writing.write_integers(variable, dimension, std::move(numbers));
 }
 
-/// A numbering with a name, as it is written.
+/// A named map as it is written.
 struct MapPlan {
   std::int64_t id;
   std::string name;
@@ -192,7 +192,7 @@ struct MapPlan {
   const DataArray* array;
 };
 
-/// Returns the maps of the file that the mesh came from, and arrays that are named so or hold old numbers.
+/// Returns the maps of the file that the mesh came from, then the arrays "map NAME" and `kOriginal`.
 std::vector<MapPlan> plan_maps(Writing& writing, Association association) {
   const bool on_vertices = association == Association::vertices;
   std::vector<MapPlan> plans;
@@ -270,7 +270,7 @@ void write_nodal_attributes(Writing& writing, const Columns& columns) {
   });
 }
 
-/// Returns a table of names with rows of another length.
+/// Returns a table of names with longer rows, of `length` bytes.
 PlainVariable with_name_length(PlainVariable table, std::size_t length) {
   const std::size_t old = table.dimensions.back().length;
   if (table.type != kChar || old == 0 || length < old) return table;
@@ -284,7 +284,7 @@ PlainVariable with_name_length(PlainVariable table, std::size_t length) {
   return table;
 }
 
-/// Writes what is kept as it is, with zeros for steps that it did not have.
+/// Writes the variables and dimensions that are kept as they are; steps that they did not have get zeros.
 void write_plain(Writing& writing) {
   NcOutput& file = writing.file;
   for (const PlainVariable& of_file : writing.metadata.plain) {
@@ -319,8 +319,8 @@ void write_plain(Writing& writing) {
   }
 }
 
-/// Returns the length of the names that are written, up to 255, with their zero bytes; at least that of the
-/// file that the mesh came from. Notes names that are changed.
+/// Returns the length of rows in tables of names: that of the longest name with its zero byte, at most 256;
+/// at least the length in the file that the mesh came from. Notes names that change.
 std::size_t length_of_names(const Writing& writing, const std::vector<std::string>& names) {
   std::size_t longest = writing.metadata.name_length;
   for (const std::string& name : names) {
@@ -336,7 +336,7 @@ void add_names(const Columns& columns, std::vector<std::string>& names) {
   for (const auto& [name, array] : columns) names.push_back(name);
 }
 
-/// Writes the attributes of the file, one of which gives the length of the longest name.
+/// Writes the attributes of the file. Raises maximum_name_length to the longest name.
 void write_attributes_of_file(Writing& writing, const std::vector<std::string>& names) {
   std::size_t longest = 0;
   for (const std::string& name : names) longest = std::max(longest, std::min(name.size(), kLongestName));
@@ -350,7 +350,7 @@ void write_attributes_of_file(Writing& writing, const std::vector<std::string>& 
   }
 }
 
-/// Returns the number of coordinates that the points need, at least those of the file.
+/// Returns the number of coordinates that the points need, at least that of the file.
 int coordinates_of(const Mesh& mesh, int of_file) {
   int needed = of_file;
   for (const Point& point : mesh.points) {
@@ -392,7 +392,7 @@ std::vector<std::string> Metadata::contents() const {
 
 namespace {
 
-/// Writes a mesh to a file on disk or in a store, or to one that others put in place.
+/// Writes a mesh to a path, on disk or in a store, or to a file that the caller puts in place.
 template <class Target>
 void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
   const Metadata* const own = own_metadata(mesh);
@@ -400,7 +400,7 @@ void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
   NcOutput file(target, metadata.storage);
   Writing writing(mesh, metadata, file, notes);
 
-  // what each part of the mesh becomes
+  // plan what each part of the mesh becomes
   plan_blocks(writing, own != nullptr);
   const std::vector<const EntitySet*> element_sets = name_blocks(writing);
   std::vector<Columns> attributes;
@@ -434,13 +434,13 @@ void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
   }
   metadata.name_length = length_of_names(writing, names);
 
-  // their declarations
+  // declare the dimensions and variables
   const int dimension = coordinates_of(mesh, metadata.coordinates);
   write_attributes_of_file(writing, names);
   file.dimension({"time_step", writing.steps, metadata.steps_unlimited || writing.steps == 0});
   file.dimension({"len_name", metadata.name_length});
   file.dimension({"num_dim", static_cast<std::size_t>(dimension)});
-  // a length of 0 would be one without a limit
+  // netCDF would take a length of 0 as unlimited
   if (!mesh.points.empty()) file.dimension({"num_nodes", mesh.points.size()});
   if (!mesh.cells.shapes.empty()) file.dimension({"num_elem", mesh.cells.shapes.size()});
   file.dimension({"num_el_blk", writing.blocks.size()});
@@ -469,7 +469,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
          });
 }
 
-/// Refuses pieces of decomposed meshes: their communication maps do not follow an order.
+/// Returns why a piece of a decomposed mesh cannot be written: its communication maps would become wrong.
 std::string conflict(const Mesh& mesh) {
   const Metadata* const own = own_metadata(mesh);
   if (own == nullptr || !own->is_piece) return {};

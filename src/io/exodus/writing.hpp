@@ -16,26 +16,26 @@ namespace meshorder::exodus {
 /// A block as it is written.
 struct BlockPlan {
   Block cells;
-  const BlockRecord* record = nullptr;  ///< of the file that the mesh came from, if it had the block
+  const BlockRecord* record = nullptr;  ///< its record, if the file that the mesh came from had the block
   std::int64_t id = 0;
   std::string name = {};
 };
 
-/// A file that is being written, and what is known of it.
+/// A file that is being written, and the results so far.
 struct Writing {
   Writing(const Mesh& written, const Metadata& of_file, NcOutput& out, Notes& warnings)
       : mesh(written), metadata(of_file), file(out), notes(warnings) {}
 
-  /// Returns the array of that name and notes that it has a place; null if it cannot be written.
+  /// Returns the array of that name and adds it to `placed`; null if it does not exist or cannot be written.
   const DataArray* take(std::string_view name, Association association);
 
-  /// Declares a variable with the attributes that it had in the file that the mesh came from.
+  /// Declares a variable; adds the attributes that it had in the file that the mesh came from.
   NcSink declare(const std::string& variable, NcType type, const std::vector<std::string>& dimensions,
                  std::vector<Attribute> attributes = {});
-  /// Declares a table of names, with their longest length.
+  /// Declares a table of names, with rows of the metadata's `name_length`.
   void write_names(const std::string& variable, const std::string& count,
                    const std::vector<std::string>& names);
-  /// Declares whole numbers, of 32 bits where all fit.
+  /// Declares a variable of whole numbers: of 32 bits if all fit and `type` is not kInt64, else of 64.
   void write_integers(const std::string& variable, const std::string& dimension,
                       std::vector<std::int64_t> values, const std::vector<Attribute>& attributes = {},
                       NcType type = kInt);
@@ -49,19 +49,19 @@ struct Writing {
   std::size_t steps = 0;
 };
 
-/// Returns the type in which to write values whose type in the mesh's file was `of_file`: this one if it
-/// holds each of them, else double precision.
+/// Returns the type in which to write values: their type in the file that the mesh came from, `of_file`, if
+/// it can hold each of them, else double precision.
 NcType written_type(NcType of_file, const Values& values);
 
-/// Returns whether values are whole numbers of up to 53 bits, whatever their type.
+/// Returns whether all values are integers, or real numbers that are whole and at most 2^52 in size.
 bool are_whole(const Values& values);
 
-/// Returns the numbers of a type with `components` values for each row as whole numbers; the array must be of
-/// an integer type or `are_whole`.
+/// Returns the values as whole numbers, row by row. They must be of an integer type or satisfy `are_whole`;
+/// strings become 0.
 std::vector<std::int64_t> whole_values(const Values& values);
 
-/// Returns the row of an array that belongs to each of `count` vertices or cells, −1 where there is none;
-/// none at all for a dense array, of which row i belongs to vertex or cell i.
+/// Returns for each of `count` vertices or cells its row in an array, −1 if it has none. Returns an empty
+/// table for a dense array: its row i belongs to vertex or cell i.
 std::vector<Index> row_table(const DataArray& array, Index count);
 
 /// Converts a number to another type; a string becomes 0.
@@ -76,8 +76,8 @@ To number_as(const From& value) {
 
 inline constexpr Index kRowsAtOnce = 1 << 16;
 
-/// Calls `put(first, count)` for one part of `count` rows after another, so that the copy that is written
-/// stays small.
+/// Divides `count` rows into parts and calls `put(first, rows)` for each, so that the copies that are written
+/// stay small.
 template <class Put>
 void in_parts(Index count, const Put& put) {
   for (Index first = 0; first < count; first += std::min(kRowsAtOnce, count - first)) {
@@ -85,21 +85,21 @@ void in_parts(Index count, const Put& put) {
   }
 }
 
-/// Attributes of elements or nodes, with their names.
+/// Attributes of elements or nodes: their names and arrays.
 using Columns = std::vector<std::pair<std::string, const DataArray*>>;
 
-/// Divides the cells, which are in their places, into blocks.
+/// Divides the cells, which already are in the order of the file, into `writing.blocks`.
 void plan_blocks(Writing& writing, bool is_own);
 
-/// Gives blocks the names of the sets that have all of their cells and no others, and returns the other sets
-/// of cells.
+/// Gives a block the name of a set that has exactly its cells, unless that was an element set in the file.
+/// Returns the other sets of cells.
 std::vector<const EntitySet*> name_blocks(Writing& writing);
 
-/// Returns the attributes of a block: those that it had in its file, then those of arrays that are named so
-/// and have a value for it.
+/// Returns the attributes of a block: those that it had in its file; for a new block, the arrays "attribute
+/// NAME" that have a value in it.
 Columns attributes_of(Writing& writing, const BlockPlan& block);
 
-/// Declares the blocks with their elements and attributes, one of `attributes` for each block.
+/// Declares the blocks with their elements and attributes. `attributes` has an entry for each block.
 void write_blocks(Writing& writing, const std::vector<Columns>& attributes);
 
 /// A set as it is written.
@@ -107,17 +107,17 @@ struct SetPlan {
   std::int64_t id = 0;
   std::string name = {};
   const SetRecord* record = nullptr;
-  std::vector<std::int32_t> members = {};  ///< from 1
-  std::vector<std::int32_t> sides = {};    ///< of each member, where these are elements with sides
-  std::vector<Index> ranks = {};           ///< place of each side among those of its element
+  std::vector<std::int32_t> members = {};  ///< numbers of nodes or elements, from 1
+  std::vector<std::int32_t> sides = {};    ///< side sets: the side of each member, from 1
+  std::vector<Index> ranks = {};           ///< place of each side among the sides of its element in the set
   const DataArray* factors = nullptr;
-  std::vector<int> factor_counts = {};  ///< of sides: factors of each; empty if each member has one
-  int factor_width = 1;                 ///< of sides: places in the array for one
+  std::vector<int> factor_counts = {};  ///< side sets: factors of each side; empty if each member has one
+  int factor_width = 1;                 ///< side sets: components of the array for one side
   std::vector<std::vector<const DataArray*>> variables =
       {};  ///< by variable and step, as the record has them
 };
 
-/// Returns the sets of each kind as they are written, and takes their arrays.
+/// Returns the sets of each kind as they are written, and adds their arrays to `placed`.
 std::vector<std::vector<SetPlan>> plan_sets(Writing& writing,
                                             const std::vector<const EntitySet*>& element_sets);
 
@@ -128,14 +128,14 @@ void write_sets(Writing& writing, const std::vector<std::vector<SetPlan>>& plans
 struct SeriesPlan {
   std::string name;
   NcType type = kDouble;
-  std::vector<const DataArray*> arrays = {};  ///< for each step; null where there is none
+  std::vector<const DataArray*> arrays = {};  ///< for each step; null if there is none
   Index component = 0;
-  std::vector<bool> present = {};   ///< by block: where the file's table says that there are values
-  std::vector<bool> declared = {};  ///< by block, or one for nodes: where the file has a variable for values
+  std::vector<bool> present = {};   ///< as in Series
+  std::vector<bool> declared = {};  ///< as in Series
 };
 
-/// Returns the variables of an association: those of the file that the mesh came from, then arrays that have
-/// no other place. Notes arrays that no variable can hold.
+/// Returns the variables of nodes or elements: those of the file that the mesh came from, then one for each
+/// component of the arrays that have no other place. Notes arrays that no variable can hold.
 std::vector<SeriesPlan> plan_series(Writing& writing, Association association);
 
 void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series);
