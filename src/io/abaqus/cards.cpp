@@ -238,7 +238,7 @@ constexpr std::array<std::string_view, 115> kPlain{
 std::optional<std::string_view> fields_with_parameter(const Card& card) {
   if (card.keyword == "CLEARANCE" && card.has("TABULAR")) return "n";
   if (card.keyword == "EQUATION" && card.has("REMOVE")) return "n";
-  if (card.keyword == "STATIC" && card.has("RIKS")) return "-----n";  // the step may end at its displacement
+  if (card.keyword == "STATIC" && card.has("RIKS")) return "-----n";  // its displacement may end the step
   return {};
 }
 

@@ -17,7 +17,7 @@
 
 namespace meshorder::abaqus {
 
-/// Collects what the cards of a deck add to its node and element sets, then resolves it into their members.
+/// Reads the node and element sets of a deck: collects what cards add to them, then finds their members.
 class SetReader {
  public:
   /// The position of a card in the deck.
@@ -26,7 +26,7 @@ class SetReader {
     std::int64_t line = 0;
   };
 
-  /// Says whether the next cards are inside the assembly, whose sets have names apart from the part's.
+  /// Sets whether the next cards belong to the assembly. Its sets may have the same names as the part's.
   void enter_assembly(bool inside) { in_assembly_ = inside; }
 
   /// Adds `count` nodes or elements of the file, from position `first` on, to the set of that name.

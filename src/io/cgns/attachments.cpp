@@ -33,7 +33,7 @@ constexpr std::array<std::string_view, 8> kHeldByOthers{"ZoneType_t",     "GridC
                                                         "FlowSolution_t", "DiscreteData_t",    "ZoneBC_t",
                                                         "Ordinal_t",      "ZoneSubRegion_t"};
 
-/// Returns the texts of a C1 node, one for each row of `dimensions.front()` characters, without filling.
+/// Returns the texts of a C1 node, one for each row of `dimensions.front()` characters, without padding.
 std::vector<std::string> rows_of_text(const Node& node) {
   std::vector<std::string> rows;
   if (node.type != "C1" || node.dimensions.empty() || node.dimensions.front() < 1) return rows;
@@ -64,7 +64,7 @@ class AttachmentReader {
   }
 
  private:
-  /// A set whose name may still be that of another one.
+  /// A list that becomes a set; other sets may have the same name in the file.
   struct FoundSet {
     int list;
     std::string name;
@@ -197,7 +197,7 @@ class AttachmentReader {
     }
   }
 
-  /// Returns all vertices, or all cells of the base's dimension, of the zone: those of values without a list.
+  /// Returns the rows of values without a list: all vertices of the zone, or cells of the base's dimension.
   std::shared_ptr<const std::vector<Index>> all_rows(Association association) {
     auto& known = rows_[{zone_, association}];
     if (known == nullptr) {
@@ -483,7 +483,7 @@ class AttachmentReader {
     reading_.mesh.sets.push_back(std::move(set));
   }
 
-  /// Makes a set of each boundary section, as some programs name boundaries so, unless sets have its cells.
+  /// Makes a set of each boundary section whose cells are not all in sets: some programs name boundaries so.
   void add_section_sets() {
     std::vector<bool> is_named(reading_.mesh.cells.shapes.size());
     std::set<std::string> names;

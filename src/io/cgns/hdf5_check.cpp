@@ -115,7 +115,7 @@ class Hdf5Check {
 
   /// Throws unless the type given by the attribute of a node has the size of its stored values.
   void check_type(hid_t group, const std::string& path, std::size_t alternative) const {
-    // in the order of Values
+    // bytes of a number, by the alternatives of Values
     constexpr std::array<std::size_t, 10> kSizes{8, 4, 1, 1, 2, 2, 4, 4, 8, 8};
     const Handle attribute(H5Aopen(group, "type", H5P_DEFAULT), H5Aclose);
     const Handle type(H5Aget_type(attribute.id()), H5Tclose);

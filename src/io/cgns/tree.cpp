@@ -43,7 +43,7 @@ Text padded(std::string_view text) {
   return result;
 }
 
-/// Returns a text from CGIO without the blanks that fill it up in the file.
+/// Returns a text from CGIO without the blanks that pad it in the file.
 std::string without_filling(const Text& text) {
   const std::string_view whole(text.data());
   return std::string(whole.substr(0, whole.find_last_not_of(' ') + 1));

@@ -100,7 +100,7 @@ void take_sets(const Mesh& mesh, Metadata& metadata) {
 }
 
 /// Removes nodes that have nothing left to write: sections without cells, conditions and solutions without
-/// members, and arrays that are gone. Also removes data in the order of a list that changed, and notes these.
+/// members, and arrays that are gone. Also removes data in the order of a list that changed, with a note.
 class Pruner {
  public:
   Pruner(const Metadata& metadata, const Filler& filler, Notes& notes)

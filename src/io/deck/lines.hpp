@@ -33,10 +33,10 @@ class DeckLines {
   /// caller then reads on line by line.
   ///
   /// @param most   as `lines_to_take` returned, > 0
-  /// @param parse  `parse(line, number, k)` parses the k-th of these lines, given without its end and leading
-  ///               blanks;
-  ///               `number` is its line number in the file. Returns false if the line is irregular; an error
-  ///               means the same. May be called several times for one k
+  /// @param parse  `parse(line, number, k)` parses the k-th of these lines. `line` comes without its end and
+  ///               leading blanks; `number` is its number in the file. Returns false for an irregular line;
+  ///               an error means the same. May be called several times for one k, in any order, on any
+  ///               thread
   /// @return the number of lines taken, at most `most`
   Index take_regular(Index most, const std::function<bool(std::string_view, std::int64_t, Index)>& parse);
   /// Returns the rest of the present file, from the next line on. Valid until the next call.

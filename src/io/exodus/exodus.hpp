@@ -193,7 +193,7 @@ void write(const Mesh& mesh, const UnfinishedFile& to, Notes& notes);
 struct Header {
   Index vertices;
   Index cells;
-  std::vector<BlockRecord> blocks;  ///< without names and properties
+  std::vector<BlockRecord> blocks;  ///< without attributes; labels are ids
   std::vector<Index> block_ends;    ///< block b has the cells block_ends[b] to block_ends[b + 1] − 1
   std::vector<std::string> element_variables;
   bool is_piece;  ///< piece of a decomposed mesh

@@ -182,7 +182,7 @@ std::vector<Index> rows_in_blocks(const Writing& writing, const DataArray& array
     firsts.push_back(block.cells.first);
   }
   for (const Index cell : array.indices) {
-    // an empty block begins where the next one does
+    // an empty block has the same first cell as the next block, so the last of these has the cell
     const auto next = std::upper_bound(firsts.begin(), firsts.end(), cell);
     ++rows[static_cast<std::size_t>(next - firsts.begin()) - 1];
   }

@@ -146,7 +146,7 @@ class SetReader {
     const std::vector<std::int64_t> table = read_names_of_variables();
     (void)file.claimed(
         "the records of " + prefix, count,
-        sizeof(SetRecord) + family_.variables.size() * 2 * sizeof(Series));  // twice for their strings
+        sizeof(SetRecord) + family_.variables.size() * 2 * sizeof(Series));  // with memory that they own
     for (std::size_t s = 0; s < count; ++s) {
       SetRecord& set = family_.sets[s];
       set.id = ids[s];

@@ -23,13 +23,13 @@ namespace {
 constexpr std::int64_t kMostComponents = 1 << 20;
 constexpr double kExact = 9007199254740992.0;  // 2^53: whole numbers up to here are exact as double
 
-/// Returns `"name"` without its quotes.
+/// Returns a text without the quotes around it, if it has some.
 std::string unquoted(std::string_view text) {
   if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
   return std::string(text);
 }
 
-/// Reads a view up to its values.
+/// Reads the tags of a view, up to its values.
 View read_view_head(NumberReader& source, std::string_view section) {
   View view;
   view.section = section;
@@ -61,7 +61,7 @@ View read_view_head(NumberReader& source, std::string_view section) {
   return view;
 }
 
-/// Returns the number of nodes that the entry of cell c has by a rule.
+/// Returns the number of nodes in the entry of cell c by a rule; `fixed` is the number for that rule.
 int nodes_of_entry(const Mesh& mesh, Index c, PerElement per, int fixed) {
   const int vertices = mesh.cells.vertex_count(c);
   switch (per) {
@@ -77,14 +77,14 @@ int nodes_of_entry(const Mesh& mesh, Index c, PerElement per, int fixed) {
   return fixed;
 }
 
-/// Entries of a section in file order: rows of `nodes` × components values each.
+/// The entries of a section in the order of the file; entry i has nodes[i] × components values.
 struct Entries {
-  std::vector<Index> rows;
-  std::vector<int> nodes;  ///< empty: one for all
+  std::vector<Index> rows;  ///< vertex or cell of each entry
+  std::vector<int> nodes;   ///< empty: each entry has one
   std::vector<double> values;
 };
 
-/// Finds the rule that gives the number of nodes of an entry from its cell.
+/// Finds the rule for the number of nodes of an entry and stores it in `view`; fails if none fits.
 void find_rule(const ReadContext& reading, const Entries& entries, View& view) {
   if (entries.nodes.empty()) return;
   for (const PerElement per : {PerElement::each_node, PerElement::each_corner, PerElement::fixed}) {
@@ -134,7 +134,7 @@ Entries read_entries(ReadContext& reading, const View& view) {
   return entries;
 }
 
-/// Returns the entries as rows of one width, padded with 0.
+/// Returns the values of the entries as rows of one width, padded with 0; `width` receives it.
 std::vector<double> even_rows(const ReadContext& reading, Entries& entries, const View& view, Index& width) {
   const int components = view.integers[1];
   int most = 1;
@@ -161,10 +161,10 @@ std::vector<double> even_rows(const ReadContext& reading, Entries& entries, cons
   return values;
 }
 
-/// Sorts rows that cover all vertices or cells into the order of the mesh.
+/// Makes an array dense if it has a row for each vertex or cell: sorts `values` into the order of the mesh.
 void sort_full(DataArray& array, std::vector<double>& values, Index count) {
   if (index_size(array.indices) != count) return;
-  // distinct, so that rows that ascend are where they belong
+  // the rows are distinct, so that ascending rows already are in place
   if (std::is_sorted(array.indices.begin(), array.indices.end())) return array.indices.clear();
   std::vector<double> sorted(values.size());
   const auto width = static_cast<std::size_t>(array.components);
@@ -176,13 +176,13 @@ void sort_full(DataArray& array, std::vector<double>& values, Index count) {
   array.indices.clear();
 }
 
-/// Turns labels that were written as real numbers into integers again.
+/// Converts labels, which data sections hold as real numbers, back to integers if they are whole.
 void restore_labels(DataArray& array) {
   const auto* values = std::get_if<std::vector<double>>(&array.values);
   if (array.name != kLabel || array.components != 1 || !values) return;
   double greatest = 0;
   for (const double value : *values) {
-    if (std::trunc(value) != value) return;  // not a number, too
+    if (std::trunc(value) != value) return;  // also true for NaN
     greatest = std::max(greatest, std::abs(value));
   }
   if (greatest < 2147483648.0) {
@@ -192,7 +192,7 @@ void restore_labels(DataArray& array) {
   }
 }
 
-/// Returns the smallest number of components of Gmsh's data that is at least `components`; 0 if none is.
+/// Returns the smallest number of components that Gmsh allows and that is at least `components`; else 0.
 Index gmsh_components(Index components) {
   for (const Index known : {1, 3, 9}) {
     if (components <= known) return known;
@@ -200,14 +200,14 @@ Index gmsh_components(Index components) {
   return 0;
 }
 
-/// How often the arrays of a mesh have each name.
+/// Keeps the names of the arrays of a mesh distinct.
 class ArrayNames {
  public:
   explicit ArrayNames(const Mesh& mesh) {
     for (const DataArray& array : mesh.data) ++uses_[{array.association, array.name}];
   }
 
-  /// Gives an array that name or, if another one has it, "NAME (2)", "NAME (3)" …
+  /// Gives an array the name `name` or, if another array has it, "NAME (2)", "NAME (3)" …
   void rename(DataArray& array, const std::string& name) {
     --uses_[{array.association, array.name}];
     array.name = name;
@@ -237,7 +237,7 @@ double as_double(const Number& value) {
 }  // namespace
 
 void check_distinct(const NumberReader& source, std::vector<Index> rows, std::string_view section) {
-  // most files give them in order
+  // most files give the rows in order
   const auto descends = [](Index row, Index next) { return row >= next; };
   if (std::adjacent_find(rows.begin(), rows.end(), descends) == rows.end()) return;
   std::sort(rows.begin(), rows.end());

@@ -46,8 +46,8 @@ const ElementType* find_type(int number);
 /// and the serendipity quad of 16 nodes), the complete one.
 const ElementType* find_type(Shape shape, int nodes);
 
-/// Returns an order in which `order[k]` is the position in Gmsh's list of the k-th node in VTK's order; empty
-/// if the two agree or VTK has no such cell.
+/// Returns Gmsh's order of nodes: order[k] is the position in Gmsh's list of the k-th node in VTK's order.
+/// Empty if the two agree or VTK has no such cell.
 std::span<const int> vtk_order(Shape shape, int nodes);
 
 // ---- names of the arrays that keep data of Gmsh's files
@@ -58,34 +58,34 @@ inline constexpr std::string_view kCellType = "gmsh:type";  ///< if shape and co
 inline constexpr std::string_view kCellPartitions = "gmsh:partitions";  ///< 2.2: tags from the third on
 inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.2: if it differs among cells
 inline constexpr std::string_view kCellGhosts = "gmsh:ghosts";    ///< owner, number of ghosts, ghosts, 0 …
-inline constexpr std::string_view kNodeEntity = "gmsh:dim_tags";  ///< 4.1: dimension and tag
+inline constexpr std::string_view kNodeEntity = "gmsh:dim_tags";  ///< dimension and tag of a node's entity
 inline constexpr std::string_view kNodeParameters = "gmsh:parametric";  ///< 1 if given, else 0; u, v, w
 
 // ---- metadata
 
-/// The rule for the number of values that an $ElementNodeData section has for a cell.
+/// How many nodes have values in a view's entry for a cell: one, each node, each corner, or a fixed number.
 enum class PerElement : std::uint8_t { one, each_node, each_corner, fixed };
 
-/// A section $NodeData, $ElementData or $ElementNodeData without its values, which are an array of the mesh.
+/// A section $NodeData, $ElementData or $ElementNodeData. Its values are an array of the mesh.
 struct View {
   std::string section;
   Association association = Association::vertices;
-  std::optional<std::string> array;    ///< name of the array in the mesh; none: a view without values
+  std::optional<std::string> array;    ///< name of the array in the mesh; none: the view has no values
   std::vector<std::string> strings;    ///< verbatim, quotes included
   std::vector<double> reals;           ///< the time first
   std::vector<std::int32_t> integers;  ///< step, components, entries (set anew when written), partition …
   PerElement per = PerElement::one;
-  int nodes = 1;  ///< values per cell, for PerElement::fixed
+  int nodes = 1;  ///< nodes per cell, for PerElement::fixed
 };
 
-/// One periodic entity of $Periodic; its nodes are two sets of the mesh, pair by pair.
+/// A periodic entity of $Periodic. Its pairs of nodes are two sets of the mesh with the same order.
 struct PeriodicLink {
   std::int32_t dimension = 0;
   std::int32_t tag = 0;
   std::int32_t master = 0;
   std::vector<double> affine;
   std::string nodes;         ///< name of the set of nodes
-  std::string master_nodes;  ///< name of the set of the nodes that they copy
+  std::string master_nodes;  ///< name of the set of their master nodes
 };
 
 struct PhysicalName {
@@ -94,7 +94,7 @@ struct PhysicalName {
   std::string name;
 };
 
-/// The heading of a block without nodes or elements: dimension, tag and `parametric` or the element type.
+/// The head of a block that may be empty: dimension, tag, and `parametric` (nodes) or type (elements).
 using EmptyBlock = std::array<std::int32_t, 3>;
 
 enum class SectionKind : std::uint8_t { format, verbatim, nodes, elements, periodic, ghosts, view };
@@ -113,13 +113,13 @@ struct Metadata : FormatMetadata {
   double version = 4.1;
   bool binary = false;
   std::endian order =
-      std::endian::native;  ///< of the file's numbers; kept because verbatim sections may hold some
+      std::endian::native;  ///< byte order of the file's numbers, also of those in verbatim sections
   std::string header = "4.1 0 8";
   std::vector<Section> sections;
   std::vector<View> views;
   std::vector<PeriodicLink> periodic;
   std::vector<PhysicalName> names;
-  std::map<Entity, std::vector<std::int32_t>> physicals;  ///< of the entities in $Entities
+  std::map<Entity, std::vector<std::int32_t>> physicals;  ///< physical groups of the entities in $Entities
   std::vector<EmptyBlock> empty_node_blocks;
   std::vector<EmptyBlock> empty_element_blocks;
 
@@ -129,10 +129,10 @@ struct Metadata : FormatMetadata {
                        [kind](const Section& section) { return section.kind == kind; });
   }
   [[nodiscard]] bool is_version_1() const { return version < 2; }
-  /// Whether elements have tags of their own: versions 1 and 2.
+  /// Returns whether elements have tags of their own: versions 1 and 2.
   [[nodiscard]] bool is_version_2() const { return version < 3; }
   [[nodiscard]] bool is_version_40() const { return version >= 4 && version < 4.05; }
-  /// Whether numbers of nodes and elements have 64 bits; in binary files of 4.0 they have 32.
+  /// Returns whether numbers of nodes and elements have 64 bits; in binary files of 4.0 they have 32.
   [[nodiscard]] bool has_wide_numbers() const { return !binary || !is_version_40(); }
 };
 
@@ -157,15 +157,15 @@ struct ReadContext {
 
 Mesh read(const FilePath& path, Notes& notes);
 
-/// Reads the line $EndSECTION ($ENDSECTION in version 1). Any other word that begins with $End ends the
-/// section, too, with a note.
+/// Reads the line $EndSECTION ($ENDSECTION in version 1). Another word that begins with $End, in any case,
+/// also ends the section, with a note.
 void expect_end(ReadContext& reading, std::string_view section);
 
-/// Reads the number of a node or element, or a count that has the same width (see `has_wide_numbers`).
+/// Reads the number of a node or element, or a count of the same width (see `has_wide_numbers`).
 inline std::int64_t read_number(ReadContext& reading, std::string_view what) {
   return reading.metadata.has_wide_numbers() ? reading.source.int64(what) : reading.source.int32(what);
 }
-/// Reads such a count of items that take at least that many bytes each.
+/// Reads a count likewise; fails if the file is too short for items of at least that many bytes each.
 inline Index read_count(ReadContext& reading, std::string_view what, std::int64_t text_bytes,
                         std::int64_t binary_bytes) {
   const std::int64_t count = read_number(reading, what);
@@ -192,13 +192,13 @@ inline Index place_of_node(const ReadContext& reading, std::int64_t id, std::str
 /// Adds the array kCellType if shape and count do not determine the type of every cell.
 void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers);
 
-/// Adds the array kNodeParameters; nodes after the last value have none.
+/// Adds the array kNodeParameters with these values; nodes after the last one have no parameters.
 void keep_parameters(Mesh& mesh, std::vector<double> values);
 
-/// Fails if a row is given twice.
+/// Fails if `rows` contains a row twice; `section` is for the message. O(rows · log rows).
 void check_distinct(const NumberReader& source, std::vector<Index> rows, std::string_view section);
 
-/// `section` is the name without the $: Nodes or ParametricNodes, Elements; in version 1 NOD or NOE, ELM.
+/// Read a section; `section` is its name without the $: Nodes, ParametricNodes or Elements; NOD, NOE or ELM.
 void read_nodes_2(ReadContext& reading, std::string_view section);
 void read_elements_2(ReadContext& reading, std::string_view section);
 void read_entities_4(ReadContext& reading, bool partitioned);
@@ -207,10 +207,10 @@ void read_elements_4(ReadContext& reading);
 void read_view(ReadContext& reading, std::string_view section);
 void read_periodic(ReadContext& reading);
 void read_ghosts(ReadContext& reading);
-/// Gives the arrays of views distinct names, with the step if there are several.
+/// Gives the arrays of views distinct names: "NAME step K" if several views of a kind have the same name.
 void name_views(ReadContext& reading);
 
-/// Returns the cells of every named physical group that has any, as sets.
+/// Returns the named physical groups that have cells, as sets of cells.
 std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata);
 
 /// Returns the first physical group of each cell's entity, 0 for none; empty if no cell has one.
@@ -237,8 +237,8 @@ class NumbersTo {
   }
   void size(std::int64_t value) { binary ? out.binary(value, order) : out.integer(blank(), value); }
   void number(std::int64_t value, bool wide) { wide ? size(value) : int32(value); }
-  /// Writes `of(0)` … `of(count − 1)` as numbers of that type; takes less time than one by one in binary
-  /// files.
+  /// Writes `of(0)` … `of(count − 1)` as numbers of type Number. In binary files this is faster than writing
+  /// them one by one.
   template <class Number, class Of>
   void all(std::size_t count, const Of& of) {
     if (!binary) {
@@ -262,7 +262,7 @@ class NumbersTo {
     if (!binary) out.write("\n");
     at_line_start_ = true;
   }
-  /// Writes a line with a number that is text in binary files too.
+  /// Writes a line with a number as text, also in binary files.
   void text_line(std::int64_t value) { out.print("{}\n", value); }
 
   Out& out;
@@ -278,7 +278,7 @@ class NumbersTo {
 using NumberWriter = NumbersTo<OutputFile>;
 using RowWriter = NumbersTo<Text>;
 
-/// Writes `row(to, i)` for each i, made on all threads.
+/// Writes the output of `row(to, i)` for each i, in order; calls `row` on all threads.
 template <class Row>
 void write_rows(NumberWriter& sink, Index count, const Row& row) {
   meshorder::write_rows(sink.out, count, [&](Text& text, Index i) {
@@ -288,7 +288,7 @@ void write_rows(NumberWriter& sink, Index count, const Row& row) {
   });
 }
 
-/// The input of the writer: a mesh and its layout, read with it or made for a mesh of another format.
+/// The input of the writer: a mesh and its layout, which was read with the mesh or made for it.
 struct WriteContext {
   const Mesh& mesh;
   const Metadata& layout;
@@ -298,14 +298,14 @@ struct WriteContext {
   std::vector<std::int32_t> cell_dimensions;  ///< 4.1: of each cell's entity
   std::vector<std::int32_t> cell_tags;        ///< 4.1: of each cell's entity
   std::vector<std::int32_t> node_entities;    ///< 4.1, $ParametricNodes: dimension and tag for each node
-  std::vector<const DataArray*> placed;       ///< arrays that need no data section
+  std::vector<const DataArray*> placed;       ///< arrays that other sections hold, so that they need no view
   NamedParts parts;                           ///< of the mesh
 
   [[nodiscard]] std::int64_t node_id(Index v) const { return node_ids.empty() ? v + 1 : node_ids[v]; }
   [[nodiscard]] std::int64_t cell_id(Index c) const { return cell_ids.empty() ? c + 1 : cell_ids[c]; }
 };
 
-/// Returns the values of an array of 32-bit integers, 0 where it has none; empty if there is no such array.
+/// Returns an array as 32-bit integers, 0 for items without a value; empty if missing or not convertible.
 std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association);
 
 /// Returns the values of the array kNodeParameters, or nullptr if it is missing or malformed.

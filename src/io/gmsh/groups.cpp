@@ -12,12 +12,12 @@
 #include <set>
 #include <tuple>
 
-// Physical groups and their entities: found in a file's entities, or made for a mesh of another format.
+// Physical groups and their entities: read from a file, or made for a mesh of another format.
 
 namespace meshorder::gmsh {
 namespace {
 
-/// Dimension and tag of each cell's entity, from the arrays of the mesh.
+/// Returns dimension and tag of a cell's entity, from the arrays of the mesh.
 struct CellEntities {
   explicit CellEntities(const Mesh& mesh)
       : tags(integers_of(mesh, kCellEntity, Association::cells)),
@@ -33,7 +33,7 @@ struct CellEntities {
   const Cells& cells;
 };
 
-/// A map lookup by entity that remembers the last one, as neighbouring cells mostly share theirs.
+/// Finds the value of an entity. Remembers the last result, as successive cells mostly have the same entity.
 template <class Value>
 class EntityTable {
  public:
@@ -55,7 +55,7 @@ class EntityTable {
   const Value* value_ = nullptr;
 };
 
-// ---- for a mesh of another format: cells with the same label and in the same sets make an entity
+// ---- for a mesh of another format: cells with the same label and the same sets form an entity
 
 struct Box {
   Point least{};
@@ -88,7 +88,7 @@ struct Groups {
   std::vector<Index> of_cell;
 };
 
-/// Returns the labels if they can be numbers of physical groups; else none, with a note.
+/// Returns the labels if they are valid numbers of physical groups; else none, with a note.
 std::vector<std::int32_t> labels_for_groups(const Mesh& mesh, Notes& notes) {
   const DataArray* array = find_array(mesh, kLabel, Association::cells);
   std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Association::cells);
@@ -123,13 +123,13 @@ Groups groups_by_label(const Mesh& mesh, const std::vector<std::int32_t>& labels
   return result;
 }
 
-/// Splits every group into the cells that are in the set and the others.
+/// Splits each group: its cells in the set become a new group with `physical`; the others stay.
 void split_by_set(Groups& groups, const EntitySet& set, std::int32_t physical) {
-  std::map<Index, Index> inside;  // group, the part of it that is in the set
-  std::set<Index> parts;
+  std::map<Index, Index> inside;  // new group of each group's cells in the set
+  std::set<Index> parts;          // the new groups
   for (const Index c : set.members) {
     const Index group = groups.of_cell[c];
-    if (parts.contains(group)) continue;  // the set names this cell twice
+    if (parts.contains(group)) continue;  // the set has this cell twice
     const auto [found, is_new] = inside.try_emplace(group, index_size(groups.groups));
     if (is_new) {
       Group part = groups.groups[group];
@@ -141,7 +141,7 @@ void split_by_set(Groups& groups, const EntitySet& set, std::int32_t physical) {
   }
 }
 
-/// Gives every group that has cells its tag: the wanted one to the first group, new ones to the others.
+/// Gives each group with cells a tag: the first one that wants a tag gets it, the others get new ones.
 void assign_tags(const Mesh& mesh, Groups& groups) {
   std::array<std::int32_t, 4> last{};
   for (const Group& group : groups.groups) {
@@ -162,8 +162,8 @@ void assign_tags(const Mesh& mesh, Groups& groups) {
   }
 }
 
-/// Returns the entities of the nodes: those that they had in Gmsh, or the first entity of the highest
-/// dimension.
+/// Returns the entity of each node: from the array kNodeEntity if it is valid, adding new ones to `entities`;
+/// else the first entity of the highest dimension.
 std::vector<std::int32_t> entities_of_nodes(const Mesh& mesh, std::map<Entity, Group>& entities,
                                             WriteContext& output) {
   std::vector<std::int32_t> kept = integers_of(mesh, kNodeEntity, Association::vertices);
@@ -214,12 +214,12 @@ std::string names_text(const std::vector<PhysicalName>& names) {
   return text;
 }
 
-/// How many cells have each dimension and label.
+/// Number of cells by dimension and label.
 using LabelCounts = std::map<std::pair<std::int32_t, std::int32_t>, Index>;
 
-/// Finds labels that are the numbers of sets: a reader of Gmsh's files gives a cell the number of its first
-/// group as label, and makes a set of each named group. So a group that comes first for all of its cells is a
-/// set of all cells with its label; others have in addition cells with the labels of such groups.
+/// Finds the labels that are the numbers of sets. In a mesh that came from Gmsh, the label of a cell is its
+/// first physical group, and each named group is a set. If a group is the first one of all its cells, its set
+/// has exactly the cells with its label. Other sets also have cells with labels of such groups.
 class NumbersOfSets {
  public:
   NumbersOfSets(const Mesh& mesh, const std::vector<std::int32_t>& labels)
@@ -236,11 +236,11 @@ class NumbersOfSets {
     }
   }
 
-  /// Returns the label that is the number of a set, 0 if none is.
+  /// Returns the label that is the number of a set, 0 if there is none.
   [[nodiscard]] std::int32_t operator[](std::size_t set) const { return number_[set]; }
 
  private:
-  /// Gives the set the number that it has if `only` cells with that label are in it, or others, too.
+  /// Gives set s its number if it finds one. `only`: all cells of the set must have that label.
   void claim(std::size_t s, bool only) {
     if (number_[s] != 0) return;
     for (const auto& [key, count] : inside_[s]) {
@@ -267,7 +267,7 @@ class NumbersOfSets {
   std::set<std::pair<std::int32_t, std::int32_t>> taken_;
 };
 
-/// Turns the sets of cells into named physical groups, with the labels as numbers where they are theirs.
+/// Turns the sets of cells into named physical groups. Their numbers are labels (see NumbersOfSets) or new.
 std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups,
                                          const std::vector<std::int32_t>& labels, Notes& notes) {
   const NumbersOfSets numbers(mesh, labels);
@@ -295,7 +295,7 @@ std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups,
 }  // namespace
 
 std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata) {
-  // groups of several dimensions with one name are one set
+  // groups of different dimensions with the same name become one set
   std::vector<EntitySet> sets;
   std::map<std::string, Index> set_of_name;
   std::map<Entity, std::vector<Index>> sets_of_group;
@@ -306,7 +306,7 @@ std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata)
   }
   if (sets.empty()) return sets;
 
-  // in version 2 the cells have groups, in version 4 their entities
+  // in version 2 the cells have physical groups, in version 4 the entities have them
   std::map<Entity, std::vector<Index>> sets_of_entity;
   for (const auto& [entity, physicals] : metadata.physicals) {
     std::set<Index> of_entity;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-// Sections that tie nodes and elements to each other by their numbers: $Periodic and $GhostElements.
+// Sections that refer to nodes and elements by number: $Periodic and $GhostElements.
 
 namespace meshorder::gmsh {
 namespace {
@@ -16,12 +16,12 @@ const EntitySet* find_set(const Mesh& mesh, const std::string& name) {
   return found == mesh.sets.end() ? nullptr : &*found;
 }
 
-constexpr std::int64_t kAffine = -1;  // in binary files of 4.0, before the coefficients
+constexpr std::int64_t kAffine = -1;  // precedes the coefficients in binary files of 4.0
 
 bool has_affine_line(const Metadata& metadata) { return metadata.is_version_2() || metadata.is_version_40(); }
 
-/// Reads the affine map and the number of pairs. In versions 2.2 and 4.0 an optional line "Affine …" has the
-/// 16 numbers, in 4.1 a count comes before them.
+/// Reads the affine map into `link` and returns the number of pairs. In versions 2.2 and 4.0 an optional line
+/// "Affine …" has the 16 coefficients; in 4.1 their number precedes them.
 Index read_affine(ReadContext& reading, PeriodicLink& link) {
   NumberReader& source = reading.source;
   constexpr std::string_view kCount = "the number of periodic nodes";
@@ -42,7 +42,7 @@ Index read_affine(ReadContext& reading, PeriodicLink& link) {
   return source.count(kCount, 4, reading.metadata.has_wide_numbers() ? 16 : 8);
 }
 
-/// Reads pairs of nodes; returns how many name a node that the file lacks, as in meshes saved in part.
+/// Reads pairs of nodes as two sets. Returns the number of pairs that name a missing node: they are left out.
 Index read_pairs(ReadContext& reading, PeriodicLink& link, Index count) {
   const std::string name = "gmsh:periodic " + std::to_string(link.dimension) + " " + std::to_string(link.tag);
   EntitySet nodes{name, Association::vertices, {}};
@@ -69,7 +69,7 @@ Index read_pairs(ReadContext& reading, PeriodicLink& link, Index count) {
 
 void read_periodic(ReadContext& reading) {
   NumberReader& source = reading.source;
-  // version 2.2 writes this section as text in binary files, too
+  // in version 2.2 this section is text in binary files as well
   const bool binary = source.binary;
   if (reading.metadata.is_version_2()) source.binary = false;
   const Index links = read_count(reading, "the number of periodic entities", 8, 20);
@@ -118,7 +118,7 @@ void write_periodic(NumberWriter& sink, const WriteContext& output) {
     }
     for (const double value : link.affine) to.real(value);
     if (!affine_line || !link.affine.empty()) to.end_line();
-    // the sets may have been taken out of the mesh
+    // the sets may have been removed from the mesh
     const EntitySet* nodes = find_set(output.mesh, link.nodes);
     const EntitySet* masters = find_set(output.mesh, link.master_nodes);
     const Index count =

@@ -9,9 +9,9 @@
 #include <set>
 #include <span>
 
-// Specification: https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format; 4.0 is described in the manual of
-// Gmsh 4.0, and what its binary files hold in GModelIO_MSH4.cpp there. This file walks the sections; v2.cpp
-// and v4.cpp read and write nodes and elements, data.cpp and links.cpp their data and links, groups.cpp makes
+// Specification: https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format; for 4.0 the manual of Gmsh 4.0, and
+// for its binary files GModelIO_MSH4.cpp of that version. This file reads section after section; v2.cpp and
+// v4.cpp read and write nodes and elements, data.cpp and links.cpp their data and links; groups.cpp makes
 // groups and entities.
 
 namespace meshorder::gmsh {
@@ -19,8 +19,8 @@ namespace {
 
 const std::set<std::string_view> kDataSections{"NodeData", "ElementData", "ElementNodeData"};
 
-/// Sections without numbers of nodes or elements, kept verbatim. $Parametrizations has triangles over nodes
-/// of its own.
+/// Sections without numbers of nodes or elements, kept verbatim. The triangles in $Parametrizations refer to
+/// nodes in the same section.
 const std::set<std::string_view> kVerbatimSections{"Comment", "Comments", "InterpolationScheme",
                                                    "Parametrizations"};
 
@@ -94,8 +94,8 @@ void read_names(ReadContext& reading) {
       name.dimension = static_cast<std::int32_t>(source.text_integer("the dimension of a physical group"));
       name.tag = static_cast<std::int32_t>(source.text_integer("the tag of a physical group"));
       const std::string_view text = source.scanner.rest_of_line();
-      // as for Gmsh, the second quote ends the name; the text after it, by which libMesh marks blocks, is
-      // kept
+      // as in Gmsh, the second quote ends the name; libMesh marks blocks by the text after it, which is kept
+      // in the section
       const std::size_t end = text.find('"', 1);
       if (!text.starts_with('"') || end == std::string_view::npos) {
         source.fail("the name of the physical group " + std::to_string(name.tag) + " has no quotes",
@@ -124,7 +124,7 @@ void read_entities(ReadContext& reading, const std::string& section) {
   reading.metadata.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
 }
 
-/// Returns whether a word of the text is a number.
+/// Returns whether any word of the text is a number.
 bool has_numbers(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r\n,;:";
   for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string_view::npos;) {
@@ -177,7 +177,7 @@ void read_periodic_or_ghosts(ReadContext& reading, SectionKind kind) {
   kind == SectionKind::periodic ? read_periodic(reading) : read_ghosts(reading);
 }
 
-/// The kinds of section that a file has at most once.
+/// A section that a file has at most once; it must follow a section of the kind `after`.
 struct Single {
   std::string_view name;
   SectionKind kind;
@@ -217,7 +217,7 @@ void read_single(ReadContext& reading, const Single& single) {
 void read_section(ReadContext& reading, const std::string& name) {
   NumberReader& source = reading.source;
   if ((name == "NOD" || name == "NOE") && reading.metadata.sections.empty()) {
-    reading.metadata.version = 1;  // which has no $MeshFormat
+    reading.metadata.version = 1;  // version 1 has no $MeshFormat
     reading.metadata.sections.push_back({SectionKind::format, "", "", 0});
   }
   const bool has_format = reading.metadata.has(SectionKind::format);

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <array>
 
-// For the numbers see https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format and, for high orders, in
+// For the numbers see https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format and, for high orders,
 // GmshDefines.h of Gmsh's sources. Left out are types without a fixed number of nodes (polygons 34,
-// polyhedra 35, 67–70 of cut meshes, 133–136), of order 0 (84–89, 132) and trihedra (140).
+// polyhedra 35, 67–70 of cut meshes, 133–136), types of order 0 (84–89, 132) and trihedra (140).
 
 namespace meshorder::gmsh {
 namespace {
 
-// where two types share shape and count, the first one found is the one that `find_type(shape, nodes)` gives
+// if two types have the same shape and number of nodes, `find_type(shape, nodes)` returns the first
 constexpr auto kTypes = std::to_array<ElementType>({
     {1, Shape::line, 2},           {2, Shape::triangle, 3},
     {3, Shape::quad, 4},           {4, Shape::tetrahedron, 4},
@@ -76,7 +76,7 @@ constexpr auto kTypes = std::to_array<ElementType>({
     {139, Shape::tetrahedron, 5},                              // MINI element
 });
 
-// Gmsh lists a cell's edges by their lower and then their higher corner, VTK face by face
+// Gmsh sorts the edges of a cell by their lower, then by their higher corner; VTK lists them face by face
 constexpr std::array kTetrahedron10{0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 constexpr std::array kPyramid14{0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12, 13};
 constexpr std::array kWedge18{0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16};
@@ -100,7 +100,7 @@ const ElementType* find_type(Shape shape, int nodes) {
 
 std::span<const int> vtk_order(Shape shape, int nodes) {
   if (shape == Shape::tetrahedron && nodes == 10) return kTetrahedron10;
-  // the serendipity cells are the complete ones without the nodes of faces and interior, which come last
+  // serendipity cells lack the nodes on faces and inside, which come last in complete cells
   if (shape == Shape::pyramid && (nodes == 13 || nodes == 14)) return std::span(kPyramid14).first(nodes);
   if (shape == Shape::wedge && (nodes == 15 || nodes == 18)) return std::span(kWedge18).first(nodes);
   if (shape == Shape::hexahedron && (nodes == 20 || nodes == 27))

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
-// Versions 1 to 2.2: one list of nodes, one list of elements, each with tags of its own: first the physical
+// Versions 1 to 2.2: one list of nodes and one list of elements. Each element has its own tags: the physical
 // group, then the entity, then partitions. In version 1, which is always text, an element has the first two
-// tags and the number of its nodes.
+// tags, then the number of its nodes.
 
 namespace meshorder::gmsh {
 namespace {
@@ -31,8 +31,8 @@ struct Element {
   Index tag_count;
 };
 
-/// Returns whether there are tags that are numbers of elements: parents and domains of cut elements, after
-/// the partitions.
+/// Returns whether tags follow the partitions: these are numbers of elements, the parents and domains of cut
+/// elements.
 bool has_element_tags(double version, std::span<const std::int32_t> tags) {
   return tags.size() >
          (version < 2.15 || tags.size() < 4 ? 3 : 3 + static_cast<std::size_t>(std::max(0, tags[2])));
@@ -45,7 +45,7 @@ void refuse_element_tags(const NumberReader& source, double version, std::span<c
   }
 }
 
-/// Reads how many nodes an element of version 1 has.
+/// Reads the number of nodes of an element of version 1; fails unless its type has as many.
 void check_node_count(NumberReader& source, const Element& element) {
   const std::int32_t count = source.int32("an element's number of nodes");
   if (count != element.type->nodes) {
@@ -67,8 +67,8 @@ void read_element_body(ReadContext& reading, const Element& element, Tags& tags,
   add_cell(reading.mesh, *element.type, nodes);
 }
 
-/// Reads elements of a text that are like the last one, of its type and with as many tags, each on a line of
-/// its own, on all threads. Returns how many; they are added to `tags`, `ids` and the mesh.
+/// Reads at most `most` elements of a text on all threads, up to the first that differs from the last one in
+/// type or number of tags. Adds them to `tags`, `ids` and the mesh; returns how many.
 Index read_alike(ReadContext& reading, const Element& last, Index most, Tags& tags,
                  std::vector<std::int64_t>& ids) {
   const auto tag_count = static_cast<std::size_t>(last.tag_count);
@@ -113,11 +113,11 @@ Index read_alike(ReadContext& reading, const Element& last, Index most, Tags& ta
   return read;
 }
 
-/// Tries to read elements that are like the last one: after each time that they were more at once, and after
-/// one in vain only when more have been read one after another, so that mixed elements cost little.
+/// Decides when to call `read_alike`, and for how many elements. After a success, it tries more; after each
+/// failure, it waits until more elements have been read one by one, so that mixed elements cost little.
 class Alikes {
  public:
-  /// Takes the next elements as `read_alike`, or none.
+  /// Reads the next elements by `read_alike`, or none.
   Index read(ReadContext& reading, const Element& last, Index left, Tags& tags,
              std::vector<std::int64_t>& ids) {
     if (pause_ > 0) {
@@ -148,7 +148,7 @@ Index read_tag_count(NumberReader& source) {
                               source.binary ? 4 : 2);
 }
 
-/// Tag number `first` … of all cells as an array; cells with fewer have 0.
+/// Returns the tags first, first + 1, … of all cells as an array of `components`; missing tags are 0.
 DataArray tags_as_array(const Tags& tags, std::string_view name, std::size_t first, std::size_t components) {
   std::vector<std::int32_t> values(tags.size() * components, 0);
   for (Index c = 0; c < tags.size(); ++c) {
@@ -182,10 +182,10 @@ void keep_tags(const NumberReader& source, Mesh& mesh, const Tags& tags) {
   }
 }
 
-/// Parametric coordinates of a node on an entity of that dimension, in $ParametricNodes.
+/// Returns how many parametric coordinates a node in $ParametricNodes has on an entity of that dimension.
 int parameters_2(std::int32_t dimension) { return dimension == 1 || dimension == 2 ? dimension : 0; }
 
-/// The same for writing: how many tags a cell has, and each of them.
+/// The tags of the cells of a mesh, from its arrays.
 class TagsOfMesh {
  public:
   explicit TagsOfMesh(const Mesh& mesh, bool labels_are_tags)
@@ -268,7 +268,7 @@ void read_elements_2(ReadContext& reading, std::string_view section) {
   ids.reserve(count);
   types.reserve(count);
   while (index_size(ids) < count) {
-    // text says type and tags for each element, binary for a run of them
+    // text gives type and number of tags for each element, binary for a run of elements
     Index run = 1;
     Element element{};
     if (!source.binary) element.id = source.int32("the number of an element");

@@ -11,9 +11,9 @@
 #include <set>
 #include <span>
 
-// Versions 4.0 and 4.1: nodes and elements are in blocks, each of which belongs to an entity of the geometry;
-// entities have physical groups. An entity may have several blocks. In 4.0 an entity's tag comes before its
-// dimension, a node's number before its coordinates, and numbers in binary files have 32 bits.
+// Versions 4.0 and 4.1: nodes and elements are in blocks. A block belongs to an entity of the geometry, which
+// may have several blocks; entities have physical groups. In 4.0 an entity's tag precedes its dimension, a
+// node's number precedes its coordinates, and numbers of nodes and elements in binary files have 32 bits.
 
 namespace meshorder::gmsh {
 namespace {
@@ -37,7 +37,7 @@ std::int32_t read_dimension(NumberReader& source) {
   return dimension;
 }
 
-/// Reads dimension and tag of a block's entity.
+/// Reads the dimension and tag of a block's entity.
 Entity read_entity(ReadContext& reading) {
   NumberReader& source = reading.source;
   if (!reading.metadata.is_version_40()) {
@@ -48,18 +48,18 @@ Entity read_entity(ReadContext& reading) {
   return {read_dimension(source), tag};
 }
 
-/// Returns how many parametric coordinates a node of a parametric block has.
+/// Returns how many parametric coordinates a node has in a parametric block of that dimension.
 int parameters_4(const Metadata& metadata, std::int32_t dimension) {
   return metadata.is_version_40() && dimension == 3 ? 0 : dimension;
 }
 
-/// Reads records of a text as `read_regular_records`; none of a binary file.
+/// Reads records as `read_regular_records` if the file is text; returns 0 for a binary file.
 template <class Read>
 Index read_regular(NumberReader& source, Index count, const Read& read) {
   return source.binary ? 0 : read_regular_records(source.scanner, count, read);
 }
 
-/// Reads one block of nodes after its head; `parameters` gets four numbers for each.
+/// Reads one block of nodes after its head. Appends to `parameters` four numbers for each parametric node.
 void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
                      std::vector<std::int64_t>& ids, std::vector<double>& parameters) {
   NumberReader& source = reading.source;
@@ -90,7 +90,7 @@ void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
     Point& point = reading.mesh.points.emplace_back();
     for (double& x : point) x = source.finite("a coordinate");
     if (!parametric) continue;
-    // nodes before, of which none had any
+    // zeros for earlier nodes without parameters
     parameters.resize(4 * (reading.mesh.points.size() - 1), 0.0);
     parameters.push_back(1);
     for (int k = 0; k < 3; ++k) {
@@ -137,7 +137,7 @@ void read_element_block(ReadContext& reading, const ElementType& type, Index cou
   }
 }
 
-/// The heading of a section of blocks.
+/// The head of a section of blocks: the number of blocks, and of nodes or elements in all of them.
 struct Head {
   Index blocks;
   Index count;
@@ -150,7 +150,7 @@ Head read_head(ReadContext& reading, std::string_view what, std::int64_t text_by
   head.blocks = source.count("the number of blocks", 8, 20);
   head.count = source.count("the number of " + std::string(what), text_bytes, binary_bytes);
   if (reading.metadata.is_version_40()) return head;
-  // the smallest and largest number, on which Gmsh itself does not rely
+  // skip the smallest and largest number, which Gmsh itself does not use
   (void)source.int64("the smallest number of " + std::string(what));
   (void)source.int64("the largest number of " + std::string(what));
   return head;
@@ -163,7 +163,7 @@ Head read_head(ReadContext& reading, std::string_view what, std::int64_t text_by
               "the counts must agree");
 }
 
-/// Returns the smallest and largest number, 0 if there are none.
+/// Returns the smallest and largest number; both are 0 if there are none.
 std::pair<std::int64_t, std::int64_t> range_of(const std::vector<std::int64_t>& ids, Index count) {
   if (count == 0) return {0, 0};
   if (ids.empty()) return {1, count};
@@ -192,7 +192,7 @@ void write_block_head(NumberWriter& sink, const WriteContext& output, const Empt
   sink.end_line();
 }
 
-/// Returns the beginnings of runs of equal heads, and the end of the last.
+/// Returns the starts of runs of equal heads, then `count`. A run also ends before i if `breaks(i)`.
 template <class Head, class Breaks>
 std::vector<Index> runs(Index count, const Head& head, const Breaks& breaks) {
   std::vector<Index> starts;
@@ -230,7 +230,7 @@ void read_entities_4(ReadContext& reading, bool partitioned) {
       skip_reals(source, dimension == 0 && !version_40 ? 3 : 6, "an entity's extent");
       auto physicals = read_ints(source, "an entity's physical groups");
       if (dimension > 0) (void)read_ints(source, "an entity's boundary");
-      // the sign is an orientation
+      // the sign of a physical group is an orientation
       for (std::int32_t& physical : physicals) {
         if (physical < 0 && physical > std::numeric_limits<std::int32_t>::min()) physical = -physical;
       }
@@ -298,7 +298,7 @@ void read_elements_4(ReadContext& reading) {
       reading.metadata.empty_element_blocks.push_back({dimension, tag, type.number});
       continue;
     }
-    // a block that goes on with the kind of the one before is part of it
+    // successive blocks of the same kind become one block
     const EmptyBlock kind{dimension, tag, type.number};
     if (kind != last) {
       starts.push_back(index_size(ids));
@@ -315,7 +315,7 @@ void read_elements_4(ReadContext& reading) {
   reading.elements = number_ids(source, ids, "element");
   if (!reading.elements.runs_from(1)) mesh.cell_ids = std::move(ids);
 
-  // blocks that repeat (a converted mesh, whose order matters more than its blocks) do not bind their cells
+  // if a kind has several blocks, as in a converted mesh, order matters more than blocks: do not bind cells
   if (!repeated && starts.size() > 1) mesh.cell_blocks = std::move(starts);
   bool own = true;
   for (Index c = 0; c < mesh.cell_count(); ++c) own = own && dimensions[c] == dimension(mesh.cells.shapes[c]);
@@ -334,7 +334,7 @@ void write_nodes_4(NumberWriter& sink, const WriteContext& output) {
             parameters && (*parameters)[2 * at] != 0 ? 1 : 0};
   };
 
-  // successive nodes of one entity make a block, which keeps the order of the mesh
+  // successive nodes of one entity form a block, so that the order of the mesh is kept
   const auto write_point = [&](RowWriter& to, const EmptyBlock& block, Index v) {
     to.all(mesh.points[v]);
     const int given = block[2] == 1 ? parameters_4(output.layout, block[0]) : 0;

@@ -12,7 +12,7 @@
 #include <set>
 #include <span>
 
-// Writes the sections of a file; reader.cpp names the specification.
+// Writes the sections of a file. See reader.cpp for the specification.
 
 namespace meshorder {
 namespace gmsh {
@@ -20,7 +20,7 @@ namespace {
 
 bool holds(const Mesh& /*mesh*/, Shape shape, int nodes) { return find_type(shape, nodes) != nullptr; }
 
-/// Returns the type of every cell.
+/// Returns the type of each cell; the array kCellType decides between types of the same shape and count.
 std::vector<const ElementType*> types_of_cells(const Mesh& mesh) {
   const std::vector<std::int32_t> numbers = integers_of(mesh, kCellType, Association::cells);
   std::vector<const ElementType*> types;
@@ -39,7 +39,7 @@ std::vector<const ElementType*> types_of_cells(const Mesh& mesh) {
   return types;
 }
 
-/// Returns the ids of another format if Gmsh allows them: positive and distinct; else none, with a note.
+/// Returns the ids of another format if they are valid in Gmsh (positive, distinct); else none, with a note.
 std::vector<std::int64_t> usable_ids(const std::vector<std::int64_t>& ids, std::string_view what,
                                      Notes& notes) {
   std::vector<std::int64_t> sorted = ids;
@@ -67,7 +67,7 @@ bool still_fits(const Mesh& mesh, const Metadata& layout) {
          integers_of(mesh, kCellEntity, Association::cells).size() == mesh.cells.shapes.size();
 }
 
-/// Takes ids, entities and tags from a mesh that came from a Gmsh file.
+/// Fills `output` with the ids, entities and tags of a mesh that came from a Gmsh file.
 void take_layout(const Metadata& layout, WriteContext& output) {
   const Mesh& mesh = output.mesh;
   const auto place = [&](std::string_view name, Association association) {
@@ -101,7 +101,7 @@ void take_layout(const Metadata& layout, WriteContext& output) {
   place(kNodeEntity, Association::vertices);
   place(kNodeParameters, Association::vertices);
   if (layout.has(SectionKind::ghosts)) place(kCellGhosts, Association::cells);
-  // labels that were changed after reading are no longer those of the entities: they become data
+  // labels that changed after reading differ from the groups of the entities, so they are written as data
   const std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Association::cells);
   if (!labels.empty() && labels == labels_of_entities(mesh, layout)) place(kLabel, Association::cells);
 }
@@ -147,7 +147,7 @@ void write_format(NumberWriter& sink, const Metadata& layout) {
 }
 
 void write_section(NumberWriter& sink, const WriteContext& output, const Section& section) {
-  if (section.name.empty()) return;  // the format of version 1
+  if (section.name.empty()) return;  // version 1 has no section of the format
   const bool version_2 = output.layout.is_version_2();
   sink.out.print("${}\n", section.name);
   switch (section.kind) {
@@ -213,7 +213,7 @@ std::vector<std::string> Metadata::contents() const {
   };
   for (const Section& section : sections) {
     if (section.kind != SectionKind::verbatim) continue;
-    // the groups themselves are labels and sets
+    // other formats keep the groups as labels and sets, but not their numbers
     const bool has_names = section.name == "PhysicalNames";
     add(has_names ? "the numbers of named physical groups" : "Gmsh's $" + section.name);
   }
