@@ -20,8 +20,8 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);
   const Handle space(H5Aget_space(attribute.id()), H5Sclose);
   if (!type.is_open() || !space.is_open() || H5Tdetect_class(type.id(), H5T_REFERENCE) > 0) return;
-  // what needs no conversion gets none: the library trusts the bit fields of numbers, which a damaged file
-  // may have put anywhere
+  // converts only what needs it: the library does not check the bit fields of number types, which a damaged
+  // file may place anywhere
   const bool varies = H5Tdetect_class(type.id(), H5T_VLEN) > 0 || H5Tis_variable_str(type.id()) > 0;
   const Handle memory(varies ? H5Tget_native_type(type.id(), H5T_DIR_DEFAULT) : H5Tcopy(type.id()), H5Tclose);
   if (!memory.is_open()) return;
@@ -35,7 +35,7 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
   if (varies) H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, bytes.data());
 }
 
-/// Returns the order in which the links of a group were made if it keeps that, else that of their names.
+/// Returns the order of a group's links: that of their creation if the group records it, else by name.
 H5_index_t order_of(hid_t group) {
   const Handle creation(H5Gget_create_plist(group), H5Pclose);
   unsigned flags = 0;
@@ -43,8 +43,8 @@ H5_index_t order_of(hid_t group) {
   return (flags & H5P_CRT_ORDER_INDEXED) != 0 ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME;
 }
 
-/// Returns how a copy of a group is made: one that keeps the order of its links if the group does. The list
-/// of the group itself would do harm, as it has the addresses of its links in the old file.
+/// Returns the creation properties for a copy of a group, which keeps the order of links if the group does.
+/// The group's own properties cannot be used: they hold the addresses of its links in the old file.
 Handle creation_of_copy(hid_t group) {
   const Handle old(H5Gget_create_plist(group), H5Pclose);
   Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
@@ -69,14 +69,14 @@ class CopyWithoutValues {
       copy_link(from, to, name, fmt::format("{}/{}", path, name));
   }
 
-  /// Returns the path of a group whose attributes could not be copied; an empty text without.
+  /// Returns the path of a group whose attributes could not be copied; an empty text if there is none.
   [[nodiscard]] const std::string& damaged() const noexcept { return damaged_; }
 
  private:
   void copy_link(hid_t from, hid_t to, const std::string& name, const std::string& path) {
     H5L_info_t link;
     if (H5Lget_info(from, name.c_str(), &link, H5P_DEFAULT) < 0) return;
-    // what will change is there for each of its paths
+    // an object that will change gets a copy for each of its listed paths
     const bool leads_to_listed = paths_.contains(path) || has_listed(path);
     const bool is_followed = link.type == H5L_TYPE_HARD || (link.type == H5L_TYPE_SOFT && leads_to_listed);
     if (!is_followed) return copy_reference(from, to, name, link);
@@ -128,7 +128,7 @@ class CopyWithoutValues {
   const std::set<std::string>& paths_;
   hid_t target_;
   std::string damaged_;
-  std::map<haddr_t, std::string> first_paths_;  // in the copy, of objects by their place in the old file
+  std::map<haddr_t, std::string> first_paths_;  // paths in the copy, by address in the old file
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace meshorder::hdf5 {
 
-/// A handle of libhdf5, closed at the end of its life. Negative: none, as the library returns for a failure.
+/// A handle of libhdf5; the destructor closes it. A negative id means none, as after a call that failed.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -27,7 +27,7 @@ class Handle {
   [[nodiscard]] hid_t id() const noexcept { return id_; }
   [[nodiscard]] bool is_open() const noexcept { return id_ >= 0; }
 
-  /// Closes it now. Returns a negative number if that fails; then nothing closes it any more.
+  /// Closes the handle now. Returns a negative number if that fails; closing is not tried again.
   [[nodiscard]] herr_t close();
 
  private:

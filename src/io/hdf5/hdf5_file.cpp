@@ -16,11 +16,11 @@
 namespace meshorder::hdf5 {
 namespace {
 
-constexpr std::size_t kCoreStep = std::size_t{1} << 20;  // by which a file in memory grows, in bytes
+constexpr std::size_t kCoreStep = std::size_t{1} << 20;  // growth of a file in memory, in bytes
 
 Handle link_access() {
   Handle access(H5Pcreate(H5P_LINK_ACCESS), H5Pclose);
-  // links to other files are not followed: the XML says where the data are
+  // links to other files are not followed
   const auto refuse = [](const char* /*file*/, const char* /*group*/, const char* /*target*/,
                          const char* /*object*/, unsigned* /*flags*/, hid_t /*access*/,
                          void* /*data*/) -> herr_t { return -1; };
@@ -37,7 +37,7 @@ Handle dataset_access() {
   return access;
 }
 
-/// Returns the first part of a path, up to a link to another file; an empty text without one.
+/// Returns a path up to its first link to another file; an empty text if it has no such link.
 std::string external_link_on(hid_t file, const std::string& path) {
   const Handle access = link_access();
   for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
@@ -72,7 +72,7 @@ Handle memory_access(std::string_view bytes) {
   // otherwise the library would make a file on the disk
   if (H5Pset_fapl_core(access.id(), kCoreStep, false) < 0) throw std::bad_alloc();
   if (!bytes.empty()) {
-    std::string copy(bytes);  // the library copies it once more, and wants to be allowed to write
+    std::string copy(bytes);  // the library copies it again, but takes no pointer to const
     if (H5Pset_file_image(access.id(), copy.data(), copy.size()) < 0) throw std::bad_alloc();
   }
   return access;
@@ -101,7 +101,7 @@ void File::claim(const std::string& path, std::uint64_t bytes) const {
 
 File File::open(const FilePath& path) {
   const Session session;
-  // not those of pipes, which HDF5 would wait for, and of devices, which are refused
+  // HDF5 would wait for a pipe; `read` reads pipes and refuses devices
   if (path.store() != nullptr || !path.is_file()) return in_memory(path.read(), path.string());
   const InputFile file = path.open();
   count_file(path, file.size());
@@ -133,7 +133,7 @@ File File::change(const std::filesystem::path& path, std::string name) {
 File File::in_memory(std::string_view bytes, std::string name) {
   const Session session;
   const Handle access = memory_access(bytes);
-  // the library takes two files of one name for the same
+  // the library takes two files with the same name for one file
   static std::uint64_t number = 0;
   const std::string label = fmt::format("meshorder-memory-{}", number++);
   Handle file(bytes.empty() ? H5Fcreate(label.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id())

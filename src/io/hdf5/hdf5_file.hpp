@@ -28,8 +28,8 @@ namespace meshorder::hdf5 {
 
 /// Size and number type of a dataset.
 struct DatasetInfo {
-  std::vector<std::uint64_t> shape;  ///< one row of values: {n}; none: a single value
-  std::size_t alternative = 0;       ///< of Values
+  std::vector<std::uint64_t> shape;  ///< {n} for a list of n values; empty for a single value
+  std::size_t alternative = 0;       ///< number type, as an alternative of Values
 
   /// Returns the number of values.
   [[nodiscard]] std::uint64_t size() const;
@@ -44,7 +44,7 @@ class File {
   static File open(const std::filesystem::path& path, std::string name);
   /// Opens a file on disk to change it. `name` is for messages.
   static File change(const std::filesystem::path& path, std::string name);
-  /// Opens a copy of a file's bytes to change it in memory. No bytes: an empty file.
+  /// Opens a copy of a file's bytes in memory, to change it; an empty file if there are no bytes.
   static File in_memory(std::string_view bytes, std::string name);
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
@@ -54,15 +54,15 @@ class File {
   /// Returns the size and number type of a dataset of numbers whose values are in this file. Refuses one that
   /// claims more values than its bytes can hold.
   [[nodiscard]] DatasetInfo info(const std::string& path) const;
-  /// Returns the number type of a dataset as an alternative of Values, whether its values are there or not;
-  /// nothing without a dataset of plain numbers.
+  /// Returns the number type of a dataset, as an alternative of Values, even if its values are missing;
+  /// nothing if there is no dataset of plain numbers.
   [[nodiscard]] std::optional<std::size_t> number_type(const std::string& path) const;
   /// Returns the values of a dataset that `info` accepts, row by row, in its own number type.
   [[nodiscard]] Values read(const std::string& path) const;
   /// Returns whole numbers as indices; one out of range becomes the limit that it exceeds, which is no index.
   [[nodiscard]] std::vector<Index> read_indices(const std::string& path) const;
-  /// Returns the byte of the file where the values of a dataset that `info` accepts begin, one after another
-  /// in this machine's order of bytes, 0 for a dataset without values; nothing if they are not stored so.
+  /// Returns the byte of the file where the values of a dataset that `info` accepts begin; 0 if it has none;
+  /// nothing unless they are contiguous, in this machine's byte order.
   [[nodiscard]] std::optional<std::uint64_t> place_of_values(const std::string& path) const;
   /// Returns the paths of all datasets with at least one dimension, and the length of their first.
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> datasets() const;
@@ -71,8 +71,8 @@ class File {
   [[nodiscard]] bool has(const std::string& path) const;
   /// Returns the names in a group, ascending; none if there is no such group.
   [[nodiscard]] std::vector<std::string> names(const std::string& group) const;
-  /// Returns the texts of a dataset whose rows are arrays of characters (at most 1,024), without the blanks
-  /// and zero bytes at their ends, or texts of any length.
+  /// Returns the texts of a dataset. Its rows are texts of any length, or arrays of at most 1,024 characters;
+  /// of arrays, blanks and zero bytes at the end are left out.
   [[nodiscard]] std::vector<std::string> read_texts(const std::string& path) const;
   /// Returns whether there is a dataset that `read_texts` understands.
   [[nodiscard]] bool has_texts(const std::string& path) const;
@@ -97,17 +97,17 @@ class File {
                    char filling = '\0');
   /// Makes a dataset of texts of any length, in ASCII by its type, whatever their characters are.
   void write_strings(const std::string& path, std::span<const std::string> texts);
-  /// Makes a dataset of numbers of a type, as an alternative of Values, with room in the file that is not
-  /// written to.
+  /// Makes a dataset of numbers, whose type is an alternative of Values. Allocates room in the file without
+  /// writing values.
   void make_room(const std::string& path, std::size_t alternative, const std::vector<std::uint64_t>& shape);
-  /// Allots room in the file to the values of a dataset that exists without them; only the first value is
-  /// written.
+  /// Allocates room in the file for the values of a dataset that has none yet. Writes only the first value,
+  /// as zero.
   void give_room(const std::string& path);
-  /// Makes a group, and those around it, unless it exists. Its links are in the order in which they are
-  /// made, or in that of their names.
+  /// Order of the links in a group that `make_group` makes: that of their creation, or by name. `make_group`
+  /// makes a group, and its parents, unless the group exists.
   enum class LinkOrder : std::uint8_t { made, names };
   void make_group(const std::string& path, LinkOrder order = LinkOrder::made);
-  /// Gives a group or a dataset an attribute. A whole number keeps the number type that the attribute has.
+  /// Sets an attribute of a group or a dataset. A single whole number keeps the number type of the old one.
   void set_attribute(const std::string& path, const std::string& name, std::int64_t value);
   void set_attribute(const std::string& path, const std::string& name, double value);
   void set_attribute(const std::string& path, const std::string& name, const std::string& value);
@@ -117,10 +117,10 @@ class File {
   /// Removes a group or a dataset if it is there.
   void remove(const std::string& path);
 
-  /// Returns the bytes of a copy of this file in which these datasets have their types, attributes, chunks
-  /// and filters, but no values; a dataset that several of the paths lead to becomes one for each of
-  /// them. Paths that end in "/" are those of groups to which something will be added; such a group, too,
-  /// becomes one for each of its paths. Everything else is copied.
+  /// Returns the bytes of a copy of this file in which the datasets at `paths` keep their types, attributes,
+  /// chunks and filters, but have no values. A path that ends in "/" is that of a group to which something
+  /// will be added. If several of the paths lead to one dataset or group, the copy has one for each path.
+  /// Everything else is copied.
   [[nodiscard]] std::string without_values(const std::set<std::string>& paths) const;
   /// Returns the bytes of a file in memory.
   [[nodiscard]] std::string bytes() const;
@@ -151,8 +151,8 @@ class File {
 /// Returns the path with one slash before each part and none at its end.
 std::string normal_path(std::string_view path);
 
-/// Writes an HDF5 file: `fill` adds to a file that starts as `bytes`, in memory for a path in a store,
-/// else beside the path. Then puts it in place. Throws as OutputFile and File.
+/// Writes an HDF5 file: opens `bytes` as a file (in memory for a path in a store, else beside the path),
+/// calls `fill` to change it, and puts it in place. Throws as OutputFile and File.
 void write_from(const FilePath& path, const std::string& bytes, const std::function<void(File&)>& fill);
 
 }  // namespace meshorder::hdf5

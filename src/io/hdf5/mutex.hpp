@@ -8,12 +8,12 @@ namespace meshorder::hdf5 {
 
 using LibraryLock = std::unique_lock<std::recursive_mutex>;
 
-/// Called once, by the first thread that enters the library, before it does; set before.
+/// Function that the first thread calls once, just before it enters the library; to be set before that.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process, as the library's state
 inline void (*at_first_entry)() = nullptr;
 
-/// Returns what a thread holds while it is in libhdf5, or in libnetcdf, which calls it: neither may be
-/// entered by two threads.
+/// Returns the lock that a thread must hold while it is in libhdf5, or in libnetcdf, which calls libhdf5: two
+/// threads must not be in them at the same time.
 [[nodiscard]] inline LibraryLock enter_library() {
   static std::recursive_mutex mutex;
   LibraryLock lock(mutex);

@@ -16,7 +16,7 @@ std::array<hid_t, 10> native_types() {
 }
 
 std::size_t alternative_of(hid_t type) {
-  // the library trusts the bit fields of others, which a damaged file may have put anywhere
+  // no other types: the library does not check their bit fields, which a damaged file may place anywhere
   const std::array<std::array<hid_t, 2>, 10> known{{{H5T_IEEE_F64LE, H5T_IEEE_F64BE},
                                                     {H5T_IEEE_F32LE, H5T_IEEE_F32BE},
                                                     {H5T_STD_I8LE, H5T_STD_I8BE},

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// What the functions of File have in common. To be called in a Session.
+// Functions that several parts of File use. To be called in a Session.
 
 #include "io/hdf5/handle.hpp"
 #include "io/hdf5/library.hpp"
@@ -21,31 +21,31 @@ std::array<hid_t, 10> native_types();
 /// Returns the alternative of Values for the usual number types, in either byte order; 10 for all others.
 std::size_t alternative_of(hid_t type);
 
-/// Returns the most bytes that the values of a dataset may take: no filter of HDF5 makes more than some
-/// thousand bytes of one.
+/// Returns an upper bound on the bytes of a dataset's values. In a dataset of chunks, which filters may have
+/// compressed, each stored byte counts as 4096.
 std::uint64_t most_bytes(hid_t dataset);
 
-/// Returns whether the values of a dataset are in files of their own, or those of datasets of other files.
+/// Returns whether the values of a dataset are in external files, or in other datasets (a virtual dataset).
 bool has_values_elsewhere(hid_t dataset);
 
-/// Sets that a dataset does not hold when it was last changed: the same mesh is the same bytes at any time.
+/// Makes a dataset store no times of change, so that the same mesh gives the same bytes at any time.
 void forget_times(const Handle& creation);
 
-/// Returns the names in a group, in the order of the names or of the creation of links. The library's own
-/// sorting trusts what a damaged group says of its size.
+/// Returns the names in a group, sorted by name or by the creation of links. Sorts them itself, because the
+/// library's sorting trusts the size that a damaged group claims.
 std::vector<std::string> names_in(hid_t group, H5_index_t index = H5_INDEX_NAME);
 
-/// Copies all attributes to another object. Returns false, and copies none, where one is damaged: the library
-/// does not survive to iterate over such.
+/// Copies all attributes to another object, except references. Returns false if one is damaged; then none is
+/// copied, because iterating over damaged attributes crashes the library.
 bool copy_attributes(hid_t from, hid_t to);
 
-/// Makes a dataset of the type, the attributes, chunks and filters of another one, but of another shape and
-/// without its values.
+/// Makes a dataset with the type, attributes, chunks and filters of another one, but with the shape `space`
+/// and without values.
 Handle empty_copy(hid_t dataset, hid_t target, const char* name, hid_t space);
 
-/// Copies everything in a file to an empty one, but for the values of what these paths name: see
+/// Copies everything in a file to an empty one, except the values of the datasets at these paths: see
 /// File::without_values. Returns the path of a group whose attributes could not be copied; an empty text
-/// without.
+/// if there is none.
 std::string copy_without_values(hid_t file, hid_t copy, const std::set<std::string>& paths);
 
 }  // namespace meshorder::hdf5

@@ -3,8 +3,8 @@
 
 namespace meshorder::hdf5 {
 
-/// Has libhdf5 close nothing at the end of the process: where a file could not be closed it crashes when it
-/// tries again. For programs, not for libraries, and before any other call of libhdf5.
+/// Stops libhdf5 from closing files at the end of the process: it crashes there if it tries again to close a
+/// file that could not be closed. For programs, not libraries; to be called before any use of libhdf5.
 void close_nothing_at_exit();
 
 }  // namespace meshorder::hdf5

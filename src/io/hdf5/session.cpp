@@ -14,21 +14,21 @@
 namespace meshorder::hdf5 {
 namespace {
 
-/// What failed since the outermost session began; kept without memory.
+/// Failures since the outermost session began; recorded without allocating memory.
 struct Faults {
   int sessions = 0;
   bool any = false;
   bool memory = false;
-  std::array<char, 64> words{};  ///< the system's, of a failed read or write; empty if there was none
-  std::array<char, 64> cause{};  ///< the library's, of the first call that failed
+  std::array<char, 64> words{};  ///< the system's message for a failed read or write; empty if none failed
+  std::array<char, 64> cause{};  ///< the library's message for the first call that failed
 };
 
 /// Guarded by the library's mutex.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): libhdf5 has one state, too
 Faults faults;
 
-/// Returns the system's words for a failed call, which the library gives among other things in several lines;
-/// otherwise an empty text.
+/// Returns the system's message for a failed call from the library's description, which has several lines; an
+/// empty text if there is none.
 std::string_view system_words(std::string_view cause) {
   constexpr std::string_view kBefore = "error message = '";
   const std::size_t at = cause.find(kBefore);
@@ -37,19 +37,19 @@ std::string_view system_words(std::string_view cause) {
   return cause.substr(0, cause.find('\''));
 }
 
-/// Keeps the beginning of a text.
+/// Copies the beginning of a text, as far as it fits before a zero byte.
 template <std::size_t Size>
 void keep(std::string_view text, std::array<char, Size>& into) {
   into = {};
   std::copy_n(text.begin(), std::min(text.size(), Size - 1), into.begin());
 }
 
-/// `first`: whether no call has failed before.
+/// Records one error of the library's stack. `first` points to whether no call has failed before.
 herr_t note_cause(unsigned /*depth*/, const H5E_error2_t* error, void* first) {
   const std::string_view cause = error->desc != nullptr ? error->desc : "";
   if (cause.starts_with("memory allocation failed")) faults.memory = true;
   if (faults.words.front() == '\0') keep(system_words(cause), faults.words);
-  // the last one stays: the walk goes from the function that was called to the one that failed
+  // later causes overwrite earlier ones: the walk ends at the innermost function, which failed first
   if (*static_cast<const bool*>(first)) keep(cause.substr(0, cause.find('\n')), faults.cause);
   return 0;
 }
@@ -89,7 +89,7 @@ void Session::require_no_fault(const std::string& file) const {
                      std::string("HDF5 could not read or write all of it (") + faults.words.data() + ")",
                      "is the disk full, or does it fail?");
   }
-  // not all of the library looks at the result of malloc, and what fails then gives another cause or none
+  // parts of the library ignore a failed malloc; what fails afterwards gives another cause or none
   if (faults.memory || errno == ENOMEM)
     throw InputError(file, "HDF5 had no memory for a part of it", "the file may be damaged");
 }
@@ -110,10 +110,10 @@ std::string last_cause() {
       if (error->desc != nullptr) *static_cast<std::string*>(into) = error->desc;
       return 0;
     } catch (const std::bad_alloc&) {
-      return -1;  // an earlier cause has to do
+      return -1;  // keeps the cause found before
     }
   };
-  // from the function that was called to the one that failed
+  // the walk goes from the called function to the innermost one, which failed first
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, take, &cause);
   const std::string_view words = system_words(cause);
   if (!words.empty()) return std::string(words);

@@ -8,9 +8,9 @@
 
 namespace meshorder::hdf5 {
 
-/// Keeps other threads out of libhdf5 and the library quiet as long as it lives. Meanwhile the library loads
-/// no plug-ins, which a file can ask for by the number of a filter. May be nested. Takes note of calls that
-/// fail, also where the library, or one on top of it, does not look at their result.
+/// While it lives, keeps other threads out of libhdf5 and stops the library from printing errors and from
+/// loading plug-ins, which a file can request by the number of a filter. Records calls that fail, even if the
+/// library, or one on top of it, ignores their result. May be nested.
 class Session {
  public:
   Session();
@@ -20,15 +20,15 @@ class Session {
   Session& operator=(const Session&) = delete;
   Session& operator=(Session&&) = delete;
 
-  /// Takes note of failures again after a library on top of libhdf5 has turned that off.
+  /// Records failures again, after a library on top of libhdf5 has turned that off.
   void watch() const;
 
   /// Throws InputError if the system had no memory for a call or could not read or write since the outermost
   /// session began.
   void require_no_fault(const std::string& file) const;
 
-  /// Throws InputError if any call has failed since then: for what asks first whether a thing is there, so
-  /// that only damage makes a call fail.
+  /// Throws InputError if any call has failed since the outermost session began. For code that checks whether
+  /// an object exists before it opens it, so that only damage makes a call fail.
   void require_no_failure(const std::string& file) const;
 
  private:
@@ -38,8 +38,8 @@ class Session {
   void* data_ = nullptr;
 };
 
-/// Returns what `work` reads of a file, in a session. Throws InputError if any call fails meanwhile: what the
-/// library could not read must not be taken for absent.
+/// Runs `work`, which reads a file, in a session and returns its result. Throws InputError if any call fails:
+/// what the library could not read must not count as absent.
 template <class Work>
 auto read_whole(const std::string& file, const Work& work) {
   const Session session;
@@ -48,8 +48,8 @@ auto read_whole(const std::string& file, const Work& work) {
   return result;
 }
 
-/// Within a session, takes no note of calls that fail as long as it lives: for questions to which failure is
-/// an answer.
+/// While it lives, the session does not record calls that fail. For questions that a failed call answers,
+/// such as whether a link leads to an object.
 class Unwatched {
  public:
   Unwatched() {
@@ -67,7 +67,7 @@ class Unwatched {
   void* data_ = nullptr;
 };
 
-/// Returns what the library says of the last failure, its first cause, in one line.
+/// Returns the innermost cause of the last failure, in the library's or the system's words, in one line.
 std::string last_cause();
 
 }  // namespace meshorder::hdf5

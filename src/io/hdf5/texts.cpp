@@ -37,7 +37,7 @@ Handle type_of_strings() {
   return type;
 }
 
-/// Returns a type of so many characters, as an array of small numbers.
+/// Returns the type of a text of `width` characters: an array of 8-bit integers.
 Handle type_of_texts(std::size_t width) {
   const hsize_t count = width;
   return {H5Tarray_create2(H5T_STD_I8LE, 1, &count), H5Tclose};
@@ -50,7 +50,7 @@ std::string without_padding(std::string_view text) {
 
 }  // namespace
 
-/// Returns texts of any length, without what follows a zero byte.
+/// Returns texts of any length, each up to its first zero byte.
 std::vector<std::string> File::read_strings(const std::string& path, const Handle& dataset,
                                             const Handle& type) const {
   constexpr std::uint64_t kReference = 16;  // bytes of a dataset for each text

@@ -82,7 +82,7 @@ DatasetInfo File::info(const std::string& path) const {
          "decompress it (h5repack -f NONE)");
   }
   if (H5Pget_layout(creation.id()) == H5D_CHUNKED) {
-    // as it is stored, and as it is read
+    // twice: the stored bytes and the decoded ones
     const std::string fault =
         refused_for_a_while(2 * bytes_of_chunk(creation.id(), type.id()), "a chunk of it");
     if (!fault.empty()) fail(path, "cannot be read: " + fault, kClaimRemedy);
@@ -197,7 +197,7 @@ void File::write(const std::string& path, hid_t type, const void* values, std::u
       dataset = std::move(copy);
     }
   }
-  // what the library buffers of the values is written when the dataset is closed
+  // closing the dataset writes the values that the library has buffered
   const bool written =
       dataset.is_open() &&
       (count == 0 || H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0) &&
@@ -228,7 +228,7 @@ void File::give_room(const std::string& path) {
   Handle dataset = open_dataset(path);
   const Handle type(H5Dget_type(dataset.id()), H5Tclose);
   const Handle space(H5Dget_space(dataset.id()), H5Sclose);
-  // the library allots all of a dataset when a value of it is written
+  // writing one value makes the library allocate the whole dataset
   const std::vector<hsize_t> first(
       static_cast<std::size_t>(std::max(H5Sget_simple_extent_ndims(space.id()), 0)), 0);
   const std::vector<hsize_t> one(first.size(), 1);

@@ -9,8 +9,8 @@
 
 namespace meshorder::hdf5 {
 
-/// Work for each entry that an iteration of libhdf5 comes to. The library knows no exceptions: what the work
-/// throws ends the iteration and is thrown by `rethrow`. `Info` is what the library says of an entry:
+/// Calls `work` for each entry that an iteration of libhdf5 visits. Exceptions must not pass through the
+/// library: one ends the iteration, and `rethrow` throws it. `Info` is the library's description of an entry:
 /// H5A_info_t, H5L_info_t or H5O_info_t.
 template <class Info>
 class Visitor {
@@ -19,7 +19,7 @@ class Visitor {
 
   explicit Visitor(Work work) : work_(std::move(work)) {}
 
-  /// To be given to the library, with the visitor as its data.
+  /// The callback for the library; its data is the Visitor.
   static herr_t visit(hid_t place, const char* name, const Info* info, void* visitor) noexcept {
     auto& self = *static_cast<Visitor*>(visitor);
     try {
@@ -31,7 +31,7 @@ class Visitor {
     }
   }
 
-  /// Throws what the work has thrown. To be called after the iteration.
+  /// Throws the exception of `work`, if there was one. To be called after the iteration.
   void rethrow() const {
     if (thrown_) std::rethrow_exception(thrown_);
   }

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// What the formats of matrices and graphs share. A square matrix is a mesh whose vertices are its rows, all
+// Shared by the formats of matrices and graphs. A square matrix is a mesh whose vertices are its rows, all
 // at the origin, and whose cells are its entries in the order of the file: a line from row to column, a
 // vertex on the diagonal. Values are the array "value" on cells. An edge of a graph is a line.
 
@@ -18,17 +18,17 @@ inline constexpr std::string_view kSize = "size";      ///< array on vertices: s
 /// Returns whether a cell is an entry: a line or a vertex.
 bool is_entry(const Mesh& mesh, Shape shape, int vertices);
 
-/// Claims the memory of vertices for which the file may hold no more than a line end. Throws InputError
-/// beyond the limit.
+/// Claims memory for the vertices, because a file may hold as little as a line end for each. Throws
+/// InputError if that exceeds the limit.
 void claim_vertices(Index count);
 
-/// Returns the array of that name if it has a row for every vertex or cell; null otherwise.
+/// Returns the array of that name if it holds numbers for every vertex or cell; null otherwise.
 const DataArray* dense_array(const Mesh& mesh, std::string_view name, Association association);
 
 /// Returns whether an array holds whole numbers of at most 64 bits with a sign.
 bool is_whole(const DataArray& array);
 
-/// Returns that value of an array of numbers.
+/// Returns the value at position `at` of an array of numbers.
 double real_value(const DataArray& array, Offset at);
 std::int64_t whole_value(const DataArray& array, Offset at);
 

@@ -72,7 +72,7 @@ struct MatrixMetadata final : StoredMatrix {
 
 // ---- reading
 
-/// Returns the value of that name, in any case; fails at the scanner's line.
+/// Returns the enumerator of that name, in any case; fails at the scanner's line if there is none.
 template <NamedEnum Enum>
 Enum parse_word(const Scanner& at, std::string_view word) {
   for (const auto& [value, name] : EnumNames<Enum>::names) {
@@ -147,7 +147,7 @@ class MatrixReader {
     }
     entries_ = in_.count("the number of entries", 4);
     if (!in_.at_line_end()) in_.fail("the line of sizes has too many numbers", "three are needed");
-    // a large matrix is expected to have an entry in most rows
+    // a large number of rows must not exceed the bytes that follow
     constexpr std::int64_t kFewRows = 1 << 20;
     if (rows < 0 || rows > kFewRows) (void)in_.checked_count(rows, "the number of rows", 1);
     claim_vertices(static_cast<Index>(rows));
@@ -229,7 +229,7 @@ Field field_of(const DataArray* values) {
   return is_whole(*values) ? Field::integer : Field::real;
 }
 
-/// Returns the array of a mesh that its file has as values; null for a pattern.
+/// Returns the array whose values are written as the matrix's values; null for a pattern.
 const DataArray* values_of(const Mesh& mesh) {
   const DataArray* values = dense_array(mesh, kValue, Association::cells);
   if (values == nullptr && metadata_of(mesh) == nullptr)
@@ -237,14 +237,14 @@ const DataArray* values_of(const Mesh& mesh) {
   return values != nullptr && values->components <= 2 ? values : nullptr;
 }
 
-/// Returns the symmetry of the file of a mesh with these values.
+/// Returns the symmetry with which a mesh with these values is written.
 Symmetry symmetry_of(const Mesh& mesh, const DataArray* values) {
   if (const MatrixMetadata* const own = metadata_of(mesh)) return own->stored_as;
   const bool may_be = values == nullptr || values->name == kWeight;
   return may_be && joins_once(mesh) ? Symmetry::symmetric : Symmetry::general;
 }
 
-/// Returns whether a file with one half of the matrix, that below the diagonal, has this entry transposed.
+/// Returns whether an entry is written transposed, because the file has only the half below the diagonal.
 bool is_transposed(std::span<const Index> entry, Symmetry symmetry) {
   return symmetry != Symmetry::general && entry.front() < entry.back();
 }
@@ -256,7 +256,7 @@ bool changes_sign(Symmetry symmetry, Offset component) {
 
 template <class Number>
 Number negative(Number value) {
-  // no sum of its own: the least integer stays as it is
+  // unsigned, as the least integer has no negative; it stays as it is
   if constexpr (std::is_integral_v<Number>)
     return static_cast<Number>(0 - static_cast<std::uint64_t>(value));
   else
@@ -277,7 +277,7 @@ void add_value(Text& row, const DataArray& values, Field field, Index entry, Sym
   }
 }
 
-/// Transposes the entries above the diagonal where a file has one half of the matrix.
+/// Transposes the entries above the diagonal if the file has only the half below it.
 Permutation settle_entries(Mesh& mesh) {
   const DataArray* const written = values_of(mesh);
   const Symmetry symmetry = symmetry_of(mesh, written);

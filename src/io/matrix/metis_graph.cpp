@@ -2,7 +2,7 @@
 //
 // Graphs in the format of METIS and Chaco. Format: G. Karypis, "METIS: a software package for partitioning
 // unstructured graphs … Version 5.1.0" (2013), section 4.1.1. Where the two differ, METIS's meaning is taken:
-// the hundreds of the third number say that there are sizes of vertices.
+// the hundreds digit of the third number says whether vertices have sizes.
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/matrix/matrix.hpp"
@@ -35,7 +35,7 @@ struct GraphMetadata final : StoredMatrix {
   }
 };
 
-/// A neighbour of a vertex, and the weight of the edge or its cell.
+/// A neighbour of a vertex. `value` is the weight of the edge in the reader, its cell in the writer.
 struct Neighbour {
   Index vertex;
   std::int64_t value;
@@ -154,7 +154,7 @@ class GraphReader {
     return std::span(neighbours_).subspan(offsets_[v], offsets_[v + 1] - offsets_[v]);
   }
 
-  /// Makes a line of each edge, at the vertex of the smaller number.
+  /// Makes a line of each edge, from the vertex with the smaller number.
   void make_edges() {
     mesh_.cells.reserve(edges_, 2 * Offset{edges_});
     std::vector<std::int64_t> weights;
@@ -203,7 +203,7 @@ Mesh read_graph(const FilePath& path, Notes& /*notes*/) { return GraphReader(pat
 
 // ---- writing
 
-/// The neighbours of all vertices, ascending, with the cells that join them, and what a graph leaves out.
+/// The neighbours of all vertices, ascending, with the cells that join them. Counts loops and repeated edges.
 struct Adjacency {
   explicit Adjacency(const Mesh& mesh) {
     offsets.assign(mesh.points.size() + 1, 0);

@@ -16,14 +16,14 @@
 #include <unordered_map>
 #include <unordered_set>
 
-// Families and groups: a family holds the vertices, or the cells, that belong to the same groups. Those of
-// vertices have numbers above 0, those of cells below; 0 belongs to no group.
+// Families and groups: a family holds the vertices, or the cells, that belong to the same groups. The
+// numbers of families are above 0 for vertices and below 0 for cells; family 0 belongs to no group.
 
 namespace meshorder::med {
 namespace {
 
 constexpr std::string_view kFamilyZero = "FAMILLE_ZERO";
-/// Labels of more kinds are not made groups of.
+/// Labels become groups only if there are at most this many different ones.
 constexpr std::size_t kMostLabels = 256;
 
 std::size_t place_of(Association association) { return association == Association::vertices ? 0 : 1; }
@@ -51,7 +51,7 @@ std::vector<std::int64_t> numbers_in(const Mesh& mesh, const std::string& name, 
   return numbers;
 }
 
-/// Returns the families of a file in the order of their numbers, without their signs.
+/// Returns the families of a file: −1, −2, … before 1, 2, …; leaves out 0 and numbers that occur again.
 std::vector<Family> families_in(const Reading& reading, const std::string& root) {
   std::vector<Family> families;
   std::unordered_set<std::int64_t> numbers;
@@ -115,7 +115,7 @@ void read_families_of(Reading& reading, Association association) {
 /// Numbers the combinations of a family and groups that vertices or cells belong to.
 class Combinations {
  public:
-  /// By numbers of families.
+  /// Starts with the family of each item, and no groups.
   explicit Combinations(const std::vector<std::int64_t>& families) {
     of_item_.reserve(families.size());
     std::unordered_map<std::int64_t, std::size_t> known;
@@ -157,7 +157,7 @@ class Combinations {
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-  /// A family and groups, kept as a chain with one group a link, as thousands may share an item.
+  /// A family and groups, stored as a chain of one group a link, as an item may be in thousands of groups.
   struct Combination {
     std::int64_t family;
     std::size_t without_last;  ///< the combination before the last group; kNone for a family alone
@@ -195,7 +195,7 @@ class FamilyWriter {
   }
 
  private:
-  /// Returns the numbers of families that the mesh has from a file of MED.
+  /// Returns the family of each item in the MED file that the mesh came from; 0 for meshes of other formats.
   std::vector<std::int64_t> start() {
     const Layout& layout = writing_.layout;
     std::vector<std::int64_t> none(item_count(writing_.mesh, association_), 0);
@@ -232,7 +232,7 @@ class FamilyWriter {
     }
   }
 
-  /// Returns a name that a group can have: blanks at its end fill up its place in the file.
+  /// Returns an unused name for a group, without blanks at its end: the file pads names with blanks.
   std::string unused_name(const std::string& name, DistinctNames& names) {
     const std::string plain = plain_name(utf8(name));
     const std::string_view held = std::string_view(plain).substr(0, plain.find_last_not_of(' ') + 1);
@@ -244,8 +244,8 @@ class FamilyWriter {
     return result;
   }
 
-  /// Returns the number of a family of these groups: its own where it still fits, else that of another one or
-  /// of a new one.
+  /// Returns the number of a family with these groups: that of `wanted` if the file's family has the same
+  /// groups, else that of another family of the file or of a new one.
   std::int64_t number_for(const Family& wanted) {
     std::vector<std::string> groups = wanted.groups;
     std::sort(groups.begin(), groups.end());
@@ -259,7 +259,7 @@ class FamilyWriter {
     return add_family(groups, wanted.groups);
   }
 
-  /// Takes a family among those that the file has; of the same groups, the first one is used.
+  /// Records a family of the file. Of several families with the same groups, the first one is used.
   void remember(const Family& family) {
     constexpr std::int64_t kMost = 2147483647;
     groups_of_.try_emplace(family.number, family.groups);

@@ -26,7 +26,7 @@ struct FieldInfo {
   std::vector<std::string> steps;  ///< names of groups, in the order of their numbers
 };
 
-/// Returns texts of 16 characters one after another; none where all are blank.
+/// Splits a text into `count` names of 16 characters; returns none if all are blank.
 std::vector<std::string> short_names(const std::string& text, std::size_t count) {
   std::vector<std::string> names;
   bool any = false;
@@ -39,7 +39,7 @@ std::vector<std::string> short_names(const std::string& text, std::size_t count)
   return any ? names : std::vector<std::string>();
 }
 
-/// Puts the rows of an array in the order of the items, whose places are `items`.
+/// Sorts the rows of an array by item; `items` has the vertex or cell of each row.
 void sort_rows(DataArray& array, std::vector<Index> items, Index count) {
   if (!std::is_sorted(items.begin(), items.end())) {
     std::vector<Index> order = index_range(0, index_size(items));
@@ -111,7 +111,7 @@ class FieldReader {
     }
   }
 
-  /// Returns the places of the items of a profile.
+  /// Returns the vertices or cells of a piece's profile.
   std::vector<Index> items_of(const Piece& piece) {
     const auto [first, count] = reading_.range(piece.type);
     if (piece.profile == kNoProfile) {

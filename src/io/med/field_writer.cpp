@@ -29,7 +29,7 @@ bool is_text_array(const DataArray& array) {
   return std::holds_alternative<std::vector<std::string>>(array.values);
 }
 
-/// Returns a name with what HDF5 and MED allow.
+/// Returns a name, changed so far that HDF5 and MED allow it.
 std::string clean_name(const std::string& given) {
   const std::string plain = plain_name(utf8(given), "/");
   std::string name(utf8_prefix(plain, kLongestName));
@@ -52,8 +52,8 @@ class Profiles {
     }
   }
 
-  /// Returns the name of a profile of these places, of the wanted name if it can have it; writes it if it is
-  /// new.
+  /// Returns the name of a profile with these places: the wanted one unless another profile has it. Writes
+  /// the profile if it is new.
   std::string name_for(const std::string& wanted, const std::vector<Index>& places) {
     const std::string clean = clean_name(wanted);
     std::string name = clean;
@@ -77,7 +77,7 @@ class Profiles {
     return name;
   }
 
-  /// Removes the profiles of the old file that no field has any more.
+  /// Removes the profiles of the old file that no field uses any more.
   void remove_unused() {
     for (const std::string& name : old_) {
       if (!written_.contains(name)) writing_.file.remove("/PROFILS/" + name);
@@ -90,13 +90,13 @@ class Profiles {
   std::map<std::string, std::vector<Index>> written_;
 };
 
-/// An array that a step of a new field has.
+/// An array that becomes one step of a new field.
 struct Step {
   const DataArray* array;
   int number;  ///< from 1; 0 for a field of one step
 };
 
-/// Splits "NAME step K"; nothing for other names.
+/// Splits "NAME step K" into NAME and K; returns nothing for other names.
 std::optional<std::pair<std::string, int>> split_step(const std::string& name) {
   constexpr std::string_view kWord = " step ";
   const std::size_t at = name.rfind(kWord);
@@ -230,7 +230,7 @@ class FieldWriter {
     writing_.file.move(group, piece.support + "/" + profile);
   }
 
-  /// Removes values that the mesh has no longer, and the groups around them that have nothing else.
+  /// Removes values that the mesh no longer has, and the groups around them that become empty.
   void remove_piece(const Piece& piece) {
     std::string group = piece.support + "/" + piece.profile;
     constexpr std::size_t kGroups = 4;  // profile, support, step and field
@@ -417,7 +417,7 @@ class FieldWriter {
     file.write(group + "/CO", values, {size});
   }
 
-  /// Returns the name of a profile for a field in a file that had none.
+  /// Returns the name of a new profile for a field.
   static std::string profile_name(const std::string& field, const GeometryType* type) {
     const std::string suffix = fmt::format("_{}", type == nullptr ? "NOE" : type->name);
     return field.substr(0, kLongestName - suffix.size()) + suffix;
@@ -428,7 +428,7 @@ class FieldWriter {
   std::set<std::string> names_;  // of fields
   NameNumbers numbers_;
   const DataArray* last_array_ = nullptr;
-  std::vector<Index> table_;  // its rows by item
+  std::vector<Index> table_;  // rows of `last_array_` by item
 };
 
 }  // namespace

@@ -32,7 +32,7 @@ namespace meshorder::med {
 inline constexpr std::string_view kNoProfile = "MED_NO_PROFILE_INTERNAL";
 inline constexpr std::string_view kNames = "name";                   ///< array of the names of items
 inline constexpr std::string_view kGlobalNumbers = "global number";  ///< array of the numbers GLB
-/// Array of the numbers of families in files that have a field `kLabel`.
+/// Name of the array of the numbers of families in files that have a field of the name `kLabel`.
 inline constexpr std::string_view kFamilies = "family";
 inline constexpr std::size_t kLongestName = 64;  ///< characters of the name of a field, a profile or a family
 inline constexpr std::size_t kLongestGroup = 80;  ///< characters of the name of a group
@@ -53,7 +53,7 @@ std::span<const GeometryType> geometry_types();
 const GeometryType* geometry_type(std::string_view name);
 /// Returns the type of these cells, null if there is none.
 const GeometryType* geometry_type(Shape shape, int nodes);
-/// Returns the place in a Mesh's cell of each node of the file's; empty if they are the same.
+/// Returns for each node of a cell in the file its place in the Mesh's cell; empty if the orders are equal.
 std::span<const int> mesh_order(const GeometryType& type);
 
 // ---- what a file has besides the mesh
@@ -61,7 +61,7 @@ std::span<const int> mesh_order(const GeometryType& type);
 /// A family: cells or vertices that belong to the same groups.
 struct Family {
   std::int64_t number = 0;
-  std::vector<std::string> groups = {};  ///< ascending, as the sets of the mesh are called
+  std::vector<std::string> groups = {};  ///< names of sets of the mesh, ascending
 };
 
 /// Values of a field for vertices or for the cells of one type, at one step.
@@ -69,7 +69,7 @@ struct Piece {
   std::string field = {};
   std::string support = {};            ///< path of the group "/CHA/field/step/MAI.TE4"
   std::string profile = {};            ///< name; kNoProfile without one
-  std::string array = {};              ///< of the mesh
+  std::string array = {};              ///< its name in the mesh
   const GeometryType* type = nullptr;  ///< null: vertices
   bool at_nodes = false;               ///< at the nodes of cells
   std::size_t components = 1;
@@ -77,11 +77,11 @@ struct Piece {
   bool counts_profile = false;  ///< attribute NBR is the size of the profile, not of the mesh
 };
 
-/// Pairs of vertices or of cells of one type that the file calls the same.
+/// Pairs of vertices, or of cells of one type, that the file declares equivalent.
 struct Equivalence {
   std::string dataset;
   const GeometryType* type = nullptr;  ///< null: vertices
-  std::vector<Index> members = {};     ///< of the mesh, two for each pair
+  std::vector<Index> members = {};     ///< vertices or cells of the mesh, two for each pair
 };
 
 /// What a file has for vertices or for the cells of a type, besides coordinates and nodes.
@@ -96,13 +96,13 @@ struct Items {
 struct Layout final : FormatMetadata {
   std::shared_ptr<const std::string> file;  ///< bytes, without the values that depend on the mesh
   std::string mesh;                         ///< name
-  std::string step;                         ///< of the group of its only step
-  bool is_made = false;                     ///< by `new_layout`
+  std::string step;                         ///< name of the group of its only step
+  bool is_made = false;                     ///< made by `new_layout`
   bool in_mesh_order = false;               ///< nodes of cells are in the order of a Mesh
   int axes = 3;                             ///< coordinates of a point
   Items vertices;
   std::map<std::string, Items> cells;                ///< by type
-  std::string families_array = std::string(kLabel);  ///< of the mesh, that has the numbers of families
+  std::string families_array = std::string(kLabel);  ///< array of the mesh with the numbers of families
   std::array<std::vector<Family>, 2> families;       ///< by association
   std::vector<Piece> pieces;
   std::vector<Equivalence> equivalences;
@@ -118,7 +118,7 @@ struct Layout final : FormatMetadata {
                                                             std::span<const Index> new_cells) const override;
 };
 
-/// Returns a text in UTF-8: itself, or one that is not as Latin-1.
+/// Returns a text in UTF-8; one that is not valid UTF-8 is taken to be Latin-1.
 std::string utf8(std::string text);
 
 /// Returns the path of the dataset of a profile.
@@ -138,9 +138,9 @@ struct Reading {
 
   /// Throws InputError for a fault at a group or a dataset.
   [[noreturn]] void fail(const std::string& path, const std::string& what, const std::string& remedy) const;
-  /// Adds an array under a name that no other has, which is returned.
+  /// Adds an array under a name that no other array has; returns that name.
   std::string add_array(DataArray array);
-  /// Returns the first cell of a type, or 0 for vertices, and their number.
+  /// Returns the first cell of a type and the number of these cells; 0 and the number of vertices if null.
   [[nodiscard]] std::pair<Index, Index> range(const GeometryType* type) const;
   /// Marks a dataset as one that the writer writes.
   void take(const std::string& path) { taken.insert(hdf5::normal_path(path)); }
@@ -170,7 +170,7 @@ struct Writing {
   std::map<const GeometryType*, std::vector<Index>> cells;  ///< of each type that the mesh has
   std::set<const DataArray*> placed;                        ///< arrays that need no field
 
-  /// Returns the array of a name that is not written yet and marks it; null if there is none.
+  /// Returns the array of that name and marks it as written; null if there is none or it was marked before.
   const DataArray* take(std::string_view name, Association association);
   /// Writes numbers of `rows` items to a dataset and sets its attributes.
   void put(const std::string& path, const Values& values, std::size_t rows);
@@ -178,8 +178,8 @@ struct Writing {
   void put_integers(const std::string& path, const std::vector<std::int64_t>& values, std::size_t rows);
 };
 
-/// Returns the row of an array for each of `count` vertices or cells, −1 where it has none; empty if it is
-/// dense.
+/// Returns the row of an array for each of `count` vertices or cells, −1 for those without one; empty if the
+/// array is dense.
 std::vector<Index> rows_by_item(const DataArray& array, Index count);
 
 /// Writes the families and returns their numbers for each vertex or cell; empty if all are 0.

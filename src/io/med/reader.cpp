@@ -54,7 +54,7 @@ namespace {
 
 constexpr std::string_view kCutCells = "cut them into cells with a fixed number of nodes first";
 
-/// Returns whether the group is that of a step with values of the mesh.
+/// Returns whether the group of a step has nodes or cells of the mesh.
 bool has_mesh(const hdf5::File& file, const std::string& step) {
   return file.has(step + "/NOE/COO") || !file.names(step + "/MAI").empty();
 }
@@ -107,7 +107,7 @@ void find_mesh(Reading& reading) {
   layout.step = steps.front();
 }
 
-/// Refuses what names nodes or cells in ways that cannot be followed.
+/// Refuses meshes described by faces or edges, and pieces of a larger mesh.
 void refuse_unknown_kinds(const Reading& reading) {
   const Layout& layout = *reading.layout;
   const std::string step = layout.mesh_path() + "/" + layout.step;
@@ -232,8 +232,8 @@ void turn(std::span<Index> cell, std::span<const int> order) {
   for (std::size_t k = 0; k < cell.size(); ++k) cell[static_cast<std::size_t>(order[k])] = of_file[k];
 }
 
-/// Puts the nodes of all cells in the order of a Mesh. Some programs write them so: where nearly all volumes
-/// would be negative, they stay.
+/// Puts the nodes of all cells in the order of a Mesh. Some programs write that order into the file: if
+/// nearly all volumes are positive as they are in the file, the nodes stay.
 void turn_cells(Reading& reading) {
   Mesh& mesh = reading.mesh;
   WedgeVote vote(mesh.points);
@@ -266,7 +266,7 @@ void read_all_cells(Reading& reading) {
   turn_cells(reading);
 }
 
-/// Returns whole numbers of a dataset, as many as there should be rows.
+/// Returns the whole numbers of a dataset; throws if their count is not `rows`.
 std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& path, Index rows) {
   reading.take(path);
   const Values values = reading.file.read(path);
@@ -369,7 +369,7 @@ class ItemReader {
     return association_ == Association::vertices ? reading_.mesh.vertex_count() : reading_.mesh.cell_count();
   }
 
-  /// Makes the ids of all cells from the numbers of some types.
+  /// Makes the ids from the numbers of the file. Cells of types without numbers get 1, 2, … for each type.
   void finish_numbers() {
     if (numbers_.values.empty()) return;
     Mesh& mesh = reading_.mesh;
@@ -456,7 +456,7 @@ void read_equivalences(Reading& reading) {
     reading.layout->words.push_back(fmt::format("the equivalences {}", fmt::join(names, ", ")));
 }
 
-/// Names the datasets of the mesh that are not understood and stay as they are.
+/// Notes the datasets of the mesh that are not understood and stay as they are.
 void note_others(Reading& reading) {
   const std::string step = reading.layout->mesh_path() + "/" + reading.layout->step + "/";
   for (const auto& [path, rows] : reading.file.datasets()) {

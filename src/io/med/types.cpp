@@ -21,7 +21,7 @@ constexpr std::array kGeometryTypes{
     GeometryType{"SE4", 104, Shape::line, 4},        GeometryType{"PO1", 1, Shape::vertex, 1},
 };
 
-// MED sees the first face of a volume from the other side: the corners run round it the other way
+// MED lists the corners of a volume's first face in the opposite direction
 constexpr std::array kTetrahedron{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
 constexpr std::array kPyramid{0, 3, 2, 1, 4, 8, 7, 6, 5, 9, 12, 11, 10};
 constexpr std::array kWedge{0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13, 17, 16, 15};

@@ -26,7 +26,7 @@ constexpr std::size_t kInt32Alternative = 6;
 constexpr std::size_t kInt64Alternative = 8;
 constexpr std::size_t kFloatAlternative = 1;
 
-/// Returns numbers of an axis for each coordinate that is needed, at least as many as the file had.
+/// Returns the number of coordinates that the points need, at least that of the file.
 int axes_of(const Mesh& mesh, int of_file) {
   int needed = of_file;
   for (const Point& point : mesh.points) {
@@ -40,7 +40,7 @@ bool is_of_floats(const Point& point) {
   return std::all_of(point.begin(), point.end(), [](double x) { return double{static_cast<float>(x)} == x; });
 }
 
-/// Returns the names of axes, each in its 16 characters.
+/// Returns the names of the axes, each padded to 16 characters.
 std::string axis_names(int axes) {
   std::string names;
   for (int k = 0; k < axes; ++k) names += fmt::format("{:<16}", static_cast<char>('X' + k));
@@ -88,12 +88,12 @@ void write_points(Writing& writing) {
   if (!file.text_attribute(group, "PFL")) mark_whole(file, group);
 }
 
-/// Whether these cells, which ascend, are all from the first of them to the last.
+/// Returns whether cells, given in ascending order, are consecutive.
 bool follow_each_other(const std::vector<Index>& cells) {
   return cells.empty() || cells.back() - cells.front() + 1 == index_size(cells);
 }
 
-/// Returns the nodes of cells of a type, first nodes first, counted from 1.
+/// Returns the nodes of cells of a type, from 1: the first node of each cell, then the second of each, …
 std::vector<Index> node_columns(const Writing& writing, const GeometryType& type,
                                 const std::vector<Index>& cells) {
   const std::span<const int> order = writing.layout.in_mesh_order ? std::span<const int>() : mesh_order(type);
@@ -114,7 +114,7 @@ std::vector<Index> node_columns(const Writing& writing, const GeometryType& type
   return columns;
 }
 
-/// Returns the numbers or texts of an array for some vertices or cells; nothing where it lacks one of them.
+/// Returns the numbers or texts of an array for some vertices or cells; nothing if one of them has none.
 template <class Result, class Array>
 std::optional<std::vector<Result>> rows_for(const Array& values, const std::vector<Index>& row_of,
                                             const std::vector<Index>& items) {
@@ -128,7 +128,7 @@ std::optional<std::vector<Result>> rows_for(const Array& values, const std::vect
   return result;
 }
 
-/// What belongs to vertices, or to cells, besides coordinates and nodes.
+/// Writes what belongs to vertices, or to cells, besides coordinates and nodes.
 class ItemWriter {
  public:
   ItemWriter(Writing& writing, Association association)
@@ -147,7 +147,7 @@ class ItemWriter {
       name_rows_ = rows_by_item(*names_, count);
       note_cut_names();
     }
-    // those of other formats become a field
+    // in a mesh of another format, an array of that name becomes a field
     const bool are_whole = !writing.layout.is_made && global_numbers_ != nullptr &&
                            global_numbers_->components == 1 &&
                            (global_numbers_->values.index() == kInt32Alternative ||
@@ -171,7 +171,7 @@ class ItemWriter {
   void write_numbers(const std::string& path, const Items& of_file, const std::vector<Index>& items) {
     const bool on_vertices = association_ == Association::vertices;
     const std::vector<std::int64_t>& ids = on_vertices ? writing_.mesh.vertex_ids : writing_.mesh.cell_ids;
-    // the vertices of a file that gives them the usual numbers have no ids
+    // a mesh has no vertex ids if its file numbers the vertices 1, 2, …
     if (ids.empty() && !(of_file.has_numbers && on_vertices)) return writing_.file.remove(path);
     std::vector<std::int64_t> numbers(items.size());
     std::iota(numbers.begin(), numbers.end(), std::int64_t{1});
@@ -377,7 +377,7 @@ Layout new_layout(const Mesh& mesh) {
   hdf5::File file = hdf5::File::in_memory({}, "");
   const std::string infos = "/INFOS_GENERALES";
   file.make_group(infos);
-  // 3.0 is read by all programs that read 3 and 4; it does not know wedges of 18 nodes
+  // all programs that read versions 3 and 4 read 3.0, which has no wedges of 18 nodes
   file.set_attribute(infos, "MAJ", std::int64_t{needs_version_4(mesh) ? 4 : 3});
   file.set_attribute(infos, "MIN", std::int64_t{0});
   file.set_attribute(infos, "REL", std::int64_t{0});

@@ -67,8 +67,8 @@ inline constexpr std::array kListKinds{
     ListKind{"ParallelQuadrilaterals", Shape::quad},
 };
 
-/// Lines of a position and numbers that refer to normals, tangents or a geometry in another file, which are
-/// kept. Read as an array of that name on the positions that occur.
+/// A table: each line has a position and numbers, which are kept; they refer to normals, tangents or a
+/// geometry in another file. It is read as an array of its name on the positions that occur.
 inline constexpr std::array kTableKinds{
     ListKind{"NormalAtVertices", {}},
     ListKind{"TangentAtVertices", {}},
@@ -99,8 +99,8 @@ inline constexpr std::array kTableKinds{
     ListKind{"VertexOnSupportHexahedron", {}},
 };
 
-/// A section whose lines have positions in some columns. A letter for each column says which: v of a vertex,
-/// e, t, q of a cell in Edges, Triangles, Quadrilaterals, k in Tetrahedra; other columns are kept.
+/// A section whose lines have positions in some columns. Each column has a letter: v for a vertex, e, t, q, k
+/// for a cell in Edges, Triangles, Quadrilaterals, Tetrahedra; '.' for a number that is kept.
 struct RowKind {
   std::string_view keyword;
   std::string_view columns;
@@ -108,7 +108,7 @@ struct RowKind {
 
 inline constexpr std::array kRowKinds{
     RowKind{"SubDomainFromMesh", ".t.."},  // BAMG's: 3, a triangle of the domain, orientation, reference
-    RowKind{"SubDomain", ".t.."},          // or 2 and an edge in a geometry, as the next
+    RowKind{"SubDomain", ".t.."},          // in a geometry 2 and an edge, as in the next
     RowKind{"SubDomainFromGeom", ".e.."},
     RowKind{"TangentAtEdges", "e..."},
     RowKind{"CrackedEdges", "ee"},
@@ -155,7 +155,7 @@ struct Metadata final : FormatMetadata {
   std::vector<Section> sections;  ///< independent of the order
   std::vector<Rows> rows;
   std::vector<std::size_t> empty_sections;  ///< kinds of cells whose section is empty
-  /// Positions in the file of a cell's nodes in VTK's order, for the kinds that the file describes.
+  /// For kinds whose node order the file gives: the position in the file of each node in VTK's order.
   std::map<std::size_t, std::vector<int>> places;
 
   [[nodiscard]] std::vector<std::string> contents() const override;
@@ -180,7 +180,7 @@ std::vector<std::vector<int>> reference_nodes(Shape shape);
 /// kinds if the mesh has neither. `counts` are the cells of each kind.
 std::size_t counted_kind(Shape target, std::span<const Index> counts);
 
-/// Notes a file of solutions beside the mesh.
+/// Adds a note that a file of solutions beside the mesh (.sol, .solb) `what`.
 void note_solutions(const FilePath& path, std::string_view what, Notes& notes);
 
 Mesh read(const FilePath& path, Notes& notes);

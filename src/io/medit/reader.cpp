@@ -25,7 +25,7 @@ constexpr char kComment = '#';
 /// A section that refers to no vertices or cells and is kept verbatim.
 struct PlainKind {
   std::string_view keyword;
-  enum Form : std::uint8_t { words, rows, line, lines } form;  ///< rows and lines follow their count
+  enum Form : std::uint8_t { words, rows, line, lines } form;  ///< a count precedes rows and lines
   int words_per_row;
   int words_per_dimension;
 };
@@ -64,7 +64,7 @@ std::size_t find_kind(const Kinds& kinds, std::string_view keyword) {
   return static_cast<std::size_t>(found - kinds.begin());
 }
 
-/// A section to be read later, when those that it refers to are known; `byte` follows its keyword.
+/// A section to be read after those that it refers to; its keyword ends at `byte`.
 struct Pending {
   std::size_t kind;
   std::int64_t byte;
@@ -134,7 +134,7 @@ class Reader {
     return true;
   }
 
-  /// Whether a section may come before the dimension, which it does not depend on.
+  /// Returns whether a section may come before the dimension, because it does not depend on it.
   static bool comes_before_dimension(std::string_view keyword) {
     const std::size_t kind = find_kind(kPlainKinds, keyword);
     return kind < kPlainKinds.size() && kPlainKinds[kind].words_per_dimension == 0;
@@ -210,7 +210,7 @@ class Reader {
     const std::string what = what_number();
     for (Index row = 0; row < count; ++row) {
       if (kind.form == PlainKind::line || kind.form == PlainKind::lines) {
-        if (in_.at_end()) in_.word("a line of " + last_keyword_);  // says that the file ends
+        if (in_.at_end()) in_.word("a line of " + last_keyword_);  // throws, as the file ends
         in_.raw_line();
       } else {
         for (int k = 0; k < words; ++k) in_.real(what);
@@ -301,7 +301,7 @@ class Reader {
 
   // ---- sections that refer to vertices or cells
 
-  /// Skips a section that is read later; `words` per row are counted in its first line if 0.
+  /// Skips a section that is read later. Each row has `words` words; if 0, as many as the first line.
   void skip_rows(std::vector<Pending>& pending, std::size_t kind, int words) {
     pending.push_back({kind, in_.byte()});
     const Index count = in_.count(what_count(), 2 * std::max(words, 1));
@@ -348,7 +348,7 @@ class Reader {
     last_keyword_ = keyword;
   }
 
-  /// Returns the first cell that positions of a target refer to, and the number of cells.
+  /// Returns the first vertex or cell that positions of a target refer to, and their number.
   std::pair<Index, Index> range_of(const Target& target, Index needed) {
     if (!target) return {0, mesh_.vertex_count()};
     const std::size_t kind = counted_kind(*target, counts_);
@@ -393,9 +393,9 @@ class Reader {
     metadata_->rows.push_back(std::move(section));
   }
 
-  /// Returns the columns of a section of that kind here: a file without triangles and quadrilaterals is a
-  /// geometry, whose domains name edges of its own; in a mesh domains of the geometry name those of another
-  /// file.
+  /// Returns the columns of a section of that kind in this file. A file without triangles and quadrilaterals
+  /// is a geometry: its domains name its own edges. In a mesh, domains of the geometry name edges of another
+  /// file, which are kept.
   [[nodiscard]] std::string_view columns_of(const RowKind& kind) const {
     const auto cells = [&](Shape shape) { return counted_kind(shape, counts_) < kCellKinds.size(); };
     const bool is_geometry = !cells(Shape::triangle) && !cells(Shape::quad);
@@ -433,7 +433,7 @@ class Reader {
     std::vector<bool> seen(count, false);
     for (Index row = 0; row < rows; ++row) {
       const Index item = position(count, what);
-      if (seen[item]) {  // an array has one row for each
+      if (seen[item]) {  // an array has only one row for each item
         in_.seek(begin);
         return read_rows(kind_columns(kind, array.components));
       }
@@ -445,7 +445,7 @@ class Reader {
     mesh_.data.push_back(std::move(array));
   }
 
-  /// Returns the columns of a table as a RowKind has them.
+  /// Returns the columns of a table in the notation of RowKind.
   static std::string kind_columns(const ListKind& kind, Index others) {
     const char first = !kind.target                     ? 'v'
                        : kind.target == Shape::line     ? 'e'
@@ -468,7 +468,7 @@ class Reader {
     note_missing_line_end(in_, kComment, notes_);
   }
 
-  /// Sorts second-order nodes from the order that the file describes into VTK's.
+  /// Puts the nodes of second-order cells from the order that the file gives into VTK's.
   void arrange_nodes() {
     for (std::size_t kind = kLinearKinds; kind < kCellKinds.size(); ++kind) {
       if (counts_[kind] == 0) continue;

@@ -62,7 +62,7 @@ struct WriteContext {
   Labels cell_labels;
 };
 
-/// References of 64 bits need version 4.
+/// Returns the version to write: 4 if a reference needs 64 bits, else that of the file, or 2.
 std::int64_t version(const WriteContext& from) {
   const std::int64_t wanted = from.own ? from.own->version : 2;
   using Limits = std::numeric_limits<std::int32_t>;
@@ -154,7 +154,7 @@ void print_value(OutputFile& out, const Values& values, Offset at) {
       values);
 }
 
-/// Writes a section without the lines that name cells which were left out.
+/// Writes a section, except lines that name a vertex or cell without a position in the file.
 void write_section_rows(OutputFile& out, const WriteContext& from, const Metadata::Rows& section,
                         Notes& notes) {
   const std::string_view columns = section.columns;
@@ -188,7 +188,7 @@ void write_section_rows(OutputFile& out, const WriteContext& from, const Metadat
   }
 }
 
-/// Writes an array that covers all vertices as the section of its name; returns whether there is one.
+/// Writes an array on all vertices as the section of its name; returns false if there is no such section.
 bool write_sizes(OutputFile& out, const DataArray& array) {
   const bool known = std::any_of(kSizeKinds.begin(), kSizeKinds.end(), [&](const SizeKind& kind) {
     return kind.keyword == array.name && kind.components == array.components;

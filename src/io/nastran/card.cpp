@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kNameWidth = 8;
 constexpr std::size_t kSmallWidth = 8;
 constexpr std::size_t kLargeWidth = 16;
-constexpr std::size_t kDataEnd = 72;  // column after which the name of the next line is
+constexpr std::size_t kDataEnd = 72;  // the name of the next line follows this column
 constexpr std::size_t kSmallFields = 8;
 constexpr std::size_t kLargeFields = 4;
 
@@ -65,7 +65,7 @@ bool is_blank_line(std::string_view line) {
   return std::all_of(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\t'; });
 }
 
-/// Returns a name of a line, for comparison: "+A1" and "*A1" name the same.
+/// Returns the name of a line without its mark, for comparison: "+A1" and "*A1" name the same line.
 std::string_view line_name(std::string_view field) {
   if (!field.empty() && (field.front() == '+' || field.front() == '*')) field.remove_prefix(1);
   return trimmed_blanks(field);
@@ -257,7 +257,7 @@ bool append_edited(std::string& out, std::string_view card, const CardFields& fi
     if (!at_left) out.append(blanks, ' ');
     out.append(text);
     if (at_left && field.length == field.width) out.append(blanks, ' ');
-    // a number at the left of a field that the line did not fill ends the line
+    // no blanks after a number at the left of its field if the line ends within that field
   }
   out.append(card.substr(done));
   return true;
@@ -284,7 +284,7 @@ void append_card(std::string& out, std::string_view name, const std::vector<std:
 
 namespace {
 
-/// Removes the letter, the plus and the zeros of an exponent, and the zero before a point; adds a point.
+/// Removes the letter and the leading zeros of an exponent, and a zero before the point; adds a point.
 std::string as_field(std::string_view number) {
   const std::size_t e = number.find('e');
   std::string mantissa(number.substr(0, e));

@@ -20,8 +20,8 @@ struct Piece {
   [[nodiscard]] std::string_view of(std::string_view text) const { return text.substr(begin, end - begin); }
 };
 
-/// Goes through the cards of a text of whole lines: a line with a name and those that continue it, with the
-/// comments between them. Comments and empty lines around cards belong to none.
+/// Iterates over the cards of a text of whole lines. A card is a line with a name, the lines that continue
+/// it, and the comments between these lines. Comments and empty lines around cards belong to no card.
 class Cards {
  public:
   /// `text` must outlive this object.
@@ -31,9 +31,9 @@ class Cards {
   bool next();
   /// Returns where the card is.
   [[nodiscard]] Piece place() const { return card_; }
-  /// Returns its lines.
+  /// Returns the lines of the card.
   [[nodiscard]] std::string_view lines() const { return card_.of(text_); }
-  /// Returns whether it is a line that continues a card, but has none before it.
+  /// Returns whether the card is a continuation line that has no card before it.
   [[nodiscard]] bool is_orphan() const { return is_orphan_; }
 
  private:
@@ -47,13 +47,13 @@ class Cards {
 /// A field of a card.
 struct Field {
   std::size_t begin = 0;   ///< in the card
-  std::size_t length = 0;  ///< bytes that the line has of it
+  std::size_t length = 0;  ///< bytes of the field that are on the line
   std::size_t width = 0;   ///< 8 or 16 columns; 0 between commas
   std::string_view text;   ///< without blanks around it
 };
 
-/// A card by its fields; those of the lines that continue it follow without gap: 8 of a line, 4 of one with
-/// large fields. Field 0 is the name.
+/// The fields of a card. Field 0 is the name. Then each line has 8 fields, or 4 if they are large; numbers go
+/// on from line to line.
 struct CardFields {
   std::vector<Field> fields;
   bool is_large = false;     ///< whether the first line has large fields
@@ -65,21 +65,21 @@ struct CardFields {
   }
 };
 
-/// Takes the fields of a card's lines; memory of `result` is used again. The texts are valid as long as
-/// `card`.
+/// Splits the lines of a card into fields; reuses the memory of `result`. The texts of the fields are valid
+/// as long as `card`.
 void split_card(std::string_view card, CardFields& result);
 
 /// Returns the name of a card in capitals, without the asterisk of large fields.
 std::string name_of(const CardFields& card);
 
-/// Returns a field as an integer; none for all else.
+/// Returns a field as an integer; none if it is not one.
 std::optional<std::int64_t> integer_of(std::string_view field);
 
-/// Returns a field as a number above 0, the number of a node, element or property; 0 for all else.
+/// Returns the number of a node, element or property in a field, above 0; 0 if the field holds none.
 std::int64_t number_of(std::string_view field);
 
-/// Returns a field as a real number, which may lack the letter of its exponent (1.5-3 is 0.0015); none for
-/// what is no finite number.
+/// Returns a field as a real number, which may lack the letter of its exponent (1.5-3 is 0.0015); none if it
+/// is not a finite number.
 std::optional<double> real_of(std::string_view field);
 
 /// A number to be written into a field; 0 leaves the field blank.
@@ -88,13 +88,13 @@ struct Edit {
   std::int64_t number = 0;
 };
 
-/// Appends a card with other numbers in some fields, ascending, in the columns of the old ones. Returns false
-/// for a number that does not fit its field.
+/// Appends a card with new numbers in the fields of `edits` (ascending), in the columns of the old ones.
+/// Returns false if a number does not fit its field.
 bool append_edited(std::string& out, std::string_view card, const CardFields& fields,
                    const std::vector<Edit>& edits);
 
-/// Appends a card of small fields, or large ones where a text needs it, with lines as needed. `line_end` ends
-/// each. Texts of more than 16 characters are not possible.
+/// Appends a card of small fields, or of large ones if a text has more than 8 characters, on as many lines as
+/// needed. `line_end` ends each line. Texts must not have more than 16 characters.
 void append_card(std::string& out, std::string_view name, const std::vector<std::string>& texts,
                  std::string_view line_end);
 
@@ -104,8 +104,8 @@ struct RealText {
   bool is_rounded = false;  ///< whether it reads back to another number
 };
 
-/// Returns the shortest text that reads back to the same bits, or to the nearest number that has one of 16
-/// characters: with a point, and no letter before the exponent.
+/// Returns the shortest text that reads back to the same bits; if that has more than 16 characters, the text
+/// of the value rounded to as many digits as fit. Has a point, and no letter before the exponent.
 RealText real_text(double value);
 
 }  // namespace meshorder::nastran

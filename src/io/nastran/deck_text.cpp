@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kTab = 8;
 
-/// Returns whether a line begins with that word, in any case, and no further letter.
+/// Returns whether a line begins with that word, in any case, and the word ends there.
 bool begins_with(std::string_view line, std::string_view word) {
   constexpr int kCase = 'a' - 'A';
   if (line.size() < word.size() || (line.front() | kCase) != (word.front() | kCase)) return false;
@@ -84,7 +84,7 @@ void DeckText::read() {
   }
 }
 
-/// Takes a line, given also without blanks around it.
+/// Takes the next line. `line` is the same line without the blanks around it.
 void DeckText::take_line(std::string_view line) {
   const std::size_t begin = text_.size();
   if (section_ == Section::bulk) {
@@ -113,7 +113,7 @@ void DeckText::take_line(std::string_view line) {
   }
 }
 
-/// Returns a name in quotes, which may go on in further lines; of these takes all but the last.
+/// Returns a name in quotes, which may extend over several lines; takes all of these lines but the last.
 std::string DeckText::quoted_name(std::string_view line) {
   constexpr std::size_t kLongest = 4096;
   const std::int64_t first = lines_.at().line();
@@ -131,7 +131,7 @@ std::string DeckText::quoted_name(std::string_view line) {
   return name.append(line.substr(0, line.find(quote)));
 }
 
-/// Goes on with the lines of a file: INCLUDE 'name'.
+/// Handles INCLUDE 'name': the next lines are those of that file.
 void DeckText::include() {
   const std::int64_t number = lines_.at().line();
   std::string_view line;

@@ -13,13 +13,13 @@
 
 namespace meshorder::nastran {
 
-/// Reads a file of Nastran as one text, with included files in place, and finds the bulk data in it. Tabs
-/// before the comments of bulk data become blanks up to the next multiple of 8 columns.
+/// Reads a file of Nastran as one text, with included files in place, and finds the bulk data in it. Tabs in
+/// lines of bulk data without commas become blanks up to the next multiple of 8 columns.
 class DeckText {
  public:
   explicit DeckText(const FilePath& path);
 
-  /// Returns all lines, each with an end. Valid until it is moved from.
+  /// Returns all lines, each with a line end. The caller may move the text out.
   [[nodiscard]] std::string& text() { return text_; }
   [[nodiscard]] const std::string& text() const { return text_; }
   /// Returns the lines between BEGIN BULK and ENDDATA; all up to ENDDATA where there is no BEGIN BULK.
@@ -32,12 +32,12 @@ class DeckText {
 
   /// Throws InputError at the line of that byte of the text.
   [[noreturn]] void fail(std::size_t byte, const std::string& what, const std::string& remedy) const;
-  /// Returns the line of that byte in its file. O(bytes since the last call's), backwards O(bytes of the
-  /// file).
+  /// Returns the file and line of that byte. O(bytes since the byte of the last call),
+  /// or O(bytes of the file) if that byte came later.
   [[nodiscard]] Location location(std::size_t byte) const;
 
  private:
-  /// Lines of one file, one after the other.
+  /// Consecutive lines of one file.
   struct Origin {
     std::size_t begin;  // in the text
     std::string file;
@@ -56,7 +56,7 @@ class DeckText {
   std::string text_;
   Piece bulk_;
   std::vector<Origin> origins_;
-  /// The last byte whose line was asked for; none yet.
+  /// The last byte whose line was asked for; npos before the first.
   struct Counted {
     std::size_t byte = std::string::npos;
     std::int64_t line = 0;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kWidestField = 16;
 
-/// Returns which item of the file is at each place of the mesh.
+/// Returns, for each place in the mesh, the item of the file that is there.
 std::vector<Index> items_at(const FileNumbers& numbers) {
   std::vector<Index> items(static_cast<std::size_t>(numbers.of_file().size()));
   for (Index k = 0; k < numbers.of_file().size(); ++k) items[numbers.place(k)] = k;
@@ -46,7 +46,7 @@ class BulkWriter {
     Index v = 0;
     Index c = 0;
     while (v < index_size(nodes) || c < index_size(elements)) {
-      // the next card of a node or element has the place of the next node or element of the mesh
+      // the mesh's next node or element replaces the text's next card of a node or element
       const bool is_node = v < index_size(nodes) && (c == index_size(elements) ||
                                                      deck_.nodes[v].begin < deck_.elements[c].place.begin);
       const Piece place = is_node ? deck_.nodes[v] : deck_.elements[c].place;
@@ -96,7 +96,7 @@ class BulkWriter {
     append_edited_card(card);
   }
 
-  /// Writes a node with other coordinates than in the file, in the basic system.
+  /// Writes a node, whose coordinates differ from those in the file, in the basic system.
   void write_moved_node(Index v) {
     std::vector<std::string> texts{std::to_string(nodes_.at(v)), deck_.has_default_system ? "0" : ""};
     for (const double x : mesh_.points[v]) {
@@ -142,12 +142,12 @@ class BulkWriter {
     append_edited_card(card);
   }
 
-  /// Gives a field a number, if it has another.
+  /// Plans to write a number into a field, unless the field has it already.
   void edit(std::size_t field, std::int64_t number) {
     if (number_of(fields_.text(field)) != number) edits_.push_back({field, number});
   }
 
-  /// Gives a field that may name a node the node's present number.
+  /// Updates the number in a field that may name a node.
   void edit_node(std::size_t field) {
     const std::int64_t number = number_of(fields_.text(field));
     if (number > 0) edit(field, nodes_.now(number));
@@ -161,7 +161,7 @@ class BulkWriter {
       lost_labels_ = lost_labels_ || given;
       return;
     }
-    // a blank field stays where it still means the property: that of BAROR, or the element's own number
+    // a blank field stays if it still means the label: the property of BAROR, or the element's own number
     const auto found = deck_.default_properties.find(type.name);
     const bool is_meant = found != deck_.default_properties.end()
                               ? label == found->second
@@ -169,7 +169,7 @@ class BulkWriter {
     if (before != 0 || !is_meant) edit(2, label);
   }
 
-  /// The node of an orientation and the points of warping, of beams.
+  /// Updates the numbers of a beam's orientation node and warping points.
   void edit_extra(Extra extra) {
     if (extra == Extra::none) return;
     const bool is_node = fields_.text(kOrientation + 1).empty() && fields_.text(kOrientation + 2).empty();
@@ -230,7 +230,7 @@ class BulkWriter {
     return association == Association::vertices ? nodes_ : elements_;
   }
 
-  /// Writes a card with ranges of numbers: as it is if they hold the same items still, else as a list.
+  /// Writes a card with ranges of numbers: with these if they still hold the same items, else with a list.
   void write_ranges(std::string_view card, const std::string& name, const References& found) {
     std::vector<NumberRange> ranges;
     if (name == "PLOAD4") {
@@ -267,9 +267,9 @@ class BulkWriter {
     }
   }
 
-  /// Writes a card with a list of numbers in place of that from field `list` on.
+  /// Writes a card with these numbers instead of the list that begins at field `list`.
   void write_list(const std::string& name, std::size_t list, const std::vector<std::int64_t>& numbers) {
-    constexpr std::size_t kInPload2 = 6;  // which does not go on in a second line
+    constexpr std::size_t kInPload2 = 6;  // PLOAD2 has one line only
     std::vector<std::string> head;
     for (std::size_t field = 1; field < list; ++field) head.emplace_back(fields_.text(field));
     for (const Edit& changed : edits_) head[changed.field - 1] = std::to_string(changed.number);

@@ -11,7 +11,7 @@
 
 namespace meshorder::nastran {
 
-/// What a field before the nodes, or instead of a direction, may hold.
+/// Fields besides the nodes in which an element may name a node or a point.
 enum class Extra : std::uint8_t {
   none,
   orientation,  ///< field 5 is a node if it is an integer and the next two are blank, else a direction
@@ -23,7 +23,7 @@ struct ElementType {
   std::string_view name;
   Shape shape;
   int corners;               ///< nodes that every element has
-  int most;                  ///< with those of edges, faces and the interior
+  int most;                  ///< nodes with those of edges, faces and the interior
   bool has_property = true;  ///< whether field 2 is the number of a property
   Extra extra = Extra::none;
 
@@ -40,14 +40,14 @@ constexpr std::size_t kWarpingB = 18;
 /// program.
 const ElementType* element_type(std::string_view name);
 
-/// Returns whether elements can have all of their first `nodes` nodes and no others.
+/// Returns whether elements of a type may have exactly the first `nodes` of their nodes.
 bool has_size(const ElementType& type, int nodes);
 
 /// Returns the card that cells of a mesh of another format are written as; an empty text if there is none.
 std::string_view card_of(Shape shape, int nodes);
 
-/// Returns the place of the k-th vertex of a cell among the nodes of its element. After the corners Nastran
-/// has the edges from the bottom to the top before those of the top, VTK after them.
+/// Returns the place of the k-th vertex of a cell among the nodes of its element. Nastran lists the nodes on
+/// edges between bottom and top before those on edges of the top, VTK after them.
 std::size_t node_place(Shape shape, int nodes, std::size_t k);
 
 }  // namespace meshorder::nastran

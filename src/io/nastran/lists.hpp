@@ -9,8 +9,8 @@
 
 namespace meshorder::nastran {
 
-/// Returns the numbers in a list of a card that items of no file have but `others`, ascending, has. `found`
-/// receives the positions of the items of the file that the list names, each once.
+/// Returns those of `others` (ascending) that the list of a card names. `found` receives the positions of the
+/// file's items that the list names, each once.
 std::vector<std::int64_t> numbers_in_list(const std::vector<NumberRange>& ranges, const IdMap& items,
                                           const std::vector<std::int64_t>& others, std::vector<Index>& found);
 

@@ -37,8 +37,8 @@ struct Deck {
   IdMap node_numbers;
   IdMap element_numbers;
   std::vector<Point> points;        ///< of the nodes, in the basic system
-  bool has_default_system = false;  ///< for nodes that name none: GRDSET
-  /// Properties of elements that name none, by their cards: those of BAROR and BEAMOR.
+  bool has_default_system = false;  ///< GRDSET gives nodes without a system one
+  /// Properties for elements that name none, by the name of their card: from BAROR and BEAMOR.
   std::map<std::string_view, std::int64_t> default_properties;
   std::vector<std::int64_t> other_points;    ///< numbers of points that are no nodes, ascending
   std::vector<std::int64_t> other_elements;  ///< of elements that are no cells, ascending

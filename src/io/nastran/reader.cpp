@@ -24,14 +24,14 @@
 namespace meshorder::nastran {
 namespace {
 
-/// A node of an element that no card before it has.
+/// A node of an element that no GRID before the element defines.
 struct MissingNode {
   Offset entry;  ///< of Cells::vertices
   std::int64_t number;
   std::size_t byte;
 };
 
-/// Different texts by their first appearance.
+/// Distinct texts, in the order of their first appearance.
 struct Texts {
   std::vector<std::string> list;
   std::set<std::string> known;
@@ -79,7 +79,7 @@ class DeckReader {
     }
   }
 
-  /// Returns the number of a node, element or property that a field is.
+  /// Returns the number of a node, element or property in a field; throws if the field holds none.
   [[nodiscard]] std::int64_t number(std::size_t field, std::string_view what) const {
     const std::int64_t result = number_of(fields_.text(field));
     if (result == 0 || result > kMaxIndex) fail_at_number(field, what);
@@ -120,7 +120,7 @@ class DeckReader {
 
   // ---- elements
 
-  /// Reads an element that is a cell; returns false for one that is none: a spring to the ground.
+  /// Reads an element that is a cell; returns false for a CBUSH to the ground, which is no cell.
   bool read_element(const ElementType& type) {
     check_lines();
     const std::size_t first = type.first_node();
@@ -173,7 +173,7 @@ class DeckReader {
     return type.corners;
   }
 
-  /// Elements with another card before them do not move to the others.
+  /// Begins a block of cells after any other card; elements do not move to other blocks.
   void begin_block() {
     const bool first = deck_->elements.empty();
     if (first || other_since_) mesh_.cell_blocks.push_back(mesh_.cell_count());
@@ -187,7 +187,7 @@ class DeckReader {
     labelled_.push_back(mesh_.cell_count() - 1);
   }
 
-  /// Remembers what other formats lose.
+  /// Records the type of an element with fields after its nodes, which other formats lose.
   void note_other_fields(const ElementType& type) {
     const std::size_t end = type.first_node() + static_cast<std::size_t>(type.most);
     for (std::size_t field = end; field < fields_.fields.size(); ++field) {
@@ -241,7 +241,7 @@ class DeckReader {
 
   // ---- the end
 
-  /// Returns the names of elements that are no cells: they begin with C, as coordinate systems do.
+  /// Returns the cards of elements that are no cells: they begin with C, but not with CORD.
   [[nodiscard]] std::vector<std::string> other_elements() const {
     std::vector<std::string> names;
     std::ranges::copy_if(others_.list, std::back_inserter(names), [](const std::string& name) {
@@ -300,7 +300,7 @@ class DeckReader {
     }
   }
 
-  /// Moves nodes that are given in a system of their own to the basic one.
+  /// Converts the coordinates of nodes from their own systems to the basic one.
   void place_nodes() {
     if (!has_systems_) return;
     std::replace(system_of_.begin(), system_of_.end(), kDefault, default_system_);
@@ -376,7 +376,7 @@ class DeckReader {
     return deck_->node_numbers.find(number) >= 0 || deck_->element_numbers.find(number) >= 0;
   }
 
-  /// Returns whether a text of fields may name nodes or elements.
+  /// Returns whether the text of a field may name nodes or elements.
   [[nodiscard]] bool may_name(std::string_view text) const {
     return same_but_for_case(text, "THRU") || is_item(number_of(text));
   }

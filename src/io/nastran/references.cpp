@@ -11,10 +11,10 @@
 namespace meshorder::nastran {
 namespace {
 
-/// What the fields after the name are: nodes (n), elements (e), the number of an element that is no cell
-/// (x), and neither (-). Letters in parentheses repeat to the end of the card. A capital letter begins a list
-/// of nodes (N), elements (E) or points that are no nodes (S). From a "." on the card must have nothing
-/// more: some programs give a second element there.
+/// One letter for each field after the name: a node (n), a node if the next field is blank (G), an element
+/// (e), the number of an element that is no cell (x), other (-). Letters in parentheses repeat to the end of
+/// the card. N, E and S begin a list of nodes, elements and points that are no nodes. From a "." on all
+/// fields must be blank: some programs give a second element there.
 struct Layout {
   std::string_view name;
   std::string_view fields;
@@ -185,7 +185,7 @@ class Finder {
         since = 0;
         continue;
       }
-      // after a weight or UM: components or a point first
+      // components follow a weight, a point follows UM
       const bool is_point = in_dependent ? since % 2 == 0 : since > 0;
       ++since;
       if (!is_point) continue;
@@ -195,10 +195,10 @@ class Finder {
     return found_;
   }
 
-  /// The columns of a matrix by points; its first card names none.
+  /// DMIG gives a matrix by columns, each for a point; its first card names none.
   std::optional<References> of_dmig() { return card_.text(2) == "0" ? found_ : by_layout("-n--(n---)"); }
 
-  /// Pressure on solids and shells: the face by two nodes, or a range of elements.
+  /// PLOAD4, a pressure on solids or shells, names one element and two nodes, or a range of elements.
   std::optional<References> of_pload4() {
     if (is_word(card_.text(7), "THRU")) {
       found_.list = 2;
@@ -211,7 +211,7 @@ class Finder {
 
   std::optional<References> of_param() { return is_word(card_.text(1), "GRDPNT") ? by_layout("-n") : found_; }
 
-  /// A set of grid points or elements, of properties or others.
+  /// SET3 is a set of grid points or elements; sets of properties name neither, other sets are not known.
   std::optional<References> of_set3() {
     const std::string_view kind = card_.text(2);
     if (is_word(kind, "GRID")) return by_layout("--N");

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// Where the cards of bulk data that are neither nodes nor cells name nodes and elements.
+// Finds the fields in which cards that are neither nodes nor cells name nodes and elements.
 
 #include "io/nastran/card.hpp"
 #include <meshorder/mesh.hpp>
@@ -28,13 +28,13 @@ struct References {
   std::size_t list = 0;
   Association of_list = Association::vertices;
   bool is_range = false;  ///< whether the list has a range
-  /// Numbers that the card gives to items which are no vertices and no cells: points or elements.
-  bool defines_points = false;   ///< the list has them
-  bool defines_element = false;  ///< field 1 has it
+  /// Whether the card defines items that are no vertices and no cells: points, or an element.
+  bool defines_points = false;   ///< the list has their numbers
+  bool defines_element = false;  ///< field 1 has its number
 };
 
-/// Returns what a card of that name in capitals names; none if the card is not known, or is written in a way
-/// that is not.
+/// Returns the references of a card of that name (in capitals); none if the card, or the way in which it is
+/// written, is not known.
 std::optional<References> references(std::string_view name, const CardFields& card);
 
 /// A range of numbers from, from + step, … ≤ to; one number if from = to.
@@ -44,7 +44,7 @@ struct NumberRange {
   std::int64_t step;
 };
 
-/// Returns the numbers and ranges of the list of a card; none if there is something else in it.
+/// Returns the numbers and ranges of the list of a card; none if the list holds anything else.
 std::optional<std::vector<NumberRange>> ranges_of(const CardFields& card, std::size_t list);
 
 }  // namespace meshorder::nastran

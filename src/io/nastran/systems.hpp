@@ -18,17 +18,17 @@ namespace meshorder::nastran {
 /// degrees (MSC Nastran Quick Reference Guide, "CORD2R").
 class CoordinateSystems {
  public:
-  /// Returns the position of a node in the basic system; the byte is that of the card that asks.
+  /// Returns the position of a node in the basic system; `byte` is that of the card that names the node.
   using NodePosition = std::function<Point(std::int64_t node, std::size_t byte)>;
 
   explicit CoordinateSystems(const DeckText& file) : file_(file) {}
 
-  /// Takes a card that begins at that byte; ignores other cards. Throws InputError for numbers that are none,
-  /// and for a system that was given before.
+  /// Adds the systems of a card that begins at that byte; ignores other cards. Throws InputError for fields
+  /// that are not numbers, and for a system that was given before.
   void add(std::string_view name, const CardFields& fields, std::size_t byte);
 
-  /// Returns a point of a system in the basic one. Throws InputError for a system that is missing, has no
-  /// axes or is given in itself.
+  /// Converts a point from a system to the basic one. Throws InputError for a system that is missing, has no
+  /// axes or refers to itself.
   ///
   /// @param byte  of the card that names the system
   [[nodiscard]] Point in_basic(std::int64_t system, const Point& point, std::size_t byte,
@@ -43,9 +43,9 @@ class CoordinateSystems {
   struct System {
     Kind kind = Kind::rectangular;
     bool by_nodes = false;
-    std::int64_t reference = 0;           // of the points
+    std::int64_t reference = 0;           // system of the points
     std::array<Point, 3> points{};        // the origin, one on the z-axis, one in the plane of x and z
-    std::array<std::int64_t, 3> nodes{};  // instead of them
+    std::array<std::int64_t, 3> nodes{};  // instead of the points
     std::size_t byte = 0;
     bool has_frame = false;
     bool is_open = false;  // its frame is being found

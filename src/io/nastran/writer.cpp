@@ -79,7 +79,7 @@ class PlainBulkWriter {
     file_.write(line_ += '\n');
   }
 
-  /// Returns the property of a cell: its label where that is possible.
+  /// Returns the property of a cell: its label if that is a valid number, else 1.
   std::int64_t property(Index c) {
     const bool given = labels_.any() && labels_.given[c];
     const std::int64_t label = given ? labels_.values[c] : 1;

@@ -10,8 +10,8 @@
 
 namespace meshorder::openfoam {
 
-/// The file from which renumberMesh takes an order by its method `manual`: it lies where the folder
-/// `polyMesh` does.
+/// Name of the file from which renumberMesh's method `manual` takes an order. It lies beside the folder
+/// `polyMesh`.
 inline constexpr std::string_view kCellOrder = "cellOrder";
 
 /// Writes the list of old cells in their new order. The caller commits the file.
@@ -30,12 +30,12 @@ void write_dictionary(OutputFile& file);
 /// @throws InputError for a file that is no dictionary of OpenFOAM
 bool takes_cell_order(const FilePath& dictionary);
 
-/// Returns the folder of a case: of `CASE/NAME.foam`, by which ParaView opens it, `CASE`; other paths as they
-/// are.
+/// Returns the folder of a case: `CASE` for `CASE/NAME.foam`, the file by which ParaView opens a case; other
+/// paths unchanged.
 std::filesystem::path case_folder(const std::filesystem::path& path);
 
-/// Returns whether a folder is an OpenFOAM case with a mesh: it has a folder `polyMesh` in `constant`, in a
-/// region there, or in that of `processor0`.
+/// Returns whether a folder is an OpenFOAM case with a mesh: it has a folder `polyMesh` in `constant` or
+/// `processor0/constant`, or in a region there.
 bool is_case(const std::filesystem::path& folder);
 
 }  // namespace meshorder::openfoam

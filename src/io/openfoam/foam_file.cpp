@@ -16,15 +16,15 @@
 namespace meshorder::openfoam {
 namespace {
 
-/// The most entries of a list that gives one value for all: they cost no bytes in the file, and a mesh whose
-/// faces all belong to one cell is small.
+/// Limit on the entries of a list with one value for all: the file holds no bytes for them, and a mesh whose
+/// faces all have the same cell is small.
 constexpr std::int64_t kMostAlike = 1 << 20;
 
 constexpr std::string_view kMarks = "(){};";
 
 bool is_space(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 bool is_mark(char c) { return kMarks.find(c) != std::string_view::npos; }
-/// Returns whether a number or word ends before this character, which may begin a comment.
+/// Returns whether this character ends a number or word; a slash may begin a comment.
 bool is_end(char c) { return is_space(c) || is_mark(c) || c == '/'; }
 
 /// Returns the file of that path if it exists, else its compressed form.
@@ -172,7 +172,7 @@ double FoamFile::finite(std::string_view what) {
   const std::size_t begin = position_;
   double value = 0;
   const std::errc code = take_number(value);
-  if (code == std::errc::result_out_of_range) {  // of numbers near 0 as well
+  if (code == std::errc::result_out_of_range) {  // also for numbers too near 0
     const std::string_view digits = token();
     if (digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos) return 0;
   }

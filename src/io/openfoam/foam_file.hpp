@@ -20,8 +20,8 @@ namespace meshorder::openfoam {
 /// as binary numbers between parentheses. Comments are C++'s. Errors name the line of a text file, the byte
 /// of a binary one.
 ///
-/// A list is "3(0 1 2)", in text also "3{7}" for three times the same. A size that is only claimed decides no
-/// allocation.
+/// A list is "3(0 1 2)", in text also "3{7}" for three times 7. Sizes are checked before memory is allocated
+/// for them.
 class FoamFile {
  public:
   /// Reads the file of that path, or that path with ".gz", and its header.
@@ -79,7 +79,7 @@ class FoamFile {
   double scalar(std::string_view what);
   /// Takes the size of a list whose entries take at least that many bytes each.
   std::int64_t size(std::string_view what, std::int64_t bytes_each);
-  /// Returns the label that was read last, if it is in range.
+  /// Returns the label that was read last; throws InputError if it is out of range.
   Index checked(std::int64_t label, std::string_view what, std::int64_t least, std::int64_t end);
   Point point();
 

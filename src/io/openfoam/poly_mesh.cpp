@@ -94,7 +94,7 @@ CsrGraph graph_of(const Sides& sides) {
   return graph_from_edges(sides.cells, edges);
 }
 
-/// The sum of centres of faces for each cell, face after face.
+/// Sums the centres of the faces of each cell; faces are added in the order of the file.
 class CentreSums {
  public:
   explicit CentreSums(const Sides& sides)
@@ -159,7 +159,7 @@ class CentreReader {
     faces_.end_lists("faces");
   }
 
-  /// The first places of the faces, one more for the end, and all their points.
+  /// Reads where each face begins in the list of points, and where the last one ends; then that list.
   void read_compact() {
     std::vector<Index> begins;
     faces_.read_labels(begins, "face's begin", 0, kMaxIndex);

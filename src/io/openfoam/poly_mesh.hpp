@@ -9,15 +9,15 @@
 
 namespace meshorder::openfoam {
 
-/// What an order of cells needs of a mesh.
+/// The parts of a mesh that are needed to order its cells.
 struct PolyMesh {
   CsrGraph graph;              ///< joins cells that share an internal face
   Index internal_faces = 0;    ///< at least the number of edges: two cells may share several
   std::vector<Point> centres;  ///< of each cell the mean of its faces' centres; empty unless asked for
 };
 
-/// Reads the folder `polyMesh` of a case, whose files lie below the case's folder: its files `owner` and
-/// `neighbour`, text or binary, each also as `.gz`, and, for the centres, `points` and `faces`.
+/// Reads the files `owner` and `neighbour` in the folder `polyMesh` of a case and, for the centres, `points`
+/// and `faces`: text or binary, each also as `.gz`. They must lie below the case's folder.
 ///
 /// @throws InputError for a file that is missing or faulty, with its line or byte, and for a cell without
 ///         faces; a mesh without any cell is returned as it is

@@ -94,7 +94,7 @@ bool from_base64(std::string_view text, std::span<char> bytes) {
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     const std::uint32_t value = kValues[byte_of(from[i])];
-    // padding fills the last group alone
+    // padding is allowed only after the characters that the bytes need
     if (value == kNone && (from[i] != '=' || i <= rest)) return false;
     bits = (bits << 6U) | (value & 63U);
   }

@@ -19,7 +19,7 @@ class Base64Encoder {
  public:
   /// Returns the characters that these bytes complete.
   [[nodiscard]] std::string put(std::span<const char> bytes);
-  /// Returns those of the one or two bytes left, padded.
+  /// Returns the characters of the one or two bytes left, padded.
   [[nodiscard]] std::string finish();
 
  private:
@@ -27,11 +27,11 @@ class Base64Encoder {
   unsigned held_ = 0;
 };
 
-/// All at once.
+/// Encodes all bytes at once.
 std::string to_base64(std::span<const char> bytes);
 
-/// Decodes as many bytes as there is place for from the beginning of a text. Returns false if the text is
-/// shorter than they need or has other characters; the bytes are then of no use.
+/// Decodes the beginning of a text until `bytes` is full. Returns false if the text is too short or has other
+/// characters; the bytes then have no meaning.
 [[nodiscard]] bool from_base64(std::string_view text, std::span<char> bytes);
 
 }  // namespace meshorder

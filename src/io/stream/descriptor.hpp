@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-/// A file descriptor, closed at the end. The functions return 0 or an `errno`.
+/// A file descriptor, which the destructor closes. The functions return 0 or an `errno`.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -27,9 +27,9 @@ class Descriptor {
   [[nodiscard]] bool is_open() const noexcept { return descriptor_ >= 0; }
   [[nodiscard]] int get() const noexcept { return descriptor_; }
 
-  /// Writes all bytes, also where the system takes a part at a time or is interrupted.
+  /// Writes all bytes, even if the system takes them in parts or is interrupted.
   [[nodiscard]] int write(std::string_view bytes) const noexcept;
-  /// Waits until all written so far is on the disk; nothing to do where the file system knows no `fsync`.
+  /// Waits until all bytes written so far are on the disk; does nothing if the file system has no `fsync`.
   [[nodiscard]] int sync() const noexcept;
   int close() noexcept;
 

@@ -44,7 +44,7 @@ std::size_t read_on_threads(InputFile& file, std::span<char> into) {
 
 /// Returns the first `wanted` bytes of a file.
 std::string read_sized(InputFile& file, const std::string& name, std::uint64_t wanted) {
-  // a limit on claims is none on what is there
+  // the limit on claims does not limit what a file holds
   const std::uint64_t most = std::max(limit_on_unknown_sizes(), usable_memory() / 4 * 3);
   if (wanted > most) {
     throw InputError(

@@ -39,8 +39,8 @@ class FileStore {
 
 class OutputSet;
 
-/// A file on disk or in a store, whether it exists or not. Says who named it: symbolic links are followed in
-/// what the user named, and not in what this program derived from that, such as mesh.ele beside mesh.node.
+/// A file on disk or in a store, whether it exists or not. Knows which part of it the user named: symbolic
+/// links are followed there, but not in what this program derived from it, such as mesh.ele of mesh.node.
 class FilePath {
  public:
   // NOLINTBEGIN(google-explicit-constructor): a file on disk is what a path says
@@ -51,14 +51,14 @@ class FilePath {
   // NOLINTEND(google-explicit-constructor)
   /// A file in a store, which must outlive this object.
   FilePath(std::filesystem::path path, FileStore& store) : path_(std::move(path)), store_(&store) {}
-  /// A file on disk that, if it is written, is put in place by the set, which must outlive this object.
+  /// A file on disk. If it is written, the set puts it in place; the set must outlive this object.
   FilePath(FilePath path, OutputSet& set)
       : path_(std::move(path.path_)), folder_(std::move(path.folder_)), set_(&set) {}
 
-  /// A file on disk below a folder that the user named; the rest of the path this program made, or a file.
-  /// It is read only where it lies below the folder, links resolved (see `may_include`).
+  /// A file on disk below a folder that the user named; this program, or a file, gave the rest of the path.
+  /// It is read only if it lies below the folder after links are resolved (see `may_include`).
   static FilePath in(std::filesystem::path folder, std::filesystem::path path);
-  /// The same in the path's own folder: this program made the last name.
+  /// The same with the path's own folder; this program made the file's name.
   static FilePath derived(const std::filesystem::path& path) { return in(path.parent_path(), path); }
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
@@ -68,8 +68,8 @@ class FilePath {
   [[nodiscard]] FileStore* store() const noexcept { return store_; }
   /// Returns the set of outputs that the file belongs to, null if there is none.
   [[nodiscard]] OutputSet* set() const noexcept { return set_; }
-  /// Returns the folder that the user named where the rest of the path is derived; nothing if the user gave
-  /// the whole path.
+  /// Returns the folder that the user named if the rest of the path is derived; nothing if the user gave the
+  /// whole path.
   [[nodiscard]] const std::optional<std::filesystem::path>& folder() const noexcept { return folder_; }
 
   /// Returns whether the file exists; false also if the system denies access.
@@ -81,11 +81,11 @@ class FilePath {
   [[nodiscard]] bool is_same(const FilePath& other) const;
   /// Opens a file on disk. Throws InputError as `InputFile` does.
   [[nodiscard]] InputFile open() const;
-  /// Returns the bytes of the file; of a gzip file what is in it. Throws InputError for a folder, a device,
+  /// Returns the bytes of the file, of a gzip file decompressed. Throws InputError for a folder, a device,
   /// an unreadable or an empty file, one that changes meanwhile or exceeds the limit on memory, and a damaged
   /// gzip file; Unavailable for a gzip file in a build without zlib.
   [[nodiscard]] std::string read() const;
-  /// Returns its first bytes, at most `most` (of a pipe all), also of a gzip file as they are. Throws
+  /// Returns its first bytes, at most `most`, of a gzip file compressed. Reads a pipe to its end. Throws
   /// InputError for a folder, a device, an unreadable or an empty file.
   [[nodiscard]] std::string read_first(std::size_t most) const;
 
@@ -99,7 +99,7 @@ class FilePath {
   [[nodiscard]] FilePath at(std::filesystem::path path) const;
 
   std::filesystem::path path_;
-  std::optional<std::filesystem::path> folder_;  ///< of the path that this one was made of
+  std::optional<std::filesystem::path> folder_;  ///< see `folder`
   FileStore* store_ = nullptr;
   OutputSet* set_ = nullptr;
 };

@@ -12,8 +12,8 @@
 
 namespace meshorder {
 
-/// A folder on which this process holds a lock of its own, for as long as this object lives: `FolderLocks`
-/// leave it out, as they would wait for this process itself.
+/// Marks a folder that this process has locked by other means, as long as this object lives: `FolderLocks`
+/// skips it, as it would wait for its own process.
 class HeldFolder {
  public:
   /// @param descriptor  of the open folder

@@ -27,10 +27,10 @@ bool is_gzip(const std::string& bytes) { return bytes.starts_with("\x1f\x8b"); }
 #ifdef MESHORDER_HAS_ZLIB
 
 constexpr std::size_t kInflateStep = std::size_t{1} << 20;
-/// Above what the C library keeps for later when it is freed.
+/// Larger than the blocks that the C library keeps for later use when they are freed.
 constexpr std::size_t kInflateBlock = 33 * kInflateStep;
 
-/// Bytes in blocks, which do not move while there comes more.
+/// Bytes in blocks, which do not move when more bytes are added.
 class InflatedBlocks {
  public:
   /// Returns the place of the next bytes, at most `kInflateStep` of them.
@@ -41,7 +41,7 @@ class InflatedBlocks {
   }
   void use(std::size_t bytes) { used_ += bytes; }
 
-  /// Returns all bytes as one text. Takes memory for one block more, as each is freed once it is copied.
+  /// Returns all bytes as one text. Needs memory for one more block only, as it frees each after copying.
   std::string joined() && {
     std::string result;
     reserve_large(result, used_);

@@ -5,7 +5,7 @@
 
 namespace meshorder {
 
-/// Returns the bytes as they are, or what is in them if they are a gzip file.
+/// Returns the decompressed bytes if they are a gzip file, else the bytes as they are.
 ///
 /// @param bytes  all bytes of a file
 /// @param file   its path, for errors
@@ -14,8 +14,8 @@ namespace meshorder {
 /// @throws Unavailable for a gzip file in a build without zlib
 std::string uncompressed(std::string bytes, const std::string& file);
 
-/// Returns the first bytes as they are, or what begins in them if they are those of a gzip file: at most 1
-/// MiB, as far as it can be decoded. To find out what a file holds; throws Unavailable likewise.
+/// Returns the first bytes of a file as they are; of a gzip file what can be decompressed from them, at most
+/// 1 MiB. Serves to find out what a file holds. Throws Unavailable as `uncompressed` does.
 std::string uncompressed_start(std::string bytes, const std::string& file);
 
 }  // namespace meshorder

@@ -40,7 +40,7 @@ struct NumberReader {
   std::string_view word(std::string_view what);
   std::int64_t text_integer(std::string_view what);
   double text_real(std::string_view what);
-  /// Returns the integer that `text` is.
+  /// Returns `text` as an integer; throws InputError if it is none.
   [[nodiscard]] std::int64_t parsed(std::string_view text, std::string_view what) const;
   /// In a binary file, moves to the line after this one, where binary numbers begin.
   void begin_binary();

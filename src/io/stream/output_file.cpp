@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kFlushAt = std::size_t{1} << 20;
-constexpr std::size_t kAtOnce = std::size_t{1} << 16;  // so many bytes are written without a copy
-constexpr mode_t kMode = 0666;                         // the umask or the folder's default ACL takes from it
+constexpr std::size_t kAtOnce = std::size_t{1} << 16;  // so many bytes or more are written without a copy
+constexpr mode_t kMode = 0666;                         // the umask or the folder's default ACL removes bits
 constexpr mode_t kPrivateMode = 0600;                  // until it gets the mode of the old file
 
 }  // namespace

@@ -38,7 +38,7 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  // as `Text`
+  // as the functions of `Text`
   template <class... Args>
   void print(fmt::format_string<Args...> format, Args&&... args) {
     text().print_all(format, fmt::make_format_args(args...));
@@ -62,7 +62,7 @@ class OutputFile {
     written(put_number(room(sizeof(T)), value, order));
   }
 
-  /// Writes over the first bytes, of which there must be as many.
+  /// Overwrites the first bytes; at least as many must have been written before.
   void write_over_start(std::string_view bytes);
 
   [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_.path(); }

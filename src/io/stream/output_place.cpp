@@ -41,8 +41,8 @@ int own_descriptor(const fs::path& path) {
   return -1;
 }
 
-/// As the kernel's protected_symlinks: in a folder like /tmp a link is followed only if it is the user's own
-/// or of the folder's owner.
+/// Throws InputError for a link in a folder like /tmp, unless it belongs to this user or the folder's owner.
+/// The kernel's protected_symlinks does the same.
 void refuse_link_of_others(const fs::path& link) {
   struct stat folder {};
   struct stat own {};
@@ -53,8 +53,8 @@ void refuse_link_of_others(const fs::path& link) {
                    "name the file itself");
 }
 
-/// Throws InputError if one of the folders or the file that this program named is a symbolic link: whoever
-/// made the folder above may have put it there to have another file replaced.
+/// Throws InputError if one of the folders or the file that this program named is a symbolic link: the owner
+/// of the folder above may have put it there so that another file is replaced.
 void refuse_links_in_derived(const FilePath& file) {
   if (!file.folder()) return;
   fs::path path = file.path();
@@ -71,7 +71,7 @@ void refuse_links_in_derived(const FilePath& file) {
   }
 }
 
-/// Returns what a link holds, as a path from where the link's own path starts; nothing if it is no link.
+/// Returns the path to which a link leads, relative to the same folder as `path`; nothing if it is no link.
 std::optional<fs::path> link_content(const fs::path& path) {
   std::error_code code;
   const fs::path content = fs::read_symlink(path, code);
@@ -86,7 +86,7 @@ bool has_acl(const fs::path& path) { return ::getxattr(path.c_str(), kAcl, nullp
 
 /// Copies those extended attributes that the system lets this process copy.
 void copy_extended_attributes(const fs::path& from, const Descriptor& to) {
-  // the one that came from the folder's default ACL
+  // removes the ACL that came from the folder's default ACL
   (void)::fremovexattr(to.get(), kAcl);
   const ssize_t size = ::listxattr(from.c_str(), nullptr, 0);
   if (size <= 0) return;

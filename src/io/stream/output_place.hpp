@@ -26,8 +26,8 @@ std::filesystem::path folder_of(const std::filesystem::path& path);
 OutputPlace output_place(const FilePath& file);
 
 /// Gives an open file the owner, the group, the mode and the extended attributes, ACLs among them, of the
-/// file that it is to replace; what the system does not allow is left out, and so is the access of a group
-/// that could not be kept. Returns 0 or an `errno`.
+/// file that it is to replace, as far as the system allows. If the group cannot be kept, the file's new group
+/// gets no more access than all others have. Returns 0 or an `errno`.
 [[nodiscard]] int copy_attributes(const std::filesystem::path& from, const Descriptor& to);
 
 }  // namespace meshorder

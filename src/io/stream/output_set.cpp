@@ -34,7 +34,7 @@ int renamed(const fs::path& from, const fs::path& to) {
   return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
 
-/// A file that takes its place, or goes.
+/// A new file that replaces its target, or a target that is taken away.
 class Move {
  public:
   /// @param fresh  the new file; empty: the target is taken away
@@ -68,7 +68,7 @@ class Move {
   bool existed_ = false;
 };
 
-/// What asks the other process to put files in place; empty where there is none.
+/// The function that asks another process to put files in place; empty if there is none.
 PutInPlace& other_process() {
   static PutInPlace ask;
   return ask;
@@ -96,7 +96,7 @@ void apply_all(std::vector<Move>& moves) {
   std::set<fs::path> folders;
   for (const Move& move : moves) folders.insert(folder_of(move.target()));
   const FolderLocks locked(folders);
-  std::vector<bool> is_back(moves.size(), true);  // made before: without memory nothing could be put back
+  std::vector<bool> is_back(moves.size(), true);  // allocated now: putting files back needs no memory then
   int error = 0;
   std::size_t begun = 0;
   while (error == 0 && begun < moves.size()) error = moves[begun++].apply();

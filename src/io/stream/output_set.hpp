@@ -21,16 +21,16 @@ class OutputSet {
   OutputSet& operator=(const OutputSet&) = delete;
   OutputSet& operator=(OutputSet&&) = delete;
 
-  /// Adds a file that is written to its end; `OutputFile::commit` calls this. Throws InputError if it cannot
-  /// be closed.
+  /// Adds a file to which nothing more is written; `OutputFile::commit` calls this. Throws InputError if it
+  /// cannot be closed.
   void add(OutputFile&& file);
 
-  /// Has `commit` remove a file, if it exists, that an earlier run left and that is not part of these.
+  /// Makes `commit` remove a file that an earlier run left, if it exists, and that is not part of this set.
   void remove(FilePath path) { removals_.push_back(std::move(path)); }
 
-  /// Has `commit` take away the old file that names the others, or one that no reader does without, before it
-  /// puts the others in place: a process that is killed in between leaves a set that cannot be read. For
-  /// outputs without a mark (see `put_in_place`). The new one is to be added last.
+  /// Makes `commit` first take away an old file without which no reader reads the others, such as one that
+  /// names them. A process that is killed in between then leaves a set that cannot be read, not a mixed one.
+  /// For outputs without a mark (see `put_in_place`). The new version of that file must be added last.
   void remove_first(FilePath path) { removals_first_.push_back(std::move(path)); }
 
   /// Puts all files in place. Throws InputError as `put_in_place`.
@@ -46,7 +46,7 @@ class OutputSet {
   std::vector<std::string> notes_;
 };
 
-/// An output that is written to its end.
+/// An output to which nothing more is written.
 struct FinishedFile {
   std::filesystem::path scratch;  ///< scratch folder beside the target, with the output as `new`
   FilePath target;
@@ -61,10 +61,10 @@ struct FinishedFile {
 ///    `removed` are moved away;
 /// 4. the folders are synced and unlocked.
 ///
-/// Until 3 the old files are there. An error in 3 or 4 puts them back. A process that is killed in 3 leaves
-/// some files new and others old, each whole. The readers of TetGen, XDMF and maps refuse such a mixture by a
-/// mark in each file; sets without marks name a file as `removed_first`. Nobody can hold up an output by
-/// holding the lock: after some seconds it is done without.
+/// Until step 3 the old files are in place. An error in step 3 or 4 puts them back. A process that is killed
+/// in step 3 leaves some files new and others old, each complete. The readers of TetGen, XDMF and maps refuse
+/// such a mixture by a mark in each file; sets without marks name a file as `removed_first`. Nobody can hold
+/// up an output by holding a lock: after ten seconds the files are put in place without it.
 ///
 /// @return notes on files with further hard links, which keep the old content
 /// @throws InputError if a file cannot be completed or replaced, two have one target, or a target is no
@@ -78,8 +78,8 @@ using PutInPlace = std::function<std::vector<std::string>(std::span<const Finish
                                                           std::span<const FilePath> removed_first,
                                                           std::span<const FilePath> removed)>;
 
-/// Has outputs whose scratch folders are not beside them (`keep_scratches_in`) put in place by another
-/// process, which this one asks by that function. To be called while there is one thread.
+/// Makes `put_in_place` call `other`, which asks another process, for outputs whose scratch folders are not
+/// beside them (`keep_scratches_in`). To be called while there is one thread.
 void put_in_place_by(PutInPlace other);
 
 }  // namespace meshorder

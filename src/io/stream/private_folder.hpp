@@ -5,7 +5,7 @@
 
 namespace meshorder {
 
-/// A folder of this user's alone, where temporary files are; removed at the end with all that is in it.
+/// A folder for temporary files that only this user can read; the destructor removes it and its content.
 class PrivateFolder {
  public:
   /// Throws InputError if it cannot be made.

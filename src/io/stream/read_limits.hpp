@@ -15,12 +15,12 @@
 
 namespace meshorder {
 
-/// The reading of one mesh by the current thread: adds up what its files have and what they claim beyond
-/// that, and knows where files that they name may be.
+/// Marks that the current thread reads one mesh: adds up the sizes of its files and the memory that they
+/// claim beyond that, and holds the folders in which files that they name may be.
 ///
-/// Claims of a mesh may take the limit that is given; without one 256 MiB and 100 times the size of its
-/// files, but no more than `memory_limit()`. What is read outside of any scope has `memory_limit()` for each
-/// claim.
+/// All claims of a mesh together may take the limit that is given; without one, 256 MiB plus 100 times the
+/// size of its files, but at most `memory_limit()`. Outside of any scope, each single claim may take
+/// `memory_limit()`.
 class ReadScope {
  public:
   /// @param file             the mesh, for messages; must outlive this object
@@ -53,48 +53,48 @@ class ReadScope {
   ReadScope* outer_;
 };
 
-/// Adds a file that was read to those of the mesh. One that is read again is a claim.
+/// Counts a file that was read among those of the mesh; counts it as a claim if it was read before.
 void count_file(const FilePath& file, std::uint64_t bytes);
 
-/// How often what a file claims is in memory at a time: as it is read, in the mesh, as it moves to its new
-/// order, and in the output.
+/// Number of copies of claimed data that may be in memory at the same time: in the reader, in the mesh, in
+/// the reordered mesh and in the output.
 inline constexpr std::uint64_t kCopiesOfClaim = 4;
 
-/// Asks whether so many bytes more may be allocated for what a file claims rather than holds, to be called
-/// before the allocation. They count `kCopiesOfClaim` times. Returns an empty text if so, else the fault,
-/// "WHAT would take 64 GiB …": all claims of the mesh together would exceed its limit.
+/// Claims memory for data that a file announces but does not hold; to be called before the allocation. The
+/// bytes count `kCopiesOfClaim` times. Returns an empty text; if all claims of the mesh together would exceed
+/// its limit, claims nothing and returns the fault, "WHAT would take 64 GiB …".
 [[nodiscard]] std::string refused_claim(std::uint64_t bytes, std::string_view what);
 
-/// The same for memory that a library takes while it reads: it counts once, and not for later claims.
+/// The same for memory that a library needs only while it reads: counts once, and not for later claims.
 [[nodiscard]] std::string refused_for_a_while(std::uint64_t bytes, std::string_view what);
 
-/// Returns the bytes of the limit that the claims of the mesh which was read last have left.
+/// Returns how many bytes of its limit the claims of the last mesh that was read have left.
 std::uint64_t left_by_last_reading();
 
-/// What messages advise where a claim is refused.
+/// The advice in messages about a claim that is refused.
 inline constexpr const char* kClaimRemedy =
     "if you trust the file, raise the limit on memory (--limit-memory)";
 
-/// As `refused_claim`, but throws InputError at that place; without a file, of the mesh that is read.
+/// As `refused_claim`, but throws InputError at `where`; without a file there, for the mesh that is read.
 void claim_memory(std::uint64_t bytes, std::string_view what, Location where = {});
 
-/// Returns the most bytes that are read of an input whose size is not known before.
+/// Returns the limit in bytes on an input whose size is not known before it is read.
 std::uint64_t limit_on_unknown_sizes();
 
 /// Allows files below that folder to be included by all meshes that this process reads.
 void allow_includes_from(std::filesystem::path folder);
 
-/// Returns the folders that are allowed so.
+/// Returns the folders that `allow_includes_from` has allowed.
 const std::vector<std::filesystem::path>& allowed_include_folders();
 
-/// Returns the folders where files may be that a file in `folder` names: this and the allowed ones.
+/// Returns the folders in which the files named by a file in `folder` may be: `folder` and the allowed ones.
 std::vector<std::filesystem::path> folders_for_includes(const std::filesystem::path& folder);
 
-/// Returns whether a mesh may name this file to be read: whether it is below the folder of `from` or an
-/// allowed one, links and .. resolved; in memory by the names alone.
+/// Returns whether the mesh `from` may name `file` to be read: whether it is below the folder of `from` or an
+/// allowed one, after links and .. are resolved. For files in a store the names alone count.
 bool may_include(const FilePath& from, const FilePath& file);
 
-/// What messages advise for a file that `may_include` refuses.
+/// The advice in messages about a file that `may_include` refuses.
 inline constexpr const char* kIncludeRemedy =
     "put it below the mesh's folder, or allow its own by --allow-includes-from";
 

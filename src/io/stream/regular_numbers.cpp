@@ -19,17 +19,17 @@ namespace meshorder {
 namespace {
 
 constexpr std::size_t kMostParts = 64;
-constexpr std::size_t kNumberBytes = 24;  // of text that is looked at for each number that is left, at first
+constexpr std::size_t kNumberBytes = 24;  // text examined first for each number that is left
 
 bool is_separator(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
-/// Returns how many words begin in a text, the byte before which is a separator. Eight bytes at a time: the
-/// highest bit of each says whether it is above the space.
+/// Returns how many words begin in a text that follows a separator. Handles eight bytes at a time: the
+/// highest bit of each, in `of_words`, says whether it is above the space.
 std::size_t words_in(std::string_view text) {
   constexpr std::uint64_t kOnes = 0x0101010101010101U;
   constexpr std::uint64_t kHighest = kOnes * 0x80U;
   std::size_t words = 0;
-  std::uint64_t before = 0;  // whether the byte before is of a word, as its lowest byte's highest bit
+  std::uint64_t before = 0;  // not 0 if the byte before belongs to a word
   std::size_t at = 0;
   if constexpr (std::endian::native == std::endian::little) {
     for (; at + 8 <= text.size(); at += 8) {
@@ -94,7 +94,7 @@ struct PartRead {
   bool is_regular = false;  ///< all words are numbers, and nothing else is there
 };
 
-/// Reads that many numbers, and to the end of the part.
+/// Reads as many numbers as `values` holds, then checks that nothing follows them in the part.
 template <class Number>
 PartRead read_part(std::string_view part, std::span<Number> values) {
   PartRead result;

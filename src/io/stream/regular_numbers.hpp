@@ -11,10 +11,10 @@
 
 namespace meshorder {
 
-/// How far numbers of a text were read.
+/// How much of a text was read as numbers.
 struct RegularNumbers {
   std::size_t count = 0;     ///< of the numbers
-  std::size_t bytes = 0;     ///< of the text up to the end of the last one, or that of the blanks after it
+  std::size_t bytes = 0;     ///< of the text, up to the end of the last number or of the blanks after it
   std::int64_t lines = 0;    ///< line feeds in these bytes
   bool has_returns = false;  ///< carriage returns may be among them, which end lines, too
 };
@@ -25,15 +25,15 @@ RegularNumbers read_numbers_of_type(std::string_view text, std::span<Number> val
 
 /// Reads numbers from the beginning of a text on all threads, as far as they are regular: in the form and
 /// range of `std::from_chars`, and separated by blanks, tabs and line ends alone. The caller reads the others
-/// one after another, as it would all of them, so errors and results are the same.
+/// one by one, as it would read all of them, so that errors and results are the same.
 ///
 /// The text is divided at blanks and line ends into parts. The words of the parts are counted, so that each
 /// part knows its first number.
 ///
 /// @param values      receives the numbers, at most so many; what is beyond those read may be overwritten
-/// @param part_bytes  of a part, at least, > 0
-/// @note O(bytes of the numbers); a few numbers for each part.
-///       Of the types that files seldom have, none are read.
+/// @param part_bytes  least size of a part, > 0
+/// @note O(bytes of the numbers); memory: a few numbers for each part.
+///       Reads nothing for types that are rare in files.
 template <class Number>
 RegularNumbers read_regular_numbers(std::string_view text, std::span<Number> values,
                                     std::size_t part_bytes = std::size_t{1} << 20) {
@@ -44,7 +44,7 @@ RegularNumbers read_regular_numbers(std::string_view text, std::span<Number> val
     return {};
 }
 
-/// The same from where a scanner without comments is, which moves after the last number. Returns their count.
+/// The same from a scanner without comments, which moves after the last number. Returns the count.
 template <class Number>
 std::size_t read_regular_numbers(Scanner& in, std::span<Number> values) {
   const RegularNumbers read =

@@ -14,7 +14,7 @@ namespace meshorder {
 namespace {
 
 constexpr std::size_t kPartsAtOnce = 64;
-constexpr std::size_t kRecordBytes = 64;  // so much text is looked at for each record that is left, at first
+constexpr std::size_t kRecordBytes = 64;  // text examined first for each record that is left
 
 /// Some whole lines of a text.
 struct Part {
@@ -49,8 +49,8 @@ void count_lines(std::string_view text, char comment, Part& part) {
   }
 }
 
-/// Divides the text from there on into parts, as far as so many records may reach: a file may have many short
-/// runs of records, for each of which little may be looked at.
+/// Divides the text from `begin` on into parts, up to where so many records usually end: a file may have many
+/// short runs of records, and none of them may cost a pass over the rest of the text.
 std::vector<Part> divided(std::string_view text, std::size_t begin, std::size_t bytes, std::size_t records) {
   std::vector<Part> parts;
   const std::size_t last = std::min(text.size(), begin + records * kRecordBytes);

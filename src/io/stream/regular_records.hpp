@@ -9,21 +9,21 @@
 
 namespace meshorder {
 
-/// Reads the next records of a text, one on a line of its own, on all threads, as far as they are regular.
-/// Returns how many it read; the scanner then is after the last one. The caller reads the others one after
-/// another: it says what is wrong with them, and takes what is unusual but right. So errors and results are
-/// those of a reader that does all records itself.
+/// Reads the next records of a text, each on a line of its own, on all threads, as far as they are regular.
+/// Returns how many it read; the scanner is then after the last one. The caller reads the others one by one:
+/// it reports their errors and accepts what is unusual but valid. So errors and results are those of a reader
+/// that reads all records one by one.
 ///
 /// The text is divided at line ends into parts. Lines with something on them are counted, so
 /// that each part knows its first record.
 ///
-/// @param in     is anywhere before the first record, after what comes before it
+/// @param in     is after all that precedes the first record, on its line or before
 /// @param count  ≥ 0, at most so many
-/// @param read   `read(part, record)` takes the words of a record; false: it is not regular, which it is not
-///               either where more words follow on its line. It writes only what belongs to the record, and
-///               may be called again for it. Errors make a record irregular
-/// @param part_bytes  of a part, at least, > 0
-/// @note O(bytes); a few numbers for each part.
+/// @param read   `read(part, record)` takes the words of a record; returns false if it is not regular. It
+///               writes only what belongs to the record, and may be called again for the same one. A record
+///               is not regular either if `read` throws an Error, or more words follow on its line
+/// @param part_bytes  least size of a part, > 0
+/// @note O(bytes); memory: a few numbers for each part.
 Index read_regular_records(Scanner& in, Index count, const std::function<bool(Scanner&, Index)>& read,
                            std::size_t part_bytes = std::size_t{1} << 20);
 

@@ -75,7 +75,7 @@ class Scanner {
   /// otherwise. Reads each byte once, where `word` and a parser read it twice.
   template <class T>
   bool take_number(T& value);
-  /// The same of a finite real number; one that is not is taken, too.
+  /// The same for a finite real number; takes a number that is not finite, too, but returns false.
   bool take_finite(double& value) { return take_number(value) && std::isfinite(value); }
   /// Takes the next word as an integer of type T.
   template <class T>
@@ -123,8 +123,8 @@ class Scanner {
     }
     return true;
   }
-  /// Takes digits before a space or line feed, too few to overflow; returns false and takes nothing but
-  /// spaces otherwise. Most numbers of a mesh are such.
+  /// Takes a number of digits alone, before a space or line feed and too few to overflow; otherwise returns
+  /// false and skips spaces and line feeds only. Most numbers of a mesh are such.
   template <class T>
   bool take_digits(T& value);
   template <class T>

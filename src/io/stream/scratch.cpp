@@ -45,7 +45,7 @@ std::atomic<std::size_t> locks_held = 0;
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing else
 std::array<std::atomic<char*>, 1024> unfinished{};
 
-/// Returns the slot of the path, −1 if none is free: such a folder waits for the next run.
+/// Stores a path and returns its slot; −1 if none is free: then a later run removes the folder.
 int remember(const std::string& path) {
   auto* const text = new char[path.size() + 1];
   std::memcpy(text, path.c_str(), path.size() + 1);
@@ -64,7 +64,7 @@ void forget(int slot) noexcept {
 
 // ---- folders
 
-/// Where scratch folders are made that are not beside their outputs, by the folders of these.
+/// Places of scratch folders that are not beside their outputs, by the folder of the outputs.
 std::map<fs::path, fs::path>& other_places() {
   static std::map<fs::path, fs::path> places;
   return places;
@@ -107,7 +107,7 @@ Descriptor opened_folder(const Descriptor& parent, const char* name) noexcept {
 
 std::vector<std::string> scratches_in(const Descriptor& folder) {
   std::vector<std::string> names;
-  // opened again: what was read of a folder is remembered with its descriptor
+  // opened again: a descriptor remembers how far its folder was read
   const int again = ::openat(folder.get(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const std::unique_ptr<DIR, int (*)(DIR*)> list(again < 0 ? nullptr : ::fdopendir(again), ::closedir);
   if (!list) return names;
@@ -132,7 +132,7 @@ void remove_if_dead(const Descriptor& parent, const std::string& name, bool is_i
   } else if (errno != ENOENT) {
     return;
   }
-  // without a lock a process has just begun, or died then: only an empty folder can be removed
+  // a folder without a lock is of a process that has just begun, or died then; it is removed only if empty
   ::unlinkat(parent.get(), name.c_str(), AT_REMOVEDIR);
 }
 

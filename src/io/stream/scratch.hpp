@@ -37,8 +37,8 @@ class Scratch {
   int slot_ = -1;
 };
 
-/// Has scratch folders of outputs in `folder` made in `place`, in the same file system, for a process that
-/// may write nowhere else. To be called while there is one thread.
+/// From now on, scratch folders of outputs in `folder` are made in `place`, in the same file system. For a
+/// process that may write nowhere else. To be called while there is one thread.
 void keep_scratches_in(const std::filesystem::path& place, const std::filesystem::path& folder);
 
 /// Returns where scratch folders of outputs in a folder are made: in the folder itself, unless

@@ -38,7 +38,7 @@ class Text {
   /// Appends `before` and the number as `print` would as `{}`; faster.
   void real(std::string_view before, double value);
 
-  /// Appends `before` and a number of any type as `print` would as `{}`, by the fastest of these.
+  /// Appends `before` and a number of any type as `print` would as `{}`, by the fastest of these functions.
   template <class Number>
   void number(std::string_view before, Number value) {
     if constexpr (std::is_same_v<Number, double>) {

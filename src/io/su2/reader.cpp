@@ -242,7 +242,7 @@ class Su2Reader {
 
   void read_elements(Index count, int wanted_dimension, bool& numbered) {
     Cells& cells = mesh_.cells;
-    // once: to reserve for each of many markers would copy all cells as often
+    // only the first time: reserving for each of many markers would copy all cells each time
     if (cells.size() == 0) cells.reserve(count, Offset{count} * (wanted_dimension + 1));
     std::array<Index, 8> cell{};
     for (Index c = 0; c < count; ++c) {
@@ -376,7 +376,7 @@ class Su2Reader {
                      ": numbers at the ends of lines are not 0, 1, 2 …; as in SU2, places count");
   }
 
-  /// Puts the nodes of wedges in the mesh's order, unless they are in it.
+  /// Puts the nodes of wedges in the mesh's order, unless the file has them in that order.
   void turn_wedges() {
     Cells& cells = mesh_.cells;
     if (std::find(cells.shapes.begin(), cells.shapes.end(), Shape::wedge) == cells.shapes.end()) return;
@@ -401,7 +401,7 @@ class Su2Reader {
   std::string lines_;  // to be kept
   std::unordered_set<Part> sections_seen_;
   std::unordered_set<std::string> names_seen_;
-  std::vector<std::int64_t> labels_;  // of the cells so far; empty without one
+  std::vector<std::int64_t> labels_;  // of the cells so far; empty if none has one
   Index elements_ = 0;                // of the highest dimension
   Index markers_said_ = -1;
   std::int64_t largest_node_ = -1;

@@ -4,10 +4,10 @@
 // Declarations shared by the reader and the writer of SU2's meshes.
 //
 // Format: the SU2 project's documentation, "Mesh File", https://su2code.github.io/docs_v7/Mesh-File/. Types
-// and nodes of elements are VTK's. The first triangle of a wedge faces outward: so do the faces that SU2
-// lists for a prism (Common/src/geometry/primal_grid/CPrism.cpp, SU2 7.0.8), and VTK's of old did. Gmsh
-// writes its own order, where it faces inward; SU2 turns what has a negative volume round when it reads a
-// mesh.
+// and nodes of elements are VTK's. The first triangle of a wedge faces outward, as in SU2's own list of the
+// faces of a prism (Common/src/geometry/primal_grid/CPrism.cpp, SU2 7.0.8) and in old versions of VTK. Gmsh
+// writes its own order, in which that triangle faces inward. When SU2 reads a mesh, it turns elements with a
+// negative volume round.
 
 #include "io/format.hpp"
 
@@ -73,7 +73,7 @@ struct Metadata final : FormatMetadata {
                                                             std::span<const Index> cells) const override;
 };
 
-/// Returns the label that a marker's name is, 0 if it is none: "12" and "-3", but not "012".
+/// Returns a marker's name as a label, 0 if it is none: "12" and "-3" are labels, "012" is not.
 std::int64_t label_of_name(std::string_view name);
 
 Mesh read(const FilePath& path, Notes& notes);

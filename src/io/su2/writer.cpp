@@ -72,7 +72,7 @@ struct Markers {
   void add_set(const EntitySet& set) {
     if (!has_place(set)) return note_set_unsupported(set, "SU2", notes);
     Marker& into = marker(name_of(set));
-    places.try_emplace(set.name, static_cast<std::size_t>(&into - markers.data()));  // as the file has it
+    places.try_emplace(set.name, static_cast<std::size_t>(&into - markers.data()));  // its own name, too
     std::int64_t others = 0;
     std::int64_t repeated = 0;
     for (const Index c : set.members) {
@@ -99,7 +99,7 @@ struct Markers {
     }
   }
 
-  /// Returns a set's name without what would end it in a file.
+  /// Returns the name of a set's marker, without characters that would end it in a file.
   std::string name_of(const EntitySet& set) {
     const std::string plain = plain_name(set.name, "%=");
     std::string name(trimmed(plain));
@@ -113,7 +113,7 @@ struct Markers {
     return name;
   }
 
-  /// Gives boundary cells that no set has to the marker of their label.
+  /// Adds the boundary cells that are in no set to the markers of their labels.
   void add_others() {
     const Labels labels = labels_of(mesh, Association::cells);
     std::int64_t unmarked = 0;
@@ -154,7 +154,7 @@ const ElementKind* kind_of(Shape shape, int nodes) {
   return found == kElementKinds.end() ? nullptr : &*found;
 }
 
-/// Elements of the highest dimension, 2 or 3, and those of their boundary.
+/// Returns whether a shape is an element of the highest dimension, 2 or 3, or of the boundary.
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
   const int highest = mesh.cells.highest_dimension();
   return kind_of(shape, vertices) != nullptr && highest >= 2 && dimension(shape) >= highest - 1;
@@ -337,7 +337,7 @@ Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
     if (!marker.cells.empty()) blocks.push_back(index_size(new_to_old));
     new_to_old.insert(new_to_old.end(), marker.cells.begin(), marker.cells.end());
   }
-  // what is left out
+  // cells that are not written
   add([&](Index c) { return !markers.is_volume(c) && !markers.marked[c]; });
   return Permutation::from_new_to_old(std::move(new_to_old));
 }

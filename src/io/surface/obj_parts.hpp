@@ -15,8 +15,8 @@
 /// Declarations shared by the reader and the writer of OBJ files.
 namespace meshorder::obj {
 
-/// A statement that applies to the cells after it until the next of its kind, and the cell array of the ones
-/// that applied: 0 for none, else a number whose name is in the metadata. Smoothing groups are numbers.
+/// A statement that applies to the cells after it until the next of its kind, and the cell array that keeps
+/// which one applied: 0 for none, else a number; the metadata has its name. Smoothing groups are numbers.
 struct State {
   std::string_view keyword;
   std::string_view array;
@@ -33,11 +33,11 @@ inline constexpr std::array<State, 9> kStates{{{"o", "object"},
 inline constexpr std::size_t kMaterial = 1;
 inline constexpr std::size_t kSmoothing = 2;
 
-/// The homogeneous coordinate of vertices that have one.
+/// Array of the homogeneous coordinate, for vertices that have one.
 inline constexpr std::string_view kWeight = "obj:weight";
 
-/// Name of the array of positions, from 0, in the list of texture coordinates (or normals) for the corners of
-/// cells with `corners` corners. Reordering leaves the lists unchanged.
+/// Returns the name of an array of cells with `corners` corners: for each corner the position, from 0, in the
+/// list of texture coordinates (or normals). Reordering leaves these lists unchanged.
 inline std::string corner_array(std::string_view what, Index corners) {
   return "obj:" + std::string(what) + std::to_string(corners);
 }

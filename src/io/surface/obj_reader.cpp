@@ -256,7 +256,7 @@ class Reader {
                      fmt::format("there are {}, counted from 1", list.count));
   }
 
-  /// A corner: v, v/vt, v//vn or v/vt/vn.
+  /// Reads a corner: v, v/vt, v//vn or v/vt/vn.
   void read_corner(std::string_view corner) {
     const auto until_slash = [&] {
       const std::string_view part = corner.substr(0, corner.find('/'));
@@ -358,7 +358,7 @@ class Reader {
     }
   }
 
-  /// Each name of a g statement becomes a set, in alphabetical order.
+  /// Makes a set of each name in g statements, in alphabetical order.
   void add_groups() {
     std::map<std::string, std::vector<Index>> members;
     std::vector<std::vector<std::vector<Index>*>> of_statement(groups_.names.size() + 1);

@@ -28,7 +28,7 @@ bool obj_holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
   return shape == Shape::poly_vertex || (dimension(shape) <= 2 && vertices == corners(shape, 0));
 }
 
-/// Returns the integers of all cells, of any type; none if they do not fit.
+/// Returns the 32- or 64-bit integers of all cells; none for other arrays and if one exceeds 32 bits.
 std::vector<std::int32_t> cell_integers(const DataArray& array) {
   if (!array.is_dense() || array.components != 1) return {};
   if (const auto* same = std::get_if<std::vector<std::int32_t>>(&array.values)) return *same;
@@ -95,7 +95,7 @@ class ObjWriter {
     written_.insert(array);
   }
 
-  /// The row of each vertex, −1 for none; empty when each has its own.
+  /// Returns the row of each vertex, −1 for none; empty if the array is dense.
   [[nodiscard]] std::vector<Index> rows_of(const DataArray& array) const {
     std::vector<Index> rows;
     if (array.is_dense()) return rows;
@@ -104,8 +104,8 @@ class ObjWriter {
     return rows;
   }
 
-  /// Indices of corners where the file was OBJ; else normals and texture coordinates of vertices are lists as
-  /// long as that of vertices.
+  /// Finds the indices of corners if the file was OBJ; else the normals and texture coordinates of vertices,
+  /// which become lists as long as that of vertices.
   void find_corner_data() {
     texture_.assign(mesh_.cells.shapes.size(), nullptr);
     normals_.assign(mesh_.cells.shapes.size(), nullptr);
@@ -146,7 +146,7 @@ class ObjWriter {
     }
   }
 
-  /// Returns for each cell the sets that contain it, as ascending positions in the list of sets.
+  /// Finds the sets that contain each cell, as ascending positions in the list of sets.
   void find_groups() {
     group_offsets_.assign(mesh_.cells.shapes.size() + 1, 0);
     for (const EntitySet& set : mesh_.sets) {
@@ -166,8 +166,8 @@ class ObjWriter {
     return {groups_.data() + group_offsets_[cell], groups_.data() + group_offsets_[cell + 1]};
   }
 
-  /// Returns a set's name as one word, as required of a group's name. A backslash at its end would join the
-  /// next line to it.
+  /// Returns a set's name as one word, which a group's name must be. A backslash at its end would join the
+  /// next line to it, and becomes an underscore.
   static std::string one_word(const EntitySet& set) {
     std::string name = plain_name(set.name.empty() ? "unnamed" : set.name, " ");
     for (std::size_t at = name.size(); at > 0 && name[at - 1] == '\\'; --at) name[at - 1] = '_';
@@ -230,7 +230,7 @@ class ObjWriter {
     current_[i] = name;
   }
 
-  /// Writes names that no cell has once, to preserve them.
+  /// Writes each name that no cell has, so that it is not lost.
   void write_unused_names() {
     for (std::size_t s = 0; s < mesh_.sets.size(); ++s) {
       if (mesh_.sets[s].association != Association::cells || !mesh_.sets[s].members.empty()) continue;

@@ -94,7 +94,7 @@ void measure_vertices(Scanner& scanner, Layout& layout) {
   if (numbers == others + 3 || numbers == others + 4) {
     layout.color_width = numbers - others;
   } else if (numbers < 3 || numbers > others + 4) {
-    // lines mean nothing; then a colour has Geomview's four numbers
+    // the vertices are not one to a line; then a colour has four numbers, as in Geomview
     layout.one_line_each = false;
     layout.color_width = layout.colors ? 4 : 0;
   } else {
@@ -120,7 +120,7 @@ struct Numbers {
     return integers && std::all_of(values.begin(), values.end(), [](double x) { return std::abs(x) < 2e9; });
   }
 
-  /// Returns 32-bit integers if they are such.
+  /// Returns 32-bit integers if `are_integers`, else real numbers.
   [[nodiscard]] Values typed() && {
     if (are_integers()) return std::vector<std::int32_t>(values.begin(), values.end());
     return std::move(values);

@@ -31,8 +31,8 @@ struct Property {
   bool is_list = false;
   TypeWord count_type;  ///< of a list
   std::string why_left_out =
-      {};                     ///< of a property of vertices or cells that is read and not kept; else empty
-  bool numbers_rows = false;  ///< of rows of the faces: it is the number of the face
+      {};                     ///< of vertices and cells: why the property is read but not kept; else empty
+  bool numbers_rows = false;  ///< of rows that go with the faces: the number of the face
 };
 
 /// Meaning of an element: vertices, a kind of cells, strips of triangles, rows that go with the faces, or
@@ -44,15 +44,15 @@ struct Element {
   Index count = 0;
   std::vector<Property> properties;
   Role role = Role::other;
-  std::string content;            ///< of others: the lines or bytes, verbatim
-  std::string why_left_out = {};  ///< of others that are not written; else empty
+  std::string content;            ///< of other elements: the lines or bytes, verbatim
+  std::string why_left_out = {};  ///< why another element is not written; else empty
 };
 
 inline bool holds_cells(const Element& element) {
   return element.role != Role::vertices && element.role < Role::rows_of_faces;
 }
 
-/// Returns the name of the array of cells that has a property of rows that go with the faces.
+/// Returns the name of a property's array: "ELEMENT.NAME" for rows that go with the faces, else its name.
 inline std::string array_name(const Element& element, const Property& property) {
   return element.role == Role::rows_of_faces ? element.name + "." + property.name : property.name;
 }

@@ -127,8 +127,8 @@ bool sounds_like_index(const Property& property) {
          has_part(name, "indices");
 }
 
-/// Finds out what would depend on the order of vertices or faces in a way that is not known: lists of whole
-/// numbers, and in other elements also numbers of that name, and rows as many as vertices or cells.
+/// Marks as left out what may depend on the order of vertices or faces in an unknown way: lists of whole
+/// numbers; in other elements also numbers named like an index, and as many rows as vertices or cells.
 ///
 /// @param known  the elements of vertices and cells, by their numbers of rows
 void leave_out_dependent(Element& element, const std::map<Index, std::string>& known) {
@@ -156,7 +156,7 @@ void leave_out_dependent(Element& element, const std::map<Index, std::string>& k
       fmt::format("it has as many rows as the element {}, to which they could belong", same->second);
 }
 
-/// Fails if a required property is missing.
+/// Fails if a required property is missing, or two have one name.
 void check_element(const Scanner& scanner, const Element& element) {
   std::set<std::string_view> names;
   for (const Property& property : element.properties) {
@@ -191,7 +191,7 @@ void leave_header(Scanner& scanner) {
   }
 }
 
-/// Leaves the role to rows of the faces only where they follow the one element of as many faces.
+/// Keeps the role rows_of_faces only if the element follows the only element of faces, of as many rows.
 void check_rows_of_faces(Metadata& header) {
   const Element* faces = nullptr;
   Element* rows = nullptr;
@@ -218,7 +218,7 @@ void check_elements(const Scanner& scanner, Metadata& header) {
   if (count(Role::vertices) != 1)
     scanner.fail("the header has no element vertex, or several", "one is needed");
   check_rows_of_faces(header);
-  if (count(Role::strips) > 0) {  // they become an element of that name
+  if (count(Role::strips) > 0) {  // strips become an element 'face'
     std::erase_if(header.elements, [](const Element& e) { return e.role == Role::faces && e.count == 0; });
     if (count(Role::faces) > 0)
       scanner.fail("the header has the elements face and tristrips", "convert the strips to faces");
@@ -292,7 +292,7 @@ struct BodyReader : NumberReader {
       case Type::uint32:
         return static_cast<T>(number<std::uint32_t>(what));
       case Type::float32:
-        // text keeps more digits than the type has
+        // text may have more digits than the type
         return static_cast<T>(binary ? number<float>(what) : number<double>(what));
       case Type::float64:
         break;
@@ -450,7 +450,7 @@ class Reader {
     }
   }
 
-  /// Whether the values are 0, 1, 2 …
+  /// Returns whether the values are 0, 1, 2 …
   static bool counts_up(const Column& column) {
     return std::all_of(column.by_length.begin(), column.by_length.end(), [](const auto& part) {
       return std::visit(
@@ -469,7 +469,7 @@ class Reader {
     });
   }
 
-  /// Gives the element of triangle strips the description of the triangles that they became.
+  /// Turns the description of an element of triangle strips into that of the triangles made of them.
   void become_faces(Element& element, Index first_cell, Notes& notes) {
     element.name = "face";
     element.role = Role::faces;

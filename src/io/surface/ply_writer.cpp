@@ -211,7 +211,7 @@ class Columns {
         std::count_if(array.indices.begin(), array.indices.end(), [&](Index row) { return is_item_[row]; }));
   }
 
-  /// Whether an element of rows that go with the faces has the array.
+  /// Returns whether the array belongs to an element whose rows go with the faces.
   [[nodiscard]] bool is_of_rows(const DataArray& array) const {
     const auto* metadata = dynamic_cast<const ply::Metadata*>(mesh_.format_metadata.get());
     return metadata != nullptr &&
@@ -289,7 +289,7 @@ class Columns {
     return column;
   }
 
-  /// Adds a normal, colour or texture coordinates as one property a component, of the usual names.
+  /// Adds a normal, colour or texture coordinates: one property for each component, with the usual names.
   void add_vector(const SurfaceVector& vector) {
     const GatheredVector gathered = gather(mesh_, vector, on_);
     if (gathered.from.size() != 1 || is_used(*gathered.from[0]) || table_.items.empty()) return;

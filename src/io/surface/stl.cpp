@@ -68,7 +68,7 @@ class PointTable {
   static std::size_t hash(const Point& point) {
     std::uint64_t h = 0;
     for (const double x : point) {
-      h ^= std::bit_cast<std::uint64_t>(x + 0.0);  // makes −0 to 0
+      h ^= std::bit_cast<std::uint64_t>(x + 0.0);  // turns −0 into 0
       h *= 0x9e3779b97f4a7c15U;
       h ^= h >> 32U;
     }

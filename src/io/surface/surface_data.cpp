@@ -13,7 +13,7 @@ bool is_usable(const DataArray* array) {
   return array && array->is_dense() && !std::holds_alternative<std::vector<std::string>>(array->values);
 }
 
-/// The columns beside each other.
+/// Returns the columns row by row: the first of each column, then the second, …
 std::vector<double> interleaved(const std::vector<const DataArray*>& columns, Index rows) {
   std::vector<double> result(columns.size() * static_cast<std::size_t>(rows));
   for (std::size_t k = 0; k < columns.size(); ++k) {

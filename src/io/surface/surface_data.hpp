@@ -34,13 +34,13 @@ struct GatheredVector {
   }
 };
 
-/// The vector of all vertices or cells, if the mesh has it for all of them. O(rows).
+/// Returns the vector of all vertices or cells; of width 0 unless the mesh has it for all of them. O(rows).
 GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Association association);
 
-/// Whether the values are of an integer type.
+/// Returns whether the values are of an integer type.
 bool holds_integers(const Values& values);
 
-/// The values as real numbers; empty for strings.
+/// Returns the values as real numbers; none for strings.
 std::vector<double> as_reals(const Values& values);
 
 }  // namespace meshorder
