@@ -63,13 +63,13 @@ bool leads_to_object(hid_t group, const std::string& name) {
 Handle file_access() {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
-  H5Pset_fapl_sec2(access.id());  // whatever HDF5_DRIVER in the environment says
+  H5Pset_fapl_sec2(access.id());  // regardless of HDF5_DRIVER in the environment
   return access;
 }
 
 Handle memory_access(std::string_view bytes) {
   Handle access = file_access();
-  // otherwise the library would make a file on the disk
+  // false: the library makes no file on the disk
   if (H5Pset_fapl_core(access.id(), kCoreStep, false) < 0) throw std::bad_alloc();
   if (!bytes.empty()) {
     std::string copy(bytes);  // the library copies it again, but takes no pointer to const

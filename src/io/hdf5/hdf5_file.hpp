@@ -86,16 +86,16 @@ class File {
   [[nodiscard]] std::optional<std::string> text_attribute(const std::string& path,
                                                           const std::string& name) const;
 
-  /// Writes numbers to a dataset. If it exists, it keeps its number type, attributes, chunks and compression
-  /// (and its shape if it has as many values; else it gets a new one); otherwise it is made with the type
-  /// of the values.
+  /// Writes numbers to a dataset. One that exists keeps its number type, attributes, chunks and compression;
+  /// it also keeps its shape if the number of values is the same. A new one gets the type and the shape that
+  /// are given.
   void write(const std::string& path, const Values& values, const std::vector<std::uint64_t>& shape);
   void write(const std::string& path, std::span<const Index> values, const std::vector<std::uint64_t>& shape);
-  /// Writes texts to a dataset, as rows of `width` characters, cut or filled at their ends. If it exists, it
-  /// keeps its attributes.
+  /// Writes texts to a dataset, as rows of `width` characters, cut or padded at their ends. A dataset
+  /// that exists keeps its attributes.
   void write_texts(const std::string& path, std::span<const std::string> texts, std::size_t width,
                    char filling = '\0');
-  /// Makes a dataset of texts of any length, in ASCII by its type, whatever their characters are.
+  /// Makes a dataset of texts of any length. Its type says ASCII even if there are other characters.
   void write_strings(const std::string& path, std::span<const std::string> texts);
   /// Makes a dataset of numbers, whose type is an alternative of Values. Allocates room in the file without
   /// writing values.

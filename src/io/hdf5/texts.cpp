@@ -53,7 +53,7 @@ std::string without_padding(std::string_view text) {
 /// Returns texts of any length, each up to its first zero byte.
 std::vector<std::string> File::read_strings(const std::string& path, const Handle& dataset,
                                             const Handle& type) const {
-  constexpr std::uint64_t kReference = 16;  // bytes of a dataset for each text
+  constexpr std::uint64_t kReference = 16;  // bytes that a dataset stores for each text
   const Handle space(H5Dget_space(dataset.id()), H5Sclose);
   const hssize_t rows = H5Sget_simple_extent_npoints(space.id());
   if (rows < 0) fail(path, "has no values", "the file may be damaged");

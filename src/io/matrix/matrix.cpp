@@ -68,7 +68,7 @@ std::int64_t whole_value(const DataArray& array, Offset at) {
 
 void note_all_unsupported(const Mesh& mesh, std::string_view format,
                           std::span<const DataArray* const> written, Notes& notes) {
-  // points of a matrix were given beside its file
+  // the points of a matrix came from another file: they are not lost
   if (stored_matrix(mesh) == nullptr && has_places(mesh)) {
     notes.push_back(
         fmt::format("the coordinates of vertices are not written: {} has no place for them", format));

@@ -188,11 +188,11 @@ class GraphReader {
   Mesh mesh_;
   std::shared_ptr<GraphMetadata> metadata_ = std::make_shared<GraphMetadata>();
   Index edges_ = 0;
-  Index weights_ = 0;  // of each vertex
+  Index weights_ = 0;  // number of them for each vertex
   bool has_edge_weights_ = false;
   bool has_weights_ = false;
   bool has_sizes_ = false;
-  std::vector<std::int64_t> lines_;  // of the vertices, in the file
+  std::vector<std::int64_t> lines_;  // of each vertex, in the file
   std::vector<std::int64_t> sizes_;
   std::vector<std::int64_t> vertex_weights_;
   std::vector<Offset> offsets_{0};

@@ -123,7 +123,7 @@ class PointReader {
     if (row < rows_) fail_of_rows(fmt::format("has {} rows of coordinates", row));
   }
 
-  /// Returns how many numbers a row has.
+  /// Reads the numbers of a row into `point`; returns how many there are.
   int read_row(std::string_view text, Point& point) {
     constexpr std::string_view kBlanks = " \t\r";
     int count = 0;

@@ -269,7 +269,7 @@ class FamilyWriter {
                                                   : std::min(last_, family.number);
   }
 
-  /// Writes a new family.
+  /// Writes a new family and returns its number.
   std::int64_t add_family(const std::vector<std::string>& sorted, const std::vector<std::string>& groups) {
     const std::int64_t number = association_ == Association::vertices ? last_ + 1 : last_ - 1;
     remember({number, sorted});

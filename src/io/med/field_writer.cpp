@@ -158,7 +158,7 @@ class FieldWriter {
     return by_node ? mesh_order(*piece.type) : std::span<const int>();
   }
 
-  /// Returns values in the order of a file, as numbers of a type.
+  /// Returns the values of some rows in the order of the file, as numbers of one type.
   template <class Number>
   [[nodiscard]] std::vector<Number> values_of(const DataArray& array, const Rows& rows,
                                               const Piece& piece) const {

@@ -4,7 +4,7 @@
 // Declarations shared by the reader and the writer of MED 3 and 4.
 //
 // Format: "Modèle de données et format de fichiers MED 4" (EDF R&D, CEA), and the groups, datasets and
-// attributes that its library writes. The node orders of cells are those that Gmsh's writer translates to.
+// attributes that its library writes. The node orders of cells are those of Gmsh's writer of MED.
 //
 // In a Mesh, the cells of a type are a block of cells. Groups are sets of vertices and of cells, and the
 // numbers of families an array `kLabel`. A field is an array of its name, "NAME step K" where it has several
@@ -71,7 +71,7 @@ struct Piece {
   std::string profile = {};            ///< name; kNoProfile without one
   std::string array = {};              ///< its name in the mesh
   const GeometryType* type = nullptr;  ///< null: vertices
-  bool at_nodes = false;               ///< at the nodes of cells
+  bool at_nodes = false;               ///< the values are at the nodes of cells
   std::size_t components = 1;
   std::size_t points = 1;       ///< nodes or Gauss points of a cell
   bool counts_profile = false;  ///< attribute NBR is the size of the profile, not of the mesh
@@ -168,7 +168,7 @@ struct Writing {
   hdf5::File& file;
   Notes& notes;
   std::map<const GeometryType*, std::vector<Index>> cells;  ///< of each type that the mesh has
-  std::set<const DataArray*> placed;                        ///< arrays that need no field
+  std::set<const DataArray*> placed;                        ///< arrays written already, which need no field
 
   /// Returns the array of that name and marks it as written; null if there is none or it was marked before.
   const DataArray* take(std::string_view name, Association association);

@@ -461,7 +461,7 @@ void note_others(Reading& reading) {
   const std::string step = reading.layout->mesh_path() + "/" + reading.layout->step + "/";
   for (const auto& [path, rows] : reading.file.datasets()) {
     if (!path.starts_with(step) || reading.taken.contains(path)) continue;
-    // numbers that were left out
+    // numbers that are not unique were left out
     if (path.ends_with("/NUM")) {
       reading.take(path);
       continue;

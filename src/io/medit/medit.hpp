@@ -49,7 +49,7 @@ inline constexpr std::size_t kLinearKinds = 7;
 /// What positions in a list or table refer to: vertices, or the cells of one section.
 using Target = std::optional<Shape>;  // none: vertices
 
-/// A list of positions: a set of that name.
+/// A section that lists positions. It is read as a set of its name.
 struct ListKind {
   std::string_view keyword;
   Target target;
@@ -126,7 +126,7 @@ inline constexpr std::array kRowKinds{
     RowKind{"NormalAtQuadrilateralVertices", "q.."},
 };
 
-/// BAMG's sizes of the mesh at all vertices, a section without a count: an array of that name.
+/// A section of BAMG's mesh sizes at all vertices, without a count. It is read as an array of its name.
 struct SizeKind {
   std::string_view keyword;
   Index components;
@@ -152,7 +152,7 @@ struct Metadata final : FormatMetadata {
   std::int64_t version = 2;
   std::string comments_before;
   std::string after_end;
-  std::vector<Section> sections;  ///< independent of the order
+  std::vector<Section> sections;  ///< those that do not depend on the order
   std::vector<Rows> rows;
   std::vector<std::size_t> empty_sections;  ///< kinds of cells whose section is empty
   /// For kinds whose node order the file gives: the position in the file of each node in VTK's order.
@@ -169,7 +169,7 @@ Target target_of(char column);
 /// Returns the kind of a cell type, or the number of kinds if there is none.
 std::size_t kind_of(Shape shape, int nodes);
 
-/// Returns the kind that a section "…Ordering" describes, or the number of kinds.
+/// Returns the kind that a section "…Ordering" describes, or the number of kinds if there is none.
 std::size_t kind_of_ordering(std::string_view keyword);
 
 /// Returns the reference coordinates of a second-order cell's nodes, in VTK's order, in halves of an edge;

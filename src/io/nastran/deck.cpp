@@ -4,7 +4,7 @@
 namespace meshorder::nastran {
 namespace {
 
-/// Returns whether each element of the deck is a cell of its type.
+/// Returns whether the cell of each element of the deck has the element's shape and number of nodes.
 bool has_cells_of(const Mesh& mesh, const Metadata& metadata) {
   const Deck& deck = *metadata.deck;
   for (Index k = 0; k < mesh.cell_count(); ++k) {

@@ -41,7 +41,7 @@ struct Deck {
   /// Properties for elements that name none, by the name of their card: from BAROR and BEAMOR.
   std::map<std::string_view, std::int64_t> default_properties;
   std::vector<std::int64_t> other_points;    ///< numbers of points that are no nodes, ascending
-  std::vector<std::int64_t> other_elements;  ///< of elements that are no cells, ascending
+  std::vector<std::int64_t> other_elements;  ///< numbers of elements that are no cells, ascending
   std::vector<EntitySet> sets;               ///< of the cards SET3; members are positions in the file
   std::int64_t last_set = 0;                 ///< the largest number of a set
   std::string line_end = "\n";

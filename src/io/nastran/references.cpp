@@ -165,7 +165,7 @@ class Finder {
     return found_;
   }
 
-  /// The grid points of RBE3 follow each weight and its components; then come UM and ALPHA.
+  /// RBE3 names grid points after each weight and its components; then come UM and ALPHA.
   std::optional<References> of_rbe3() {
     found_.defines_element = true;
     add('n', 3);
@@ -279,7 +279,7 @@ std::optional<std::vector<NumberRange>> ranges_of(const CardFields& card, std::s
     if (text.empty()) continue;
     if (is_word(text, "THRU") || is_word(text, "BY")) {
       std::size_t next = k + 1;
-      while (next < card.fields.size() && card.text(next).empty()) ++next;  // on the next line
+      while (next < card.fields.size() && card.text(next).empty()) ++next;  // it may be on the next line
       const std::int64_t number = number_of(card.text(next));
       if (ranges.empty() || number == 0) return {};
       (is_word(text, "BY") ? ranges.back().step : ranges.back().to) = number;

@@ -48,7 +48,7 @@ bool takes_cell_order(const FilePath& dictionary) {
   FoamFile file(dictionary);
   bool is_manual = false;
   bool names_order = false;
-  int depth = 0;  // of braces: other methods have entries of the same name
+  int depth = 0;  // of braces: only outside of them is `method` that of the dictionary
   for (std::string key = ";"; !key.empty();) {
     const std::string value(file.token());
     if (key == "{") ++depth;

@@ -251,7 +251,7 @@ void FoamFile::read_labels(std::vector<Index>& labels, std::string_view what, st
     expect('}', list);
     return;
   }
-  if (count == 0 && !at('(')) return;  // a binary file ends an empty list with its size
+  if (count == 0 && !at('(')) return;  // in a binary file, an empty list is its size alone
   expect('(', list);
   labels.reserve(static_cast<std::size_t>(count));
   for (std::int64_t k = 0; k < count; ++k) labels.push_back(checked(label(of), of, least, limit));

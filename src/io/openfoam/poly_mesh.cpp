@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Format: OpenFOAM User Guide, "Mesh description". Cell c owns the faces f with owner[f] = c; an internal
-// face f has on its other side the cell neighbour[f], and internal faces come first.
+// Format: OpenFOAM User Guide, "Mesh description". Cell c owns the faces f with owner[f] = c; the
+// cell on the other side of an internal face f is neighbour[f]. Internal faces come first.
 #include "io/openfoam/poly_mesh.hpp"
 
 #include "base/point.hpp"
@@ -148,7 +148,7 @@ class CentreReader {
  private:
   static constexpr const char* kOtherMesh = "the files belong to different meshes";
 
-  /// "6(4(1 7 37 31) 3(6 36 37) …)"
+  /// Reads a list of lists, such as "6(4(1 7 37 31) 3(6 36 37) …)".
   void read_nested() {
     const std::int64_t count = faces_.begin_lists("faces");
     std::vector<Index> face;

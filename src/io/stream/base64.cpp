@@ -10,7 +10,7 @@ namespace {
 
 using Pair = std::array<char, 2>;
 
-/// The two characters of 12 bits.
+/// The two characters for each value of 12 bits.
 constexpr std::array<Pair, 4096> kPairs = [] {
   std::array<Pair, 4096> pairs{};
   for (std::size_t bits = 0; bits < pairs.size(); ++bits)

@@ -36,7 +36,7 @@ int Descriptor::sync() const noexcept {
 
 int Descriptor::close() noexcept {
   const int descriptor = std::exchange(descriptor_, -1);
-  // after EINTR the descriptor is closed all the same
+  // the descriptor is closed even after EINTR
   return descriptor < 0 || ::close(descriptor) == 0 || errno == EINTR ? 0 : errno;
 }
 

@@ -57,7 +57,7 @@ class InflatedBlocks {
   std::size_t used_ = 0;
 };
 
-/// A running decompression. Several members, as `cat a.gz b.gz` makes them, follow each other.
+/// A running decompression. The bytes may hold several members, as those of `cat a.gz b.gz` do.
 class Inflation {
  public:
   Inflation(const std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {
@@ -70,7 +70,7 @@ class Inflation {
   Inflation& operator=(const Inflation&) = delete;
   Inflation& operator=(Inflation&&) = delete;
 
-  /// Returns what the first bytes hold, up to a fault or the size of a step.
+  /// Returns the beginning of the decompressed bytes, up to a fault or the size of a step.
   std::string start() {
     feed();
     std::string result(kInflateStep, '\0');
@@ -107,7 +107,7 @@ class Inflation {
  private:
   [[nodiscard]] std::size_t bytes_left() const { return bytes_.size() - fed_ + stream_.avail_in; }
 
-  /// Gives the library as many of the bytes as it can count.
+  /// Gives the library the next bytes, at most as many as its counter can hold.
   void feed() {
     if (stream_.avail_in > 0) return;
     const std::size_t size =

@@ -20,9 +20,9 @@ namespace meshorder {
 
 class Scratch;
 
-/// A file that appears complete or not at all: written in a scratch folder beside its target, from where
-/// `commit` renames it into place, or to memory, from where `commit` gives it to the target's store. Without
-/// a commit the target stays unchanged. The protocol is in output_set.hpp.
+/// A file that appears complete or not at all. It is written in a scratch folder beside its target, and
+/// `commit` renames it into place; or in memory, and `commit` gives it to the target's store. Without a
+/// commit the target stays unchanged. The protocol is in output_set.hpp.
 ///
 /// Symbolic links are followed as `FilePath` says. The new file gets the owner, the group, the mode and the
 /// extended attributes of the old one as far as the system allows; further hard links of the old one keep the

@@ -37,7 +37,7 @@ std::size_t words_in(std::string_view text) {
       std::memcpy(&bytes, text.data() + at, sizeof(bytes));
       const std::uint64_t of_words = (bytes | ((bytes & ~kHighest) + kOnes * 0x5FU)) & kHighest;
       const std::uint64_t starts = (of_words & ~(of_words << 8U | before)) >> 7U;
-      words += starts * kOnes >> 56U;  // their sum
+      words += starts * kOnes >> 56U;  // the sum of its bytes
       before = of_words >> 56U;
     }
   }

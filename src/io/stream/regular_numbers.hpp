@@ -30,7 +30,7 @@ RegularNumbers read_numbers_of_type(std::string_view text, std::span<Number> val
 /// The text is divided at blanks and line ends into parts. The words of the parts are counted, so that each
 /// part knows its first number.
 ///
-/// @param values      receives the numbers, at most so many; what is beyond those read may be overwritten
+/// @param values      receives the numbers, as many as fit; entries after those read may be overwritten
 /// @param part_bytes  least size of a part, > 0
 /// @note O(bytes of the numbers); memory: a few numbers for each part.
 ///       Reads nothing for types that are rare in files.

@@ -14,11 +14,11 @@ namespace meshorder {
 /// it reports their errors and accepts what is unusual but valid. So errors and results are those of a reader
 /// that reads all records one by one.
 ///
-/// The text is divided at line ends into parts. Lines with something on them are counted, so
-/// that each part knows its first record.
+/// The text is divided at line ends into parts. Each part's lines that are not empty are counted, so
+/// that it knows its first record.
 ///
 /// @param in     is after all that precedes the first record, on its line or before
-/// @param count  ≥ 0, at most so many
+/// @param count  the most records to read, ≥ 0
 /// @param read   `read(part, record)` takes the words of a record; returns false if it is not regular. It
 ///               writes only what belongs to the record, and may be called again for the same one. A record
 ///               is not regular either if `read` throws an Error, or more words follow on its line

@@ -10,8 +10,8 @@ namespace meshorder {
 
 /// A folder beside an output for unfinished files: `.meshorder-DIGITS.new`, of mode 700, with a name that
 /// nobody can guess. Its file `lock` is locked (`flock`) as long as its owner lives, also on other machines
-/// that share the disk. It holds the new file, and the old one while files are put in place
-/// (`put_in_place`). The only place where unfinished outputs are kept.
+/// that share the disk. The folder holds the new file, and the old one while files are put in place
+/// (`put_in_place`). Unfinished outputs are kept nowhere else.
 class Scratch {
  public:
   /// Makes the folder beside `target`. Throws InputError if the system refuses.

@@ -5,13 +5,13 @@
 
 namespace meshorder {
 
-/// Why a system call failed, as a clause, and what helps.
+/// The reason why a system call failed, as a clause, and a remedy.
 struct SystemFault {
   std::string reason;
   std::string remedy;
 };
 
-/// Returns the reason of an `errno` of calls that write or replace files.
+/// Returns reason and remedy for an `errno` of calls that write or replace files.
 SystemFault system_fault(int error);
 
 /// Throws InputError "FILE: WHAT: REASON; REMEDY" for an `errno`.

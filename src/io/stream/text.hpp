@@ -16,7 +16,7 @@
 
 namespace meshorder {
 
-/// Text that is put together in memory.
+/// A text in memory, to which numbers and texts are appended.
 class Text {
  public:
   /// Appends formatted text; a double written as `{}` reads back to the same bits.

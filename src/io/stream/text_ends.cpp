@@ -46,7 +46,7 @@ std::string comments_before(std::string_view text, char comment) {
 }
 
 std::string comments_after(std::string_view text, char comment) {
-  // go up line by line while they are blank or comments
+  // goes up while the lines are blank or comments
   std::size_t begin = text.size();
   std::size_t end = text.size();
   while (end > 0) {

@@ -32,7 +32,7 @@ std::string upper(std::string_view text) {
   return result;
 }
 
-/// Returns whether a keyword's value names no point or element.
+/// Returns whether the value of a keyword is known to name no point or element.
 bool is_plain(std::string_view keyword) {
   constexpr std::array<std::string_view, 6> kPlain{"NZONE", "IZONE", "NPERIODIC", "NCHUNK", "AOA", "AOS"};
   return std::find(kPlain.begin(), kPlain.end(), keyword) != kPlain.end() ||
@@ -63,7 +63,7 @@ class Su2Reader {
  private:
   // ---- lines
 
-  /// Sets keyword and value from the next line, and does not take it. Returns false for a comment.
+  /// Sets keyword and value from the next line without taking it. Returns false for a comment or empty line.
   bool find_keyword() {
     const std::string_view line = in_.peek_line();
     const std::string_view content = trimmed(line.substr(0, line.find(kComment)));
@@ -145,7 +145,7 @@ class Su2Reader {
     if (!is_plain(keyword_)) notes_.push_back(keyword_ + "= is not known, and its line is kept as it is");
     metadata_->keywords.push_back("SU2's " + keyword_ + "=");
     keep_line();
-    // coordinates of a box, lines of its control points; center, angles and translation
+    // lines of a box's corners or control points; of a periodic marker's center, angles and translation
     const bool has_lines = keyword_.starts_with("FFD_") || keyword_.starts_with("PERIODIC_");
     while (has_lines && in_.bytes_left() > 0 && in_.peek_line().find('=') == std::string_view::npos) {
       keep_line();
@@ -203,7 +203,7 @@ class Su2Reader {
     in_.fail(keyword_ + "= promises more lines than there are", "the count is wrong or lines are missing");
   }
 
-  /// Refuses the end of a line before `what`.
+  /// Fails if the line ends before `what`.
   void expect_more(std::string_view what) {
     if (in_.at_line_end()) in_.fail("the line ends before " + std::string(what), "it may be cut short");
   }

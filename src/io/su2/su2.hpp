@@ -63,7 +63,7 @@ struct Metadata final : FormatMetadata {
   std::vector<Section> sections;        ///< in the order of the file
   std::vector<std::string> keywords;    ///< of the lines that are kept as they are
   bool counts_physical_points = false;  ///< NPOIN= gives a second number
-  bool numbers_elements = false;        ///< their lines end with their number, from 0; likewise the next two
+  bool numbers_elements = false;        ///< lines of elements end with a number, from 0; so do the next two
   bool numbers_points = false;
   bool numbers_marker_elements = false;
   bool wedges_face_inward = false;  ///< by their first triangle, as in Gmsh's files

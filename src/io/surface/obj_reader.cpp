@@ -21,7 +21,7 @@ namespace {
 
 /// The name that applies to each cell.
 struct Named {
-  std::vector<std::string> names;  ///< by first appearance; cells count them from 1
+  std::vector<std::string> names;  ///< in the order of first appearance; cells count them from 1
   std::unordered_map<std::string, std::int32_t> number_of;
   std::int32_t current = 0;
   std::vector<std::int32_t> of_cell;  ///< empty until the first statement

@@ -85,7 +85,7 @@ int words_on_line(std::string_view line) {
   return count;
 }
 
-/// Completes the layout by the numbers on the first vertex's line: colours have 3 or 4, also without a C.
+/// Completes the layout from the first vertex's line: further numbers are a colour of 3 or 4, even without C.
 void measure_vertices(Scanner& scanner, Layout& layout) {
   if (scanner.at_end()) return;
   const int numbers = words_on_line(scanner.peek_line());
@@ -137,7 +137,7 @@ void read_vertices(Scanner& scanner, Index count, const Layout& layout, Mesh& me
         scanner.fail("a vertex has fewer numbers than the first one", "all need the same");
       }
     };
-    scanner.at_end();  // to the next line that holds something
+    scanner.at_end();  // moves to the next line that holds something
     for (double& x : point) {
       expect_more();
       x = scanner.finite("a coordinate");
@@ -173,7 +173,7 @@ struct ColorGroup {
 
 constexpr int kMostColors = 4;
 using ColorGroups =
-    std::array<ColorGroup, std::size_t{2} * (kMostColors + 1)>;  // by 2 · width + whether whole
+    std::array<ColorGroup, std::size_t{2} * (kMostColors + 1)>;  // at 2 · width + whether whole
 
 void read_color(Scanner& scanner, Index face, ColorGroups& groups) {
   if (scanner.at_line_end()) return;
@@ -256,7 +256,7 @@ Mesh read_off(const FilePath& path, Notes&) {
 
 // ---- writing
 
-/// Other readers take no faces of one or two vertices; files that have them keep them, as vertices and lines.
+/// Returns whether OFF holds a cell. Other readers take faces only; a mesh from OFF keeps vertices and lines.
 bool off_holds(const Mesh& mesh, Shape shape, int vertices) {
   if (shape == Shape::polygon) return vertices >= 3;
   const int least = mesh.format == "off" ? 0 : 2;

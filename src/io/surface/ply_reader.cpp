@@ -514,7 +514,7 @@ class Reader {
     return true;
   }
 
-  /// Reads a strip, in which −1 begins a new one. Every second triangle of a strip is turned the other way.
+  /// Reads the triangles of strips, separated by −1. Turns every second one round, so that all face one way.
   bool read_strip(const Property& property) {
     std::array<Index, 3> last{};
     int known = 0;  // corners of the strip, of which three make a triangle

@@ -487,7 +487,7 @@ void write_item(NumberWriter& to, const Mesh& mesh, const Table& table, Index it
   to.end_line();
 }
 
-/// Other readers take vertices and faces only; files that have edges and tetrahedra keep them.
+/// Returns whether PLY holds a cell. Other readers take faces only; a mesh from PLY keeps all its cells.
 bool ply_holds(const Mesh& mesh, Shape shape, int vertices) {
   if (shape == Shape::polygon) return vertices >= 3;
   if (vertices != corners(shape, 0)) return false;
