@@ -188,7 +188,7 @@ class GraphReader {
   Mesh mesh_;
   std::shared_ptr<GraphMetadata> metadata_ = std::make_shared<GraphMetadata>();
   Index edges_ = 0;
-  Index weights_ = 0;  // number of them for each vertex
+  Index weights_ = 0;  // number of weights of each vertex
   bool has_edge_weights_ = false;
   bool has_weights_ = false;
   bool has_sizes_ = false;

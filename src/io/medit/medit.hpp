@@ -180,7 +180,7 @@ std::vector<std::vector<int>> reference_nodes(Shape shape);
 /// kinds if the mesh has neither. `counts` are the cells of each kind.
 std::size_t counted_kind(Shape target, std::span<const Index> counts);
 
-/// Adds a note that a file of solutions beside the mesh (.sol, .solb) `what`.
+/// Adds the note "FILE `what`" for each file of solutions (.sol, .solb) beside the mesh.
 void note_solutions(const FilePath& path, std::string_view what, Notes& notes);
 
 Mesh read(const FilePath& path, Notes& notes);

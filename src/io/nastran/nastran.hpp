@@ -37,7 +37,7 @@ struct Deck {
   IdMap node_numbers;
   IdMap element_numbers;
   std::vector<Point> points;        ///< of the nodes, in the basic system
-  bool has_default_system = false;  ///< GRDSET gives nodes without a system one
+  bool has_default_system = false;  ///< GRDSET gives a system to nodes that name none
   /// Properties for elements that name none, by the name of their card: from BAROR and BEAMOR.
   std::map<std::string_view, std::int64_t> default_properties;
   std::vector<std::int64_t> other_points;    ///< numbers of points that are no nodes, ascending

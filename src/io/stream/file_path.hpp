@@ -85,7 +85,7 @@ class FilePath {
   /// an unreadable or an empty file, one that changes meanwhile or exceeds the limit on memory, and a damaged
   /// gzip file; Unavailable for a gzip file in a build without zlib.
   [[nodiscard]] std::string read() const;
-  /// Returns its first bytes, at most `most`, of a gzip file compressed. Reads a pipe to its end. Throws
+  /// Returns its first bytes, at most `most`, not decompressed. Reads a pipe to its end. Throws
   /// InputError for a folder, a device, an unreadable or an empty file.
   [[nodiscard]] std::string read_first(std::size_t most) const;
 

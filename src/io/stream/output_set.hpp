@@ -25,7 +25,7 @@ class OutputSet {
   /// cannot be closed.
   void add(OutputFile&& file);
 
-  /// Makes `commit` remove a file that an earlier run left, if it exists, and that is not part of this set.
+  /// Makes `commit` remove a file of an earlier run, if it exists, that is not part of this set.
   void remove(FilePath path) { removals_.push_back(std::move(path)); }
 
   /// Makes `commit` first take away an old file without which no reader reads the others, such as one that

@@ -19,7 +19,7 @@ namespace meshorder {
 namespace {
 
 constexpr std::size_t kMostParts = 64;
-constexpr std::size_t kNumberBytes = 24;  // text examined first for each number that is left
+constexpr std::size_t kNumberBytes = 24;  // bytes of text examined first for each number left
 
 bool is_separator(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 

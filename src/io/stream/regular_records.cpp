@@ -14,7 +14,7 @@ namespace meshorder {
 namespace {
 
 constexpr std::size_t kPartsAtOnce = 64;
-constexpr std::size_t kRecordBytes = 64;  // text examined first for each record that is left
+constexpr std::size_t kRecordBytes = 64;  // bytes of text examined first for each record left
 
 /// Some whole lines of a text.
 struct Part {

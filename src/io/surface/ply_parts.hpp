@@ -45,7 +45,7 @@ struct Element {
   std::vector<Property> properties;
   Role role = Role::other;
   std::string content;            ///< of other elements: the lines or bytes, verbatim
-  std::string why_left_out = {};  ///< why another element is not written; else empty
+  std::string why_left_out = {};  ///< of other elements: why it is not written; else empty
 };
 
 inline bool holds_cells(const Element& element) {
