@@ -457,15 +457,21 @@ class Addition {
                                             ? "Vertex"
                                             : location_name(highest, metadata_.cell_dimension)));
       node.children.push_back(list_node(zone, set.association, std::move(members), set.name));
-      add_family(node.name);
-      node.children.push_back(text_node("FamilyName", "FamilyName_t", node.name));
+      node.children.push_back(text_node("FamilyName", "FamilyName_t", family_for(node.name)));
       parent.children.push_back(std::move(node));
     }
   }
 
-  /// Adds a family of that name unless there is one; programs identify the parts of a boundary by families.
-  void add_family(const std::string& name) {
-    if (family_names_.insert(name).second) families_.push_back({.name = name, .label = "Family_t"});
+  /// Returns the name of the family for a part of that name, and adds the family unless there is one.
+  /// Programs identify the parts of a boundary by families. A zone of that name has it for itself.
+  std::string family_for(const std::string& name) {
+    const bool is_of_zone =
+        std::any_of(zones_.begin(), zones_.end(), [&](const Node* zone) { return zone->name == name; });
+    constexpr std::string_view kEnd = "_family";
+    std::string family(is_of_zone ? utf8_prefix(name, kLongestName - kEnd.size()) : name);
+    if (is_of_zone) family += kEnd;
+    if (family_names_.insert(family).second) families_.push_back({.name = family, .label = "Family_t"});
+    return family;
   }
 
   Node& conditions(int zone) {

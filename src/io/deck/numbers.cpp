@@ -30,17 +30,24 @@ bool can_be_numbers(std::vector<std::int64_t> ids, std::int64_t largest, std::in
 std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step) {
   std::vector<Index> found;
   if (to < from) return found;
-  const std::int64_t most = std::min<std::int64_t>((to - from) / step + 1, items.size());
-  claim_memory(static_cast<std::uint64_t>(most) * sizeof(Index), "a range of numbers");
-  if ((to - from) / step < items.size()) {
-    for (std::int64_t number = from; number <= to; number += step) {
+  // without signs: differences of far numbers exceed the signed range
+  const auto distance = [from](std::int64_t number) {
+    return static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(from);
+  };
+  const auto width = static_cast<std::uint64_t>(step);
+  const std::uint64_t steps = distance(to) / width;
+  const auto count = static_cast<std::uint64_t>(items.size());
+  claim_memory(std::min(steps, count) * sizeof(Index), "a range of numbers");
+  if (steps < count) {
+    for (std::uint64_t k = 0; k <= steps; ++k) {
+      const auto number = static_cast<std::int64_t>(static_cast<std::uint64_t>(from) + k * width);
       if (const Index item = items.find(number); item >= 0) found.push_back(item);
     }
     return found;
   }
   for (Index item = 0; item < items.size(); ++item) {
     const std::int64_t number = items.id(item);
-    if (number >= from && number <= to && (number - from) % step == 0) found.push_back(item);
+    if (number >= from && number <= to && distance(number) % width == 0) found.push_back(item);
   }
   std::sort(found.begin(), found.end(), [&](Index a, Index b) { return items.id(a) < items.id(b); });
   return found;

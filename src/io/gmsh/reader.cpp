@@ -8,6 +8,7 @@
 #include <charconv>
 #include <set>
 #include <span>
+#include <utility>
 
 // Specification: https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format; for 4.0 the manual of Gmsh 4.0, and
 // for its binary files GModelIO_MSH4.cpp of that version. This file reads section after section; v2.cpp and
@@ -91,8 +92,14 @@ void read_names(ReadContext& reading) {
         source.checked_count(source.text_integer("the number of names"), "the number of names", 4);
     for (Index i = 0; i < count; ++i) {
       PhysicalName name{};
-      name.dimension = static_cast<std::int32_t>(source.text_integer("the dimension of a physical group"));
-      name.tag = static_cast<std::int32_t>(source.text_integer("the tag of a physical group"));
+      const auto number = [&](const char* what) {
+        const std::int64_t value = source.text_integer(what);
+        if (!std::in_range<std::int32_t>(value))
+          source.fail(fmt::format("{} is {}", what, value), "it has 32 bits at most");
+        return static_cast<std::int32_t>(value);
+      };
+      name.dimension = number("the dimension of a physical group");
+      name.tag = number("the tag of a physical group");
       const std::string_view text = source.scanner.rest_of_line();
       // as in Gmsh, the second quote ends the name; libMesh marks blocks by the text after it, which is kept
       // in the section

@@ -128,6 +128,8 @@ class File {
   void close();
 
  private:
+  /// Returns a path beside this one that nothing has.
+  [[nodiscard]] std::string free_path(const std::string& path) const;
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
   [[nodiscard]] Handle open_dataset(const std::string& path) const;
   [[nodiscard]] Handle open_object(const std::string& path) const;

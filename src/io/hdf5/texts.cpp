@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/memory.hpp"
+#include "base/text.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/parts.hpp"
 #include "io/hdf5/session.hpp"
@@ -117,12 +118,13 @@ void File::write_texts(const std::string& path, std::span<const std::string> tex
   std::string bytes;
   bytes.reserve(texts.size() * width);
   for (const std::string& text : texts) {
-    bytes += text.substr(0, width);
-    bytes.append(width - std::min(width, text.size()), filling);
+    const std::string_view held = utf8_prefix(text, width);
+    bytes.append(held);
+    bytes.append(width - held.size(), filling);
   }
   const Handle type = type_of_texts(width);
   const Handle old = open_dataset_if_there(path);
-  const std::string aside = path + ".old";
+  const std::string aside = free_path(path);
   if (old.is_open()) H5Lmove(file_.id(), path.c_str(), file_.id(), aside.c_str(), H5P_DEFAULT, H5P_DEFAULT);
   write(path, type.id(), bytes.data(), texts.size(), {texts.size()});
   if (!old.is_open()) return;

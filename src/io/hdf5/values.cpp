@@ -190,7 +190,7 @@ void File::write(const std::string& path, hid_t type, const void* values, std::u
     const Handle old_space(H5Dget_space(dataset.id()), H5Sclose);
     const hssize_t old_count = H5Sget_simple_extent_npoints(old_space.id());
     if (old_count < 0 || static_cast<std::uint64_t>(old_count) != count) {
-      const std::string aside = path + ".old";
+      const std::string aside = free_path(path);
       H5Lmove(file_.id(), path.c_str(), file_.id(), aside.c_str(), H5P_DEFAULT, H5P_DEFAULT);
       Handle copy = empty_copy(dataset.id(), file_.id(), path.c_str(), space.id());
       H5Ldelete(file_.id(), aside.c_str(), H5P_DEFAULT);
@@ -203,6 +203,13 @@ void File::write(const std::string& path, hid_t type, const void* values, std::u
       (count == 0 || H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0) &&
       dataset.close() >= 0;
   if (!written) fail(path, fmt::format("cannot be written ({})", last_cause()), "is the disk full?");
+}
+
+std::string File::free_path(const std::string& path) const {
+  std::string free = path + ".old";
+  for (int k = 2; H5Lexists(file_.id(), free.c_str(), H5P_DEFAULT) > 0; ++k)
+    free = fmt::format("{}.old{}", path, k);
+  return free;
 }
 
 void File::make_room(const std::string& path, std::size_t alternative,

@@ -35,7 +35,12 @@ bool is_whole(const DataArray& array) {
   return std::visit(
       [](const auto& values) {
         using Value = typename std::decay_t<decltype(values)>::value_type;
-        return std::is_integral_v<Value> && !std::is_same_v<Value, std::uint64_t>;
+        if constexpr (std::is_integral_v<Value>) {
+          return std::all_of(values.begin(), values.end(),
+                             [](Value value) { return std::in_range<std::int64_t>(value); });
+        } else {
+          return false;
+        }
       },
       array.values);
 }

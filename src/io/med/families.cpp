@@ -275,7 +275,7 @@ class FamilyWriter {
     remember({number, sorted});
     hdf5::File& file = writing_.file;
     const std::string root = writing_.layout.families_path(association_);
-    std::string name = fmt::format("FAM_{}_{}", number, fmt::join(groups, "_")).substr(0, kLongestName);
+    std::string name(utf8_prefix(fmt::format("FAM_{}_{}", number, fmt::join(groups, "_")), kLongestName));
     std::replace(name.begin(), name.end(), '/', '_');
     for (int k = 2; file.has(fmt::format("{}/{}", root, name)); ++k)
       name = fmt::format("FAM_{}_{}", number, k);

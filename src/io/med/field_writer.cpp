@@ -64,7 +64,7 @@ class Profiles {
           known == written_.end() && (old_.contains(name) || !writing_.file.has("/PROFILS/" + name));
       if (is_free) break;
       const std::string number = fmt::format("_{}", k);
-      name = clean.substr(0, kLongestName - number.size()) + number;
+      name = std::string(utf8_prefix(clean, kLongestName - number.size())) + number;
     }
     std::vector<std::int64_t> numbers(places.begin(), places.end());
     for (std::int64_t& number : numbers) ++number;
@@ -287,7 +287,7 @@ class FieldWriter {
     const std::string clean = clean_name(wanted);
     const auto numbered = [&](int k) {
       const std::string number = fmt::format("_{}", k);
-      return clean.substr(0, kLongestName - number.size()) + number;
+      return std::string(utf8_prefix(clean, kLongestName - number.size())) + number;
     };
     std::string name = numbers_.free_name(
         clean, numbered, [&](const std::string& free) { return names_.insert(free).second; });
@@ -321,6 +321,7 @@ class FieldWriter {
       std::string name;
       if (!array.component_names.empty()) name = array.component_names[static_cast<std::size_t>(k)];
       is_cut = is_cut || name.size() > kShortName;
+      name = utf8_prefix(name, kShortName);
       name.resize(kShortName, ' ');
       names += name;
     }
@@ -420,7 +421,7 @@ class FieldWriter {
   /// Returns the name of a new profile for a field.
   static std::string profile_name(const std::string& field, const GeometryType* type) {
     const std::string suffix = fmt::format("_{}", type == nullptr ? "NOE" : type->name);
-    return field.substr(0, kLongestName - suffix.size()) + suffix;
+    return std::string(utf8_prefix(field, kLongestName - suffix.size())) + suffix;
   }
 
   Writing& writing_;

@@ -41,6 +41,14 @@ Scanner Scanner::at(std::int64_t byte, std::int64_t line) const {
   return result;
 }
 
+Scanner Scanner::of_all_bytes() const {
+  Scanner result = *this;
+  result.text_ = *whole_;
+  result.position_ = 0;
+  result.line_ = 1;
+  return result;
+}
+
 void Scanner::move_to(const Scanner& other) {
   position_ = other.position_;
   line_ = other.line_;

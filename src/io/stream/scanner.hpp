@@ -34,6 +34,9 @@ class Scanner {
   /// @param byte  0 … size of the text
   /// @param line  of that byte
   [[nodiscard]] Scanner at(std::int64_t byte, std::int64_t line) const;
+  /// Returns a scanner of all bytes of the file from the first one on. Three bytes that look like a byte
+  /// order mark, which a scanner skips, may be data of a binary file.
+  [[nodiscard]] Scanner of_all_bytes() const;
   /// Moves to where another scanner of the same text is. O(1).
   void move_to(const Scanner& other);
 

@@ -320,7 +320,8 @@ class Su2Reader {
       in_.fail("the marker SEND_RECEIVE belongs to one part of a mesh", "give the whole mesh");
     }
     if (!names_seen_.insert(name).second) in_.fail("a second marker " + shown(name), "names must differ");
-    if (elements_ == 0) in_.fail("MARKER_TAG= comes before NELEM=", "the elements must come first");
+    if (!sections_seen_.contains(Part::elements))
+      in_.fail("MARKER_TAG= comes before NELEM=", "the elements must come first");
     if (!sections_seen_.contains(Part::marker_count)) begin_section(Part::marker_count);
     keep_lines();
     metadata_->sections.push_back({Part::marker, name});

@@ -113,9 +113,15 @@ void check_cells_element(const Scanner& scanner, const Element& element) {
         scanner.fail("the element edge has no whole numbers vertex1 and vertex2", "edges need both");
       }
     }
-  } else if (!has(element, [](const Property& p) { return is_corner_list(p) && is_integer(p.type.type); })) {
+    return;
+  }
+  if (!has(element, [](const Property& p) { return is_corner_list(p) && is_integer(p.type.type); })) {
     scanner.fail("the element " + element.name + " has no list vertex_indices of whole numbers",
                  "'property list uchar int vertex_indices' is usual");
+  }
+  if (std::count_if(element.properties.begin(), element.properties.end(), is_corner_list) > 1) {
+    scanner.fail("the element " + element.name + " has both vertex_indices and vertex_index",
+                 "one of them lists the vertices; give the other another name");
   }
 }
 
@@ -303,7 +309,7 @@ struct BodyReader : NumberReader {
   /// Reads the length of a list, at most the number of bytes that are left.
   Index list_length(const Property& property) {
     const auto length = number_as<std::int64_t>(property.count_type.type, "the length of a list");
-    if (length < 0 || length > scanner.bytes_left()) {
+    if (length < 0 || length > scanner.bytes_left() || length > kMaxIndex) {
       fail("the list " + property.name + " has the length " + std::to_string(length),
            "the file is damaged or cut short");
     }

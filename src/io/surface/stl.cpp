@@ -259,6 +259,8 @@ Mesh read_ascii(Scanner& scanner, StlMetadata& metadata, Notes& notes) {
 
 Mesh read_stl(const FilePath& path, Notes& notes) {
   Scanner scanner(path);
+  if (const Scanner bytes = scanner.of_all_bytes(); promised_bytes(bytes) == std::ssize(bytes.all()))
+    scanner = bytes;
   auto metadata = std::make_shared<StlMetadata>();
   const auto size = static_cast<std::int64_t>(scanner.all().size());
   const std::int64_t promised = promised_bytes(scanner);
