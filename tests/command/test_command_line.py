@@ -152,6 +152,7 @@ def test_help_and_version_in_words(command):
 
 @pytest.mark.parametrize("line, says", [
     ("order --threads -1", "--threads: -1 is not allowed, must be 0 or more"),
+    ("order --threads -99999999999999999999", "--threads: -99999999999999999999 is not allowed, must be 0 or more"),
     ("order --threads 3.5", "--threads: '3.5' is not a whole number"),
     ("order --threads 99999999999", "--threads: 99999999999 is not allowed, must be 2147483647 or less"),
     ("order --seed -3", "--seed: -3 is not allowed, must be 0 or more"),

@@ -63,6 +63,13 @@ def full(entries):
     return set(entries) | {(j, i) for i, j in entries}
 
 
+def test_compare_for_a_use_judges_the_one_column_of_a_matrix(command, cube):
+    for matrix in ("a.mtx", "a.graph"):
+        for use in ("spmv", "all"):
+            text = command.ok("compare", matrix, "--methods", "rcm", "--budget", "0.2", "--for", use).stdout
+            assert "rcm" in text and "█" in text
+
+
 def test_a_matrix_is_described_in_its_words(command, cube):
     entries, points = cube
     rows, whole = len(points), full(entries)

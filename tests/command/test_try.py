@@ -250,6 +250,8 @@ def test_first_outputs_can_be_kept(folder):
         assert {path.name for path in (folder.path / "kept" / name).iterdir()} == {
             "mesh.mesh", "result", "stdout.txt", "stderr.txt"}
     assert "there already" in folder.command.fails("try", "mesh.mesh", "--keep", "kept", *shell("true"))
+    (folder.path / "empty").touch()
+    assert "there already" in folder.command.fails("try", "mesh.mesh", "--keep", "empty", *shell("true"))
 
 
 def test_orders_that_the_budget_leaves_no_time_for_are_named(folder):

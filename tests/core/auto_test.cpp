@@ -65,6 +65,15 @@ TEST(Auto, GivesTheOrderOfTheMethodThatItSaysItTook) {
   }
 }
 
+TEST(Auto, LeavesVerticesWithoutNeighboursInTheirPlacesWhereItKeepsTheOrder) {
+  const CsrGraph graph = test::disjoint_union({test::path(1), test::path(40), test::path(1), test::path(3)});
+  for (const Workload use : {Workload::all, Workload::spmv, Workload::bandwidth}) {
+    const Order order = order_graph("auto", {graph, {}}, options_for(use));
+    ASSERT_EQ(order.method.name, "original");
+    EXPECT_TRUE(order.permutation.is_identity());
+  }
+}
+
 TEST(Auto, KeepsAnOrderThatItWouldNotMakeBetter) {
   const Lattice in_rows(false);
   for (const Workload use : kWorkloads) {

@@ -251,6 +251,7 @@ std::vector<std::pair<std::string, Triangles>> wrong_cells() {
       {"a huge offset", broken([](Triangles& c) { c.offsets[1] = kHuge; })},
       {"a huge last offset", broken([](Triangles& c) { c.offsets[2] = kHuge; })},
       {"a first offset other than the base", broken([](Triangles& c) { c.offsets[0] = 1; })},
+      {"no offsets", broken([](Triangles& c) { c.offsets.clear(); })},
       {"vertices too short", broken([](Triangles& c) { c.vertices.pop_back(); })},
       {"vertices too long", broken([](Triangles& c) { c.vertices.push_back(0); })},
       {"no vertices", broken([](Triangles& c) { c.vertices.clear(); })},

@@ -411,6 +411,10 @@ TEST(Reorderer, TakesMeshesThatVanishAndComeBack) {
   EXPECT_EQ(reorderer.update(GraphView{}, {}, std::vector<Index>{}).removed, 5);
   const CsrGraph apart = test::disjoint_union({test::path(1), test::path(4), test::path(1)});
   EXPECT_EQ(reorderer.update(test::view_of(apart), {}, std::vector<Index>(6, -1)).permutation.size(), 6);
+  EXPECT_EQ(reorderer.update(GraphView{}, {}, std::vector<Index>{}).removed, 6);
+  const Update again = reorderer.update(test::view_of(path));
+  EXPECT_EQ(again.added, 5);
+  EXPECT_EQ(again.reason, "this is the first order");
 }
 
 TEST(Reorderer, KeepsTheCarriedOrderWhereTheBudgetAllowsNoOther) {

@@ -37,6 +37,13 @@ TEST(RowChunks, NoEdgeJoinsTwoChunksOfAColour) {
 
 TEST(RowChunks, TwoColoursDoForABand) { EXPECT_EQ(chunks_of(test::path(100000)).colours().size(), 2U); }
 
+TEST(RowChunks, AreOneOfAnyNumberOfRows) {
+  for (const Index rows : {1, 1 << 30, (1 << 30) + 1, kMaxIndex}) {
+    EXPECT_EQ(RowChunks::whole(rows).count(), 1) << rows;
+    EXPECT_GE(RowChunks::whole(rows).size(), rows);
+  }
+}
+
 TEST(RowChunks, AreOneWhereTooManyTouch) {
   EXPECT_EQ(chunks_of(test::random_regular(100000, 6, 1)).count(), 1);
   EXPECT_EQ(chunks_of(test::path(100)).count(), 1);

@@ -272,6 +272,15 @@ TEST(Abaqus, ContinuesKeywordLinesWithParameters) {
   EXPECT_THAT(deck_of(moved), HasSubstr("*NSET, NSET=s\n2, 5, 8\n"));
 }
 
+TEST(Abaqus, RangesOfNumbersOfAnySizeEnd) {
+  const std::string mesh(kDeck.substr(0, kDeck.find("*NSET")));
+  const auto members = [&](const std::string& range) {
+    return set_of(read_deck(mesh + "*NSET, NSET=s, GENERATE\n" + range + "\n"), "s").members;
+  };
+  EXPECT_THAT(members("1, 9223372036854775807, 9223372036854775806"), ElementsAre(0));
+  EXPECT_THAT(members("1, 9223372036854775807, 1"), Contains(0));
+}
+
 TEST(Abaqus, RenumbersAllThatNamesNodesAndElements) {
   Mesh mesh = read_deck(kDeck);
   turn_round(mesh, Ids::renumber);

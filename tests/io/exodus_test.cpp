@@ -121,6 +121,15 @@ TEST(Exodus, EveryTypeComesBack) {
   }
 }
 
+TEST(Exodus, BlocksGetIdsThatTheFileHolds) {
+  Mesh mesh = labelled();
+  mesh.data = {
+      {"label", Association::cells, 1, std::vector<std::int32_t>{2147483647, -1, 2147483647}, {}, {}}};
+  const Mesh back = there_and_back(mesh);
+  EXPECT_EQ(array_of(back, kLabel, Association::cells).values,
+            Values(std::vector<std::int32_t>{2147483647, -1, 2147483647}));
+}
+
 TEST(Exodus, LabelsThatCannotBeIdsAreAProperty) {
   Mesh mesh = labelled();
   mesh.data = {{"label", Association::cells, 1, std::vector<std::int32_t>{-3, 2, 2}, {}, {}}};

@@ -65,6 +65,7 @@ TEST(GmshBroken, FaultsInTextAreNamedWithTheirLine) {
         "the dimension of a physical group is '$EndPhysicalNames'"},
        {"an absurd number of names", in_22("2\n2 7", "1000000000000\n2 7"),
         "the number of names is 1000000000000"},
+       {"a tag of 33 bits", in_22("2 7", "2 4294967303"), "the tag of a physical group is 4294967303"},
        {"unknown section with numbers", std::string(kGmsh22) + "$Ranks\n1 2 3\n$EndRanks\n",
         "the section $Ranks"},
        {"overlaps", std::string(kGmsh41) + "$Overlaps3D\n1\n1 2 1 1\n9\n$EndOverlaps3D\n", "$Overlaps3D"},

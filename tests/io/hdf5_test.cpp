@@ -30,5 +30,19 @@ TEST(Hdf5Visitor, BringsWhatTheWorkThrowsThroughTheLibrary) {
   EXPECT_EQ(seen, (std::vector<std::string>{"a", "b"}));
 }
 
+TEST(Hdf5File, ReplacesADatasetBesideOneWithTheNameThatItWouldTakeMeanwhile) {
+  const Session session;
+  File file = File::in_memory("", "new.h5");
+  file.write("/a", Values(std::vector<double>{1, 2}), {2});
+  file.write("/a.old", Values(std::vector<double>{7, 8, 9}), {3});
+  file.write("/a", Values(std::vector<double>{3, 4, 5}), {3});
+  file.write_texts("/t", std::vector<std::string>{"x"}, 4);
+  file.write_texts("/t.old", std::vector<std::string>{"mine"}, 4);
+  file.write_texts("/t", std::vector<std::string>{"y", "z"}, 4);
+  EXPECT_EQ(file.names("/"), (std::vector<std::string>{"a", "a.old", "t", "t.old"}));
+  EXPECT_EQ(file.read_texts("/t.old"), std::vector<std::string>{"mine"});
+  EXPECT_EQ(file.read_texts("/t"), (std::vector<std::string>{"y", "z"}));
+}
+
 }  // namespace
 }  // namespace meshorder::hdf5

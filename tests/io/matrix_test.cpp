@@ -93,6 +93,14 @@ TEST(MatrixMarket, EntriesAreLinesAndOnTheDiagonalVertices) {
   EXPECT_THAT(std::get<std::vector<double>>(values->values), ElementsAre(2.5, -1e-20, 0, 7, 1, 8));
 }
 
+TEST(MatrixMarket, WritesWholeNumbersOfAllTypesInFull) {
+  Mesh mesh = read_as("a.mtx", kReal);
+  DataArray& values =
+      mesh.data[static_cast<std::size_t>(find_array(mesh, "value", Association::cells) - mesh.data.data())];
+  values.values = std::vector<std::uint64_t>{9007199254740993, 1, 2, 3, 4, 5};
+  EXPECT_THAT(text_of(mesh, "a.mtx"), HasSubstr("9007199254740993"));
+}
+
 TEST(MatrixMarket, WritesTheSameFileAgain) {
   const std::array files{
       std::string(kReal),

@@ -139,6 +139,21 @@ TEST(Med, NamesThatAreTooLongAreCutWithANote) {
   EXPECT_NE(find_array(read, std::string(64, 'b'), Association::vertices), nullptr);
 }
 
+TEST(Med, CutsNamesBetweenCharacters) {
+  Mesh mesh = tagged();
+  mesh.data.push_back({"stress",
+                       Association::vertices,
+                       2,
+                       std::vector<double>(2 * mesh.points.size(), 1),
+                       {},
+                       {"contrainte maxié", "y"}});
+  Notes notes;
+  const Mesh read = through_med(mesh, &notes);
+  EXPECT_THAT(notes, Contains(HasSubstr("are cut to 16 characters")));
+  EXPECT_THAT(find_array(read, "stress", Association::vertices)->component_names,
+              ElementsAre("contrainte maxi", "y"));
+}
+
 TEST(Med, IsToldByItsBytesAndReadFromMemory) {
   const MemoryFiles written = write_mesh_to_memory(tagged(), "med", "a.med");
   ASSERT_EQ(written.files.size(), 1U);

@@ -316,6 +316,10 @@ TEST(Ply, BrokenFilesStopWithTheirPlace) {
        {"no list",
         ascii + "element vertex 1\n" + xyz + "element face 1\nproperty int a\nend_header\n0 0 0\n1\n",
         "the element face has no list vertex_indices"},
+       {"two lists of corners",
+        ascii + "element vertex 1\n" + xyz + "element face 1\n" + faces +
+            "property list uchar int vertex_index\nend_header\n0 0 0\n1 0 1 0\n",
+        "the element face has both vertex_indices and vertex_index"},
        {"edges without ends", with_element("element edge 1\nproperty int vertex1\nproperty float a\n"),
         "the element edge has no whole numbers vertex1"},
        {"property twice", with_vertex("property float x"), "has two properties 'x'"},

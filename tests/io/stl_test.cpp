@@ -152,6 +152,18 @@ TEST(Stl, ReadsAndWritesBinaryWithItsHeaderAndAttributes) {
   }
 }
 
+TEST(Stl, ABinaryHeaderMayBeginAsAByteOrderMarkDoes) {
+  const TemporaryFolder folder;
+  std::string bytes = binary_file("");
+  const Mesh plain = read_mesh(folder.file("a.stl", bytes));
+  bytes.replace(0, 3, "\xEF\xBB\xBF");
+  Notes notes;
+  const Mesh mesh = read_mesh(folder.file("b.stl", bytes), {.notes = &notes});
+  EXPECT_EQ(mesh.points, plain.points);
+  EXPECT_EQ(mesh.cells, plain.cells);
+  EXPECT_TRUE(notes.empty()) << notes.front();
+}
+
 TEST(Stl, SaysWhenCoordinatesAreRounded) {
   const TemporaryFolder folder;
   Mesh mesh = read_mesh(folder.file("a.stl", binary_file("")));

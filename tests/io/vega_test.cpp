@@ -225,6 +225,34 @@ TEST(Vega, BrokenFilesStopWithTheirLine) {
        {"unknown with numbers", elements + "*FIXED\n1 2\n", ":11: the section *FIXED is unknown"}});
 }
 
+TEST(Vega, KeepsIdsOfElementsThatCountFromAnotherNumberThanVertices) {
+  const TemporaryFolder folder;
+  std::string text(kTwoTets);
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1.5",
+            "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1.5"},
+           {"1 1 2 3 4\n2 5 3 2 4", "1 0 1 2 3\n2 4 2 1 3"}})
+    text = with(text, from, to);
+  Mesh mesh = read_mesh(folder.file("a.veg", text));
+  EXPECT_TRUE(mesh.cell_ids.empty());
+  const std::vector<Index> turned{1, 0};
+  apply_reordering(mesh, Permutation::identity(5), Permutation::from_old_to_new(turned), Ids::keep);
+  EXPECT_EQ(mesh.cell_ids, (std::vector<std::int64_t>{2, 1}));
+  write_mesh(mesh, folder.path() / "b.veg");
+  EXPECT_NE(content_of(folder.path() / "b.veg").find("2 4 2 1 3\n1 0 1 2 3\n"), std::string::npos);
+}
+
+TEST(Vega, ARegionNamesItsSetAsTheSetIsWritten) {
+  const TemporaryFolder folder;
+  Mesh mesh = read_mesh(folder.file(
+      "a.veg", with(with(kTwoTets, "*SET upper", "*SET up # per"), "upper, hard", "up # per, hard")));
+  Notes notes;
+  write_mesh(mesh, folder.path() / "b.veg", &notes);
+  const Mesh back = read_mesh(folder.path() / "b.veg");
+  EXPECT_EQ(find_array(back, "label", Association::cells)->values,
+            find_array(mesh, "label", Association::cells)->values);
+}
+
 TEST(Vega, KeepsUnknownSectionsThatNameNoElements) {
   const TemporaryFolder folder;
   const std::string text =

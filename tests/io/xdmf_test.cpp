@@ -92,6 +92,21 @@ Mesh read_files(const Files& files) {
                                                    }});
 }
 
+TEST(Xdmf, WritesPlaneGeometryWhateverTheCaseOfItsType) {
+  for (const char* const type : {"XY", "xy", "Xy", "xY"}) {
+    const Mesh mesh =
+        read_xdmf(fmt::format("<Xdmf><Domain><Grid><Topology TopologyType=\"Triangle\"><DataItem "
+                              "Dimensions=\"1 3\" NumberType=\"Int\">"
+                              "0 1 2</DataItem></Topology><Geometry GeometryType=\"{}\"><DataItem "
+                              "Dimensions=\"3 2\" Precision=\"8\">"
+                              "0 0 1 0 0.5 2</DataItem></Geometry></Grid></Domain></Xdmf>",
+                              type));
+    const TemporaryFolder folder;
+    write_mesh(mesh, folder.path() / "b.xdmf");
+    EXPECT_EQ(read_mesh(folder.path() / "b.xdmf").points, mesh.points) << type;
+  }
+}
+
 TEST(Xdmf, ReadsMixedCellsAxesSetsAndNumberTypes) {
   Notes notes;
   const Mesh mesh = read_xdmf(kMixed, &notes);

@@ -209,6 +209,9 @@ TEST(Headlines, HaveNoNumberThatIsInDoubtAndNoneOfStudies) {
   StudyResults results = timed();
   results.meshes[0].gain = 0;
   EXPECT_EQ(headlines_of(results).find("class=\"gain\""), std::string::npos);
+  results.meshes[0].verdict.clear();
+  EXPECT_EQ(headlines_of(results).find("class=\"answer\""), std::string::npos)
+      << "no sentence of a full stop alone";
   results.scenarios.emplace_back();
   EXPECT_EQ(headlines_of(results), "");
   results = timed();

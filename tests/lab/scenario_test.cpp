@@ -227,6 +227,7 @@ TEST(Scenario, ErrorsOfAdmmNameThePlace) {
            Broken{R"("surface": "floor.stl")", R"("friction": 1)",
                   "contact.obstacles[3]: does not say which"},
            Broken{R"("thickness": 0.1)", R"("thickness": 5)", "obstacles[2].bowl.thickness: is 5"},
+           Broken{R"("thickness": 0.1)", R"("thickness": 4)", "obstacles[2].bowl.thickness: is 4"},
            Broken{R"("opening": 60)", R"("opening": 180)", "obstacles[2].bowl.opening: is 180"},
            Broken{R"("with_itself": true)", R"("with_itself": 1)",
                   "contact.with_itself: is the number 1; true or"},

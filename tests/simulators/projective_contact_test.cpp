@@ -56,6 +56,25 @@ double mean_height(const MotionState& state) {
   return sum / static_cast<double>(state.positions.size());
 }
 
+TEST(ProjectiveContact, AStepThatConvergesEarlyEndsWhereTheOthersDo) {
+  const auto [points, body] = tilted_box(0.5, 0.3, 0.001);
+  ProjectiveOptions options = with_floor();
+  options.iterations = 400;
+  ProjectiveDynamics<double> whole(points, body, options);
+  options.tolerance = 1e-7;
+  ProjectiveDynamics<double> early(points, body, options);
+  for (int step = 0; step < 12; ++step) {
+    whole.step();
+    const StepReport report = early.step();
+    ASSERT_LT(report.admm_iterations, options.iterations);
+    for (std::size_t v = 0; v < points.size(); ++v) {
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(early.state().positions[v][c], whole.state().positions[v][c], 1e-4 * kSide)
+            << "step " << step;
+    }
+  }
+}
+
 TEST(ProjectiveContact, ABodyBouncesLowerAndLowerAndComesToRest) {
   const auto [points, body] = tilted_box(0.5, 0.3, 0.3);
   ProjectiveDynamics<double> simulator(points, body, with_floor());

@@ -402,6 +402,10 @@ TEST(VtkLegacy, BrokenFilesGiveOneClearError) {
        {"connectivity of real numbers",
         new_head + "CELLS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY float\n0 1 2\nCELL_TYPES 1\n5\n",
         ":7: the CONNECTIVITY of CELLS is not a list of integers"},
+       {"a point beyond 32 bits beside a polyhedron",
+        new_head + "CELLS 3 14\nOFFSETS vtktypeint64\n0 3 14\nCONNECTIVITY vtktypeint64\n0 1 4294967297\n"
+                   "2 4 0 1 2 0 4 0 1 2 0\nCELL_TYPES 2\n5\n42\n",
+        "names the point -1"},
        {"a large point",
         new_head + "CELLS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY vtktypeint64\n0 1 "
                    "4294967296\nCELL_TYPES 1\n5\n",
