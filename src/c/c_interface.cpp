@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// The C interface on the public functions: it turns C structures into views and options, exceptions into
-// statuses, and writes results into the caller's arrays.
+// The C interface to the public functions. It turns C structures into views and options, and exceptions into
+// statuses; it writes results into the caller's arrays.
 #include "base/status.hpp"
 #include "base/stopwatch.hpp"
 #include "ordering/foreign_method.hpp"
@@ -36,7 +36,7 @@ namespace {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the error of each thread
 thread_local std::string last_error;
 
-/// A larger `struct_size` is taken for a field that the caller forgot to set.
+/// A larger `struct_size` is treated as a field that the caller forgot to set.
 constexpr std::size_t kLargestStruct = 4096;
 
 bool is_integer(mo_type type) { return type >= MO_INT32 && type <= MO_UINT64; }
@@ -53,7 +53,7 @@ bool is_real(mo_type type) { return type == MO_FLOAT || type == MO_DOUBLE; }
 constexpr const char* kIntegers = "MO_INT32, MO_UINT32, MO_INT64 and MO_UINT64";
 constexpr const char* kReals = "MO_FLOAT and MO_DOUBLE";
 
-/// Throws for an address that no array of that type has.
+/// Throws InvalidArgument if the address is not aligned for that type.
 void check_alignment(const void* data, mo_type type, const char* name) {
   const std::size_t alignment = type == MO_INT32 || type == MO_UINT32 || type == MO_FLOAT
                                     ? alignof(std::int32_t)
@@ -64,9 +64,9 @@ void check_alignment(const void* data, mo_type type, const char* name) {
                  ": copy the array to an aligned one");
 }
 
-// Arrays that are read.
+// Input arrays.
 
-/// Returns true if there is an array. Throws for one without an address or with a negative size.
+/// Returns whether there is a non-empty array. Throws if its size is negative, or its data null or unaligned.
 bool is_given(const mo_in* array, const char* name) {
   if (array == nullptr || array->size == 0) return false;
   if (array->size < 0) fail(name, "the size is " + std::to_string(array->size) + ", must not be negative");
@@ -110,14 +110,14 @@ PointsView points_of(const mo_in* array, int dimension) {
   return {static_cast<const double*>(array->data), count, dimension};
 }
 
-/// Returns offsets, of which there is at least the first.
+/// Returns offsets; throws if there are none.
 IndexView offsets_of(const mo_in* array, const char* name) {
   const IndexView offsets = integers(array, name);
   if (offsets.empty()) fail(name, "there are none; at least the first is needed");
   return offsets;
 }
 
-/// Returns VTK's types, each in a byte.
+/// Returns the VTK cell types, each in a byte; throws for a number that does not fit.
 std::vector<std::uint8_t> types_of(const mo_in* array) {
   const IndexView given = integers(array, "vtk_types");
   std::vector<std::uint8_t> types(given.size());
@@ -131,9 +131,9 @@ std::vector<std::uint8_t> types_of(const mo_in* array) {
   return types;
 }
 
-// Arrays that are written.
+// Output arrays.
 
-/// Throws unless the array, if it is wanted, has room for `count` numbers.
+/// Throws unless the array is null (not wanted) or has room for exactly `count` numbers.
 void check_room(const mo_out* array, std::size_t count, const char* name) {
   if (array == nullptr) return;
   if (!std::cmp_equal(array->size, count)) {
@@ -163,7 +163,7 @@ void write_as(std::span<const Index> map, int base, void* data, const char* name
                  [base](Index number) { return static_cast<T>(Offset{number} + base); });
 }
 
-/// Writes a map, if it is wanted, into an array that `check_integers` accepted.
+/// Writes a map into an array that `check_integers` accepted; does nothing if the array is null.
 void write(std::span<const Index> map, int base, const mo_out* array, const char* name) {
   if (array == nullptr) return;
   switch (array->type) {
@@ -178,7 +178,7 @@ void write(std::span<const Index> map, int base, const mo_out* array, const char
   }
 }
 
-/// Writes numbers, if they are wanted, into an array that `check_reals` accepted.
+/// Writes numbers into an array that `check_reals` accepted; does nothing if the array is null.
 void write(std::span<const double> values, const mo_out* array) {
   if (array == nullptr) return;
   if (array->type == MO_DOUBLE) {
@@ -196,7 +196,7 @@ void check_struct_size(std::size_t size, const char* name) {
   fail(name, "struct_size is " + std::to_string(size) + ", must be the size of the structure");
 }
 
-/// Copies those of the fields that lie within the first `size` bytes.
+/// Copies those of the fields that are entirely within the first `size` bytes of the structure.
 template <class Struct, class... Fields>
 void copy_fields(const Struct& from, Struct& to, std::size_t size, Fields Struct::*... fields) {
   const auto copy = [&](auto field) {
@@ -314,7 +314,7 @@ GraphView graph_of(const mo_in* offsets, const mo_in* neighbours, const mo_in* w
           .base = base};
 }
 
-// The work of the functions.
+// Implementations of the functions.
 
 void order_graph(const GraphView& graph, const PointsView& points, const mo_options& options,
                  const mo_out* new_to_old, const mo_out* old_to_new, mo_result* result) {
@@ -328,7 +328,7 @@ void order_graph(const GraphView& graph, const PointsView& points, const mo_opti
   write(report_of(order), result);
 }
 
-/// Returns the map as a permutation.
+/// Returns the map as a permutation; throws for an entry out of range.
 Permutation permutation_of(const IndexView& new_to_old, int base) {
   const auto n = static_cast<std::int64_t>(new_to_old.size());
   if (n > std::numeric_limits<Index>::max()) {
@@ -346,7 +346,7 @@ Permutation permutation_of(const IndexView& new_to_old, int base) {
   return Permutation::from_new_to_old(std::move(map));
 }
 
-/// Returns the places from 0 on, -1 for new vertices.
+/// Returns the previous places, numbered from 0; -1 for new vertices.
 std::vector<std::int64_t> places_before(const IndexView& previous, int base) {
   std::vector<std::int64_t> places(previous.size());
   for (std::size_t v = 0; v < places.size(); ++v) places[v] = previous[v] - base;
@@ -363,7 +363,7 @@ const char* kept(std::string name) {
   return names->insert(std::move(name)).first->c_str();
 }
 
-/// Calls `work()` and returns its status; `mo_last_error` then knows why it failed.
+/// Calls `work()` and returns its status; if it fails, `mo_last_error` returns the reason.
 template <class Work>
 mo_status guarded(const Work& work) noexcept {
   return status_of(work, last_error);
@@ -385,7 +385,7 @@ const char* mo_last_error() { return last_error.c_str(); }
 
 void mo_options_init(mo_options* options, size_t struct_size) {
   if (options == nullptr || struct_size < sizeof(std::size_t)) return;
-  // fields of a newer header than this are 0
+  // fields that a newer header adds are set to 0
   if (struct_size <= kLargestStruct) std::memset(static_cast<void*>(options), 0, struct_size);
   copy_options(default_options(), *options, struct_size);
   options->struct_size = struct_size;

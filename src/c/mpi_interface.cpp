@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// The C interface for many ranks: it copies the caller's arrays, checks them on all ranks, and turns
-// exceptions into statuses.
+// The C interface for MPI. It copies the caller's arrays, checks them on all ranks, and turns exceptions into
+// statuses.
 #include "base/status.hpp"
 #include "distributed/comm/communicator.hpp"
 #include "distributed/order/owned_order.hpp"
@@ -26,7 +26,7 @@ using distributed::GlobalIndex;
 using distributed::Layout;
 using distributed::OwnedMesh;
 
-/// The most vertices of a rank; no sum over ranks overflows.
+/// The largest number of vertices of a rank, such that sums over ranks do not overflow.
 constexpr std::int64_t kMostVertices = std::int64_t{1} << 40;
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the error of each thread
@@ -57,7 +57,7 @@ mo_mpi_options default_mpi_options() {
   return options;
 }
 
-/// The caller's options; those of all ranks must be for the same number of parts.
+/// Returns the caller's options. Throws on all ranks if one is invalid or ranks ask for different `parts`.
 DistributedOptions options_of(const Communicator& communicator, const mo_mpi_options* given) {
   DistributedOptions options;
   communicator.together([&] {
@@ -84,7 +84,7 @@ DistributedOptions options_of(const Communicator& communicator, const mo_mpi_opt
   return options;
 }
 
-/// Copies the arrays of a rank. Vertices have been counted.
+/// Copies the arrays of a rank to `mesh` and checks them; `mesh.vertices` must be set.
 void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
   const GlobalIndex n = mesh.vertices.size();
   require(given.cell_count >= 0, "cell_count: " + std::to_string(given.cell_count));
@@ -93,7 +93,7 @@ void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
     require(given.cell_offsets != nullptr && given.cell_vertices != nullptr, "cells: an array is null");
     require(given.cell_offsets[0] == 0, "cell_offsets: the first must be 0");
   }
-  // all offsets are checked before any is used, as the last one says how many vertices there are
+  // check all offsets before using any: the last one is the length of cell_vertices
   for (std::int64_t c = 0; c < given.cell_count; ++c) {
     require(given.cell_offsets[c] < given.cell_offsets[c + 1],
             "cell_offsets: element " + std::to_string(c) + " has no vertices");
@@ -143,7 +143,7 @@ OwnedMesh mesh_of(const Communicator& communicator, const mo_mpi_mesh* given) {
   return mesh;
 }
 
-/// Writes numbers to the caller's array, which may be missing where it is not `wanted`.
+/// Writes numbers to the caller's array, which may be null unless `wanted` names it (for the error message).
 void write(const Communicator& communicator, const std::vector<GlobalIndex>& numbers, std::int64_t* to,
            const char* wanted = nullptr) {
   communicator.together([&] {

@@ -16,11 +16,11 @@ namespace {
 constexpr std::size_t kCacheLine = 64;
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
 constexpr std::size_t kMinPaged = kHugePage / 2;
-// malloc puts all blocks of about this size and more at the same place of a page
+// malloc places all blocks of about this size or larger at the same offset in a page
 constexpr std::size_t kMinColoured = std::size_t{64} << 10;
 
-// The number of places in 4096 bytes that are at least kApart from each other, and the last one from the
-// first one of the next page.
+// The number of places in 4096 bytes such that all are at least kApart from each other, also across the end
+// of a page.
 constexpr std::size_t kColours = 3;
 constexpr std::size_t kBetweenColours = 4096 / kColours / kCacheLine * kCacheLine;
 static_assert(kBetweenColours >= kApart);
@@ -31,8 +31,8 @@ std::size_t alignment_of(std::size_t bytes) {
   return bytes < kMinPaged ? 4096 : kHugePage;
 }
 
-/// Where in its page the next large block of this thread begins: in turns, so that any three arrays that are
-/// made one after another are apart (see kApart), whatever other threads do.
+/// Returns the offset in its page of the next large block of this thread. Offsets rotate per thread, so that
+/// any three large arrays that a thread makes one after another are apart (see kApart).
 std::size_t next_colour() {
   thread_local std::size_t turn = 0;
   turn = (turn + 1) % kColours;
@@ -41,8 +41,8 @@ std::size_t next_colour() {
 
 #if defined(__linux__)
 
-/// Returns newly mapped memory from a multiple of kHugePage on: memory that the heap reuses keeps its small
-/// pages. Large pages are only asked for; the system may give ordinary ones.
+/// Returns newly mapped memory that begins at a multiple of kHugePage; the heap would reuse memory on small
+/// pages. Asks for large pages, but the system may give ordinary ones.
 void* allocate_pages(std::size_t bytes) {
   const std::size_t mapped = bytes + kHugePage;
   void* const map = mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -67,8 +67,8 @@ void free_pages(void* block, std::size_t /*bytes*/) noexcept {
 
 #endif
 
-/// Returns the bytes of whole pages, since no other array may share the last one, for an array that begins
-/// `colour` bytes from the start of the first.
+/// Returns the size of the whole large pages for an array that begins `colour` bytes after the start of the
+/// first; no other array may share the last page.
 std::size_t bytes_of_pages(std::size_t bytes, std::size_t colour) {
   return (bytes + colour + kHugePage - 1) / kHugePage * kHugePage;
 }

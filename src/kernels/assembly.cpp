@@ -47,7 +47,7 @@ AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix) {
     if (least < 0) complete = false;
   });
   if (!complete) {
-    // the first one, however many threads there are
+    // reports the first missing block, for any number of threads
     const Offset place = std::find(map.blocks.begin(), map.blocks.end(), -1) - map.blocks.begin();
     const Offset pair = place % (corners * corners);
     const Offset s = place / (corners * corners);
@@ -61,7 +61,7 @@ AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix) {
 
 OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const BlockCsr& matrix,
                          const OwnedBatches& share, Index part) {
-  // the largest number of blocks of a simplex, on separate cache lines
+  // 16 blocks, the most of a simplex, and 2 that keep shares on separate cache lines
   constexpr Offset kSpareBlocks = 16 + 2;
   const Index corners = rest.dimension + 1;
   const Offset first_spare = matrix.block_count() + 2 + kSpareBlocks * part;

@@ -17,15 +17,15 @@ struct AssemblyMap {
 /// lacks a block. On all threads. O(simplices · log row length).
 AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix);
 
-/// The map of one share of `owned_batches` (of rest.vertices): for its boundary batches, in their order, the
-/// blocks of the map, with spare blocks in place of those in rows that are not owned.
+/// The map of one share of `owned_batches` (of rest.vertices). It has the blocks of the share's boundary
+/// batches, in their sequence; spare blocks replace those in rows that the share does not own.
 struct OwnedBlocks {
   AlignedVector<Index> blocks;
   Offset room = 0;  ///< blocks that the matrix's values must hold, including spare ones
 };
 
-/// The map of share number `part`, whose spare blocks follow the matrix's and those of the shares
-/// before it. Throws InvalidArgument if their numbers exceed an Index. O(boundary simplices).
+/// Returns the map of share number `part`. Its spare blocks come after the matrix's blocks and those of the
+/// shares before it. Throws InvalidArgument if a block's number exceeds an Index. O(boundary simplices).
 OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const BlockCsr& matrix,
                          const OwnedBatches& share, Index part);
 

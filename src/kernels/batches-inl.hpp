@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Forces alone.
+/// In place of a Tangent: compute forces only.
 struct NoTangent {};
 
 template <int D>
@@ -60,12 +60,12 @@ HWY_INLINE BatchBlocks blocks_of(const ElasticPass& pass, Offset i, Offset batch
   return result;
 }
 
-/// Computes a batch of simplices and adds its forces to `targets`: its vertices, or spare vertices instead of
-/// them.
+/// Computes a batch of simplices and adds its forces to `targets`: the vertices of the batch or, for those of
+/// other threads, spare vertices.
 ///
-/// A Law is made of a deformation and its parameters, and gives stress(P) and energy(). A Tangent is made of
-/// a deformation, its law, parameters and a weight, and gives block(a, b, K), weight · gₐ·∂P/∂F·g_b for the
-/// corners a ≤ b of 1 … D, counted from 0; where a = b, symmetric to the last bit.
+/// A Law loads a deformation and its Lamé parameters; it computes stress(P) and energy(). A Tangent loads a
+/// deformation, its law, parameters and a weight; it computes block(a, b, K) = weight · gₐ·∂P/∂F·g_b for two
+/// of the corners 1 … D, numbered from 0, a ≤ b. Blocks with a = b are symmetric to the last bit.
 template <int D, class Lanes, class Law, class Tangent>
 HWY_INLINE void add_batch(const ElasticPass& pass, Offset batch, const Index* targets,
                           const BatchBlocks& blocks) {
@@ -99,7 +99,7 @@ HWY_INLINE void add_batch(const ElasticPass& pass, Offset batch, const Index* ta
   }
 }
 
-/// Computes all batches, or those of a share, whose boundary batches have targets and blocks of their own.
+/// Computes all batches or those of a share; boundary batches of a share have their own targets and blocks.
 template <int D, class Lanes, class Law, class Tangent>
 HWY_INLINE void add_batches(const ElasticPass& pass) {
   constexpr Offset kAhead = 8;  // batches from a prefetch to its use
@@ -117,7 +117,7 @@ HWY_INLINE void add_batches(const ElasticPass& pass) {
   }
 }
 
-/// Returns Σ V Ψ of the batches begin … end − 1, in J.
+/// Returns Σ V Ψ of the batches begin … end − 1, in J if lengths are in m and moduli in Pa.
 template <int D, class Lanes, class Law>
 HWY_INLINE double energy_of_batches(const ElasticPass& pass, Index begin, Index end) {
   typename Lanes::Value sum = Lanes::set(0.0);

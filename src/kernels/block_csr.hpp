@@ -12,9 +12,9 @@
 namespace meshorder {
 
 /// A sparse matrix of 3×3 blocks in compressed rows, one block row for each vertex: the stiffness matrix of a
-/// mesh. The blocks of row v are `offsets[v] … offsets[v + 1] − 1`, their columns ascending and including the
-/// diagonal. Block k holds `values[9 k] … values[9 k + 8]`, row by row: in double 76 bytes with its column,
-/// in float 40.
+/// mesh. The blocks of row v are `offsets[v] … offsets[v + 1] − 1`, with ascending columns that include the
+/// diagonal. Block k holds `values[9 k] … values[9 k + 8]`, row by row. With its column a block takes 76
+/// bytes in double, 40 in float.
 template <class Value>
 struct BlockCsrOf {
   std::vector<Offset> offsets{0};  ///< n + 1
@@ -25,7 +25,7 @@ struct BlockCsrOf {
   [[nodiscard]] Offset block_count() const noexcept { return static_cast<Offset>(columns.size()); }
   void set_zero() { std::fill(values.begin(), values.end(), Value{0}); }
 
-  /// Returns the number of the block in that row and column, −1 if the pattern has none. O(log row length).
+  /// Returns the index of the block in that row and column, −1 if the pattern has none. O(log row length).
   [[nodiscard]] Offset find(Index row, Index column) const {
     const Offset begin = offsets[row];
     const std::span<const Index> entries(columns.data() + begin, columns.data() + offsets[row + 1]);

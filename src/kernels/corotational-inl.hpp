@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Lower bound of the sum of two singular values in a tangent; the Hessian is infinite where a sum is 0. Only
-/// nearly collapsed elements reach it.
+/// Lower bound for the sum of two singular values in a tangent: the Hessian is infinite where a sum is 0.
+/// Only nearly collapsed elements reach this bound.
 inline constexpr double kMinSum = 1e-6;
 
 /// Corotational linear elasticity: P = 2μ (F − R) + λ tr(RᵀF − I) R.
@@ -24,7 +24,7 @@ struct Corotational {
   using Value = typename Lanes::Value;
   Value r[3][3];      ///< the rotation closest to F
   Value trace;        ///< tr S = R:F
-  Value coefficient;  ///< of R in P = 2μF + cR: c = λ (tr S − 3) − 2μ
+  Value coefficient;  ///< c in P = 2μF + cR: c = λ (tr S − 3) − 2μ
 
   HWY_INLINE void load(const Deformation<3, Lanes>& deformation, const LameLanes<Lanes>& lame) {
     closest_rotations<Lanes>(deformation.f, r);
@@ -34,7 +34,7 @@ struct Corotational {
 
   HWY_INLINE void stress(const Deformation<3, Lanes>& deformation, const LameLanes<Lanes>& lame,
                          Value (&p)[3][3]) const {
-    // not by c, so that nothing cancels near rest
+    // not 2μF + cR, whose terms cancel near rest
     const Value two_mu = lame.mu + lame.mu;
     const Value pressure = lame.lambda * (trace - Lanes::set(3.0));
     MESHORDER_UNROLL
@@ -46,7 +46,7 @@ struct Corotational {
     }
   }
 
-  /// μ ‖F − R‖² + ½ λ tr²(RᵀF − I)
+  /// Returns the energy density μ ‖F − R‖² + ½ λ tr²(RᵀF − I).
   [[nodiscard]] HWY_INLINE Value energy(const Deformation<3, Lanes>& deformation,
                                         const LameLanes<Lanes>& lame) const {
     Value squares = Lanes::set(0.0);
@@ -62,7 +62,7 @@ struct Corotational {
     return Lanes::mul_add(lame.mu, squares, Lanes::set(0.5) * lame.lambda * (stretch * stretch));
   }
 
-  /// ψᵢ = 2μ σᵢ + c.
+  /// Sets the Hessian in principal stretches; the energy's derivatives are ψᵢ = 2μ σᵢ + c.
   HWY_INLINE void principal(const Value (&sigma)[3], const LameLanes<Lanes>& lame,
                             PrincipalHessian<Lanes>& hessian) const {
     const Value two_mu = lame.mu + lame.mu;
@@ -79,7 +79,7 @@ struct Corotational {
   }
 };
 
-/// With R held: the stiffness of linear elasticity, turned. With p_a = R g_a,
+/// The tangent with R held constant: the rotated stiffness of linear elasticity. With p_a = R g_a,
 /// K_ab = V (λ p_a p_bᵀ + μ p_b p_aᵀ + μ (g_a·g_b) I).
 template <class Lanes>
 struct TurnedTangent {
@@ -114,9 +114,9 @@ struct TurnedTangent {
   }
 };
 
-/// The Hessian (Barbič 2012): P = 2μF + cR varies by 2μ δF + λ (R:δF) R + c δR. The rotation turns by ω,
-/// δR = [ω]× R, with (tr(S) I − F Rᵀ) ω the axial vector of δF Rᵀ − R δFᵀ, which for δF = δx g_bᵀ is
-/// p_b × δx, p_b = R g_b. So K_ab = V (2μ (g_a·g_b) I + λ p_a p_bᵀ + c [p_a]×ᵀ (tr(S) I − F Rᵀ)⁻¹ [p_b]×).
+/// The exact tangent (Barbič 2012). P = 2μF + cR varies by 2μ δF + λ (R:δF) R + c δR. R varies by δR = [ω]×
+/// R, where (tr(S) I − F Rᵀ) ω is the axial vector of δF Rᵀ − R δFᵀ. For δF = δx g_bᵀ that vector is p_b × δx
+/// with p_b = R g_b. So K_ab = V (2μ (g_a·g_b) I + λ p_a p_bᵀ + c [p_a]×ᵀ (tr(S) I − F Rᵀ)⁻¹ [p_b]×).
 template <class Lanes>
 struct CorotationalTangent {
   using Value = typename Lanes::Value;
@@ -180,7 +180,7 @@ struct CorotationalTangent {
     Value determinant = g[0][0] * turn[0][0];
     determinant = Lanes::mul_add(g[0][1], turn[0][1], determinant);
     determinant = Lanes::mul_add(g[0][2], turn[0][2], determinant);
-    // the two larger eigenvalues have a product of about tr²(S), or all are next to nothing
+    // bounds the least eigenvalue at about kMinSum: the product of the two larger ones is about tr²(S)
     const Value min_determinant =
         Lanes::mul_add(Lanes::set(kMinSum) * law.trace, law.trace, Lanes::set(1e-280));
     const Value factor = weight / Lanes::max(determinant, min_determinant);

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/corotational.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// the rest of this file is compiled once for each instruction set
 #include "kernels/corotational-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -17,7 +17,7 @@ template <int D, class Lanes>
 struct Deformation {
   using Value = typename Lanes::Value;
   /// The shape gradients of the corners 1 … D in the simplex's own frame: the rows of Dₘ⁻¹, upper triangle
-  /// only. That of corner 0 is minus their sum.
+  /// only. The gradient of corner 0 is minus their sum.
   Value g[D][D];
   Value volume;
   Value f[3][D];  ///< deformation gradient F
@@ -49,7 +49,7 @@ struct Deformation {
     }
   }
 
-  /// g_a · g_b of two of the corners 1 … D, counted from 0.
+  /// Returns g_a · g_b for two of the corners 1 … D, numbered from 0.
   [[nodiscard]] HWY_INLINE Value gradients(int a, int b) const {
     const int from = a > b ? a : b;
     Value sum = g[a][from] * g[b][from];
@@ -58,7 +58,7 @@ struct Deformation {
     return sum;
   }
 
-  /// p = M g_a of a 3×D matrix and one of the corners 1 … D, counted from 0.
+  /// Computes p = M g_a for a 3×D matrix M and one of the corners 1 … D, numbered from 0.
   HWY_INLINE void times_gradient(const Value (&m)[3][D], int a, Value (&p)[3]) const {
     MESHORDER_UNROLL
     for (int c = 0; c < 3; ++c) {
@@ -68,7 +68,7 @@ struct Deformation {
     }
   }
 
-  /// The forces of a first Piola–Kirchhoff stress P: −V P g_a on corner a.
+  /// Adds the forces of a first Piola–Kirchhoff stress P to the targets: −V P g_a on corner a.
   HWY_INLINE void add_forces(const Value (&stress)[3][D], const Index* targets, double* forces) const {
     Value corner[D][3];
     Value at_origin[3];

@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// One rotation of Jacobi's method in the plane of p and q, which zeroes a_pq. The matrix is symmetric; only
-/// its upper triangle is kept.
+/// Applies one rotation of Jacobi's method in the plane of p and q, which zeroes a_pq. The matrix is
+/// symmetric; only its upper triangle is used.
 template <int N, class Lanes>
 HWY_INLINE void rotate_plane(int p, int q, typename Lanes::Value (&a)[N][N],
                              typename Lanes::Value (&vectors)[N][N]) {
@@ -48,9 +48,9 @@ HWY_INLINE void rotate_plane(int p, int q, typename Lanes::Value (&a)[N][N],
   }
 }
 
-/// Eigenvalues and the columns of orthonormal eigenvectors of symmetric N×N matrices, N = 3 or 4, by Jacobi's
-/// cyclic method: exact to rounding relative to the largest entry, whatever the matrix; it ends for NaN too.
-/// The entries should be far from underflow and overflow when squared. The upper triangle of `a` is read.
+/// Computes eigenvalues and orthonormal eigenvectors (the columns of `vectors`) of symmetric N×N matrices, N
+/// = 3 or 4, by Jacobi's cyclic method. Errors are rounding relative to the largest entry, for any matrix; it
+/// ends for NaN too. Squares of entries must not underflow or overflow. Overwrites the upper triangle of `a`.
 template <int N, class Lanes>
 HWY_INLINE void symmetric_eigen(typename Lanes::Value (&a)[N][N], typename Lanes::Value (&values)[N],
                                 typename Lanes::Value (&vectors)[N][N]) {

@@ -23,7 +23,7 @@ ElasticKernels kernels_of(MaterialModel model) {
   throw InvalidArgument("elasticity: no such material model");
 }
 
-/// A batch of equal parameters, where they are the same everywhere.
+/// A batch of equal parameters, for a law with the same parameters everywhere.
 struct UniformLame {
   alignas(64) std::array<double, kBatch> mu, lambda;
 
@@ -68,7 +68,7 @@ void check(const RestShapes& rest, const Stiffness& stiffness, Offset room) {
   }
 }
 
-/// Returns the pass over all batches that only reads, after checking the arguments.
+/// Checks the arguments and returns a pass over all batches without outputs.
 ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity, const UniformLame& uniform,
                          std::span<const double> positions) {
   check(rest, elasticity);
@@ -84,7 +84,7 @@ ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity, c
   return pass;
 }
 
-/// Returns the pass over all batches, after checking the arguments.
+/// Checks the arguments and returns a pass over all batches that adds forces, a stiffness matrix or both.
 ElasticPass checked_pass(const RestShapes& rest, const Elasticity& elasticity, const UniformLame& uniform,
                          std::span<const double> positions, std::span<double> forces,
                          const Stiffness* stiffness) {

@@ -12,15 +12,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// The stiffness blocks of a batch of simplices. They are computed for many simplices at a time but added for
-/// one at a time, as they lie in the matrix; this buffer holds them in between.
+/// The stiffness blocks of a batch of simplices. This buffer holds them between their computation, which is
+/// for many simplices at a time, and their addition to the matrix, one simplex at a time.
 template <int D>
 struct ElementBlocks {
   static constexpr int kBlocks = (D + 1) * (D + 1);
   alignas(64) double head[kBatch][kBlocks][8];  ///< the first eight of a block's nine entries
   alignas(64) double last[kBlocks][kBatch];
 
-  /// Block (a, b) and its transpose, block (b, a), of the simplices from `lane` on.
+  /// Stores block (a, b) and its transpose, block (b, a), of the simplices from `lane` on.
   template <class Lanes>
   HWY_INLINE void put(int a, int b, const typename Lanes::Value (&k)[9], Index lane) {
     using Value = typename Lanes::Value;
@@ -35,7 +35,7 @@ struct ElementBlocks {
   }
 
   /// Prefetches the blocks that a simplex will add to, one batch in advance. They are scattered over the
-  /// matrix, so that hardware does not prefetch them; measured, assembly waits for memory half as long.
+  /// matrix, so that hardware does not prefetch them. Measurements: assembly waits for memory half as long.
   static HWY_INLINE void fetch(const Index* blocks, const double* values) {
     for (int block = 0; block < kBlocks; ++block) {
       const double* const place = values + Offset{9} * blocks[block];
@@ -44,7 +44,7 @@ struct ElementBlocks {
     }
   }
 
-  /// Adds those of one simplex to the blocks of a matrix.
+  /// Adds the blocks of one simplex to those of a matrix.
   HWY_INLINE void add(Index lane, const Index* blocks, double* values) const {
     using Tag = hn::CappedTag<double, 8>;
     const Tag d;
@@ -69,8 +69,8 @@ struct ElementBlocks {
   }
 };
 
-/// Computes all blocks of some simplices from those that `tangent` gives for the corners 1 … D (counted from
-/// 0). A translation changes no force, so every row of blocks adds up to zero, which gives the blocks of
+/// Computes all blocks of some simplices from those of the corners 1 … D (numbered from 0), which `tangent`
+/// computes. A translation changes no force, so every row of blocks adds up to zero; this gives the blocks of
 /// corner 0.
 template <int D, class Lanes, class Tangent>
 HWY_INLINE void compute_blocks(const Tangent& tangent, Index lane, ElementBlocks<D>& out) {

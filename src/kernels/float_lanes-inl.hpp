@@ -17,7 +17,7 @@ namespace meshorder::HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SCALAR
 using ManyFloatLanes = OneLaneOf<float>;
 #else
-/// As many simplices at a time as a register holds floats, at most two batches: see ManyLanes.
+/// Lanes for as many simplices as a register holds floats, at most two batches; see ManyLanes.
 struct ManyFloatLanes : LaneArithmetic<float, 2 * kBatch> {
   static HWY_INLINE void gather(const float* positions, const Index* v, Value (&p)[3]) {
     const Tag d;
@@ -34,7 +34,7 @@ struct ManyFloatLanes : LaneArithmetic<float, 2 * kBatch> {
     p[2] = hn::BitCast(d, hn::InterleaveLower(pairs, hn::BitCast(pairs, zw01), hn::BitCast(pairs, zw23)));
   }
 
-  /// The way back. A vertex may occur several times among v[0] … v[kCount − 1].
+  /// Adds f to the forces of v[0] … v[kCount − 1], among which a vertex may occur several times.
   static HWY_INLINE void scatter_add(const Value (&f)[3], const Index* v, float* forces) {
     const Tag d;
     const hn::Repartition<double, Tag> pairs;
@@ -50,7 +50,7 @@ struct ManyFloatLanes : LaneArithmetic<float, 2 * kBatch> {
 };
 #endif
 
-/// The lanes for numbers of that type.
+/// The lanes for numbers of type Real.
 template <class Real>
 using ManyLanesOf = std::conditional_t<std::is_same_v<Real, float>, ManyFloatLanes, ManyLanes>;
 

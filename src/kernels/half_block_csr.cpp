@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/half_block_csr.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// the rest of this file is compiled once for each instruction set
 #include "kernels/positions.hpp"
 
 #include <hwy/highway.h>
@@ -15,20 +15,20 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-// bytes from a prefetch of a block to its use; hardware prefetches less far ahead
+// bytes between a block in use and the one prefetched; hardware prefetches less far ahead
 constexpr Offset kBytesAhead = 3072;
 
 #if HWY_MAX_BYTES >= 32
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A row of a slab: its sums, and what it adds to other rows. Each row of a block is loaded with the number
-/// that follows it, whose products are in lane 3 and never used.
+/// The sums of a row of a slab; also adds its blocks, transposed, to other rows. Each row of a block is
+/// loaded together with the number after it, whose products are in lane 3 and never used.
 class HalfRow {
  public:
   HWY_INLINE explicit HalfRow(const double* p)
       : p0_(hn::Set(Tag(), p[0])), p1_(hn::Set(Tag(), p[1])), p2_(hn::Set(Tag(), p[2])) {}
 
-  /// Adds a block that counts in this row.
+  /// Adds a block that counts only in this row.
   template <class Value>
   HWY_INLINE void add(const Value* block, const double* p) {
     const auto factors = load_three(p);
@@ -37,7 +37,7 @@ class HalfRow {
     row2_ = hn::MulAdd(load_four(block + 6), factors, row2_);
   }
 
-  /// Adds a block to this row and, transposed, to the row of its column, whose sum is padded.
+  /// Adds a block to this row and, transposed, to `column_sum`, the padded sum of the row of its column.
   template <class Value>
   HWY_INLINE void add_both(const Value* block, const double* p, double* column_sum) {
     const Tag d;
@@ -48,12 +48,12 @@ class HalfRow {
     row0_ = hn::MulAdd(block0, factors, row0_);
     row1_ = hn::MulAdd(block1, factors, row1_);
     row2_ = hn::MulAdd(block2, factors, row2_);
-    // computed before the sum is loaded: what the row before has just stored is waited for only once
+    // computed before the sum is loaded, so that only one addition waits for the preceding store to it
     const auto column = hn::MulAdd(block2, p2_, hn::MulAdd(block1, p1_, hn::Mul(block0, p0_)));
     hn::Store(hn::Add(hn::Load(d, column_sum), column), d, column_sum);
   }
 
-  /// q = the sums of this row and what other rows added to it, which is set to 0.
+  /// Sets q to the sums of this row plus `column_sum`, what other rows added to it, and clears the latter.
   HWY_INLINE void finish(double* column_sum, double* q) const {
     const Tag d;
     const hn::Half<Tag> two;
@@ -87,7 +87,7 @@ class HalfRow {
   hn::Vec<Tag> row2_ = hn::Zero(Tag());
 };
 #else
-/// The same one number at a time: two lanes gain nothing.
+/// As above, without vectors: two lanes gain nothing.
 class HalfRow {
  public:
   HWY_INLINE explicit HalfRow(const double* p) : p_(p) {}
@@ -118,8 +118,8 @@ class HalfRow {
 };
 #endif
 
-/// `sums` has kPaddedStride zeros for each row of the slab, before and afterwards. With `Gather` the entries
-/// of x are prefetched too.
+/// Computes the rows begin … end − 1, a slab, of y = A x; returns their part of xᵀA x. `sums` must hold
+/// kPaddedStride zeros for each row, and does so again afterwards. With `Gather`, prefetches x as well.
 template <bool Gather, class Value>
 double half_product_rows(const HalfBlockCsrOf<Value>& matrix, const double* x, double* sums, double* y,
                          Index begin, Index end) {
@@ -190,7 +190,7 @@ HWY_EXPORT(half_product_of_floats);
 
 constexpr Index kSlabs = 16;
 
-/// Zeros for the rows of a slab, one such array for each thread.
+/// Returns the calling thread's array of zeros with kPaddedStride numbers for each row of a slab.
 double* sums_of_thread(std::size_t rows) {
   thread_local AlignedVector<double> sums;
   const std::size_t needed = kPaddedStride * rows;
@@ -198,7 +198,7 @@ double* sums_of_thread(std::size_t rows) {
   return sums.data();
 }
 
-/// The blocks of the rows begin … end − 1 in other columns than these.
+/// Returns the number of blocks of the rows begin … end − 1 in columns outside begin … end − 1.
 Offset blocks_between(const BlockCsr& matrix, Index begin, Index end) {
   Offset count = 0;
   for (Offset k = matrix.offsets[begin]; k < matrix.offsets[end]; ++k) {
@@ -208,7 +208,7 @@ Offset blocks_between(const BlockCsr& matrix, Index begin, Index end) {
   return count;
 }
 
-/// The stored blocks of a row that count in it alone, and those that count in two.
+/// Numbers of stored blocks of a row: those that count only in it, and those that count in two rows.
 struct RowCounts {
   Offset alone = 0, both = 0;
 };

@@ -8,42 +8,42 @@
 
 namespace meshorder {
 
-/// A symmetric matrix of 3×3 blocks of which most blocks are stored once. The rows are cut into slabs of
-/// about equal numbers of blocks. A block on the diagonal, and one whose row and column are in different
-/// slabs, is stored in its row; of two blocks that mirror each other within a slab only the upper one is
-/// stored, and counts in both rows. So a slab writes to its own rows alone: threads take slabs, without
-/// atomics or a second pass, and every sum has its terms in the same order for any number of threads. In a
-/// poor order most blocks are between slabs, and nearly the full matrix is stored.
+/// A symmetric matrix of 3×3 blocks that stores most pairs of mirrored blocks once. The rows are cut into
+/// slabs of about equal numbers of blocks. A block on the diagonal or between two slabs is stored in its row.
+/// Of two blocks that mirror each other within a slab only the upper one is stored; it counts in both rows.
+/// So a slab writes only to its own rows: threads take slabs, without atomics or a second pass, and every sum
+/// has its terms in the same sequence for any number of threads. In a poor order most blocks are between
+/// slabs, and nearly the full matrix is stored.
 ///
 /// Block k holds `values[9 k] … values[9 k + 8]`, row by row. Of row v, blocks `offsets[2 v] … offsets[2 v +
-/// 1] − 1` count in this row, blocks `offsets[2 v + 1] … offsets[2 v + 2] − 1` also in that of their column.
+/// 1] − 1` count in row v only, blocks `offsets[2 v + 1] … offsets[2 v + 2] − 1` also in their column's row.
 /// Columns ascend in both parts. With its column a block takes 76 bytes in double, 40 in float.
 template <class Value>
 struct HalfBlockCsrOf {
   std::vector<Index> slabs{0};     ///< bounds of the slabs
   std::vector<Offset> offsets{0};  ///< 2 n + 1
-  std::vector<Index> columns;      ///< and kSpareColumns zeros, since columns are read ahead
-  AlignedVector<Value> values;     ///< and one more number, since vector loads read past the end
+  std::vector<Index> columns;      ///< with kSpareColumns zeros at the end, as columns are read ahead
+  AlignedVector<Value> values;     ///< with one more number at the end, as vector loads read past it
 
   static constexpr Offset kSpareColumns = 64;
 
   [[nodiscard]] Index size() const noexcept { return slabs.back(); }
   [[nodiscard]] Index slab_count() const noexcept { return static_cast<Index>(slabs.size()) - 1; }
-  /// Blocks that are stored.
+  /// Returns the number of stored blocks.
   [[nodiscard]] Offset block_count() const noexcept { return offsets.back(); }
 };
 
 using HalfBlockCsr = HalfBlockCsrOf<double>;
 
-/// Returns the bounds of the slabs of a matrix, by its pattern alone: 16 of them, or as many as it has rows.
+/// Returns the bounds of the slabs of a matrix: 16 slabs, or one per row if it has fewer rows. O(16 log n).
 std::vector<Index> slabs_of(const BlockCsr& matrix);
 
-/// Returns the share of a matrix's blocks whose row and column are in different slabs, 0 … 1: these are
-/// stored twice. O(blocks), of which only the columns are read.
+/// Returns the share of a matrix's blocks whose row and column are in different slabs, 0 … 1; of these both
+/// mirror images are stored. O(blocks); reads only the columns.
 double share_between_slabs(const BlockCsr& matrix);
 
-/// Copies a matrix that is symmetric to the last bit, its pattern too, to `result`, reusing the memory of
-/// `result`; in float its values are rounded. Blocks below the diagonal within a slab are not read. On all
+/// Copies a matrix to `result`, reusing its memory; rounds the values if Value is float. The matrix and its
+/// pattern must be symmetric to the last bit: blocks below the diagonal within a slab are not read. On all
 /// threads. O(blocks).
 template <class Value>
 void store_half(const BlockCsr& matrix, HalfBlockCsrOf<Value>& result);

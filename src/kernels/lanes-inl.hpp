@@ -15,7 +15,7 @@
 
 #include <cmath>
 
-/// Before a loop over rows, columns or corners: without it GCC keeps the small matrices in memory.
+/// Unrolls the next loop over rows, columns or corners: without this GCC keeps small matrices in memory.
 #undef MESHORDER_UNROLL
 #define MESHORDER_UNROLL _Pragma("GCC unroll 16")
 
@@ -23,8 +23,8 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Prefetches `Bytes` of an array that is read from front to back, far enough ahead of their use: some
-/// processors do not, beside gathers from other arrays (docs/evidence/benchmarks.md, Streams).
+/// Prefetches `Bytes` of an array that is read from front to back. Some processors do not prefetch it while a
+/// kernel gathers from other arrays (docs/evidence/benchmarks.md, Streams).
 template <Offset Bytes>
 HWY_INLINE void fetch_stream(const void* place) {
   constexpr Offset kLine = 64;
@@ -43,9 +43,9 @@ struct OneLaneOf {
   static HWY_INLINE void store(Value value, Real* to) { *to = value; }
   static HWY_INLINE Value mul_add(Value a, Value b, Value c) { return a * b + c; }
   static HWY_INLINE Value square_root(Value a) { return std::sqrt(a); }
-  /// where > 0 ? value : 0
+  /// Returns where > 0 ? value : 0 for each lane.
   static HWY_INLINE Value if_positive(Value where, Value value) { return where > 0 ? value : 0; }
-  /// where > 0 ? yes : no
+  /// Returns where > 0 ? yes : no for each lane.
   static HWY_INLINE Value choose(Value where, Value yes, Value no) { return where > 0 ? yes : no; }
   static HWY_INLINE Value max(Value a, Value b) { return a > b ? a : b; }
   static HWY_INLINE Value min(Value a, Value b) { return a < b ? a : b; }
@@ -54,11 +54,11 @@ struct OneLaneOf {
   static HWY_INLINE Value log(Value a) { return std::log(a); }
   /// Returns whether every lane is at most the bound; false if one is NaN.
   static HWY_INLINE bool all_at_most(Value a, double bound) { return a <= static_cast<Real>(bound); }
-  /// The sum of the lanes.
+  /// Returns the sum of the lanes.
   static HWY_INLINE Real sum(Value a) { return a; }
-  /// Lane l to to[l · stride], the kCount rows side by side.
+  /// Stores lane l of the kCount rows, side by side, from to[l · stride] on.
   static HWY_INLINE void store_transposed(const Value* rows, Real* to, Offset /*stride*/) { *to = *rows; }
-  /// p = the three coordinates of vertex v[0]
+  /// Loads the three coordinates of vertex v[0] into p.
   static HWY_INLINE void gather(const Real* positions, const Index* v, Value (&p)[3]) {
     MESHORDER_UNROLL
     for (int c = 0; c < 3; ++c) p[c] = positions[Offset{kPaddedStride} * v[0] + c];
@@ -68,7 +68,7 @@ struct OneLaneOf {
     for (int c = 0; c < 3; ++c) forces[Offset{kPaddedStride} * v[0] + c] += f[c];
   }
 
-  /// See RowLanes.
+  /// The members below are those of RowLanes.
   static constexpr Index kRegisters = 3;
   static HWY_INLINE void difference(const Real* positions, Index from, Index to, Value (&row)[kRegisters]) {
     MESHORDER_UNROLL
@@ -93,7 +93,7 @@ using OneLane = OneLaneOf<double>;
 using ManyLanes = OneLane;
 using RowLanes = OneLane;
 #else
-/// The arithmetic of as many numbers as a register holds, up to a maximum.
+/// Arithmetic on as many numbers at a time as a register holds, at most `Most`.
 template <class Real, Index Most>
 struct LaneArithmetic {
   using Number = Real;
@@ -138,7 +138,7 @@ struct LaneArithmetic {
     hn::Store(hn::Add(hn::Load(d, place), value), d, place);
   }
 
-  /// The padded coordinates of v[0], v[4] … side by side.
+  /// Loads the padded coordinates of v[0], v[4] … side by side.
   template <class D>
   static HWY_INLINE hn::Vec<D> load_fourth(D d, const Real* positions, const Index* v) {
     if constexpr (MaxLanes(D()) <= kPaddedStride) {
@@ -162,7 +162,7 @@ struct LaneArithmetic {
   }
 };
 
-/// As many simplices at a time as a register holds, at most a batch.
+/// Lanes for as many simplices as a register holds doubles, at most a batch.
 struct ManyLanes : LaneArithmetic<double, kBatch> {
   static HWY_INLINE void store_transposed(const Value* rows, double* to, Offset stride) {
     const Tag d;
@@ -182,8 +182,8 @@ struct ManyLanes : LaneArithmetic<double, kBatch> {
     }
   }
 
-  /// p = the coordinates of the vertices v[0] … v[kCount − 1], by loads and a transposition: gather
-  /// instructions are slower wherever measured.
+  /// Loads the coordinates of the vertices v[0] … v[kCount − 1] into p, by loads and a transposition: gather
+  /// instructions were slower on all machines measured.
   static HWY_INLINE void gather(const double* positions, const Index* v, Value (&p)[3]) {
     const Tag d;
     if constexpr (kCount == 2) {
@@ -209,7 +209,7 @@ struct ManyLanes : LaneArithmetic<double, kBatch> {
     }
   }
 
-  /// The way back. A vertex may occur several times among v[0] … v[kCount − 1].
+  /// Adds f to the forces of v[0] … v[kCount − 1], among which a vertex may occur several times.
   static HWY_INLINE void scatter_add(const Value (&f)[3], const Index* v, double* forces) {
     const Tag d;
     const Value xy_even = hn::InterleaveLower(d, f[0], f[1]);
@@ -230,7 +230,7 @@ struct ManyLanes : LaneArithmetic<double, kBatch> {
   }
 
  private:
-  /// The same with blocks of two doubles in place of doubles.
+  /// As store_transposed, with blocks of two doubles in place of doubles.
   static HWY_INLINE void store_blocks_transposed(const Value* rows, double* to, Offset stride) {
     const Tag d;
     const Value even01 = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(rows[1]), rows[0]);
@@ -249,13 +249,13 @@ struct ManyLanes : LaneArithmetic<double, kBatch> {
   }
 };
 
-/// Vectors of single vertices, each in one register of x, y, z and the padding, or in two, and numbers of
-/// kCount of them at a time: for kernels that need no more of the vectors than lengths, which spares the
-/// transpositions of ManyLanes.
+/// Lanes for kernels that need only the lengths of vectors, without the transpositions of ManyLanes. A
+/// vertex's vector (x, y, z and the padding) is in one register or in two; a Value holds one number for each
+/// of kCount vectors.
 struct RowLanes : LaneArithmetic<double, kPaddedStride> {
-  static constexpr Index kRegisters = kPaddedStride / kCount;  ///< of a vector
+  static constexpr Index kRegisters = kPaddedStride / kCount;  ///< registers per vector
 
-  /// row = x_to − x_from
+  /// Sets row to x_to − x_from.
   static HWY_INLINE void difference(const double* positions, Index from, Index to, Value (&row)[kRegisters]) {
     const Tag d;
     MESHORDER_UNROLL
@@ -265,7 +265,7 @@ struct RowLanes : LaneArithmetic<double, kPaddedStride> {
 
   static HWY_INLINE Value squared_lengths(const Value (&rows)[kCount][kRegisters]) {
     const Tag d;
-    Value squares[kCount];  // lane k: the squares of x and z, or of y and the padding, or of one of these
+    Value squares[kCount];  // kRegisters = 1: x², y², z² and the padding's; 2: x² + z², y² + the padding's
     MESHORDER_UNROLL
     for (Index i = 0; i < kCount; ++i) {
       squares[i] = rows[i][0] * rows[i][0];
@@ -282,13 +282,13 @@ struct RowLanes : LaneArithmetic<double, kPaddedStride> {
     }
   }
 
-  /// The force on vertex v += row
+  /// Adds row to the force on vertex v.
   static HWY_INLINE void add(const Value (&row)[kRegisters], double* forces, Index v) {
     MESHORDER_UNROLL
     for (Index r = 0; r < kRegisters; ++r) add_to(Tag(), row[r], at(forces, v) + r * kCount);
   }
 
-  /// The force on vertex v −= row
+  /// Subtracts row from the force on vertex v.
   static HWY_INLINE void subtract(const Value (&row)[kRegisters], double* forces, Index v) {
     const Tag d;
     MESHORDER_UNROLL

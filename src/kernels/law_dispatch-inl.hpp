@@ -1,15 +1,15 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // The kernels of one elastic law for all instruction sets. A law's .cpp file includes this at its end, once
-// for each instruction set, after it has defined MESHORDER_LAW_KERNELS, the function of pass.hpp that returns
-// them, and in meshorder::HWY_NAMESPACE a struct LawOfFile with
+// for each instruction set. Before that it defines MESHORDER_LAW_KERNELS, the function of pass.hpp that
+// returns these kernels, and in meshorder::HWY_NAMESPACE a struct LawOfFile with
 //   Law<D, Lanes>, ExactTangent<D, Lanes>, ApproximateTangent<D, Lanes>: see add_batch;
-//   kVolumesOnly: whether the law has no forces for triangles and segments.
-// A law without an approximation names its exact tangent twice.
+//   kVolumesOnly: whether the law supports only tetrahedra.
+// A law without an approximate tangent sets ApproximateTangent to its exact one.
 #include "kernels/batches-inl.hpp"
 #include "kernels/projected-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-// NOLINTBEGIN(misc-definitions-in-headers): each source that includes this is one law's own
+// NOLINTBEGIN(misc-definitions-in-headers): each source that includes this defines one law
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 

@@ -12,9 +12,9 @@ namespace meshorder {
 enum class MaterialModel : std::uint8_t {
   corotational,  ///< μ‖F − R‖² + ½λ tr²(RᵀF − I), R the rotation closest to F (Müller, Gross 2004)
   stvk,          ///< Saint Venant–Kirchhoff: μ E:E + ½λ tr(E)², E = ½(FᵀF − I)
-  /// Stable Neo-Hookean (Smith, De Goes, Kim 2018) with its logarithm, which lets a collapsed element rise
-  /// again, and without its energy at rest: ½μ'(‖F‖² − 3) + ½λ'(det F − α)² − ½μ' log(‖F‖² + 1),
-  /// α = 1 + ¾ μ'/λ'. μ' = 4/3 μ and λ' = λ + 5/6 μ make it Hooke's law of Lamé's μ and λ at rest.
+  /// Stable Neo-Hookean (Smith, De Goes, Kim 2018): ½μ'(‖F‖² − 3) + ½λ'(det F − α)² − ½μ' log(‖F‖² + 1) minus
+  /// its value at rest, α = 1 + ¾ μ'/λ'. The logarithm keeps a collapsed element from resting at F = 0.
+  /// μ' = 4/3 μ and λ' = λ + 5/6 μ make it Hooke's law with Lamé's μ and λ near rest.
   neo_hookean,
 };
 
@@ -29,7 +29,7 @@ struct EnumNames<MaterialModel> {
 /// The matrix used as the Hessian of the energy.
 enum class Tangent : std::uint8_t {
   exact,        ///< the Hessian; indefinite under compression
-  approximate,  ///< corotational alone: R held, so that it is semi-definite (Müller, Gross 2004)
+  approximate,  ///< corotational only: R held constant; semi-definite (Müller, Gross 2004)
   projected,    ///< the semi-definite part of ∂²Ψ/∂F², simplex by simplex; tetrahedra only
 };
 
@@ -56,8 +56,8 @@ struct Lame {
 struct Elasticity {
   MaterialModel model = MaterialModel::corotational;
   Tangent tangent = Tangent::exact;
-  Lame lame;  ///< of all simplices, where the two below are empty
-  /// Where parameters differ: those of simplex s at [s], filled up to whole batches (see RestShapes).
+  Lame lame;  ///< of all simplices, if the two below are empty
+  /// If parameters differ: those of simplex s at [s], padded to whole batches (see RestShapes).
   AlignedVector<double> mu, lambda;
 };
 

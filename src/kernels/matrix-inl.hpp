@@ -9,14 +9,14 @@
 
 #include "kernels/lanes-inl.hpp"
 
-/// For a lambda in a kernel: compiled for the kernel's instruction set, and into it.
+/// Attributes for a lambda in a kernel: compiled for the kernel's instruction set, and always inlined.
 #undef MESHORDER_INLINE_LAMBDA
 #define MESHORDER_INLINE_LAMBDA __attribute__((always_inline)) HWY_ATTR
 
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// cof F, the transpose of F⁻¹ det F.
+/// Computes cof F, the transpose of F⁻¹ det F.
 template <class Lanes>
 HWY_INLINE void cofactors(const typename Lanes::Value (&f)[3][3], typename Lanes::Value (&cof)[3][3]) {
   MESHORDER_UNROLL
@@ -29,7 +29,7 @@ HWY_INLINE void cofactors(const typename Lanes::Value (&f)[3][3], typename Lanes
   }
 }
 
-/// A 3×3 block by rows: k[3i + j] = entry(i, j). Of a symmetric one what is below the diagonal is copied.
+/// Fills a 3×3 block: k[3i + j] = entry(i, j). If `symmetric`, the lower triangle is copied from the upper.
 template <class Value, class Entry>
 HWY_INLINE void fill_block(bool symmetric, Value (&k)[9], Entry entry) {
   MESHORDER_UNROLL
@@ -39,7 +39,7 @@ HWY_INLINE void fill_block(bool symmetric, Value (&k)[9], Entry entry) {
   }
 }
 
-/// A : B, the sum over all entries.
+/// Returns A : B = Σ aᵢⱼ bᵢⱼ.
 template <class Lanes, int D>
 HWY_INLINE typename Lanes::Value contract(const typename Lanes::Value (&a)[3][D],
                                           const typename Lanes::Value (&b)[3][D]) {

@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Stable Neo-Hookean with its logarithm, which alone keeps a collapsed element from resting at F = 0:
-/// Ψ = ½μ' (‖F‖² − 3) + ½λ' (det F − α)² − ½μ' log(‖F‖² + 1), α = 1 + ¾ μ'/λ', less its value at rest.
+/// Stable Neo-Hookean: Ψ = ½μ' (‖F‖² − 3) + ½λ' (det F − α)² − ½μ' log(‖F‖² + 1) minus its value at rest,
+/// α = 1 + ¾ μ'/λ'. Without the logarithm a collapsed element would rest at F = 0.
 /// μ' = 4/3 μ and λ' = λ + 5/6 μ make it Hooke's law with Lamé's μ and λ near rest.
 template <class Lanes>
 struct NeoHookean {
@@ -25,8 +25,8 @@ struct NeoHookean {
   Value cof[3][3];       ///< ∂ det F / ∂F
   Value norm;            ///< ‖F‖² + 1
   Value determinant;     ///< det F
-  Value of_deformation;  ///< of F in P: μ' (1 − 1 / (‖F‖² + 1))
-  Value of_cofactors;    ///< of cof F in P: λ' (det F − α)
+  Value of_deformation;  ///< coefficient of F in P: μ' (1 − 1 / (‖F‖² + 1))
+  Value of_cofactors;    ///< coefficient of cof F in P: λ' (det F − α)
 
   HWY_INLINE void load(const Deformation<3, Lanes>& deformation, const LameLanes<Lanes>& lame) {
     const Value one = Lanes::set(1.0);
@@ -62,7 +62,7 @@ struct NeoHookean {
     return Lanes::set(0.5) * (of_volume + of_length);
   }
 
-  /// ψᵢ = μ' (1 − 1/n) σᵢ + c σⱼ σₖ.
+  /// Sets the Hessian in principal stretches; the energy's derivatives are ψᵢ = μ' (1 − 1/n) σᵢ + c σⱼ σₖ.
   HWY_INLINE void principal(const Value (&sigma)[3], const LameLanes<Lanes>& /*lame*/,
                             PrincipalHessian<Lanes>& hessian) const {
     const Value of_lengths = (mu + mu) / (norm * norm);
@@ -87,7 +87,7 @@ struct NeoHookean {
   }
 };
 
-/// The Hessian. With p_a = F g_a, q_a = cof(F) g_a and c the factor of cof F in P,
+/// The exact tangent. With p_a = F g_a, q_a = cof(F) g_a and c the coefficient of cof F in P,
 /// K_ab = V (μ' (1 − 1/n) (g_a·g_b) I + 2μ'/n² p_a p_bᵀ + λ' q_a q_bᵀ − c [F (g_a × g_b)]×), n = ‖F‖² + 1.
 template <class Lanes>
 struct NeoHookeanTangent {
@@ -116,7 +116,7 @@ struct NeoHookeanTangent {
       MESHORDER_UNROLL
       for (int b = a; b < 3; ++b) material[a][b] = of_identity * deformation.gradients(a, b);
     }
-    // the gradients are the rows of an upper triangular matrix
+    // the gradients are the rows of an upper triangular matrix, so some components are 0
     const auto& g = deformation.g;
     const Value of_turn = weight * law.of_cofactors;
     const Value zero = Lanes::set(0.0);
@@ -142,7 +142,7 @@ struct NeoHookeanTangent {
       return i == j ? sum + material[a][b] : sum;
     });
     if (a == b) return;
-    // −[w]× has w₂ in row 0, column 1, and so on around
+    // −[w]× has w₂ in row 0, column 1; the other entries follow by cyclic permutation
     MESHORDER_UNROLL
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/neo_hookean.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// the rest of this file is compiled once for each instruction set
 #include "kernels/neo_hookean-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -10,7 +10,7 @@
 namespace meshorder {
 namespace {
 
-/// The first spare vertex of a share: on cache lines of its own, as far as 32 bytes a vertex go.
+/// Returns the first spare vertex of a share. With 32 bytes per vertex it begins a cache line.
 Index first_spare(Index n, Index part) { return n + n % 2 + kBatch * part; }
 
 void append(OwnedBatches& share, Index batch, std::span<const Index> vertices, Index spare) {
@@ -22,7 +22,7 @@ void append(OwnedBatches& share, Index batch, std::span<const Index> vertices, I
   }
   share.boundary.push_back(static_cast<Index>(share.targets.size() / vertices.size()));
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    // a spare vertex for each lane, so that the sums of lanes do not depend on each other
+    // a spare vertex for each lane, so that additions of different lanes need not wait for each other
     const Index spare_of_lane = spare + static_cast<Index>(i % kBatch);
     share.targets.push_back(owned(vertices[i]) ? vertices[i] : spare_of_lane);
   }

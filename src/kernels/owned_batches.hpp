@@ -11,18 +11,18 @@ namespace meshorder {
 
 /// One thread's share of a kernel that adds to the vertices of elements or springs: a range of vertices that
 /// it owns, and all batches that touch one of them. Contributions to vertices that other threads own go to
-/// spare vertices after the mesh's, which are never read; the owners compute these batches as well. So no
-/// two threads write to the same address, without atomics or colouring, and every sum has the terms of the
-/// serial kernel in the same order: the same bits for any number of threads. In a good order few batches are
-/// computed twice.
+/// spare vertices after the mesh's; their results are not used, as the owners compute these batches as well.
+/// So no two threads write to the same address, without atomics or colouring. Every sum has the terms of the
+/// serial kernel in the same sequence, so the bits are the same for any number of threads. In a good order
+/// few batches are computed twice.
 struct OwnedBatches {
   Index begin = 0;  ///< the vertices begin … end − 1 are owned
   Index end = 0;
   Index room = 0;              ///< vertices that the vector of forces must hold, including spare ones
   std::vector<Index> batches;  ///< ascending
   std::vector<Index>
-      boundary;  ///< for each batch: −1 if all its vertices are owned, else its position in `targets`
-  /// For each boundary batch its entries of `vertices`, with spare vertices in place of those not owned.
+      boundary;  ///< for each batch: −1 if all its vertices are owned, else its number among boundary batches
+  /// The vertices of each boundary batch, with spare vertices in place of those not owned.
   AlignedVector<Index> targets;
 
   /// Returns the vertices that batch `i` of `batches`, whose corners are `vertices`, adds to.
@@ -35,14 +35,14 @@ struct OwnedBatches {
 /// `offsets` are those of compressed rows. O(parts · log rows).
 std::vector<Index> balanced_ranges(std::span<const Offset> offsets, Index parts);
 
-/// Puts the ranges of `bounds` that vertices are in into `owners`, each once, ascending. O(vertices · log
-/// parts).
+/// Sets `owners` to the numbers of the ranges of `bounds` that contain the vertices, each once, ascending.
+/// O(vertices · log parts).
 void owners_of(std::span<const Index> vertices, std::span<const Index> bounds, std::vector<Index>& owners);
 
-/// Returns one share for each range of `bounds` (see balanced_ranges), the last bound being the number of
-/// vertices, of the batches of `corners` · kBatch vertices each: RestShapes::vertices with D + 1 corners,
-/// Springs::ends with 2. Each share has its own spare vertices after those of the mesh. O(entries · log
-/// parts).
+/// Returns one share for each range of `bounds` (see balanced_ranges); the last bound is the number of
+/// vertices. `vertices` has batches of `corners` · kBatch vertices each: RestShapes::vertices with D + 1
+/// corners, or Springs::ends with 2. Each share has its own spare vertices after those of the mesh.
+/// O(entries · log parts).
 std::vector<OwnedBatches> owned_batches(std::span<const Index> vertices, Index corners,
                                         std::span<const Index> bounds);
 

@@ -11,8 +11,8 @@ namespace meshorder {
 struct ElasticPass {
   const RestShapes& rest;
   Tangent tangent = Tangent::exact;
-  /// Lamé's parameters of batch b from mu[lame_stride · b] on: of each simplex, or (stride 0) one batch of
-  /// equal values for all, so that kernels need no branch.
+  /// Lamé's parameters of batch b begin at mu[lame_stride · b]. If all simplices have the same, the stride is
+  /// 0 and all batches read one batch of equal values, so that kernels need no branch.
   const double* mu = nullptr;
   const double* lambda = nullptr;
   Offset lame_stride = 0;
@@ -20,9 +20,9 @@ struct ElasticPass {
   double* forces = nullptr;  ///< null if only the stiffness is wanted
   /// The values of the matrix; null if only forces are wanted.
   double* values = nullptr;
-  double scale = 1.0;             ///< of the stiffness
-  const Index* blocks = nullptr;  ///< of AssemblyMap
-  /// One share of the batches, with OwnedBlocks::blocks; null for all batches.
+  double scale = 1.0;             ///< multiplies the stiffness
+  const Index* blocks = nullptr;  ///< AssemblyMap::blocks
+  /// One share of the batches, with OwnedBlocks::blocks in `boundary_blocks`; null for all batches.
   const OwnedBatches* share = nullptr;
   const Index* boundary_blocks = nullptr;
 };
@@ -31,7 +31,7 @@ struct ElasticPass {
 struct ElasticKernels {
   void (*add)(const ElasticPass& pass);
   void (*add_one_by_one)(const ElasticPass& pass);
-  /// Of the batches begin … end − 1.
+  /// Returns the energy of the batches begin … end − 1.
   double (*energy)(const ElasticPass& pass, Index begin, Index end);
 };
 

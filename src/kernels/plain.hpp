@@ -8,16 +8,16 @@
 #include <cstddef>
 #include <span>
 
-// Kernels as programs write them that know nothing of each other's caches: one loop, no prefetching, no
-// blocking, no threads. What an order of a mesh is worth in them, it is worth to most users. The other
-// kernels in this folder are tuned, and run alike in all good orders.
+// Kernels as ordinary programs write them: one loop, no prefetching, no blocking, no threads. Their times
+// show what an order of a mesh is worth to most users. The other kernels in this folder are tuned, and run
+// about equally fast in all good orders.
 //
-// Vectors of positions and forces have x, y, z of one vertex side by side. Results are added to what is
-// there.
+// Arrays of positions and forces hold x, y, z of each vertex side by side. Forces, matrix entries, residuals
+// and messages are added to the values in the output array.
 namespace meshorder::plain {
 
-/// The vertices that a thread adds to: all of them, or a range. Threads share a loop over elements or edges
-/// by each computing those that touch a vertex of its range, and adding to these vertices alone.
+/// The vertices that a thread adds to: all of them, or a range. When threads share a loop over elements or
+/// edges, each computes those that touch a vertex of its range, and adds only to vertices of its range.
 struct AllVertices {
   [[nodiscard]] static constexpr bool has(Index /*v*/) { return true; }
 };
@@ -32,11 +32,11 @@ struct VertexRange {
 template <class Number, class Column, class Start = Column>
 struct Matrix {
   std::span<const Start> starts;    ///< rows + 1
-  std::span<const Column> columns;  ///< rising in each row
+  std::span<const Column> columns;  ///< ascending in each row
   std::span<Number> values;
 };
 
-/// y = A x.
+/// Computes y = A x.
 template <class Number, class Column, class Start>
 void multiply(const Matrix<Number, Column, Start>& a, std::span<const Number> x, std::span<Number> y) {
   for (std::size_t row = 0; row < y.size(); ++row) {
@@ -46,7 +46,7 @@ void multiply(const Matrix<Number, Column, Start>& a, std::span<const Number> x,
   }
 }
 
-/// y = A x with blocks of 3 × 3, row by row.
+/// Computes y = A x for a matrix of 3×3 blocks, each stored row by row.
 template <class Column>
 void multiply_blocks(const Matrix<double, Column>& a, std::span<const double> x, std::span<double> y) {
   for (std::size_t row = 0; row + 1 < a.starts.size(); ++row) {
@@ -61,7 +61,7 @@ void multiply_blocks(const Matrix<double, Column>& a, std::span<const double> x,
   }
 }
 
-/// A sweep of Gauss and Seidel for A x = b. The diagonal is not 0.
+/// Makes one Gauss–Seidel sweep for A x = b. The diagonal must not be 0.
 template <class Number, class Column>
 void relax(const Matrix<Number, Column>& a, std::span<const Number> b, std::span<Number> x) {
   for (std::size_t row = 0; row < x.size(); ++row) {
@@ -78,7 +78,7 @@ void relax(const Matrix<Number, Column>& a, std::span<const Number> b, std::span
   }
 }
 
-/// Forces of springs of stiffness 1: `ends` has two vertices for each of `lengths`.
+/// Adds the forces of springs of stiffness 1: `ends` has two vertices for each of `lengths`.
 template <class Number, class Owned = AllVertices>
 void springs(std::span<const Index> ends, std::span<const Number> lengths, std::span<const Number> positions,
              std::span<Number> forces, const Owned& owned = {}) {
@@ -98,8 +98,8 @@ void springs(std::span<const Index> ends, std::span<const Number> lengths, std::
   }
 }
 
-/// The volume of a tetrahedron (negative if its corners turn the other way), area of a triangle or length of
-/// a line, and its derivative by the position of each corner: the volume times the gradient of that corner's
+/// The volume of a tetrahedron (negative if it is inverted), the area of a triangle or the length of a line,
+/// and its derivative by the position of each corner, which is the volume times the gradient of that corner's
 /// barycentric coordinate.
 template <int Corners>
 struct Gradients {
@@ -146,8 +146,8 @@ Gradients<Corners> gradients(const Index* simplex, std::span<const double> posit
   return g;
 }
 
-/// Forces of a pressure of 1 in tetrahedra, a tension of 1 in triangles or lines, which would rather be
-/// larger: element by element, each of Corners vertices.
+/// Adds the forces of a pressure of 1 that expands the elements (tetrahedra, triangles or lines, by Corners):
+/// the derivative of the volume, area or length, element by element.
 template <int Corners, class Owned = AllVertices>
 void press(std::span<const Index> simplices, std::span<const double> positions, std::span<double> forces,
            const Owned& owned = {}) {
@@ -161,7 +161,7 @@ void press(std::span<const Index> simplices, std::span<const double> positions, 
   }
 }
 
-/// Linear elements for the Laplacian, entries found by a search along their row.
+/// Assembles linear finite elements for the Laplacian; finds each entry by a linear search in its row.
 template <int Corners, class Column, class Start, class Owned = AllVertices>
 void assemble(std::span<const Index> simplices, std::span<const double> positions,
               const Matrix<double, Column, Start>& a, const Owned& owned = {}) {
@@ -182,8 +182,8 @@ void assemble(std::span<const Index> simplices, std::span<const double> position
   }
 }
 
-/// Central fluxes of 5 unknowns over the faces between vertices, one for each edge, as vertex-centred finite
-/// volumes have them.
+/// Adds central fluxes of 5 unknowns over the faces between vertices, one face for each edge, as in
+/// vertex-centred finite volume codes.
 inline void exchange(std::span<const Index> ends, std::span<const double> areas,
                      std::span<const double> state, std::span<double> residual) {
   constexpr int kUnknowns = 5;
@@ -198,7 +198,7 @@ inline void exchange(std::span<const Index> ends, std::span<const double> areas,
   }
 }
 
-/// Sums the features of all neighbours, `width` floats a vertex, as networks on graphs do.
+/// Adds up the features of all neighbours, `width` floats per vertex, as graph neural networks do.
 template <class Column>
 void gather_messages(const Matrix<float, Column>& graph, int width, std::span<const float> in,
                      std::span<float> out) {

@@ -11,8 +11,8 @@
 
 namespace meshorder {
 
-/// Doubles from one vertex to the next in the positions and forces of the element and spring kernels: x, y, z
-/// and one that stays 0, so that a vertex never straddles a cache line and is read by aligned vector loads.
+/// Numbers per vertex in the positions and forces of the element and spring kernels: x, y, z and one that
+/// stays 0, so that a vertex never straddles a cache line and aligned vector loads can read it.
 inline constexpr Index kPaddedStride = 4;
 
 /// Returns the points in that layout. O(n).
@@ -30,7 +30,7 @@ inline Point point_of(std::span<const double> positions, Index v) {
   return {x[0], x[1], x[2]};
 }
 
-/// Returns the unit normal of a triangle of moved vertices; none if it has no area.
+/// Returns the unit normal of a triangle at these positions; none if it has no area or is not finite.
 inline std::optional<Point> triangle_normal(std::span<const double> positions, Index a, Index b, Index c) {
   const Point origin = point_of(positions, a);
   const Point normal = cross(minus(point_of(positions, b), origin), minus(point_of(positions, c), origin));

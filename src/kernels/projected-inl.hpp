@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// The Hessian of an isotropic law in its principal axes, as functions of the signed singular values σ. Pair
-/// k is that of the two axes other than k.
+/// The Hessian of an isotropic law in its principal axes, at the signed singular values σ. Index k of `twist`
+/// and `flip` means the pair (i, j) of the two axes other than k.
 template <class Lanes>
 struct PrincipalHessian {
   using Value = typename Lanes::Value;
@@ -24,18 +24,18 @@ struct PrincipalHessian {
   Value flip[3];        ///< (ψᵢ − ψⱼ) / (σᵢ − σⱼ)
 };
 
-/// The Hessian's positive semi-definite part, by its eigenvectors in closed form (Smith, De Goes, Kim 2019):
-/// with F = U Σ Vᵀ those are, turned by U and V, three symmetric matrices of two equal entries (flips), three
-/// antisymmetric ones (twists), and the diagonal ones of the 3×3 matrix of second derivatives. Negative
-/// eigenvalues become 0. `Law` gives principal(σ, hessian).
+/// The positive semi-definite part of the Hessian, by its eigenvectors in closed form (Smith, De Goes, Kim
+/// 2019). With F = U Σ Vᵀ these are, rotated by U and V: three symmetric matrices with two equal entries
+/// (flips), three antisymmetric ones (twists), and three diagonal ones, the eigenvectors of ∂²Ψ/∂σᵢ∂σⱼ.
+/// Negative eigenvalues become 0. `Law` has principal(σ, lame, hessian).
 template <class Lanes, class Law>
 struct ProjectedTangent {
   using Value = typename Lanes::Value;
   Value u[3][3];        ///< U
   Value h[3][3];        ///< h_a = Vᵀ g_a of the corners 1, 2, 3
-  Value stretch[3][3];  ///< weighted, all of it
-  Value alike[3];       ///< ½ (flip + twist), weighted: of an entry of δF in principal axes on itself …
-  Value across[3];      ///< ½ (flip − twist): … and on its transpose
+  Value stretch[3][3];  ///< weighted; both triangles
+  Value alike[3];       ///< ½ (flip + twist), weighted: couples an entry of δF in principal axes to itself
+  Value across[3];      ///< ½ (flip − twist), weighted: couples it to the transposed entry
 
   HWY_INLINE void load(const Deformation<3, Lanes>& deformation, const Law& law, const LameLanes<Lanes>& lame,
                        Value weight) {
@@ -85,7 +85,7 @@ struct ProjectedTangent {
   }
 
  private:
-  /// F = U Σ Vᵀ from F = R S and S = V Σ Vᵀ: no singular value but perhaps the smallest is negative.
+  /// Computes F = U Σ Vᵀ from F = R S and S = V Σ Vᵀ. Only the smallest singular value may be negative.
   HWY_INLINE void principal_axes(const Deformation<3, Lanes>& deformation, Value (&sigma)[3]) {
     const auto& f = deformation.f;
     Value r[3][3];

@@ -18,7 +18,7 @@ namespace {
   throw InvalidArgument(fmt::format("material{}: {} is {}; {}", whose, what, value, remedy));
 }
 
-/// `whose` is empty or " of region 'steel'".
+/// Throws InvalidArgument for numbers out of range. `whose` is empty or " of region 'steel'".
 void check(const Material& material, const std::string& whose) {
   if (!(material.young > 0.0) || !std::isfinite(material.young)) {
     refuse(whose, "Young's modulus", material.young, "it must be positive, in Pa");
@@ -35,14 +35,14 @@ std::string name_of(const Grouping& grouping, std::size_t group) {
   return grouping.names.empty() ? std::to_string(grouping.values[group]) : grouping.names[group];
 }
 
-/// Whether any simplex is in the group, for every group.
+/// Returns for every group whether it has a simplex.
 std::vector<bool> groups_with_simplices(const Simplices& simplices, const Grouping& grouping) {
   std::vector<bool> has(static_cast<std::size_t>(grouping.count()), false);
   for (const Index cell : simplices.cells) has[grouping.of_cells[cell]] = true;
   return has;
 }
 
-/// The group of that name, and of that value where there are no names; none without simplices.
+/// Returns the group with simplices that has that name or, if groups have no names, that value.
 std::optional<std::size_t> find_group(const Grouping& grouping, const std::vector<bool>& has,
                                       const std::string& region) {
   for (std::size_t group = 0; group < grouping.values.size(); ++group) {
@@ -52,7 +52,7 @@ std::optional<std::size_t> find_group(const Grouping& grouping, const std::vecto
 }
 
 std::string list_of_regions(const Grouping& grouping, const std::vector<bool>& has) {
-  // enough to recognise a misspelt name
+  // enough names to recognise a misspelt one
   constexpr int kListed = 20;
   std::string list;
   int listed = 0;
@@ -81,7 +81,7 @@ void check(const Simplices& simplices, const Grouping& grouping) {
   }
 }
 
-/// The material of each group, the last one being that of cells in none.
+/// Returns the material of each group; the last group has the cells in no group.
 std::vector<Material> materials_of_groups(const Grouping& grouping, const std::vector<bool>& has,
                                           const Material& elsewhere,
                                           const std::vector<RegionMaterial>& regions) {

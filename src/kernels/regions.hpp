@@ -17,7 +17,7 @@ struct Material {
   double density = 1000.0;  ///< ρ > 0, kg/m³
 };
 
-/// The material of one region: of the set of cells of that name, or of the cells of that value ("7").
+/// The material of one region: the set of cells with that name, or the cells with that value ("7").
 struct RegionMaterial {
   std::string region;
   Material material;
@@ -26,17 +26,17 @@ struct RegionMaterial {
 /// The materials of all simplices, in the form that Elasticity takes.
 struct SimplexMaterials {
   Lame lame;                         ///< of all simplices, if the two below are empty
-  AlignedVector<double> mu, lambda;  ///< of each, filled up to whole batches
-  std::vector<double> densities;     ///< one, or one for each simplex
+  AlignedVector<double> mu, lambda;  ///< of each simplex, padded to whole batches
+  std::vector<double> densities;     ///< one for all simplices, or one for each
 };
 
 /// Returns one material for all simplices. Throws InvalidArgument, which states the valid range, for numbers
 /// that are out of range or not finite.
 SimplexMaterials uniform_material(const Material& material);
 
-/// The materials of simplices whose cells are grouped: those of `regions` for their cells, `elsewhere` for
-/// all others. Throws InvalidArgument for numbers out of range, for a grouping of vertices or of another
-/// mesh, for a region given twice and for one without simplices; the message lists the regions that have
+/// Returns the materials of simplices whose cells are grouped: those of `regions` in their cells, `elsewhere`
+/// in all others. Throws InvalidArgument for numbers out of range, for a grouping of vertices or of another
+/// mesh, for a region given twice and for one without simplices; that message lists the regions that have
 /// simplices. O(simplices + regions · groups).
 SimplexMaterials materials_by_region(const Simplices& simplices, const Grouping& grouping,
                                      const Material& elsewhere, const std::vector<RegionMaterial>& regions);

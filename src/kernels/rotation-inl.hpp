@@ -15,8 +15,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// The rotations closest to any matrices. As unit quaternions q they maximise qᵀN q of a symmetric 4×4 matrix
-/// N that is linear in F (Davenport; Horn 1987), so that an eigenvector of its largest eigenvalue answers.
+/// Computes the rotations closest to any matrices. As unit quaternions q they maximise qᵀN q, where N is a
+/// symmetric 4×4 matrix linear in F (Davenport; Horn 1987): q is an eigenvector of its largest eigenvalue.
 template <class Lanes>
 HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3],
                                            typename Lanes::Value (&r)[3][3]) {
@@ -24,7 +24,7 @@ HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3
   constexpr double kSmallest = std::is_same_v<typename Lanes::Number, float> ? 1e-36 : 1e-290;
   const Value zero = Lanes::set(0.0);
   const Value one = Lanes::set(1.0);
-  // at most 1 in size, so that no square overflows or vanishes: R does not see the scale
+  // scale entries to at most 1 in size, so that squares do not overflow; R does not depend on the scale
   Value largest = Lanes::abs(f[0][0]);
   Value not_finite = zero * f[0][0];  // NaN where an entry is infinite or NaN, else 0
   MESHORDER_UNROLL
@@ -52,7 +52,7 @@ HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3
   Value values[4];
   Value vectors[4][4];
   symmetric_eigen<4, Lanes>(n, values, vectors);
-  // of equal ones the first: the identity for F = 0
+  // of equal eigenvalues the first counts: the identity for F = 0
   Value greatest = values[0];
   Value q[4] = {vectors[0][0], vectors[1][0], vectors[2][0], vectors[3][0]};
   MESHORDER_UNROLL
@@ -63,7 +63,7 @@ HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3
     for (int k = 0; k < 4; ++k) q[k] = Lanes::choose(above, vectors[k][v], q[k]);
   }
 
-  // 2 / ‖q‖² where a rotation's matrix has 2
+  // q may not have length 1, so use 2 / ‖q‖² in place of 2
   Value norm = q[0] * q[0];
   MESHORDER_UNROLL
   for (int k = 1; k < 4; ++k) norm = Lanes::mul_add(q[k], q[k], norm);
@@ -80,33 +80,33 @@ HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3
   }
 }
 
-/// Intermediate results of the formula below.
+/// Intermediate results of rotations_by_formula.
 template <class Lanes>
 struct RotationTerms {
   typename Lanes::Value cof[3][3];    ///< cof F
   typename Lanes::Value squares;      ///< ‖F‖²
   typename Lanes::Value determinant;  ///< det F
-  typename Lanes::Value trace;        ///< of RᵀF: the sum of the signed singular values
+  typename Lanes::Value trace;        ///< tr RᵀF: the sum of the signed singular values
 };
 
 /// Computes the closest rotations by a formula, for matrices whose closest rotation is well separated from
 /// others. Returns false, with unusable results, if one matrix is not.
 ///
 /// The largest eigenvalue of N is λ = tr S, the largest root of λ⁴ − 2aλ² − 8dλ + a² − 4b with a = ‖F‖²,
-/// b = ‖cof F‖² and d = det F. Halley's method falls to it from √3 ‖F‖ without passing it, since all roots
-/// are real. R = ∂λ/∂F then follows from the root's dependence on the coefficients:
-/// R = ((λ² + a) F + 2λ cof F − 2 F FᵀF) / (λ³ − aλ − 2d), whose denominator is 2 Π (σᵢ + σⱼ).
+/// b = ‖cof F‖² and d = det F. Halley's method decreases to it from √3 ‖F‖ without overshooting, since all
+/// roots are real. R = ∂λ/∂F then follows by differentiating the polynomial:
+/// R = ((λ² + a) F + 2λ cof F − 2 F FᵀF) / (λ³ − aλ − 2d), whose denominator is Π (σᵢ + σⱼ), i < j.
 template <class Lanes>
 HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3], typename Lanes::Value (&r)[3][3],
                                      RotationTerms<Lanes>& terms) {
   using Value = typename Lanes::Value;
   constexpr bool kFloat = std::is_same_v<typename Lanes::Number, float>;
   constexpr int kSteps = 10;
-  // an error of that size before a step is one of rounding after it
+  // convergence is cubic: a relative error of that size before a step is rounding after it
   constexpr double kNear = kFloat ? 1e-3 : 1e-6;
   // rounding errors grow by about the square of this ratio of λ³ to the denominator, 27/16 at rest
   constexpr double kLargestRatio = kFloat ? 6.0 : 12.0;
-  // no seventh power underflows
+  // no seventh power of the root underflows
   constexpr double kSmallest = kFloat ? 1e-4 : 1e-40;
   const auto& cof = terms.cof;
   cofactors<Lanes>(f, terms.cof);
@@ -122,7 +122,7 @@ HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3], typ
   const Value minus_eight_d = Lanes::set(-4.0) * two_d;
   Value root = Lanes::square_root(Lanes::set(3.0) * a);
   for (int step = 0;; ++step) {
-    // the polynomial, a quarter of its first derivative and an eighth of its second
+    // value of the polynomial, a quarter of its first derivative, an eighth of its second
     const Value square = root * root;
     const Value value = Lanes::mul_add(square - two_a, square, Lanes::mul_add(minus_eight_d, root, constant));
     const Value slope = Lanes::mul_add(root, square - a, zero - two_d);
@@ -169,12 +169,12 @@ HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3], typ
   return true;
 }
 
-/// The rotations closest to 3×3 matrices, which maximise R:F over det R = 1: see closest_rotation.
+/// Computes the rotations R closest to 3×3 matrices, which maximise R:F: see closest_rotation.
 template <class Lanes>
 HWY_INLINE void closest_rotations(const typename Lanes::Value (&f)[3][3], typename Lanes::Value (&r)[3][3]) {
   RotationTerms<Lanes> terms;
   if (rotations_by_formula<Lanes>(f, r, terms)) return;
-  // copies, so that the rest of the kernel may keep its own in registers
+  // copies, so that the compiler can keep the kernel's f and r in registers
   typename Lanes::Value from[3][3];
   typename Lanes::Value to[3][3];
   MESHORDER_UNROLL

@@ -11,9 +11,9 @@ namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-/// Dₘ in an orthonormal frame of the edges (Gram–Schmidt), right-handed in space: upper triangular, D×D. Its
-/// determinant is D! times the volume, for a tetrahedron with its sign. `longest` is the length of the
-/// longest edge.
+/// Returns Dₘ in an orthonormal frame of the edges (Gram–Schmidt; right-handed if D = 3): upper triangular,
+/// D×D. Its determinant is D! times the volume, which has a sign for a tetrahedron. Sets `longest` to the
+/// largest length of these edges.
 Matrix edges_in_their_frame(int dimension, std::array<Point, 3> edges, double& longest) {
   Matrix result{};
   longest = 0.0;
@@ -49,7 +49,7 @@ Matrix inverse_of_upper_triangular(int dimension, const Matrix& m) {
 }  // namespace
 
 RestShapes rest_shapes(const Simplices& simplices, std::span<const Point> points) {
-  // heights below this part of the longest edge are rounding errors
+  // heights below this fraction of the longest edge are rounding errors
   constexpr double kFlat = 1e-12;
   constexpr std::array<double, 4> kFactorial{1, 1, 2, 6};
   const int d = simplices.dimension;

@@ -9,31 +9,31 @@
 
 namespace meshorder {
 
-/// Simplices are computed eight at a time, the doubles of an AVX-512 register.
+/// Simplices per batch: as many as an AVX-512 register holds doubles.
 inline constexpr Index kBatch = 8;
 
 /// Rest data of simplices for the element kernels, in batches of kBatch: quantity q of simplex s is at
-/// `(quantities · (s / kBatch) + q) · kBatch + s % kBatch`. The last batch is filled up with copies of the
-/// last simplex that have no volume and so no force.
+/// `(quantities · (s / kBatch) + q) · kBatch + s % kBatch`. The last batch is padded with copies of the last
+/// simplex that have no volume and so no force.
 ///
-/// With X₀ … X_D the rest corners, Dₘ is the matrix of the columns X_a − X₀ in the simplex's own orthonormal
-/// frame, which Gram–Schmidt builds of them: upper triangular, and so is its inverse. An isotropic material
-/// does not depend on the frame, and a tetrahedron takes 56 bytes instead of 80. In space the frame is
-/// right-handed: of a tetrahedron whose corners turn the other way the last entry on the diagonal is
-/// negative, so that det F > 0 says for every tetrahedron that it is not turned inside out. A simplex that is
-/// flat to rounding gets the volume 0 and the inverse 0. Volumes are never negative.
+/// X₀ … X_D are the rest corners. Dₘ has the columns X_a − X₀ in the simplex's own orthonormal frame, built
+/// by Gram–Schmidt from these vectors; Dₘ and its inverse are upper triangular. Isotropic laws do not depend
+/// on the frame, so a tetrahedron takes 56 bytes instead of 80. The frame of a tetrahedron is right-handed.
+/// If its rest corners are in negative orientation, the last diagonal entry is negative, so that det F > 0
+/// means for every tetrahedron that it is not inverted. A simplex that is flat to rounding has volume 0 and
+/// inverse 0. Volumes are never negative.
 struct RestShapes {
   int dimension = 0;
-  Offset count = 0;               ///< simplices
+  Offset count = 0;               ///< number of simplices
   AlignedVector<Index> vertices;  ///< D + 1 quantities: the corners
   AlignedVector<double>
-      geometry;  ///< D(D + 1)/2 + 1: upper triangle of Dₘ⁻¹ row by row; volume (area, length)
+      geometry;  ///< D(D + 1)/2 + 1 quantities: upper triangle of Dₘ⁻¹ row by row; volume (area, length)
 
-  /// Quantities in `geometry`.
+  /// Returns the number of quantities in `geometry`.
   [[nodiscard]] int quantities() const noexcept { return dimension * (dimension + 1) / 2 + 1; }
   [[nodiscard]] Offset batches() const noexcept { return (count + kBatch - 1) / kBatch; }
 
-  /// Returns corner `a` of simplex s; the volume of simplex s.
+  /// Returns corner `a` of simplex s; `volume` returns the volume of simplex s.
   [[nodiscard]] Index vertex(Offset s, Index a) const {
     return vertices[(s / kBatch * (dimension + 1) + a) * kBatch + s % kBatch];
   }

@@ -9,18 +9,18 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/spmv.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// the rest of this file is compiled once for each instruction set
 #include "kernels/block_rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-// blocks from a prefetch to its use
+// number of blocks between the block in use and the one prefetched
 constexpr Offset kAhead = 128;
 
-/// With `Blocks` the blocks are prefetched, with `Gather` the entries of x: then kAhead blocks must follow
-/// the last row.
+/// Computes the rows begin … end − 1; returns their part of xᵀA x. `Blocks` prefetches the blocks, `Gather`
+/// the entries of x: then at least kAhead blocks must follow row end − 1.
 template <bool Blocks, bool Gather, class Value>
 double product_rows(const BlockCsrOf<Value>& matrix, const double* x, double* y, Index begin, Index end) {
   const Value* const values = matrix.values.data();
@@ -83,7 +83,7 @@ HWY_EXPORT(product_of_doubles);
 HWY_EXPORT(product_of_streamed_doubles);
 HWY_EXPORT(product_of_floats);
 
-/// Whether the processor is known to read blocks of doubles faster where they are not prefetched. Zen 4 does,
+/// Returns whether the processor is known to read blocks of doubles faster without prefetches. Zen 4 does,
 /// Zen 3 does not, others were not measured (docs/evidence/benchmarks.md, What the product asks for).
 bool streams_by_itself() {
   static const bool result = is_zen4(family_of_this_machine());

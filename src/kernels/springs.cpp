@@ -4,14 +4,14 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/springs.cpp"
 #include <hwy/foreach_target.h>
-// from here on once for each instruction set
+// the rest of this file is compiled once for each instruction set
 #include "kernels/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-/// Computes a batch of springs and adds to `targets`: its ends, or spare vertices instead of them.
+/// Computes a batch of springs; adds its forces to `targets`: its ends or, in place of some, spare vertices.
 template <class Lanes>
 HWY_INLINE void add_batch(const double* rest_length, const Index* ends, const Index* targets,
                           double stiffness, const double* positions, double* forces) {
@@ -35,8 +35,8 @@ HWY_INLINE void add_batch(const double* rest_length, const Index* ends, const In
   }
 }
 
-/// Prefetches what the batches after this one read from front to back: the springs, and as these are sorted
-/// by their larger ends, vertices from these on.
+/// Prefetches data of later batches that is read from front to back: the springs, and vertices after the
+/// larger ends of this batch, by which springs are sorted.
 HWY_INLINE void fetch_streams(const double* rest_length, const Index* ends, const double* positions,
                               const double* forces) {
   constexpr Offset kBatches = 16;

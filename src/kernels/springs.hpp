@@ -10,7 +10,7 @@ namespace meshorder {
 
 /// A spring on every edge of a mesh, in batches of kBatch: end a of spring s is
 /// `ends[(2 (s / kBatch) + a) · kBatch + s % kBatch]`, its rest length `rest_lengths[s]`. The last batch is
-/// filled up with springs of a vertex to itself, which have no force.
+/// padded with springs from a vertex to itself, which have no force.
 struct Springs {
   Offset count = 0;
   AlignedVector<Index> ends;
@@ -18,24 +18,24 @@ struct Springs {
 };
 
 /// Returns a spring for every edge of the graph, from its smaller to its larger end, at rest at the given
-/// points. Sorted by the larger end and then the smaller, as `lexmax` sorts elements: whatever the order of
-/// the vertices, vertices are then first visited in the order in which they lie in memory. O(n + edges).
+/// points. Springs are sorted by the larger end and then the smaller, as `lexmax` sorts elements, so that
+/// vertices with smaller neighbours are first visited in the order of memory. O(n + edges).
 Springs springs_on_edges(const CsrGraph& graph, std::span<const Point> points);
 
 /// Returns the energy Σ ½ k (‖d‖ − ℓ₀)² of springs of stiffness k, d = x_b − x_a. O(springs).
 double spring_energy(const Springs& springs, double stiffness, std::span<const double> positions);
 
-/// forces += −∂/∂x of that energy: k (‖d‖ − ℓ₀) d/‖d‖ on end a and its opposite on end b. A spring whose ends
-/// coincide has no direction and no force. Positions and forces have the layout of padded_positions. Throws
-/// InvalidArgument if the sizes differ. In batches, as add_elasticity. O(springs).
+/// Adds −∂/∂x of that energy to `forces`: k (‖d‖ − ℓ₀) d/‖d‖ on end a and its opposite on end b. A spring
+/// whose ends coincide has no force. Positions and forces have the layout of padded_positions. Throws
+/// InvalidArgument if the sizes differ. Works in batches, as add_elasticity. O(springs).
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces);
 
-/// The forces on the vertices of one share of `owned_batches` (of springs.ends), as add_elasticity has them.
+/// Adds the forces of one share of `owned_batches` (of springs.ends); see add_elasticity.
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces, const OwnedBatches& share);
 
-/// The scalar reference: the same source, one spring at a time and without vector instructions.
+/// As the first, but a scalar reference: the same source, one spring at a time, without vector instructions.
 void add_spring_forces_scalar(const Springs& springs, double stiffness, std::span<const double> positions,
                               std::span<double> forces);
 

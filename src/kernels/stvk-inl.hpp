@@ -14,12 +14,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Saint Venant–Kirchhoff, of solids, membranes and bars: E = ½(FᵀF − I), S = 2μE + λ tr(E) I, P = F S.
+/// Saint Venant–Kirchhoff for solids, membranes and bars: E = ½(FᵀF − I), S = 2μE + λ tr(E) I, P = F S.
 template <int D, class Lanes>
 struct Stvk {
   using Value = typename Lanes::Value;
   Value e[D][D];  ///< Green strain, upper triangle
-  Value s[D][D];  ///< second Piola–Kirchhoff stress, all of it
+  Value s[D][D];  ///< second Piola–Kirchhoff stress, both triangles
 
   HWY_INLINE void load(const Deformation<D, Lanes>& deformation, const LameLanes<Lanes>& lame) {
     const auto& f = deformation.f;
@@ -63,7 +63,7 @@ struct Stvk {
     }
   }
 
-  /// μ E:E + ½ λ tr(E)²
+  /// Returns the energy density μ E:E + ½ λ tr(E)².
   [[nodiscard]] HWY_INLINE Value energy(const Deformation<D, Lanes>& /*deformation*/,
                                         const LameLanes<Lanes>& lame) const {
     Value squares = Lanes::set(0.0);
@@ -77,7 +77,7 @@ struct Stvk {
     return Lanes::mul_add(lame.mu, squares, Lanes::set(0.5) * lame.lambda * (t * t));
   }
 
-  /// ψᵢ = σᵢ (μ (σᵢ² − 1) + p) with the pressure p = λ tr(E).
+  /// Sets the Hessian in principal stretches; the energy's derivatives are ψᵢ = σᵢ (μ (σᵢ² − 1) + λ tr(E)).
   HWY_INLINE void principal(const Value (&sigma)[3], const LameLanes<Lanes>& lame,
                             PrincipalHessian<Lanes>& hessian) const {
     const Value one = Lanes::set(1.0);
@@ -99,8 +99,8 @@ struct Stvk {
   }
 };
 
-/// K_ab = V ((g_a·S g_b) I + λ p_a p_bᵀ + μ p_b p_aᵀ + μ (g_a·g_b) F Fᵀ) with p_a = F g_a: the strain's
-/// variation in δx_b is that of δF = δx_b g_bᵀ.
+/// The exact tangent: K_ab = V ((g_a·S g_b) I + λ p_a p_bᵀ + μ p_b p_aᵀ + μ (g_a·g_b) F Fᵀ) with p_a = F g_a.
+/// It follows from δF = δx_b g_bᵀ.
 template <int D, class Lanes>
 struct StvkTangent {
   using Value = typename Lanes::Value;

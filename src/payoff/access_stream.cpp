@@ -66,8 +66,8 @@ AccessStream::Array AccessStream::place(Offset bytes) {
 
 namespace {
 
-/// Predicts lengths of loops, as a processor does that remembers what followed some thousands of sequences
-/// of branches, and counts the wrong ones.
+/// Predicts the lengths of loops and counts the wrong predictions. It models a processor that remembers which
+/// length followed each of some thousands of sequences of eight lengths.
 class LoopLengths {
  public:
   void add(Index length) {
@@ -93,14 +93,14 @@ class LoopLengths {
   Offset turns_ = 0;
 };
 
-/// See RunReuse::turns: of a product with rows of these lengths, or all longer by the same number.
+/// Returns RunReuse::turns of a product with these rows. A constant added to all lengths changes nothing.
 Offset turns_of_product(GraphRef rows) {
   LoopLengths lengths;
   for (Index v = 0; v < rows.size(); ++v) lengths.add(rows.degree(v));
   return lengths.turns();
 }
 
-/// See RunReuse::turns. Large meshes are sampled: every eighth stretch of elements.
+/// Returns RunReuse::turns of a kernel. Large meshes are sampled: every eighth stretch of elements.
 Offset turns_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings) {
   if (kernel == Kernel::spmv) return turns_of_product(graph);
   LoopLengths lengths;
@@ -150,7 +150,7 @@ struct PolledSample {
 namespace {
 
 Reuse followed(const AccessStream& stream, Kernel kernel, int halvings) {
-  // a product gathers from few lines, and its simulation is fast
+  // a product gathers from few lines and is fast to simulate: two halvings fewer
   constexpr int kOfProduct = 2;
   ReuseSample reuse(stream.line_count(),
                     kernel == Kernel::spmv ? std::max(0, halvings - kOfProduct) : halvings);

@@ -16,12 +16,12 @@
 
 namespace meshorder {
 
-/// The sequence of cache lines that one run of a plain kernel accesses, derived from the mesh: no matrix is
-/// built. Every array of the kernel begins at a line; lines are numbered array by array from 0. An access is
+/// The sequence of cache lines that one run of a plain kernel accesses. It is derived from the mesh without a
+/// matrix. Every array of the kernel begins at a line; lines are numbered array by array from 0. Accesses are
 /// - the first touch of each line of an array that is read or cleared from front to back: values and columns
 ///   of a product, elements, edges, results being cleared;
-/// - each line of each vertex that is gathered or added to, and of what an element searches and adds to in a
-///   row of the matrix.
+/// - each touch of a line of a vertex that is gathered or added to;
+/// - each touch of a line of the matrix in which an element searches for an entry or adds to it.
 ///
 /// Not included: the stack, the code, and repeated touches within a few accesses.
 class AccessStream {
@@ -30,12 +30,12 @@ class AccessStream {
   /// order to be judged; both must outlive the stream. Throws InvalidArgument if the kernel needs 2^31 lines
   /// or more. O(1).
   AccessStream(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices);
-  /// The stream of a product with a matrix of exactly these entries; likewise.
+  /// The stream of a product with a matrix of exactly these entries; `pattern` must outlive it. O(1).
   explicit AccessStream(const EntryPattern& pattern);
 
   [[nodiscard]] Index line_count() const noexcept { return static_cast<Index>(lines_); }
 
-  /// Calls `touch(line, how)` for every access, an Access being how the kernel comes to the line.
+  /// Calls `touch(line, how)` for every access; `how` is an Access, streamed or gathered.
   /// O(accesses), for assembly times the logarithm of a row's length.
   template <class Touch>
   void visit(Touch touch) const {
@@ -43,9 +43,9 @@ class AccessStream {
     visit_some(visitor);
   }
 
-  /// As visit, by `visitor.gather(line)` and, for lines that are streamed one after another,
-  /// `visitor.stream(first, end)`. May leave out gathered accesses to lines first … last where
-  /// `visitor.samples(first, last)` is false: none of them counts, and their places are not looked up.
+  /// As visit, but calls `visitor.gather(line)` for a gathered line and `visitor.stream(first, end)` for
+  /// lines that are streamed one after another. May skip gathered accesses to the lines first … last where
+  /// `visitor.samples(first, last)` is false, which saves the look-up of their lines.
   template <class Visitor>
   void visit_some(Visitor& visitor) const {
     switch (kernel_) {
@@ -77,7 +77,7 @@ class AccessStream {
       Reader(*this).read(bytes, visitor);
     }
 
-    /// Whether one of the lines of these bytes, at least one, counts.
+    /// Returns whether the visitor samples a line of these bytes; `count` ≥ 1.
     template <class Visitor>
     [[nodiscard]] bool is_sampled(Offset byte, Offset count, const Visitor& visitor) const {
       const auto line_of = [&](Offset of) { return static_cast<Index>(first_line + of / kLineBytes); };
@@ -105,7 +105,7 @@ class AccessStream {
     Offset left_ = 0;  ///< bytes of the last touched line that are not read yet
   };
 
-  /// Gathers vertices from an array; leaves out those of which no line counts.
+  /// Gathers vertices from an array; skips those without a sampled line.
   class VertexGatherer {
    public:
     template <class Visitor>
@@ -152,7 +152,7 @@ class AccessStream {
   Array place(Offset bytes);
   void check_lines() const;
 
-  /// The first entry of row a of the matrix, which has one for each neighbour and one for the diagonal.
+  /// Returns the index of the first entry of row a. A row has an entry for each neighbour and the diagonal.
   [[nodiscard]] Offset row_begin(Index a) const { return graph_.offsets[a] + a; }
 
   /// Returns the index of the entry in row a and column b of the matrix.
@@ -211,7 +211,7 @@ class AccessStream {
     }
   }
 
-  /// Visits what an element searches and adds to in a row.
+  /// Visits the start of row a and, for each corner, the columns searched and the value added to.
   template <class Visitor>
   void visit_row(Index a, std::span<const Index> element, Visitor& visitor) const {
     starts_.gather(kStartBytes * a, kStartBytes, visitor);
@@ -223,7 +223,7 @@ class AccessStream {
     }
   }
 
-  /// Marks the rows of the matrix that have a line that counts.
+  /// Marks the rows of the matrix that have a sampled line.
   template <class Visitor>
   [[nodiscard]] std::vector<bool> sampled_rows(const Visitor& visitor) const {
     std::vector<bool> rows(static_cast<std::size_t>(graph_.size()));
@@ -237,7 +237,7 @@ class AccessStream {
     return rows;
   }
 
-  /// The corners of a simplex; those of the last one for numbers beyond it.
+  /// Returns the corners of a simplex; of the last one if the number is too large.
   [[nodiscard]] std::span<const Index> corners_of(Offset simplex) const {
     const Offset corners = simplices_.dimension + 1;
     return simplices_.vertices.subspan(corners * std::min(simplex, simplices_.size() - 1), corners);
@@ -264,7 +264,7 @@ class AccessStream {
   static constexpr Offset kAhead = 12;  ///< elements
 
   Kernel kernel_;
-  GraphRef graph_;  ///< for a product with a matrix: its rows, which need not be symmetric
+  GraphRef graph_;  ///< for a product with a matrix: its rows; the pattern need not be symmetric
   bool adds_diagonal_ = true;
   SimplicesRef simplices_;
   Offset lines_ = 0;
@@ -278,41 +278,41 @@ class AccessStream {
 struct RunReuse : Reuse {
   Kernel kernel = Kernel::spmv;
   int dimension = 0;  ///< of the simplices: 3 for tetrahedra
-  /// Loops whose end a processor mispredicts: rows of a product, and searches of assembly along a row, whose
-  /// length differs from what followed the same eight lengths the last time. 0 for other kernels.
+  /// Number of loops whose end a processor mispredicts: rows of a product, or searches of assembly in a row.
+  /// A loop counts if its length differs from the last that followed the same eight lengths. Else 0.
   Offset turns = 0;
 
   bool operator==(const RunReuse&) const = default;
 };
 
 /// Returns the reuse of a repeated kernel: of every run but the first. O(accesses · log distance) time and
-/// about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0 reuse of
-/// the lines is estimated from 2^-halvings of them (see ReuseSample), which is faster; from four halvings on
-/// the turns of assembly are an estimate, too.
+/// about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0 the reuse
+/// is estimated from a share 2^-halvings of the lines (see ReuseSample), which is faster; products with a
+/// matrix use two halvings fewer. From four halvings on the turns of assembly are estimated, too.
 RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
-/// The same of the product with a matrix that has these entries.
+/// Returns the reuse of the product with a matrix that has these entries.
 RunReuse reuse_of_product(const EntryPattern& pattern, int halvings = 0);
 
-/// The kernels' places in kKernels, the slowest to simulate first: assembly adds to 16 entries an element.
+/// Places of the kernels in kKernels, slowest to simulate first: assembly adds to 16 entries per element.
 inline constexpr std::array<std::size_t, kKernels.size()> kLongestFirst{2, 0, 1, 3};
 
-/// Returns the halvings with which `reuse_of` takes a mesh of so many simplices: 0 below 200,000, and up to
-/// 5 from eight million on, so that larger meshes take less time than in proportion (docs/prediction.md says
-/// how far off that is).
+/// Returns the `halvings` to pass to `reuse_of` for a mesh of so many simplices: 0 below 200,000, and up to
+/// 5 from eight million on, so that the time grows more slowly than the mesh (docs/prediction.md reports the
+/// errors).
 int halvings_for(Offset simplices);
 
-/// By kernel, as kKernels lists them.
+/// The reuse of each kernel, in the order of kKernels.
 using KernelReuse = std::array<RunReuse, kKernels.size()>;
 
-/// Returns the reuse of all kernels, which the threads compute in turns.
+/// Returns the reuse of all kernels. The threads share the kernels among them.
 KernelReuse reuse_of_kernels(const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
 /// Returns the reuse of the product with a matrix; the entries of other kernels are empty.
 KernelReuse reuse_of_kernels(const EntryPattern& pattern, int halvings = 0);
 
-/// Returns the reuse of all kernels that a mesh has (see kernels_of), whose vertex graph is `graph`, after
-/// move_mesh with these permutations.
+/// Returns the reuse of all kernels of a mesh (see kernels_of) after its vertices and cells have been moved
+/// by these permutations. `graph` is the vertex graph of `mesh` before that.
 KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
                              const Permutation& cells, int halvings = 0);
 

@@ -39,8 +39,8 @@ struct Ordered {
   const Mesh* mesh = nullptr;
   const CsrGraph* graph = nullptr;
   const CellSimplices* simplices = nullptr;
-  const EntryPattern* pattern = nullptr;    ///< null of a mesh that is no matrix
-  std::unique_ptr<const Moved> moved = {};  ///< what the pointers refer to; none: the mesh as it is
+  const EntryPattern* pattern = nullptr;    ///< null if the mesh is no matrix
+  std::unique_ptr<const Moved> moved = {};  ///< owns what the pointers refer to; null: the mesh as it is
 };
 
 Ordered ordered(std::unique_ptr<const Moved> moved, bool is_matrix) {
@@ -53,7 +53,7 @@ RunReuse reuse_in(const Ordered& order, Kernel kernel, int halvings) {
                                   : reuse_of(kernel, *order.graph, *order.simplices, halvings);
 }
 
-/// The predictions for all orders; each kernel in each order is one turn of the threads.
+/// Returns the predictions for all orders. Threads take the pairs of a kernel and an order in turns.
 std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
                                             const AdviceOptions& options) {
   report("predict");
@@ -76,7 +76,7 @@ TimingOptions for_seconds(double seconds) {
   return {.budget_seconds = std::max(0.0, seconds), .min_rounds = 2, .sample_seconds = 0.01};
 }
 
-/// In rounds that end in time on the stopwatch.
+/// Times all orders together, in rounds that end within `options.measure_within` seconds on the stopwatch.
 Timings measured(const std::vector<Ordered>& orders, const AdviceOptions& options,
                  const Stopwatch& stopwatch) {
   std::vector<std::unique_ptr<KernelBench>> benches(orders.size());
@@ -89,7 +89,7 @@ Timings measured(const std::vector<Ordered>& orders, const AdviceOptions& option
   return time_interleaved(pointers, for_seconds(*options.measure_within - stopwatch.seconds()));
 }
 
-/// For half a second an order, as many at a time as memory allows.
+/// Times the orders with the race's timer, for half a second each.
 Timings raced(const std::vector<Ordered>& orders, const AdviceOptions& options) {
   constexpr double kSeconds = 0.5;
   const auto prepare = [&](Index i) {
@@ -99,8 +99,8 @@ Timings raced(const std::vector<Ordered>& orders, const AdviceOptions& options) 
                             for_seconds(kSeconds * static_cast<double>(orders.size())));
 }
 
-/// What is asked for of `compute_reordering`, one after another. `auto` judges an order for springs as it
-/// judges one for all kernels, so that the same method is the same order.
+/// Returns the options of the orders to compute. Without `options.methods` these are `auto` for all kernels
+/// and, where `auto` chooses another method for springs, `auto` for springs.
 std::vector<ReorderOptions> asked_for(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options) {
   std::vector<ReorderOptions> result;
   for (const MeshMethods& methods : options.methods) {
@@ -118,13 +118,13 @@ std::vector<ReorderOptions> asked_for(const Mesh& mesh, const CsrGraph& graph, c
   return result;
 }
 
-/// Whether two candidates are one, taken for different uses.
+/// Returns whether two candidates have the same methods, so that they are the same order.
 bool are_one(const Candidate& a, const Candidate& b) {
   return a.vertices.name == b.vertices.name && a.elements.name == b.elements.name;
 }
 
-/// Returns how much longer the kernels of a workload take than in the mesh's own order: the logarithm of the
-/// ratio, in the mean of the kernels.
+/// Returns the logarithm of the time in an order divided by the time in the mesh's own order, averaged over
+/// the kernels of a workload. Throws InvalidArgument if it has none.
 double cost_for(Workload workload, const Advice& advice, const OrderCosts& costs) {
   double sum = 0;
   int kernels = 0;
@@ -141,8 +141,8 @@ double cost_for(Workload workload, const Advice& advice, const OrderCosts& costs
   return sum / kernels;
 }
 
-/// Leaves the first candidate and the best others, `most` in all, in their order; `order_of` says for each
-/// the place of its order.
+/// Keeps the first candidate and the best others, `most` in all, without changing their sequence.
+/// `order_of[i]` is the place in `orders` of the order of candidate i.
 void keep_best(Advice& advice, std::vector<Ordered>& orders, std::vector<std::size_t>& order_of,
                Workload workload, std::size_t most) {
   std::vector<std::size_t> places(advice.candidates.size());
@@ -179,7 +179,7 @@ double factor_for(Workload workload, const Advice& advice, std::size_t candidate
 
 std::optional<std::size_t> winner_for(Workload workload, const Advice& advice) {
   double best = 0;
-  double same = 0;  // the logarithm of the factor, in the mean of the kernels
+  double same = 0;  // sum over the kernels of the logarithms of same_time
   int kernels = 0;
   for (const Candidate& candidate : advice.candidates) {
     best = std::min(best, cost_for(workload, advice, candidate.costs));
@@ -222,7 +222,7 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   orders.front() = {&mesh, &graph, &simplices, advice.is_matrix ? &pattern : nullptr};
   const bool in_race = options.race_of > 0 && options.race_timer;
   const bool measures = in_race || options.measure_within;
-  // of each candidate, its place in `orders`: that of the mesh as it is where nothing moves
+  // the place in `orders` of each candidate's order; 0, the mesh as it is, if it moves nothing
   std::vector<std::size_t> order_of;
   for (const ReorderOptions& reordering : asked_for(mesh, graph, options)) {
     const Stopwatch stopwatch;
@@ -254,7 +254,7 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
     }
     advice.candidates.push_back(std::move(candidate));
   }
-  // calls it for the mesh as it is, and for each candidate with the place of its order
+  // calls `call(candidate, place of its order)` for the mesh as it is and for each candidate
   const auto for_candidates = [&](auto call) {
     call(advice.as_is, std::size_t{0});
     for (std::size_t i = 0; i < order_of.size(); ++i) call(advice.candidates[i], order_of[i]);

@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// How many of the next vertices each vertex is joined to.
+/// The reach r of each vertex: vertex v is joined to v + 1 … v + r.
 using Reaches = std::vector<Index>;
 
 Index joined_vertices(const CsrGraph& graph) {
@@ -22,14 +22,14 @@ Index joined_vertices(const CsrGraph& graph) {
   return count;
 }
 
-/// The number of different vertices that are corners of simplices.
+/// Returns the number of different vertices that are corners of simplices.
 Index corner_vertices(const Simplices& simplices, Index vertices) {
   std::vector<bool> seen(static_cast<std::size_t>(vertices), false);
   for (const Index v : simplices.vertices) seen[v] = true;
   return static_cast<Index>(std::count(seen.begin(), seen.end(), true));
 }
 
-/// The corners' distances from the first one, in every way that D of 1 … k can be chosen.
+/// Returns every choice of `dimension` of the numbers 1 … k: the corners' offsets from the first corner.
 std::vector<std::array<Index, 4>> stencils(int dimension, Index k) {
   std::vector<std::array<Index, 4>> result;
   std::array<Index, 4> offsets{0, 1, 2, 3};
@@ -63,7 +63,7 @@ Cells streamed_simplices(int dimension, Offset count, Index corners, Index k) {
   return cells;
 }
 
-/// The reaches that the simplices need.
+/// Returns the reaches that the simplices need.
 Reaches needed(const Cells& cells, Index vertices) {
   Reaches reaches(static_cast<std::size_t>(vertices), 0);
   for (Index c = 0; c < cells.size(); ++c) {
@@ -72,8 +72,8 @@ Reaches needed(const Cells& cells, Index vertices) {
   return reaches;
 }
 
-/// Raises the reaches of the first `joined` vertices to one level, as far as there are vertices, until there
-/// are `edges` in all: the last ones evenly among the vertices that have not yet the next level.
+/// Raises the reaches of the first `joined` vertices level by level, until there are `edges` edges in all. If
+/// the last level needs fewer edges than it has vertices, they are spread evenly over these.
 void fill(Reaches& reaches, Index joined, Offset edges) {
   Offset missing = edges;
   for (const Index reach : reaches) missing -= reach;
@@ -84,7 +84,7 @@ void fill(Reaches& reaches, Index joined, Offset edges) {
     Offset place = 0;
     for (Index v = 0; v + level < joined; ++v) {
       if (reaches[v] >= level) continue;
-      // of `below` places the ones at which place · raised / below rises
+      // spreads `raised` of the `below` places evenly: those where place · raised / below increases
       if ((place + 1) * raised / below > place * raised / below) reaches[v] = level;
       ++place;
     }
@@ -108,7 +108,7 @@ CsrGraph joined_to_next(const Reaches& reaches) {
   return graph;
 }
 
-/// Points one apart or so, no four in a row of which lie in a plane.
+/// Returns points about one apart, such that no four consecutive ones lie in a plane.
 std::vector<Point> helix(Index n) {
   std::vector<Point> points(static_cast<std::size_t>(n));
   for (Index v = 0; v < n; ++v) points[v] = {std::cos(1.0 * v), std::sin(1.0 * v), 0.25 * v};
@@ -129,7 +129,7 @@ Band ideal_band(const Mesh& mesh, const CsrGraph& graph) {
   Band band;
   band.mesh.points = helix(n);
   const Index joined = joined_vertices(graph);
-  // as many edges for a vertex as a lattice cut into simplices has; more join nodes of no simplex
+  // at most as many edges per vertex as a lattice cut into simplices has: further edges are of no simplex
   const auto per_vertex = static_cast<Index>(graph.edge_count() / std::max<Index>(1, joined));
   const Index k = std::clamp<Index>(per_vertex, d, std::max<Index>(d, (Index{1} << d) - 1));
   band.mesh.cells = streamed_simplices(d, d == 0 ? 0 : simplices.size(), corners, k);

@@ -13,20 +13,20 @@ struct Band {
   CsrGraph graph;  ///< to be passed to KernelBench as the mesh's vertex graph
 };
 
-/// Returns the ideal streaming problem of a mesh's size: as many vertices, edges and simplices as `mesh`,
-/// with vertex i joined to i ± 1 … ± k and each simplex on some of the vertices i … i + k, ascending and in
-/// all combinations, so that simplices use every edge as those of a mesh do. Every kernel reads and writes
-/// memory front to back and finds reused data in the first cache: a reference for the orders of
-/// `mesh`, which have to cut a body of two or three dimensions.
+/// Returns the ideal streaming problem of a mesh's size, with as many vertices, edges and simplices as
+/// `mesh`. Vertex i is joined to i ± 1 … i ± k. Each simplex has its vertices among i … i + k, ascending; all
+/// combinations occur, so that simplices use every edge as those of a mesh do. Every kernel reads and writes
+/// memory front to back and finds reused data in the first cache. It is a reference for the orders of `mesh`,
+/// which cannot be that good for a body of two or three dimensions.
 ///
 /// `graph` is the vertex graph of `mesh`. The counts are exact, except that a degenerate mesh gets the edges
 /// that its simplices need. As many vertices as in `mesh` have no neighbours; they come last. The points lie
-/// on a helix, so that no simplex is flat. O(n + edges + cells). Throws InvalidArgument if the graph is of
-/// another mesh.
+/// on a helix, so that no simplex is flat. O(n + edges + cells). Throws InvalidArgument if the graph has
+/// another number of vertices than the mesh.
 Band ideal_band(const Mesh& mesh, const CsrGraph& graph);
 
-/// Returns a pattern of as many rows and entries as that of a matrix, spread evenly over the rows and side by
-/// side around the diagonal: a reference for products. O(entries).
+/// Returns a pattern with as many rows and entries as `pattern`. The entries are spread evenly over the rows
+/// and are consecutive columns around the diagonal: a reference for products. O(entries).
 EntryPattern ideal_pattern(const EntryPattern& pattern);
 
 }  // namespace meshorder

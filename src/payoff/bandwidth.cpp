@@ -24,7 +24,7 @@ double read_bandwidth(std::size_t buffer_bytes, int passes, int threads) {
       for (std::size_t i = buffer.size() * static_cast<std::size_t>(part) / parts; i < end; ++i) {
         sum += buffer[i];
       }
-      // the sum is wanted, and wanted now: the clock must not be read before
+      // forces the compiler to compute the sum before the clock is read
       asm volatile("" : "+r"(sum) : : "memory");
     });
     const double seconds = std::max(stopwatch.seconds(), 1e-9);

@@ -22,7 +22,7 @@ constexpr Offset kSmallest = 8 * kKilobyte;
 constexpr std::uint64_t kLineWords = kLineBytes / sizeof(std::uint64_t);
 
 /// Makes `steps` loads, each of which waits for the one before, at random lines among the first `lines` of
-/// a buffer of zeros. Without `Load` it does only the arithmetic between them.
+/// a buffer of zeros. Without `Load` it does only the arithmetic between the loads.
 template <bool Load>
 std::uint64_t follow(const std::uint64_t* buffer, std::uint64_t lines, int steps, std::uint64_t state) {
   for (int step = 0; step < steps; ++step) {
@@ -44,7 +44,7 @@ double seconds_of(const std::uint64_t* buffer, std::uint64_t lines, int steps, s
   return stopwatch.seconds() / steps;
 }
 
-/// Reads one word a line twice, of at most the last `most` bytes.
+/// Reads one word of each line of the last `most` bytes (or of all, if there are fewer), twice.
 void fill_caches(std::span<const std::uint64_t> words, std::size_t most) {
   const std::size_t skipped = words.size() - std::min(words.size(), most / sizeof(std::uint64_t));
   for (int pass = 0; pass < 2; ++pass) {
@@ -57,7 +57,7 @@ void fill_caches(std::span<const std::uint64_t> words, std::size_t most) {
 /// A fit of the latencies by levels of these sizes.
 struct Explanation {
   std::vector<std::size_t> sizes;  ///< of the levels, as places among the points, ascending
-  std::vector<double> costs;       ///< of a hit in the first level, then the extra cost of missing each
+  std::vector<double> costs;       ///< ns: a hit in the first level, then the extra cost of missing each
   double error = std::numeric_limits<double>::infinity();  ///< the sum of squares of relative errors
 };
 
@@ -130,7 +130,7 @@ std::vector<Offset> probe_sizes(Offset largest) {
 std::vector<ProbePoint> probe_latencies(std::span<const Offset> sizes, int rounds,
                                         const std::function<void(double)>& tell) {
   if (sizes.empty()) return {};
-  // short, so that another program's turn on the processor falls between them
+  // few, so that most runs are not interrupted by another program
   constexpr int kSteps = 20'000;
   constexpr std::size_t kMostFilled = std::size_t{64} << 20;
   const auto largest = static_cast<std::size_t>(*std::max_element(sizes.begin(), sizes.end()));

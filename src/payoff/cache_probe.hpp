@@ -10,7 +10,7 @@
 
 namespace meshorder {
 
-/// What a load takes that waits for the one before, at a random line of so many bytes.
+/// The latency of dependent loads (each waits for the one before) at random lines within the first `bytes`.
 struct ProbePoint {
   Offset bytes = 0;
   double nanoseconds = 0;
@@ -18,10 +18,10 @@ struct ProbePoint {
   bool operator==(const ProbePoint&) const = default;
 };
 
-/// A cache as a program finds it.
+/// A cache level found from measured latencies.
 struct FoundCache {
-  Offset bytes = 0;        ///< what one thread gets of it, in whole KiB
-  double nanoseconds = 0;  ///< of a load that finds its line there
+  Offset bytes = 0;        ///< size available to one thread, in whole KiB
+  double nanoseconds = 0;  ///< latency of a load that hits it
 
   bool operator==(const FoundCache&) const = default;
 };
@@ -29,7 +29,7 @@ struct FoundCache {
 /// The caches, the smallest first, and the memory.
 struct FoundCaches {
   std::vector<FoundCache> levels;
-  double memory_nanoseconds = 0;  ///< of a load that finds its line in none
+  double memory_nanoseconds = 0;  ///< latency of a load that misses all levels
 
   bool operator==(const FoundCaches&) const = default;
 };
@@ -37,19 +37,19 @@ struct FoundCaches {
 /// Returns the sizes at which to probe: three in each doubling from 8 KiB to `largest` bytes.
 std::vector<Offset> probe_sizes(Offset largest);
 
-/// Measures the time of dependent loads at random lines of a buffer, for each of its first so many bytes,
-/// ascending: the least of `rounds` runs at each size, in rounds over all sizes, so that what disturbs a
-/// moment does not fall on one size. The memory of the buffer is on large pages where the system has them.
-/// `tell` receives the share that is done.
+/// Measures the time of dependent loads at random lines within the first `sizes[i]` bytes of a buffer, for
+/// each i. Returns the least of `rounds` runs at each size. Each round runs over all sizes, so that a short
+/// disturbance does not fall on one size only. The buffer is on large pages where the system has them.
+/// `tell` receives the share of the work that is done, 0 … 1.
 std::vector<ProbePoint> probe_latencies(std::span<const Offset> sizes, int rounds,
                                         const std::function<void(double)>& tell = {});
 
-/// Finds the caches from latencies at ascending sizes. Random loads within s bytes miss a cache of c < s
-/// bytes in the share 1 − c/s of all cases, so that the latency is a + Σ d · max(0, 1 − c/s) for levels of c
-/// bytes that cost d more to miss than to hit. Of all choices of at most `most` sizes, in whole KiB, the one
-/// is taken whose relative errors are least (by non-negative least squares for a and d); a level more only
-/// where it explains a quarter of what is left. At least one; where nothing rises it is the largest size.
-/// O(n^most) for n points.
+/// Finds the caches from latencies at ascending sizes. A share 1 − c/s of random loads within s bytes misses
+/// a cache of c < s bytes. So the latency is a + Σ d · max(0, 1 − c/s), summed over levels of c bytes whose
+/// miss costs d more than a hit. Returns the choice of at most `most` of the points' sizes with the least
+/// squares of relative errors (a, d ≥ 0), in whole KiB. One more level must reduce that error by more than a
+/// quarter. Returns at least one level: the largest size if latencies do not rise. O(n^(most+1)) for n
+/// points. Throws InvalidArgument without points.
 FoundCaches find_caches(std::span<const ProbePoint> points, std::size_t most = 3);
 
 }  // namespace meshorder

@@ -33,11 +33,11 @@
 namespace meshorder {
 namespace {
 
-/// What kernels took on a number of threads, by kernel.
+/// Times of the kernels on a number of threads, by kernel.
 struct Runs {
   int threads = 1;
   std::array<std::vector<TimedReuse>, kKernels.size()> timed = {};
-  /// By what share two timings of the same problem differ.
+  /// Relative differences of two timings of the same problem.
   std::array<std::vector<double>, kKernels.size()> apart = {};
   std::vector<Steadiness> steadiness = {};  ///< of each measurement
 };
@@ -61,7 +61,7 @@ struct Prepared {
 
   Prepared(const CalibrationLattice& lattice, std::span<const LatticeOrder> some) { add(lattice, some); }
 
-  /// Orders, predicts and prepares on all threads.
+  /// Adds orders: orders the lattice, simulates the reuse and prepares the kernels, on all threads.
   void add(const CalibrationLattice& lattice, std::span<const LatticeOrder> some) {
     const std::size_t first = benches.size();
     orders.insert(orders.end(), some.begin(), some.end());
@@ -114,7 +114,7 @@ struct Prepared {
   }
 };
 
-/// Times all orders of a lattice in interleaved rounds, on the threads of `runs`, and adds what they took.
+/// Times all orders of a lattice in interleaved rounds, on the threads of `runs`, and adds the times to it.
 Timings time_all(Prepared& prepared, int lattice, const Rounds& rounds, Runs& runs) {
   if (runs.threads > 1) prepared.share(runs.threads);
   Timings timings = prepared.timed(runs.threads, rounds);
@@ -130,8 +130,8 @@ Timings time_all(Prepared& prepared, int lattice, const Rounds& rounds, Runs& ru
   return timings;
 }
 
-/// The steadiness of several measurements: the worst disturbances, but the median of how well timings repeat,
-/// as a short measurement repeats less well than a long one.
+/// Returns the steadiness of several measurements: the worst disturbances, but the median of the repeat
+/// differences, since a short measurement repeats less well than a long one.
 Steadiness steadiness_of(std::span<const Steadiness> measurements) {
   Steadiness result;
   std::vector<double> repeats;
@@ -147,8 +147,8 @@ Steadiness steadiness_of(std::span<const Steadiness> measurements) {
 /// Sizes that differ by less than this factor are taken for one cache.
 constexpr double kSameCache = 1.6;
 
-/// The caches that costs belong to. A found one within that factor of a reported one gets the reported size,
-/// except the last, of which a thread has what others leave.
+/// Returns the caches that costs belong to. A found one within that factor of a reported one gets the
+/// reported size, except the last one, which a thread shares with others.
 Caches effective_caches(const FoundCaches& found, const Caches& reported) {
   Caches caches;
   for (std::size_t i = 0; i < found.levels.size(); ++i) {
@@ -170,7 +170,7 @@ std::string today() {
   return fmt::format("{:04}-{:02}-{:02}", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday);
 }
 
-/// Measures what depends on no mesh.
+/// Measures the caches, the latencies and the read bandwidths.
 void measure_memory(const CalibrationEffort& effort, Calibration& calibration) {
   // a small machine must not swap
   const auto most = static_cast<Offset>(std::min<std::uint64_t>(usable_memory() / 8, UINT64_C(1) << 40));
@@ -188,7 +188,7 @@ void measure_memory(const CalibrationEffort& effort, Calibration& calibration) {
                                        : calibration.read_bandwidth;
 }
 
-/// Times all orders of a lattice side by side, the last but one of them twice, at other addresses.
+/// Times all orders of a lattice in the same rounds, the last but one of them twice, at other addresses.
 void time_small(const CalibrationLattice& lattice, int number, double seconds, std::span<Runs> runs) {
   const std::size_t twice = lattice.orders.size() - 2;
   std::vector<LatticeOrder> orders = lattice.orders;
@@ -206,8 +206,8 @@ void time_small(const CalibrationLattice& lattice, int number, double seconds, s
   }
 }
 
-/// Times the orders of a lattice one after another, as long as there is time, but at least the best and the
-/// worst, and these also on all threads.
+/// Times the orders of a lattice one after another while there is time, but at least the best and the worst;
+/// times these two on all threads as well. `seconds` is on the stopwatch.
 void time_large(CalibrationLattice lattice, int number, const Stopwatch& since_start, double seconds,
                 std::span<Runs> runs) {
   std::vector<LatticeOrder>& orders = lattice.orders;
@@ -225,7 +225,7 @@ void time_large(CalibrationLattice lattice, int number, const Stopwatch& since_s
   }
 }
 
-/// For each run, the share of its time that each of its counts would take at one nanosecond a count.
+/// Returns a row for each run: the share of its time that each of its counts would take at 1 ns a count.
 Rows shares_of(std::span<const TimedReuse> runs, const Caches& caches) {
   const std::array<Offset, 4> sizes = sizes_that_cost(caches);
   Rows rows{.columns = CostRow{}.size()};
@@ -237,7 +237,7 @@ Rows shares_of(std::span<const TimedReuse> runs, const Caches& caches) {
   return rows;
 }
 
-/// Multiplies the mean of the rows of a lattice's runs by a factor; the differences from it stay.
+/// Multiplies the mean row of each lattice's runs by a factor; each row keeps its difference from the mean.
 void scale_means(double factor, std::span<const TimedReuse> runs, Rows& rows) {
   struct Mean {
     std::vector<double> row;
@@ -257,7 +257,7 @@ void scale_means(double factor, std::span<const TimedReuse> runs, Rows& rows) {
   }
 }
 
-/// The times that costs predict, as shares of those that were measured.
+/// Returns predicted time / measured time of each run.
 std::vector<double> predicted_shares(const Rows& rows, const CostRow& costs) {
   std::vector<double> predicted;
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -277,8 +277,8 @@ std::vector<TimedReuse> of_solids(std::span<const TimedReuse> runs) {
   return result;
 }
 
-/// Puts the costs that fit the runs best into a model whose caches are known; `like` as in fit_costs. Returns
-/// how well they fit.
+/// Fits the costs of all kernels to the runs and stores them in `model`, whose caches must be set; `like` as
+/// in fit_costs. Returns the quality of the fit.
 FitQuality fit_all(const Runs& runs, const Latencies& latencies, CostModel& model,
                    const CostModel* like = nullptr) {
   FitQuality quality;
@@ -296,9 +296,9 @@ FitQuality fit_all(const Runs& runs, const Latencies& latencies, CostModel& mode
   return quality;
 }
 
-/// As above, for runs on all threads, where costs on one thread are known. Threads that share a product with
-/// the matrix never wait for each other: all its costs change by one factor, which these few runs determine
-/// better than each cost.
+/// As above, for runs on all threads, given the costs on one thread. The costs of products with the matrix
+/// are those on one thread times one factor: threads that share a product never wait for each other, and so
+/// few runs determine one factor better than ten costs.
 FitQuality fit_all_threads(const Runs& runs, const Latencies& latencies, const CostModel& one_thread,
                            CostModel& model) {
   FitQuality quality = fit_all(runs, latencies, model, &one_thread);
@@ -335,13 +335,13 @@ Latencies latencies_behind(const FoundCaches& found, const Caches& caches) {
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies,
                       const KernelCosts* like) {
   const Rows shares = shares_of(runs, caches);
-  // Two more unknowns. The first: which share of a latency a jump costs, in units of kShare. For
-  // each jump an equation says that its cost is that share, with an eightieth of the weight of a run.
+  // Two more unknowns. The first: the share of its latency that a jump costs, in units of kShare. An
+  // equation for each jump, with an eightieth of the weight of a run, sets its cost to that share.
   constexpr double kShare = 0.1;
   constexpr double kWeight = 0.0125;
   // The weight of the error that all runs of a lattice have in common.
   constexpr double kCommon = 0.5;
-  // The second: the ratio of all costs to those of `like`. For each cost an equation says so.
+  // The second: the ratio of all costs to those of `like`. An equation for each cost, of this weight.
   constexpr double kLike = 0.4;
   Rows rows{.columns = shares.columns + 2};
   std::vector<double> row(rows.columns);
@@ -367,7 +367,7 @@ FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, co
       row[j] = kLike / known[j];
       row.back() = -kLike;
     } else {
-      // a cost that is 0 in `like` stays near 0, by its mean share of the times
+      // a cost that is 0 in `like` stays near 0; the weight is its mean share of the times
       for (std::size_t i = 0; i < shares.size(); ++i)
         row[j] += shares[i][j] / static_cast<double>(shares.size());
     }
@@ -421,18 +421,18 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   constexpr Offset kBytesOfVertex = 4096;
   const Offset fitting = static_cast<Offset>(usable_memory() / 4) / kBytesOfVertex;
   const auto largest = static_cast<Index>(std::clamp<Offset>(fitting, 1000, effort.vertices));
-  // Rows of matrices that fill parts of the second cache and of the last, so that streams miss one
-  // cache and not the next.
+  // Numbers of rows of matrices that fill a part of the second cache or of the last one, so that
+  // streams miss one cache and hit the next.
   constexpr Offset kRowBytes = 180;
   const auto rows_in = [&](Offset bytes, double part) {
     const auto rows = static_cast<Offset>(part * static_cast<double>(bytes) / kRowBytes);
     return static_cast<Index>(std::clamp<Offset>(rows, 300, largest / 4));
   };
   const std::array<Offset, 4> sizes = sizes_that_cost(model.caches);
-  /// A lattice, and its share of the time. Some are also timed on all threads, not the smallest, for which
-  /// waking the threads takes as long as a run. One whose matrix streams from memory has one more
-  /// order, with a window whose rows fill the second cache twice: as in a Fiedler order, what is gathered has
-  /// left the first cache and what is added to the second.
+  /// A lattice, and its share of the time. Some are also timed on all threads; the smallest is not, because
+  /// waking the threads takes as long as its run. A lattice with `streams` has a matrix that streams from
+  /// memory, and one more order: the rows of its window fill the second cache twice. As in a Fiedler order,
+  /// data to be gathered has left the first cache, and data to be added to has left the second.
   struct Step {
     Index vertices;
     bool flat;

@@ -12,22 +12,22 @@
 
 namespace meshorder {
 
-/// How well the fit determines the costs, by kernel as kKernels lists them.
+/// How well the fit determines the costs, by kernel in the order of kKernels.
 struct FitQuality {
   std::array<double, kKernels.size()> condition{};  ///< of the fit's equations, see condition_number
-  /// The median share by which predicted times of the problems differ from measured ones.
+  /// The median relative difference between predicted and measured times of the problems.
   std::array<double, kKernels.size()> error{};
-  /// The median share by which two timings of one problem at different addresses differ: a smaller
+  /// The median relative difference of two timings of one problem at different addresses. A smaller
   /// difference of two times means nothing.
   std::array<double, kKernels.size()> floor{};
 
   bool operator==(const FitQuality&) const = default;
 };
 
-/// What was measured on a machine to predict times for it.
+/// The measurements of a machine from which times on it are predicted.
 struct Calibration {
   CostModel
-      model;  ///< on one thread; its caches are those found, the first ones as reported where they agree
+      model;  ///< on one thread; its caches are those found, with the reported sizes where these are close
   FitQuality quality;
   CostModel all_threads;  ///< on `threads` threads; the same as `model` where that is one
   FitQuality all_threads_quality;
@@ -47,28 +47,28 @@ struct Calibration {
 
 /// How thoroughly a machine is measured.
 struct CalibrationEffort {
-  double seconds = 16;  ///< no measurement begins that is expected to end later, but each is made once
+  double seconds = 16;  ///< no repetition begins that is expected to end later; each step is done once
   Offset probed = Offset{256} << 20;  ///< largest buffer of loads, bytes
   Index vertices = 200'000;           ///< of the largest lattice
 };
 
-/// Returns the effort for so many seconds: with less than half of the usual time, smaller lattices and
-/// buffers, which show less of the last cache and the memory.
+/// Returns the effort for so many seconds. With less than half of the usual time the lattices and buffers are
+/// smaller, so that the last cache and the memory are measured less well.
 CalibrationEffort effort_of(double seconds);
 
-/// Measures this machine: its caches, latencies and bandwidths, and the kernels themselves on small lattices
-/// whose vertices are scrambled within windows of half of each cache, so that each level's misses vary on
-/// their own. Kernels run on the calling thread, and are timed by its processor time, the least of several
-/// rounds; and then on all threads, by elapsed time. Costs are the non-negative least squares of relative
-/// errors; those of products with the matrix on all threads are those on one, times one factor. Reports its
-/// progress and polls.
+/// Measures this machine: its caches, latencies and bandwidths, and the kernels themselves on small lattices.
+/// Their vertices are scrambled within windows of half of each cache, so that the misses of each level vary
+/// independently. Kernels run on the calling thread, timed by its processor time, and then on all threads,
+/// timed by elapsed time; the least of several rounds counts. Costs are fitted by non-negative least squares
+/// of relative errors. For products with the matrix, costs on all threads are those on one thread times one
+/// factor. Reports its progress and polls.
 Calibration measure_machine(const CalibrationEffort& effort = {});
 
-/// A run of a kernel: its reuse, and its time; on several threads, divided by `times_computed`.
+/// A run of a kernel: its reuse and its time. On several threads the time is divided by `times_computed`.
 struct TimedReuse {
   RunReuse reuse;
   double milliseconds = 0;
-  int lattice = 0;  ///< its number: runs of one lattice were timed side by side
+  int lattice = 0;  ///< number of the lattice; runs of one lattice were timed in the same rounds
 };
 
 /// The costs of a kernel that fit its runs best.
@@ -81,35 +81,35 @@ struct FittedCosts {
 /// The extra latency of a load that waits for the one before, beyond each of the sizes that cost, ns.
 using Latencies = std::array<double, 4>;
 
-/// Returns these latencies, at least 1 ns each. The last two share equally what a load from memory takes
-/// longer than one beyond the second size.
+/// Returns these latencies, at least 1 ns each. The last two are equal: each is half of the difference
+/// between a load from memory and a load beyond the second size.
 Latencies latencies_behind(const FoundCaches& found, const Caches& caches);
 
-/// Fits the costs of a kernel on a machine with such caches. Loads do not wait for each other, so that a jump
-/// costs a share of its latency. Where runs have too few jumps to show what they cost, it is the same share
-/// as of the others: the equations say so, with an eightieth of the weight of a run each. The error that all
-/// runs of a lattice have in common has half the weight of each run's own: costs are for ratios,
-/// and the rate of a shared memory changes from minute to minute.
+/// Fits the costs of a kernel on a machine with such caches. Loads overlap, so a jump costs only a share of
+/// its latency. An extra equation per jump, with an eightieth of the weight of a run, asks that all jumps
+/// cost the same share; it decides where the runs have too few jumps. The error that all runs of a lattice
+/// have in common has half the weight of each run's own error: costs serve to compare orders, and the rate
+/// of a memory that others use too changes from minute to minute.
 ///
-/// @param like  costs of the same kernel on one thread where the runs are on all threads, or null. Unless the
-///              runs show otherwise, all costs are those, times one factor: an equation for each says so,
-///              with two fifths of the weight of a run
+/// @param like  for runs on all threads: costs of the same kernel on one thread, or null. An extra equation
+///              for each cost, with two fifths of the weight of a run, asks that it is the one-thread cost
+///              times a factor that all costs share
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies,
                       const KernelCosts* like = nullptr);
 
-/// Fits one factor to the runs, by which all of the costs are multiplied.
+/// Multiplies all costs by the one factor that fits the runs best.
 FittedCosts scale_costs(std::span<const TimedReuse> runs, const KernelCosts& costs, const Caches& caches);
 
 /// What a quick check of a machine finds changed since its calibration.
 struct Recheck {
   std::array<double, kKernels.size()> ratio{};  ///< time now / predicted time, by kernel
   std::string moved;                            ///< why the calibration should be done anew, or empty
-  std::string doubt;                            ///< as of reason_to_doubt
+  std::string doubt;                            ///< see reason_to_doubt
 };
 
-/// Runs the kernels on one small and one larger lattice, in some two seconds, and compares their times with
-/// those that the calibration predicts. The machine has moved where a kernel's times differ by more than 15 %
-/// and three times the calibration's own error and floor.
+/// Runs the kernels on one small and one larger lattice, for some two seconds, and compares their times with
+/// the calibration's predictions. The machine has changed if the median ratio of a kernel differs by more
+/// than 15 % and by more than three times the sum of the calibration's error and floor.
 Recheck recheck(const Calibration& calibration);
 
 }  // namespace meshorder

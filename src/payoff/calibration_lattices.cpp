@@ -16,7 +16,7 @@
 namespace meshorder {
 namespace {
 
-/// (size + 1)² vertices on a wavy sheet, 2 size² triangles.
+/// Makes a wavy sheet of (size + 1)² vertices and 2 size² triangles.
 Mesh make_sheet(Index size) {
   Mesh mesh;
   mesh.dimension = 3;
@@ -54,7 +54,7 @@ std::vector<LatticeOrder> orders_for(Index vertices, Offset row_bytes, const Cac
     if (2 * window > 3 * result.back().window) result.push_back({window});
   }
   result.push_back({vertices});
-  // last the most that an order can cost
+  // the last order is the costliest one
   const std::size_t kept = std::max<std::size_t>(3, most) - 1;
   if (result.size() > kept) {
     std::vector<LatticeOrder> some;
@@ -81,7 +81,7 @@ CalibrationLattice make_calibration_lattice(Index vertices, bool flat, const Cac
   apply_reordering(lattice.mesh, order);
   lattice.graph = renumbered(graph, order.vertices.permutation.old_to_new());
   const Index n = lattice.mesh.vertex_count();
-  // numbers with their columns
+  // an entry is a number with its column
   const Offset entries = (n + index_size(lattice.graph.neighbours)) / n;
   lattice.orders = orders_for(n, entries * Offset{sizeof(double) + sizeof(Index)}, caches, most);
   return lattice;
@@ -104,7 +104,7 @@ Mesh in_order(const CalibrationLattice& lattice, const LatticeOrder& order) {
       const auto j = static_cast<Index>(random.below(static_cast<std::uint64_t>(i) + 1));
       std::swap(old_to_new[first + i], old_to_new[first + j]);
     }
-    if (n - first <= order.window) break;  // the next first may be no number any more
+    if (n - first <= order.window) break;  // the last window; `first += window` could overflow
   }
   Mesh mesh;
   mesh.dimension = lattice.mesh.dimension;

@@ -12,9 +12,9 @@ namespace meshorder {
 /// How the elements of a lattice are ordered: by `lexmax`, or shuffled all together.
 enum class LatticeElements { lexmax, shuffled };
 
-/// How the vertices and elements of a lattice are ordered: along a Hilbert curve, then shuffled within ranges
-/// of `window` vertices (1: not at all), and the elements. With a window of 0 breadth first, in which a
-/// lattice is so regular that a processor foresees where most loops end.
+/// An order of a lattice's vertices and elements. Vertices follow a Hilbert curve and are then shuffled
+/// within ranges of `window` vertices (1: not at all). A window of 0 means breadth first with `lexmax`
+/// elements: an order so regular that a processor predicts most loop ends.
 struct LatticeOrder {
   Index window = 1;
   LatticeElements elements = LatticeElements::lexmax;
@@ -24,20 +24,20 @@ struct LatticeOrder {
 
 /// A lattice whose orders are timed.
 struct CalibrationLattice {
-  Mesh mesh;       ///< along a Hilbert curve
-  CsrGraph graph;  ///< of its vertices
+  Mesh mesh;       ///< its vertices are ordered along a Hilbert curve
+  CsrGraph graph;  ///< vertex graph of `mesh`
   std::vector<LatticeOrder> orders;
 };
 
-/// Makes a lattice of about so many vertices: cubes of six tetrahedra each, or, flat, squares of two
-/// triangles. Its orders have windows of which half of one of these caches holds the vertices' positions,
-/// positions and forces, or rows of the matrix, and the whole of it, so that which cache is missed differs
-/// from order to order. At most `most` orders and the breadth-first one, which comes second: the two ends,
-/// and others between evenly.
+/// Makes a lattice of about so many vertices: cubes of six tetrahedra each or, if flat, squares of two
+/// triangles. Half of a cache holds the positions of a window's vertices, their positions and forces, or
+/// their rows of the matrix; other orders shuffle no vertex, all vertices, or all vertices and elements. So
+/// the orders differ in which cache they miss. At most `most` orders (at least three), evenly chosen with
+/// both extremes kept, and a breadth-first one, which comes second.
 CalibrationLattice make_calibration_lattice(Index vertices, bool flat, const Caches& caches,
                                             std::size_t most);
 
-/// Returns the lattice in one of its orders. The same on every call.
+/// Returns the lattice in one of its orders. Deterministic.
 Mesh in_order(const CalibrationLattice& lattice, const LatticeOrder& order);
 
 }  // namespace meshorder

@@ -28,7 +28,7 @@ constexpr const char* kSchema = "meshorder calibration 7";
 
 std::string sizes_text(const Caches& caches) { return caches.level_bytes.empty() ? "" : to_string(caches); }
 
-/// Caches of the sizes in an array.
+/// Returns the caches of the sizes in an array. Throws InvalidArgument unless they ascend in whole lines.
 Caches caches_from(const Json& sizes) {
   Caches caches;
   for (const Json& size : sizes) {
@@ -40,14 +40,14 @@ Caches caches_from(const Json& sizes) {
   return caches;
 }
 
-/// A finite number that is not negative.
+/// Returns a number; throws InvalidArgument if it is negative or not finite.
 double number_from(const Json& json) {
   const auto number = json.get<double>();
   if (!(number >= 0) || !std::isfinite(number)) throw InvalidArgument("has a negative or infinite number");
   return number;
 }
 
-/// Infinite conditions have no place in JSON.
+/// Returns null for an infinite condition, which JSON cannot hold.
 Json finite_json(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
 double condition_from(const Json& json) {
@@ -70,7 +70,7 @@ KernelCosts costs_from(const Json& json) {
   return costs;
 }
 
-/// The costs of a kernel on a number of threads, and how well they are determined.
+/// Returns the costs of kernel k on a number of threads, and the quality of their fit.
 Json kernel_json(const CostModel& model, const FitQuality& quality, std::size_t k) {
   return {{"solid", to_json(model.solid[k])},
           {"flat", to_json(model.flat[k])},
@@ -214,7 +214,7 @@ fs::path save_calibration(const Calibration& calibration) {
                             "to keep it in; ") +
                     kRemedy);
   }
-  std::error_code ignored;  // the output says what is wrong
+  std::error_code ignored;  // if this fails, opening the output reports the error
   fs::create_directories(file.parent_path(), ignored);
   try {
     OutputFile out(FilePath::in(user_cache_folder(), file));

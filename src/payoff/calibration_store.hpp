@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// What a calibration holds for: this processor with these caches, and this build of the program.
+/// What a calibration is valid for: a processor, its reported caches and a build of the program.
 struct CalibrationKey {
   std::string processor;
   std::string caches;  ///< as reported, "48K,1M,32M"; empty where the system reports none
@@ -28,25 +28,25 @@ CalibrationKey key_of(const Calibration& calibration);
 /// processor's name and a hash of the whole key. Empty if there is no such folder.
 std::filesystem::path calibration_file(const CalibrationKey& key);
 
-/// What the cache folder has for a key.
+/// A stored calibration, or the reason why the stored file cannot be used.
 struct StoredCalibration {
   std::optional<Calibration> calibration;
-  /// Why a file that is there is not taken, a sentence; empty if it is, and if there is none.
+  /// Why an existing file is not used, a sentence; empty if it is used or there is no file.
   std::string fault;
 };
 
-/// Reads what is stored for a key. A file that cannot be read, is no calibration or is of another key is not
-/// taken.
+/// Reads the calibration stored for a key. A file that cannot be read, is no calibration or has another key
+/// is not used.
 StoredCalibration load_calibration(const CalibrationKey& key);
 
-/// Stores a calibration for its key, beside the file and then in its place, so that other processes see the
-/// old one or the new one. Returns the file. Throws Error if that fails or there is no folder for it.
+/// Stores a calibration for its key. Writes a temporary file and then replaces the old one, so that other
+/// processes see the old or the new one. Returns the file. Throws Error if that fails or there is no folder.
 std::filesystem::path save_calibration(const Calibration& calibration);
 
 /// Returns the text of a calibration's file, JSON with the keys of docs/json.md.
 std::string to_json_text(const Calibration& calibration);
 
-/// Reads it. Throws InvalidArgument if it is no calibration, a sentence's end: "is no JSON".
+/// Reads such a text. Throws InvalidArgument, with the end of a sentence ("is no JSON"), if it is invalid.
 Calibration parse_calibration(const std::string& text);
 
 }  // namespace meshorder

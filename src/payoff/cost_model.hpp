@@ -11,11 +11,11 @@
 
 namespace meshorder {
 
-/// Nanoseconds (≥ 0) that a kernel spends on each access, on each miss and, in addition, on each jump (a miss
-/// that no hardware prefetcher foresees) of four caches: the first level, the second, half of the last and
-/// all of it; and on each turn (RunReuse::turns). A thread shares the last level, so misses begin to cost
-/// when half of it is full. Jumps of the whole last cache are first touches out of order, which a sweep makes
-/// once for each line of its vectors.
+/// Nanoseconds (≥ 0) that a kernel spends on each access, each miss, each jump and each turn
+/// (RunReuse::turns). A jump is a miss that no hardware prefetcher foresees; its cost is added to that of the
+/// miss. Misses and jumps are those of four caches: the first level, the second, half of the last and all of
+/// it. A thread shares the last level, so misses begin to cost when half of it is full. Jumps of the whole
+/// last cache are first touches out of order; a sweep makes one for each line of its vectors.
 struct KernelCosts {
   double access = 0.0;
   std::array<double, 4> miss{};
@@ -28,7 +28,7 @@ struct KernelCosts {
 /// Numbers, one for each cost.
 using CostRow = std::array<double, 10>;
 
-/// The costs as a row, and costs from one.
+/// Returns the costs as a row; as_costs is the inverse.
 CostRow as_row(const KernelCosts& costs);
 KernelCosts as_costs(const CostRow& row);
 
@@ -36,8 +36,8 @@ KernelCosts as_costs(const CostRow& row);
 struct CostModel {
   std::string machine;  ///< in words, "2-core Zen 5, 48 KB L1, 1 MB L2, 32 MB L3"
   Caches caches;        ///< what the costs belong to
-  /// That share each run, as KernelBench does. With several the costs are those of elapsed time, for the
-  /// accesses that one thread would make, times `times_computed`.
+  /// Number of threads that share each run (KernelBench). With several, the costs predict the elapsed time
+  /// from the accesses that one thread would make; the prediction is then multiplied by `times_computed`.
   int threads = 1;
   std::array<KernelCosts, kKernels.size()> solid;  ///< of meshes of tetrahedra
   std::array<KernelCosts, kKernels.size()> flat;   ///< of meshes of triangles and edges
@@ -49,9 +49,9 @@ struct CostModel {
   bool operator==(const CostModel&) const = default;
 };
 
-/// Returns the sizes of the four caches that costs are of: with one or two levels the last one also counts as
-/// the second; with four or more only the first two and the last count. Throws InvalidArgument without
-/// caches.
+/// Returns the sizes of the four caches that costs refer to. A single level also counts as the second; of two
+/// levels the second is also the last; of four or more only the first two and the last count. Throws
+/// InvalidArgument without caches.
 std::array<Offset, 4> sizes_that_cost(const Caches& caches);
 
 /// Returns how often each cost occurs in a run, for caches of the sizes of sizes_that_cost. O(levels · bins
@@ -59,12 +59,12 @@ std::array<Offset, 4> sizes_that_cost(const Caches& caches);
 CostRow counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes);
 
 /// Returns costs that `meshorder calibrate` measured on a 2-core AMD EPYC of the Zen 3 family (32 KB L1,
-/// 512 KB L2, 16 MB to be had of 32 MB L3). docs/prediction.md shows how well they predict.
+/// 512 KB L2, 16 MB available of 32 MB L3). docs/prediction.md reports their errors.
 const CostModel& zen3_costs();
 
 /// Predicts the milliseconds of each run of a repeated kernel on a processor with these caches (see
-/// sizes_that_cost). Use the ratio of two orders of one mesh: the milliseconds are those of the model's
-/// machine. O(levels · bins of the histograms). Throws InvalidArgument without caches.
+/// sizes_that_cost). The costs are those of the model's machine, so use the ratio of two orders of one mesh
+/// rather than the milliseconds. O(levels · bins of the histograms). Throws InvalidArgument without caches.
 double predicted_ms(const RunReuse& reuse, const Caches& caches, const CostModel& model = zen3_costs());
 
 /// As above, for all kernels.

@@ -33,15 +33,15 @@ struct EnumNames<KernelSet> {
                                     std::pair{KernelSet::tuned, "tuned"}};
 };
 
-/// What tables and figures call the kernels, as kKernels lists them.
+/// The kernels' names in tables and figures, in the order of kKernels.
 inline constexpr std::array<std::string_view, kKernels.size()> kKernelTitles{"SpMV", "element force",
                                                                              "assembly", "springs"};
 
 /// The kernels of a matrix.
 inline constexpr std::array kProductsAlone{Kernel::spmv};
 
-/// Returns the kernels that a mesh has, the first ones of kKernels: all, but of a matrix or graph (see
-/// StoredMatrix) the product with it alone. Arrays by kernel have 0 for the others.
+/// Returns the kernels that a mesh has, a prefix of kKernels: all of them, or only the product for a matrix
+/// or graph (see StoredMatrix). Arrays by kernel have 0 for the other kernels.
 std::span<const Kernel> kernels_of(const Mesh& mesh);
 
 /// A mesh in one order, prepared to run its kernels repeatedly: a matrix on the vertex graph, the elements
@@ -50,12 +50,12 @@ std::span<const Kernel> kernels_of(const Mesh& mesh);
 /// is trivial.
 class KernelBench : public Polymorphic {
  public:
-  /// Returns those that it runs: the first ones of kKernels.
+  /// Returns the kernels that it runs, a prefix of kKernels.
   [[nodiscard]] virtual std::span<const Kernel> kernels() const { return kKernels; }
 
-  /// Shares the work of all runs from now on among so many threads, ≥ 1, by ranges of vertices. Each thread
-  /// computes the elements and springs that touch its range, and adds to no other: the results are the same,
-  /// bit for bit.
+  /// Shares the work of all later runs among so many threads, ≥ 1, by ranges of vertices. Each thread
+  /// computes the elements and springs that touch its range, and adds to no other range. The results have the
+  /// same bits as on one thread.
   virtual void share(int threads) = 0;
 
   /// Runs a kernel once; clears its results first.
@@ -83,8 +83,8 @@ class KernelBench : public Polymorphic {
 std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mesh& mesh, const CsrGraph& graph,
                                              int threads = 1);
 
-/// The points, each moved by waves of 2 % of the mesh's size along every axis: strains of up to 0.2, however
-/// fine the mesh. O(n).
+/// Returns the points, moved along every axis by waves of 2 % of the mesh's size and stretched by 3 %:
+/// strains of up to about 0.2 for any mesh. O(n).
 std::vector<Point> displaced(std::span<const Point> points);
 
 /// Returns the bytes that a vector holds.

@@ -32,7 +32,7 @@ struct Plan {
   int warm_ups = 0;  ///< runs before it that do not count
 };
 
-/// Returns the seconds of a run.
+/// Takes a sample; returns the mean seconds of its runs.
 double sample(KernelBench& bench, Kernel kernel, const Plan& plan, bool processor_time,
               SteadinessWatch& watch) {
   for (int i = 0; i < plan.warm_ups; ++i) bench.run(kernel);
@@ -46,8 +46,8 @@ double sample(KernelBench& bench, Kernel kernel, const Plan& plan, bool processo
 Plan plan_samples(KernelBench& bench, Kernel kernel, double sample_seconds) {
   constexpr double kMostRepeats = 1e5;
   constexpr std::size_t kMostRuns = 12;
-  // a kernel that runs longer than this many samples streams far more than caches keep, so that its first run
-  // prepares the next one as well as any; twice as long, as that first run is longer than others
+  // a kernel that runs longer than this many samples streams far more than the caches hold, so it needs no
+  // warm-up; a first run counts as long only beyond twice that, because first runs take longer
   constexpr double kLong = 5.0;
   std::vector<double> seconds;
   double best = std::numeric_limits<double>::infinity();
@@ -131,7 +131,7 @@ Timings time_orders(Index orders, const PrepareOrder& prepare, const TimingOptio
   const std::unique_ptr<KernelBench> reference = prepare(0);
   const std::size_t memory = options.memory_bytes > 0 ? options.memory_bytes : usable_memory() / 2;
   const std::size_t fitting = memory / std::max<std::size_t>(1, reference->bytes());
-  // beside the reference
+  // number of benches that fit beside the reference
   const Index group = static_cast<Index>(std::clamp<std::size_t>(fitting, 2, kMaxIndex)) - 1;
   const Index groups = std::max<Index>(1, (orders - 1 + group - 1) / group);
 

@@ -13,7 +13,7 @@ namespace meshorder {
 
 /// How long and how often kernels run.
 struct TimingOptions {
-  /// No round begins that is expected to end after this time, without preparation and warm-up.
+  /// No round begins that is expected to end later than this; preparing the orders is not counted.
   double budget_seconds = 12.0;
   int min_rounds = 3;  ///< even beyond the budget
   int max_rounds = 25;
@@ -54,16 +54,16 @@ struct Timings {
 /// Returns the kernels of order i, prepared.
 using PrepareOrder = std::function<std::unique_ptr<KernelBench>(Index)>;
 
-/// Times every kernel that the prepared orders run, all of them the same, in interleaved rounds, so that
-/// changes of the machine's speed affect all orders alike: a round takes a sample of every kernel in every
-/// order, kernel by kernel, and the next round begins with the next order. The first runs of a sample find
-/// another order's data in the caches and do not count: as many as it takes to settle (`runs_to_settle`),
-/// none of a kernel that takes longer than five samples. The first bench is the reference of the speedups.
+/// Times every kernel of the prepared orders, which must all run the same kernels, in interleaved rounds, so
+/// that changes of the machine's speed affect all orders alike. A round takes a sample of every kernel in
+/// every order, kernel by kernel; the next round begins with the next order. The first runs of a sample find
+/// another order's data in the caches and do not count: `runs_to_settle` of them, but none if a run takes
+/// longer than five samples. The first bench is the reference of the speedups.
 Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options = {});
 
-/// The same for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0 is
-/// the reference. If all of them do not fit into the memory allowed, they are timed in groups, each with the
-/// reference, and share the budget; at least two benches must fit.
+/// As above, for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0 is
+/// the reference. If not all of them fit into the memory allowed, they are timed in groups, each with the
+/// reference, and the groups share the budget. Two benches are always held, even beyond that memory.
 Timings time_orders(Index orders, const PrepareOrder& prepare, const TimingOptions& options = {});
 
 /// A function that times orders as `time_orders` does.

@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// The lengths of the columns.
+/// Returns the Euclidean lengths of the columns.
 std::vector<double> lengths_of(const Rows& a) {
   std::vector<double> lengths(a.columns, 0.0);
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -23,7 +23,7 @@ std::vector<double> lengths_of(const Rows& a) {
   return lengths;
 }
 
-/// aᵀa of the columns divided by their lengths; rows and columns of zeros where these are 0.
+/// Returns aᵀa after the columns are divided by their lengths; rows and columns of zero columns are 0.
 std::vector<double> scaled_gram(const Rows& a, const std::vector<double>& lengths) {
   const std::size_t n = a.columns;
   std::vector<double> gram(n * n, 0.0);
@@ -41,11 +41,11 @@ std::vector<double> scaled_gram(const Rows& a, const std::vector<double>& length
   return gram;
 }
 
-// of the square of a sine between a column and the others, below which it depends on them
+// a column depends on the others if the squared sine of its angle to their span is below this
 constexpr double kDependent = 1e-11;
 
-/// Solves the equations of the chosen unknowns by Cholesky's factorisation. Returns false if they depend on
-/// each other.
+/// Solves the normal equations of the chosen unknowns by Cholesky's factorisation. Returns false if their
+/// columns depend on each other.
 bool solve_chosen(const std::vector<double>& gram, const std::vector<double>& right,
                   const std::vector<std::size_t>& chosen, std::vector<double>& x) {
   const std::size_t n = right.size();
@@ -91,7 +91,7 @@ std::vector<double> non_negative_least_squares(const Rows& a, std::span<const do
   std::vector<bool> refused(n, false);  // the unknowns that depend on those chosen, until these change
   std::vector<std::size_t> chosen;
   for (std::size_t step = 0; step < 10 * n; ++step) {
-    // the unknown whose growth reduces the error most
+    // choose the unknown whose growth reduces the error fastest
     std::size_t best = n;
     double steepest = 1e-12 * largest;
     for (std::size_t j = 0; j < n; ++j) {
@@ -112,7 +112,7 @@ std::vector<double> non_negative_least_squares(const Rows& a, std::span<const do
       continue;
     }
     refused.assign(n, false);
-    // back to where all are positive, without those that become 0 on the way
+    // go from x towards the solution until an unknown becomes 0, drop that unknown and solve again
     while (std::any_of(solution.begin(), solution.end(), [](double value) { return value <= 0; })) {
       double share = 1;
       std::size_t first = 0;
@@ -137,7 +137,7 @@ double condition_number(const Rows& a) {
   const std::vector<double> lengths = lengths_of(a);
   const std::size_t n = a.columns;
   std::vector<double> m = scaled_gram(a, lengths);
-  // Jacobi's rotations make the matrix of products diagonal
+  // Jacobi rotations diagonalise the Gram matrix
   for (int sweep = 0; sweep < 60; ++sweep) {
     double beside = 0;
     for (std::size_t p = 0; p < n; ++p) {
@@ -173,7 +173,7 @@ double condition_number(const Rows& a) {
     largest = std::max(largest, m[j * n + j]);
   }
   if (largest == 0) return 1;
-  // what is left of a smaller one is rounding
+  // a smaller eigenvalue is only rounding error
   if (!(smallest > 1e-14 * largest)) return std::numeric_limits<double>::infinity();
   return std::sqrt(largest / smallest);
 }

@@ -16,7 +16,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the caches of those sizes that are larger than all before them, cut to whole lines.
+/// Returns the caches of these sizes, rounded down to whole lines; skips sizes not above those before them.
 Caches ascending(const std::vector<Offset>& sizes) {
   Caches caches;
   Offset largest = 0;

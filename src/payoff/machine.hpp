@@ -24,16 +24,16 @@ Caches caches_of_the_paper();
 Caches parse_caches(std::string_view text);
 
 /// Returns the version of this program, its compiler with the options, and the instruction set that its
-/// kernels chose here: times of another build are other times.
+/// kernels chose here. Times measured with another build are not comparable.
 std::string build_of_this_program();
 
-/// Returns processors to bind `threads` threads to, ascending: the last ones that this process may use, one a
-/// core as long as there are enough cores; systems tend to serve interrupts on the first. Empty if the system
-/// does not report its processors or has fewer than `threads`.
+/// Returns processors to bind `threads` threads to, ascending. These are the last ones that this process may
+/// use, because systems tend to serve interrupts on the first; one per core while there are enough cores.
+/// Empty if the system does not report its processors or has fewer than `threads`.
 std::vector<int> choose_processors(int threads);
 
-/// Binds this process, and all processes that it starts later, to the processors. Returns false if the system
-/// refuses.
+/// Binds the calling thread, and the threads and processes that it starts later, to the processors. Returns
+/// false if the system refuses.
 bool bind_to(const std::vector<int>& processors);
 
 }  // namespace meshorder

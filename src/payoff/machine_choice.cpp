@@ -19,7 +19,7 @@ namespace {
 constexpr std::array kShipped{ShippedMachine{"zen3", zen3_costs}};
 constexpr std::string_view kThis = "this";
 
-/// The name itself; for an empty one MESHORDER_MACHINE, or "this" where that is not set or empty.
+/// Returns the name or, if it is empty, MESHORDER_MACHINE, or "this" if that is not set or empty.
 std::string asked_name(std::string_view name) {
   if (!name.empty()) return std::string(name);
   const char* const variable = std::getenv("MESHORDER_MACHINE");

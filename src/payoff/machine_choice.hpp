@@ -17,7 +17,7 @@ struct ShippedMachine {
   const CostModel& (*costs)();
 };
 
-/// Returns them. The first one's costs serve for a machine that is not calibrated.
+/// Returns the shipped machines. The costs of the first one are used for a machine that is not calibrated.
 std::span<const ShippedMachine> shipped_machines();
 
 /// Returns " on 2 threads", nothing for one.
@@ -25,12 +25,12 @@ std::string on_threads(int threads);
 
 /// The machine that times are predicted for.
 struct MachineChoice {
-  std::string name;        ///< a shipped machine's, or "this"
-  CostModel model;         ///< of one thread, or of all
+  std::string name;        ///< name of a shipped machine, or "this"
+  CostModel model;         ///< costs on one thread, or on all
   std::string calibrated;  ///< "2026-11-22" if the costs were measured here; empty if they are shipped ones
-  /// Shipped costs are used with the caches that this machine reports, because it is not calibrated.
+  /// True if this machine is not calibrated: `model` has shipped costs with this machine's reported caches.
   bool stands_in = false;
-  /// By kernel, the share by which two times of one problem differ; 0 where not known.
+  /// By kernel, the relative difference of two timings of one problem; 0 if not known.
   std::array<double, kKernels.size()> floor{};
   std::string fault;  ///< see StoredCalibration
 
@@ -39,14 +39,14 @@ struct MachineChoice {
   [[nodiscard]] std::string in_words() const;
 };
 
-/// Returns the shipped machine of a name; for "this", a calibration of this machine that was stored for this
-/// build, else the first shipped machine, with this machine's caches. An empty name means
-/// what the environment variable MESHORDER_MACHINE says, and "this" where it is not set. Throws
-/// InvalidArgument, which names the nearest one, for unknown names.
+/// Returns the shipped machine of that name. For "this", returns the stored calibration of this machine and
+/// build, or not_calibrated() if there is none. An empty name means the value of the environment variable
+/// MESHORDER_MACHINE, or "this" if it is not set. Throws InvalidArgument for an unknown name; the message
+/// suggests the nearest one.
 ///
-/// With `all_threads` the costs are those of kernels that all threads share, which only a calibration of this
-/// machine has: throws InvalidArgument for a shipped machine and where this one was calibrated on another
-/// number of threads than there are now; a machine that is not calibrated gets the costs of one thread.
+/// With `all_threads` the costs are those of kernels that all threads share. Only a calibration has them:
+/// throws InvalidArgument for a shipped machine on more than one thread, and if this machine was calibrated
+/// on another number of threads than there are now. Without a calibration the costs are of one thread.
 MachineChoice choose_machine(std::string_view name = {}, bool all_threads = false);
 
 /// Returns what choose_machine returns for "this" where this machine is not calibrated.

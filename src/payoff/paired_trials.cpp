@@ -11,9 +11,9 @@
 namespace meshorder {
 namespace {
 
-constexpr std::size_t kFewestRounds = 3;  // before an order is dropped: the median then ignores an outlier
-constexpr std::size_t kFewestPairs = 6;   // before an interval is believed
-constexpr double kTail = 0.003;           // of a single check, on each side
+constexpr std::size_t kFewestRounds = 3;  // rounds before the first drop: a median of 3 ignores an outlier
+constexpr std::size_t kFewestPairs = 6;   // pairs before an interval is computed
+constexpr double kTail = 0.003;           // probability on each side of the interval of a single check
 constexpr double kTrimmed = 0.2;
 constexpr double kBetweenChecks = 1.2;
 constexpr double kLeastSpread = 0.003;
@@ -35,8 +35,8 @@ double student_tail(double t, int degrees) {
   return (1 - within) / 2;
 }
 
-/// Returns the standard deviation of values that few outliers disturb, from the median of their distances to
-/// their median.
+/// Returns a robust standard deviation, which a few outliers hardly change: the scaled median of the values'
+/// distances from their median.
 double spread(const std::vector<double>& values) {
   constexpr double kOfNormal = 1.4826;
   const double middle = median(values);
@@ -69,7 +69,7 @@ TimeRatio time_ratio_of(std::vector<double> log_ratios) {
   const auto last = log_ratios.end() - cut;
   const auto kept = static_cast<double>(last - first);
   const double mean = std::accumulate(first, last, 0.0) / kept;
-  std::fill(log_ratios.begin(), first, *first);  // the variance is that of the values with the ends moved in
+  std::fill(log_ratios.begin(), first, *first);  // winsorise: the variance is that of the values clamped
   std::fill(last, log_ratios.end(), *(last - 1));
   const double middle =
       std::accumulate(log_ratios.begin(), log_ratios.end(), 0.0) / static_cast<double>(log_ratios.size());

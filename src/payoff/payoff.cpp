@@ -30,7 +30,7 @@ void check_kernels_run(const Mesh& mesh) {
           : "advise: the mesh has no lines, surfaces or volumes, which the kernels work on");
 }
 
-/// Throws InvalidArgument for a method that goes by the coordinates that a matrix lacks.
+/// Throws InvalidArgument if a method needs coordinates and the mesh is a matrix without them.
 void check_places(const Mesh& mesh, const std::vector<MeshMethods>& methods) {
   if (stored_matrix(mesh) == nullptr || has_places(mesh)) return;
   for (const MeshMethods& method : methods) {

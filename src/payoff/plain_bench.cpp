@@ -13,7 +13,7 @@
 namespace meshorder {
 namespace {
 
-/// Calls `keep(first)` for each group of `size` vertices, beginning at `first`, that has one of the range.
+/// Calls `keep(first)` for each group of `size` vertices, beginning at `first`, that has an owned vertex.
 template <class Keep>
 void for_each_owned(std::span<const Index> vertices, std::size_t size, const plain::VertexRange& owned,
                     Keep keep) {
@@ -69,7 +69,7 @@ PlainBench::PlainBench(const Mesh& mesh, const CsrGraph& graph) : positions_(coo
   forces_.resize(positions_.size());
   for (std::size_t v = 0; v < mesh.points.size(); ++v) x_.push_back(positions_[3 * v] - mesh.points[v][0]);
   y_.resize(x_.size());
-  // the matrix that spmv multiplies by
+  // computes the matrix for spmv
   run(Kernel::assembly);
 }
 
@@ -100,7 +100,7 @@ void PlainBench::run_part(Kernel kernel, const Owned& owned, const Share& share)
   const auto clear = [](std::vector<double>& values, Offset first, Offset last) {
     std::fill(values.begin() + first, values.begin() + last, 0.0);
   };
-  // calls it with the number of corners of a simplex as a constant
+  // calls `call` with the number of corners of a simplex as a compile-time constant
   const auto by_corners = [&](auto call) {
     if (corners_ == 4) call(std::integral_constant<int, 4>{});
     if (corners_ == 3) call(std::integral_constant<int, 3>{});
@@ -147,7 +147,7 @@ double PlainBench::redundancy() const {
 }
 
 double PlainBench::streamed_bytes(Kernel kernel) const {
-  // what is cleared and then added to is written, read and written again
+  // arrays that are cleared and then added to are written, read and written again
   const std::size_t vertices = bytes_of(positions_) + 3 * bytes_of(forces_);
   std::size_t bytes = 0;
   switch (kernel) {

@@ -25,7 +25,7 @@ class PlainBench final : public KernelBench {
   [[nodiscard]] double redundancy() const override;
 
  private:
-  /// What one thread computes, and adds to its vertices.
+  /// The elements and edges that one thread computes; it adds only to the vertices `owned`.
   struct Share {
     plain::VertexRange owned;
     std::vector<Index> simplices;
@@ -37,7 +37,7 @@ class PlainBench final : public KernelBench {
   void run_part(Kernel kernel, const Owned& owned, const Share& share);
 
   int corners_;  ///< of each simplex; 1 if there are none
-  Share all_;    ///< what one thread computes alone
+  Share all_;    ///< all the work, for one thread
   std::vector<Offset> starts_;
   std::vector<Index> columns_;
   std::vector<double> values_;

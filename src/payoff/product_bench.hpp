@@ -8,8 +8,8 @@
 
 namespace meshorder {
 
-/// The product with a matrix of a given pattern, a number for each entry, as `PlainBench` has it: no entry is
-/// added. All values are 1 and vector component i is i + 1, which no time depends on.
+/// The product with a matrix of exactly this pattern, in the storage of `PlainBench` (one number per entry).
+/// All values are 1 and vector component i is i + 1; times do not depend on these.
 class ProductBench final : public KernelBench {
  public:
   explicit ProductBench(EntryPattern pattern);
@@ -30,7 +30,7 @@ class ProductBench final : public KernelBench {
   std::vector<double> values_;
   std::vector<double> x_;
   std::vector<double> y_;
-  std::vector<Index> bounds_;  ///< of the threads' rows; empty for one thread
+  std::vector<Index> bounds_;  ///< bounds of the threads' rows; empty for one thread
 };
 
 }  // namespace meshorder

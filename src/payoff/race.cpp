@@ -11,11 +11,11 @@
 namespace meshorder {
 namespace {
 
-/// Orders that are timed against the mesh's own.
+/// Number of orders that are timed beside the mesh's own.
 constexpr std::size_t kInRace = 3;
 
-/// Returns the methods that may beat what `auto` takes, `auto` first. The entries of a matrix stay where they
-/// are in its file, and without coordinates no method by them takes part.
+/// Returns the methods that take part, `auto` first. Entries of a matrix keep their order; methods that need
+/// coordinates take part only if there are any.
 std::vector<MeshMethods> contenders(const Mesh& mesh) {
   const bool is_matrix = stored_matrix(mesh) != nullptr;
   const std::string elements = is_matrix ? "original" : "lexmax";

@@ -15,29 +15,29 @@ namespace meshorder {
 
 struct RaceOptions {
   OrderOptions ordering = {};                ///< the race is for `ordering.workload`
-  double graph_seconds = 0;                  ///< time that the vertex graph took
-  MachineChoice machine = choose_machine();  ///< whose predictions choose what is timed, on as many threads
-  OrderTimer timer = time_orders;            ///< nothing: predictions decide
+  double graph_seconds = 0;                  ///< time that building the vertex graph took
+  MachineChoice machine = choose_machine();  ///< its predictions choose the orders to time, on its threads
+  OrderTimer timer = time_orders;            ///< empty: predictions decide
 };
 
-/// The result of timing or predicting other orders of a mesh than its own.
+/// The result of timing or predicting several orders of a mesh.
 struct Race {
   Advice advice;                      ///< its candidates are the orders that were timed, or predicted best
   std::vector<double> factors;        ///< as `factor_for` returns them, by candidate
   std::optional<std::size_t> winner;  ///< place of a candidate; nothing: the mesh's own order
-  std::string reason;                 ///< why that won, a sentence
+  std::string reason;                 ///< why the winner won, a sentence
 
-  /// Returns the methods of the winner, "original" of the mesh's own order.
+  /// Returns the methods of the winner; "original" if the mesh's own order won.
   [[nodiscard]] MeshMethods methods() const;
 };
 
-/// Times the kernels, in half a second an order, in a mesh's own order, in what `auto` takes and in the two
-/// predicted to be the best of five others, and finds the fastest; without a timer, by predicted
-/// times. `graph` is the vertex graph of `mesh`. Throws InvalidArgument for `bandwidth` and `fill`, which
-/// times of kernels do not decide. O(the orders).
+/// Times the kernels in a mesh's own order, in that of `auto` and in the two of five others with the best
+/// predictions, for half a second each, and finds the fastest. Without a timer, predicted times decide.
+/// `graph` is the vertex graph of `mesh`. Throws InvalidArgument for `bandwidth` and `fill`, which are not
+/// about times of kernels.
 Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options = {});
 
-/// Says in an order by the methods of a race that this chose them.
+/// Sets the reasons of an order that was computed by the methods of a race.
 void give_reasons(const Race& race, MeshOrder& order);
 
 }  // namespace meshorder

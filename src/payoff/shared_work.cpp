@@ -10,7 +10,7 @@
 namespace meshorder {
 namespace {
 
-/// Counts elements or edges and the threads that compute each of them.
+/// Counts elements or edges, and how often threads compute them.
 class WorkCount {
  public:
   WorkCount(const CsrGraph& graph, int threads) {

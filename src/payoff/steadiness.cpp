@@ -19,14 +19,14 @@ namespace {
 constexpr double kMostWaiting = 0.05;
 constexpr double kMostPace = 0.1;
 constexpr double kMostRepeat = 0.05;
-/// Returns how many seconds a run of a settled kernel takes at most, judged by the fastest of these
+/// Returns the most seconds that a run of a settled kernel may take: 5 % more than the fastest of these
 /// runs.
 double most_when_settled(const std::vector<double>& seconds) {
   constexpr double kSettled = 1.05;
   return kSettled * *std::min_element(seconds.begin(), seconds.end());
 }
 
-/// A chain of operations of which each waits for the one before: its time is the processor's clock alone.
+/// Computes a chain of dependent operations, whose time depends only on the processor's clock rate.
 std::uint64_t fixed_arithmetic() {
   constexpr int kSteps = 200'000;
   std::uint64_t value = 1;

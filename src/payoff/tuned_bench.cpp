@@ -18,7 +18,7 @@
 namespace meshorder {
 namespace {
 
-// the values do not matter to the time; these are soft rubber's
+// soft rubber; the values do not affect the times
 const Elasticity kMaterial{MaterialModel::stvk, Tangent::exact, Lame::from_young(1e6, 0.45), {}, {}};
 constexpr double kStiffness = 1e3;
 
@@ -37,7 +37,7 @@ TunedBench::TunedBench(const Mesh& mesh, const CsrGraph& graph)
   for (std::size_t v = 0; v < moved.size(); ++v) {
     for (std::size_t c = 0; c < 3; ++c) x_[3 * v + c] = moved[v][c] - mesh.points[v][c];
   }
-  // the matrix that spmv multiplies by
+  // computes the matrix for spmv
   run(Kernel::assembly);
 }
 
@@ -138,7 +138,7 @@ std::span<const double> TunedBench::result(Kernel kernel) const {
 }
 
 double TunedBench::streamed_bytes(Kernel kernel) const {
-  // what is cleared and then added to is written, read and written again
+  // arrays that are cleared and then added to are written, read and written again
   const std::size_t vertices = bytes_of(positions_) + 3 * bytes_of(forces_);
   const std::size_t elements = bytes_of(rest_.vertices) + bytes_of(rest_.geometry);
   std::size_t bytes = 0;

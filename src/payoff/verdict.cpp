@@ -36,13 +36,13 @@ std::string times(double count, const char* what) {
   return fmt::format("{} {}{}", with_commas(std::lround(count)), what, count == 1 ? "" : "s");
 }
 
-/// Returns the kernel that loses most in the mesh's order.
+/// Returns the place of the kernel that could gain most over the mesh's own order.
 std::size_t worst(const std::array<KernelAdvice, kKernels.size()>& kernels) {
   const auto less = [](const KernelAdvice& a, const KernelAdvice& b) { return a.factor < b.factor; };
   return static_cast<std::size_t>(std::max_element(kernels.begin(), kernels.end(), less) - kernels.begin());
 }
 
-/// Returns the kernels that run slower in a candidate: "; it makes the springs kernel 1.2× slower".
+/// Returns a clause on the kernels that run slower in a candidate: "; it makes the springs kernel 1.2×
 std::string losses(const Advice& advice, std::size_t candidate) {
   std::string words;
   const KernelMilliseconds& ordered = advice.candidates[candidate].costs.best_known();
@@ -55,15 +55,15 @@ std::string losses(const Advice& advice, std::size_t candidate) {
   return words;
 }
 
-/// Whether by how much a kernel gains is in doubt: the times are not to be trusted, and the gain is less than
-/// four times what two timings of the same differ by.
+/// Returns whether the size of a kernel's gain is in doubt: the times are unreliable, and the gain is less
+/// than four times the difference of repeated timings.
 bool is_vague(const Advice& advice, std::size_t kernel, double factor) {
   constexpr double kBeyondNoise = 4;
   constexpr double kLeastNoise = 0.05;
   return !advice.doubt.empty() && factor - 1 < kBeyondNoise * std::max(kLeastNoise, advice.floor[kernel]);
 }
 
-/// The same of the mean of a workload's kernels.
+/// As above, for the mean gain of a workload's kernels.
 bool is_vague(const Advice& advice, Workload workload, double factor) {
   for (std::size_t k = 0; k < kernels_of(advice).size(); ++k) {
     const bool counts = workload == Workload::all || k == kernel_of(workload);
@@ -72,8 +72,8 @@ bool is_vague(const Advice& advice, Workload workload, double factor) {
   return false;
 }
 
-/// Returns after how many runs of a kernel, which gains, a candidate has paid for itself: "17 runs of the
-/// springs kernel".
+/// Returns the number of runs of a kernel after which a candidate that makes it faster has paid for itself:
+/// "17 runs of the springs kernel".
 std::string runs_to_pay(const Advice& advice, const Candidate& candidate, std::size_t kernel) {
   const double saved_ms = advice.as_is.costs.best_known()[kernel] - candidate.costs.best_known()[kernel];
   return fmt::format("{} of the {} kernel", times(std::ceil(1e3 * candidate.order_seconds / saved_ms), "run"),
@@ -87,7 +87,7 @@ std::string runs_of(const Advice& advice, Workload workload) {
   return k < kKernels.size() ? fmt::format("the {} kernel runs", kKernelTitles[k]) : "the kernels run";
 }
 
-/// The verdict where it is: the direction alone.
+/// Returns the verdict if the size of the gain is in doubt: it says only which order is faster.
 std::string in_doubt(const std::string& runs, const char* how, const std::string& on,
                      const std::string& command) {
   return fmt::format(
@@ -96,7 +96,7 @@ std::string in_doubt(const std::string& runs, const char* how, const std::string
       runs, how, on, command);
 }
 
-/// The verdict on a matrix.
+/// Returns the verdict on a matrix.
 std::string of_products(const Advice& advice) {
   const bool measured = advice.as_is.costs.measured.has_value();
   const std::string on = measured ? on_threads(advice.threads) : "";
@@ -155,7 +155,7 @@ std::string comparison_in_words(const Advice& advice, Workload workload) {
   const std::optional<std::size_t> best = winner_for(told, advice);
   if (!best) {
     const std::size_t k = worst(advice.kernels);
-    // the best of many orders by one kernel alone is above 1 by chance, too
+    // require twice the margin: the best of many orders for one kernel exceeds 1 by chance, too
     if (is_mean && advice.kernels[k].factor > 1 + 2 * (same_time(advice, kKernels[k]) - 1)) {
       return fmt::format("no order is better for all kernels; best for the {} kernel is {}", kKernelTitles[k],
                          order_in_words(advice.candidates[advice.kernels[k].candidate]));
