@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kTag = 0;
 
-/// Returns what an exception says, in the words of the command.
+/// Converts an exception to an Error with its message.
 Error in_words(const std::exception_ptr& fault) {
   try {
     std::rethrow_exception(fault);
@@ -47,7 +47,7 @@ std::string name_of_mpi() {
   std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
   int length = 0;
   MPI_Get_library_version(text.data(), &length);
-  // its packager and date follow, or lines of settings
+  // cut off the packager and date, or lines of settings
   const std::string name(text.data(), static_cast<std::size_t>(length));
   return name.substr(0, name.find_first_of(",\n"));
 }
@@ -85,7 +85,7 @@ void Communicator::exchange_bytes(const std::byte* sent, const std::vector<Offse
                                   std::size_t size_of_value) const {
   const auto width = static_cast<Offset>(size_of_value);
   std::vector<MPI_Request> requests;
-  // messages from one rank to another arrive in the order in which they were sent
+  // chunks need no number: messages from one rank to another arrive in the order in which they were sent
   const auto in_chunks = [&](const std::vector<Offset>& starts, int rank, const auto& start_message) {
     const Offset end = starts[static_cast<std::size_t>(rank) + 1] * width;
     for (Offset at = starts[static_cast<std::size_t>(rank)] * width; at < end; at += chunk_limit_)
@@ -140,7 +140,7 @@ void Communicator::gather_bytes(const std::byte* own, std::byte* all, std::size_
 }
 
 std::vector<std::int64_t> Communicator::sums(std::vector<std::int64_t> own) const {
-  // whole numbers: the order of adding up is the same to them
+  // sums of integers do not depend on the sequence of additions
   const auto count = static_cast<Offset>(own.size());
   const Offset most = std::max<Offset>(1, chunk_limit_ / Offset{sizeof(std::int64_t)});
   for (Offset at = 0; at < count; at += most) {

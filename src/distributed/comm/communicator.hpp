@@ -18,10 +18,10 @@
 
 namespace meshorder::distributed {
 
-/// MPI, for as long as this object lives. One a process, made before any `Communicator`.
+/// Initialises MPI and finalises it at the end. A process makes one, before any `Communicator`.
 class Session {
  public:
-  /// @throws Unavailable where MPI lets only one thread of a process call it: PT-Scotch needs more
+  /// @throws Unavailable if MPI does not support calls from several threads, which PT-Scotch needs
   Session(int& argc, char**& argv);
   ~Session();
   Session(const Session&) = delete;
@@ -29,19 +29,19 @@ class Session {
   Session& operator=(const Session&) = delete;
   Session& operator=(Session&&) = delete;
 
-  /// Ends all processes, where this one cannot go on and the others may wait for it.
+  /// Ends all processes. For a process that cannot go on while others may wait for it.
   [[noreturn]] static void abort(int status) noexcept;
 };
 
-/// Returns the name and version of the MPI library, as "Open MPI v4.1.4".
+/// Returns the name and version of the MPI library: "Open MPI v4.1.4".
 std::string name_of_mpi();
 
-/// An exception of one rank, thrown on all of them, so that no rank waits for another.
+/// The exception of one rank, thrown on all ranks, so that no rank waits for another.
 struct SharedError : Error {
   using Error::Error;
 };
 
-/// Values to or from each rank: those of rank r are at starts[r] … starts[r + 1] − 1.
+/// Values to or from each rank: those of rank r are values[starts[r]] … values[starts[r + 1] − 1].
 template <class T>
 struct Parcels {
   std::vector<T> values;
@@ -53,11 +53,11 @@ struct Parcels {
   }
 };
 
-/// The ranks that work together. All functions but `rank`, `size` and `set_chunk_limit` have to be called by
-/// every rank, in the same order. Sums do not depend on timing.
+/// A group of ranks. Every rank has to call all functions in the same sequence, except `handle`, `rank`,
+/// `size`, `is_root` and those of the chunk limit. Sums do not depend on timing.
 class Communicator {
  public:
-  /// All ranks of the session, or those of another communicator, which stays the caller's.
+  /// Makes a group of all ranks of the session or of an MPI communicator, which it duplicates.
   explicit Communicator(MPI_Comm ranks = MPI_COMM_WORLD);
   ~Communicator();
   Communicator(const Communicator&) = delete;
@@ -73,16 +73,16 @@ class Communicator {
   /// Returns how many ranks share this one's memory, itself included.
   [[nodiscard]] int ranks_on_this_machine() const;
 
-  /// Sets the most bytes of one message, ≥ 1; MPI 3 counts them by an int.
+  /// Sets the most bytes of one message, 1 … 2^31 − 1: MPI 3 counts them by an int.
   void set_chunk_limit(Offset bytes) noexcept { chunk_limit_ = bytes; }
   [[nodiscard]] Offset chunk_limit() const noexcept { return chunk_limit_; }
 
-  /// Sends each rank its parcel, and returns those that the ranks sent to this one. Chunked, so that a parcel
-  /// may have more than 2 GiB. O(values + ranks).
+  /// Sends each rank its parcel, and returns those that the ranks sent to this one. Messages are chunked, so
+  /// that a parcel may have more than 2 GiB. O(values + ranks).
   ///
-  /// @param values  those for rank r at starts[r] … starts[r + 1] − 1
+  /// @param values  values[starts[r]] … values[starts[r + 1] − 1] go to rank r
   /// @param starts  ranks + 1, ascending
-  /// @throws SharedError where a rank has no memory for what it gets
+  /// @throws SharedError if a rank lacks memory for the values that it receives
   template <class T>
   [[nodiscard]] Parcels<T> exchange(std::span<const T> values, const std::vector<Offset>& starts) const {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -106,10 +106,10 @@ class Communicator {
     return exchange(std::span<const T>(own), starts).values;
   }
 
-  /// Returns this rank's part of the root's values: starts[r] … starts[r + 1] − 1 are rank r's.
+  /// Returns this rank's part of the root's values: rank r gets those at starts[r] … starts[r + 1] − 1.
   /// Throws as `exchange`.
   ///
-  /// @param at_root  not looked at elsewhere
+  /// @param at_root  ignored on other ranks
   /// @param starts   ranks + 1, ascending, the same on all ranks
   template <class T>
   [[nodiscard]] std::vector<T> scattered_from_root(const std::vector<T>& at_root,
@@ -129,7 +129,7 @@ class Communicator {
     return at_root;
   }
 
-  /// The same for texts without zero bytes.
+  /// Returns the root's texts, which must not contain zero bytes, on all ranks.
   [[nodiscard]] std::vector<std::string> broadcast(const std::vector<std::string>& at_root) const;
 
   /// Returns the value of each rank, on all of them. O(ranks).
@@ -142,7 +142,7 @@ class Communicator {
     return all;
   }
 
-  /// Returns the sum of the ranks' values, added up in rank order. `Sum` needs a zero by `Sum{}` and +=.
+  /// Returns the sum of the ranks' values, added up in rank order. `Sum{}` must be zero; `Sum` needs +=.
   template <class Sum>
   [[nodiscard]] Sum sum(const Sum& own) const {
     Sum total{};
@@ -153,9 +153,9 @@ class Communicator {
   /// Returns the sums of the ranks' values, entry by entry; `own` has the same size on all ranks.
   [[nodiscard]] std::vector<std::int64_t> sums(std::vector<std::int64_t> own) const;
 
-  /// Does work that this rank does by itself, and returns what the work returns.
+  /// Calls `work` on this rank and returns its result. `work` must not communicate.
   ///
-  /// @throws SharedError on all ranks if it throws on one
+  /// @throws SharedError on all ranks if `work` throws on one
   template <class Work>
   auto together(const Work& work) const {  // NOLINT(modernize-use-nodiscard): work may return nothing
     using Result = std::invoke_result_t<const Work&>;
@@ -179,7 +179,7 @@ class Communicator {
     }
   }
 
-  /// As `together`, but only the root does the work; the others get `Result{}`.
+  /// As `together`, but only the root calls `work`; the other ranks return `Result{}`.
   template <class Work>
   auto at_root(const Work& work) const {  // NOLINT(modernize-use-nodiscard): work may return nothing
     using Result = std::invoke_result_t<const Work&>;

@@ -8,7 +8,7 @@ namespace meshorder::distributed {
 
 namespace {
 
-/// Where the numbers of each rank begin among ascending numbers of the layout, and the end of the last one's.
+/// Returns, for ascending numbers of the layout, the place of each owner's first number, and at last the end.
 std::vector<Offset> starts_by_owner(const Layout& layout, const std::vector<GlobalIndex>& numbers) {
   std::vector<Offset> starts(1, 0);
   for (int rank = 0; rank < layout.ranks(); ++rank) {

@@ -13,25 +13,25 @@
 
 namespace meshorder::distributed {
 
-/// Entries of other ranks that this rank has to know. Made once, asked for as many values of each as are
-/// wanted.
+/// The numbers whose values this rank needs from their owners. It is set up once and can then fetch any
+/// number of arrays of values.
 class Halo {
  public:
   /// Every rank has to call it. O(numbers + ranks).
   ///
-  /// @param layout   who owns what
-  /// @param numbers  of the entries to know, in any order; own ones and repeats are allowed
+  /// @param layout   the owners of the numbers
+  /// @param numbers  whose values are needed, in any order; own ones and repeats are allowed
   /// @throws as `Communicator::exchange`
   Halo(const Communicator& communicator, const Layout& layout, std::span<const GlobalIndex> numbers);
 
-  /// Returns the numbers that were asked for, ascending, each once.
+  /// Returns the numbers that this rank needs, ascending, each once.
   [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return wanted_.numbers(); }
-  /// Returns the numbers of this rank that others or itself asked for, some perhaps several times.
+  /// Returns this rank's own numbers that ranks need, grouped by rank; some perhaps several times.
   [[nodiscard]] const std::vector<GlobalIndex>& asked_of_this_rank() const noexcept { return asked_.values; }
-  /// Returns the place of a number among those that were asked for. O(1) or O(log numbers), as `NumberSet`.
+  /// Returns the place of a number in `numbers()`. O(1) or O(log numbers), as `NumberSet`.
   [[nodiscard]] std::size_t position(GlobalIndex number) const { return wanted_.position(number); }
 
-  /// Returns the owners' values of the numbers, one for each. Every rank has to call it.
+  /// Returns the owners' values, one for each of `numbers()`. Every rank has to call it.
   ///
   /// @param own  a value for each number that this rank owns
   /// @throws as `Communicator::exchange`
@@ -51,7 +51,7 @@ class Halo {
     return fetch(std::span<const T>(own));
   }
 
-  /// Returns the owners' rows of the numbers, `width` bytes for each. Every rank has to call it. O(bytes).
+  /// Returns the owners' rows, `width` bytes for each of `numbers()`. Every rank has to call it. O(bytes).
   ///
   /// @param own  a row for each number that this rank owns
   /// @throws as `Communicator::exchange`
@@ -59,18 +59,18 @@ class Halo {
 
  private:
   const Communicator& communicator_;
-  GlobalIndex first_;  ///< number of this rank
+  GlobalIndex first_;  ///< this rank's first own number
   NumberSet wanted_;
-  Parcels<GlobalIndex> asked_;  ///< by the rank that asks
+  Parcels<GlobalIndex> asked_;  ///< own numbers that each rank needs
 };
 
-/// A value of each vertex that a rank owns, and of those that a halo adds.
+/// The values of a rank's own numbers and of a halo's numbers.
 template <class T>
 class HaloValues {
  public:
   /// Every rank has to call it. Throws as `Communicator::exchange`.
   ///
-  /// @param halo   outlives this object
+  /// @param halo   must outlive this object
   /// @param first  number of the first own value
   HaloValues(const Halo& halo, GlobalIndex first, std::vector<T> own)
       : halo_(halo), first_(first), own_(std::move(own)), others_(halo.fetch(own_)) {}
@@ -92,12 +92,12 @@ class HaloValues {
   std::vector<T> others_;
 };
 
-/// Hands values to the owners of numbers. Every rank has to call it. O(numbers · log numbers).
+/// Sends values to the owners of their numbers. Every rank has to call it. O(numbers · log ranks).
 ///
 /// @param numbers  in any order, each on one rank at most
-/// @param values   one for each
-/// @param missing  value of what nobody has a number of
-/// @return the values of what this rank owns
+/// @param values   one for each number
+/// @param missing  value for a number that no rank passes
+/// @return the values of this rank's own numbers
 /// @throws as `Communicator::exchange`
 template <class T>
 [[nodiscard]] std::vector<T> delivered(const Communicator& communicator, const Layout& layout,

@@ -10,23 +10,23 @@
 
 namespace meshorder::distributed {
 
-/// Number of a vertex, cell or entry among those of all ranks. Within a rank they have an `Index`.
+/// Number of a vertex, cell or entry among those of all ranks. Places within a rank are of type `Index`.
 using GlobalIndex = std::int64_t;
 
-/// Consecutive numbers in ranges that ascend, one for each rank: rank r owns begin(r) … end(r) − 1.
+/// A division of consecutive numbers into ranges, one per rank, ascending: rank r owns begin(r) … end(r) − 1.
 class Layout {
  public:
-  /// Nothing on no rank.
+  /// Makes a layout without ranks and numbers.
   Layout() = default;
 
-  /// Takes the first number of each rank, ascending, and after them the end of the last one's.
+  /// Takes the first number of each rank, ascending, followed by the end of the last rank's numbers.
   explicit Layout(std::vector<GlobalIndex> starts) : starts_(std::move(starts)) {}
 
-  /// Shares 0 … count − 1 among `ranks` > 0 ranks in ranges of equal size, but for one number. O(ranks).
+  /// Divides 0 … count − 1 into `ranks` > 0 ranges whose sizes differ by at most one. O(ranks).
   static Layout even(GlobalIndex count, int ranks) {
     std::vector<GlobalIndex> starts(static_cast<std::size_t>(ranks) + 1, 0);
     const GlobalIndex each = count / ranks;
-    const GlobalIndex more = count % ranks;  // ranks that get one more: the first ones
+    const GlobalIndex more = count % ranks;  // the first `more` ranks get one more
     for (GlobalIndex r = 0; r < ranks; ++r)
       starts[static_cast<std::size_t>(r) + 1] = (r + 1) * each + std::min(r + 1, more);
     return Layout(std::move(starts));
@@ -40,13 +40,13 @@ class Layout {
   }
 
   [[nodiscard]] int ranks() const noexcept { return static_cast<int>(starts_.size()) - 1; }
-  /// Returns how many numbers all ranks own.
+  /// Returns the count of all numbers.
   [[nodiscard]] GlobalIndex size() const { return starts_.back() - starts_.front(); }
-  /// Returns how many numbers a rank owns.
+  /// Returns the count of a rank's numbers.
   [[nodiscard]] GlobalIndex size(int rank) const { return end(rank) - begin(rank); }
   [[nodiscard]] GlobalIndex begin(int rank) const { return starts_[static_cast<std::size_t>(rank)]; }
   [[nodiscard]] GlobalIndex end(int rank) const { return starts_[static_cast<std::size_t>(rank) + 1]; }
-  /// Returns the first number of each rank, and after them the end of the last one's.
+  /// Returns the first number of each rank, followed by the end of the last rank's numbers.
   [[nodiscard]] const std::vector<GlobalIndex>& starts() const noexcept { return starts_; }
   /// Returns the rank that owns a number of the layout. O(log ranks).
   [[nodiscard]] int owner(GlobalIndex number) const {

@@ -11,34 +11,34 @@
 
 namespace meshorder::distributed {
 
-/// Moves rows of values to the ranks that own their new places. Made once, asked to move as many arrays as
-/// there are.
+/// Moves rows of values to the ranks that own their new places. It is set up once and can then move any
+/// number of arrays.
 class RowMover {
  public:
   /// Every rank has to call it. O(rows + ranks).
   ///
-  /// @param layout  who owns which places
-  /// @param places  of the own rows; every place of the layout is that of one row of one rank
+  /// @param layout  the owners of the places
+  /// @param places  new place of each own row; over all ranks, each place of the layout occurs once
   /// @throws as `Communicator::exchange`
   RowMover(const Communicator& communicator, const Layout& layout, std::span<const GlobalIndex> places);
 
-  /// Returns the rows of this rank's places, in the order of these. Every rank has to call it. O(bytes).
+  /// Returns the rows of this rank's places, in sequence. Every rank has to call it. O(bytes).
   ///
   /// @param rows   `width` bytes for each own row
   /// @param width  the same on all ranks
   /// @throws as `Communicator::exchange`
   [[nodiscard]] std::vector<std::byte> moved(std::span<const std::byte> rows, Offset width) const;
 
-  /// The same for rows of different lengths. O(entries + rows).
+  /// As above, for rows of different lengths. O(entries + rows).
   ///
-  /// @param rows  taken: with those that are sent and those that arrive they would be there three times
+  /// @param rows  freed early, since the rows sent and the rows received are two more copies
   [[nodiscard]] Rows moved(Rows rows) const;
 
  private:
   const Communicator& communicator_;
-  std::vector<Offset> sent_;    ///< own rows in the order in which they are sent
-  std::vector<Offset> starts_;  ///< of those for each rank
-  std::vector<Offset> places_;  ///< of the rows that arrive, among the own places
+  std::vector<Offset> sent_;    ///< own rows in the sequence in which they are sent, rank by rank
+  std::vector<Offset> starts_;  ///< place in `sent_` of the first row for each rank, and the end
+  std::vector<Offset> places_;  ///< place of each received row among the own places
 };
 
 }  // namespace meshorder::distributed

@@ -10,28 +10,28 @@
 
 namespace meshorder::distributed {
 
-/// Numbers among those of all ranks that a rank has to do with, each once, and their places.
+/// A set of global numbers that maps each to its place in ascending sequence.
 class NumberSet {
  public:
-  /// Takes numbers in any order, some perhaps several times. O(numbers) where they lie as close together as
-  /// those of a mesh do, else O(numbers · log numbers).
+  /// Takes numbers in any order, some perhaps several times. O(numbers) if their range is at most about 64
+  /// times their count, as in a mesh; else O(numbers · log numbers).
   explicit NumberSet(std::span<const GlobalIndex> numbers);
 
   /// Returns the numbers, ascending.
   [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return numbers_; }
-  /// Returns the place of one of the numbers among them. O(1) or O(log numbers), likewise.
+  /// Returns the place of a number of the set in `numbers()`. O(1), or O(log numbers) if they are far apart.
   [[nodiscard]] std::size_t position(GlobalIndex number) const;
 
  private:
   /// Numbers first_ + 64 k … first_ + 64 k + 63, a bit for each.
   struct Word {
     std::uint64_t bits = 0;
-    std::size_t before = 0;  ///< numbers of the words before
+    std::size_t before = 0;  ///< count of the numbers in earlier words
   };
 
   std::vector<GlobalIndex> numbers_;
   GlobalIndex first_ = 0;
-  std::vector<Word> words_;  ///< none where the numbers are far apart
+  std::vector<Word> words_;  ///< empty if the numbers are far apart
 };
 
 }  // namespace meshorder::distributed

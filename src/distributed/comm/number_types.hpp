@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-/// Bytes of numbers whose type is known at run time only, as the alternative of `Values`.
+/// Bytes of numbers whose type is known only at run time, as the index of an alternative of `Values`.
 namespace meshorder::distributed {
 
 /// Calls `work` with a zero of a number type; does nothing for texts.
@@ -31,7 +31,7 @@ void with_number_type(std::size_t alternative, const Work& work) {
   return size;
 }
 
-/// Converts the bytes of numbers of a type. O(bytes).
+/// Returns the numbers of a run-time type, stored in `bytes`, converted to Target. O(bytes).
 template <class Target>
 [[nodiscard]] std::vector<Target> numbers_of(const std::vector<std::byte>& bytes, std::size_t alternative) {
   std::vector<Target> result;
@@ -47,7 +47,7 @@ template <class Target>
   return result;
 }
 
-/// Returns the bytes of whole numbers in a type. O(numbers).
+/// Returns the bytes of integers converted to a run-time type. O(numbers).
 template <class Whole>
 [[nodiscard]] std::vector<std::byte> bytes_of(const std::vector<Whole>& numbers, std::size_t alternative) {
   std::vector<std::byte> result;

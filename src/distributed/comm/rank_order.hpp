@@ -8,8 +8,8 @@
 
 namespace meshorder::distributed {
 
-/// Goes on with a checksum, the same on all ranks, by what each of them adds, in their order. Every rank has
-/// to call it, and waits for those before it.
+/// Extends a checksum, the same on all ranks, by the data that the ranks add one after another, in rank
+/// order: each calls `add()`, which must not throw. Every rank has to call it; ranks wait for each other.
 template <class Add>
 void add_in_rank_order(const Communicator& communicator, Checksum& checksum, const Add& add) {
   for (int turn = 0; turn < communicator.size(); ++turn) {

@@ -12,7 +12,7 @@ Rows send_rows(const Communicator& communicator, Rows rows, std::vector<Dispatch
   Parcels<Index> sizes;
   Parcels<GlobalIndex> entries;
   communicator.together([&] {
-    // how much goes to each rank, then where it begins
+    // first the counts for each rank, then their partial sums
     const auto ranks = static_cast<std::size_t>(communicator.size());
     sizes.starts.assign(ranks + 1, 0);
     entries.starts.assign(ranks + 1, 0);

@@ -9,7 +9,7 @@
 
 namespace meshorder::distributed {
 
-/// Rows of whole numbers, which may be bits of others.
+/// Rows of integers, which may also hold the bits of other numbers.
 struct Rows {
   std::vector<Offset> offsets{0};  ///< rows + 1, ascending
   std::vector<GlobalIndex> entries;
@@ -31,12 +31,12 @@ struct Dispatch {
   Offset row;
 };
 
-/// Sends copies of rows to ranks, a row to as many as there are dispatches of it, and returns what this rank
-/// gets: by the rank that sent it, then in the order of the dispatches there. Every rank has to call it.
+/// Sends copies of rows to ranks, one for each dispatch, and returns the rows that this rank receives: by
+/// sending rank, then in the sequence of its dispatches. Every rank has to call it.
 /// O(entries + dispatches).
 ///
-/// @param rows        taken: with those that are sent and those that arrive they would be there three times
-/// @param dispatches  taken
+/// @param rows        freed early, since the rows sent and the rows received are two more copies
+/// @param dispatches  freed early
 /// @throws as `Communicator::exchange`
 [[nodiscard]] Rows send_rows(const Communicator& communicator, Rows rows, std::vector<Dispatch> dispatches);
 

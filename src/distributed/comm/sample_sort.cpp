@@ -9,13 +9,13 @@
 namespace meshorder::distributed {
 namespace {
 
-constexpr Offset kSamplesPerRank = 64;  // of all entries, for each rank: its share is then right to a few %
+constexpr Offset kSamplesPerRank = 64;  // enough for equal shares, up to a few %
 
 /// Returns the entries at which the ranges of ranks 1, 2, … begin, chosen from samples of all ranks.
 std::vector<SortEntry> splitters(const Communicator& communicator, const std::vector<SortEntry>& sorted) {
   const auto count = static_cast<Offset>(sorted.size());
   const Offset ranks = communicator.size();
-  // every step-th entry: ranks that have more give more samples
+  // take every step-th entry, so that ranks with more entries contribute more samples
   const Offset step = std::max<Offset>(1, communicator.sum(count) / (ranks * kSamplesPerRank));
   std::vector<SortEntry> samples;
   for (Offset k = step / 2; k < count; k += step) samples.push_back(sorted[static_cast<std::size_t>(k)]);

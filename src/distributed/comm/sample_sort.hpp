@@ -10,7 +10,7 @@
 
 namespace meshorder::distributed {
 
-/// What is sorted: by key, ties by number, of which no two are equal.
+/// An entry to sort: by key, ties by number. No two numbers are equal.
 struct SortEntry {
   std::uint64_t key;
   GlobalIndex number;
@@ -18,9 +18,9 @@ struct SortEntry {
   auto operator<=>(const SortEntry&) const = default;
 };
 
-/// Sorts the entries of all ranks: each rank gets a range of the result, in rank order, of about the same
-/// size where there are many. Every rank has to call it. O(n log n + ranks² · samples) for n entries of a
-/// rank.
+/// Sorts the entries of all ranks. Each rank gets a range of the result, in rank order; with many entries the
+/// ranges have about the same size. Every rank has to call it. O(n log n) for n entries of a rank, and the
+/// samples at the root.
 ///
 /// Regular sampling: Shi and Schaeffer, Parallel Sorting by Regular Sampling (1992).
 ///

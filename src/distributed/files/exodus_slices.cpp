@@ -22,13 +22,13 @@ namespace meshorder::distributed {
 #ifdef MESHORDER_HAS_NETCDF
 namespace {
 
-/// Returns whether pieces may have the blocks of a file.
+/// Returns whether Nemesis pieces can keep the blocks of a file.
 bool are_blocks_of_pieces(const exodus::Header& header) {
   return !header.is_piece && header.blocks.size() <= kMostBlocks;
 }
 
-/// Returns the number of vertices of a file that all ranks may read, whether pieces may have its blocks, and
-/// the ends of these; nothing for others.
+/// Returns the number of vertices of a file, whether pieces can keep its blocks (1 or 0), and the ends of the
+/// blocks; nothing for a file that the ranks cannot read together.
 std::vector<GlobalIndex> counts_of(const std::string& path) {
   std::error_code code;
   if (format_of(path).key() != "exodus" || without_gz(path) != path ||
@@ -42,7 +42,7 @@ std::vector<GlobalIndex> counts_of(const std::string& path) {
       std::all_of(header.blocks.begin(), header.blocks.end(), [](const exodus::BlockRecord& block) {
         return block.nodes == 0 || vtk::holds(Mesh{}, block.shape, block.nodes);
       });
-  // numbers of VTK's types, by which cells may be others than their shapes and nodes say
+  // an array of VTK's cell types overrides the types that follow from shapes and node counts
   const bool have_types = std::find(header.element_variables.begin(), header.element_variables.end(),
                                     vtk::kCellTypes) != header.element_variables.end();
   if (!are_held || have_types || header.vertices == 0 || header.cells == 0) return {};
@@ -51,7 +51,7 @@ std::vector<GlobalIndex> counts_of(const std::string& path) {
   return counts;
 }
 
-/// Reads a part of a file by this rank.
+/// Reads this rank's part of a file.
 MeshPart part_of_file(const std::string& path, const MeshRanges& ranges, exodus::PartContent content,
                       Notes& notes) {
   const FilePath file(path);
@@ -79,7 +79,7 @@ void gather_notes(const Communicator& communicator, const Notes& own, Notes& not
   });
 }
 
-/// Notes cells that name a vertex twice, as the reader of whole meshes does.
+/// Notes cells that have a vertex twice, as the reader of whole meshes does.
 void note_degenerate(const Communicator& communicator, const MeshPart& part, Notes& notes) {
   struct DegenerateCells {
     GlobalIndex count = 0;

@@ -13,34 +13,34 @@
 
 namespace meshorder::distributed {
 
-/// An Exodus II file that all ranks read at once, each a range of its nodes and one of its elements: each
-/// opens the file by libnetcdf, which need not know of MPI, and reads the part of every variable.
+/// An Exodus II file that all ranks read at once: each rank opens it by libnetcdf, which needs no MPI
+/// support, and reads a range of the nodes, a range of the elements, and their part of every variable.
 class ExodusSlices {
  public:
-  /// Looks at a file; every rank has to call it. Returns nothing for files of other formats, compressed as a
-  /// whole, without elements, with such that VTK does not hold, and for builds without netCDF. O(size of the
-  /// header) at the root.
+  /// Opens a file; every rank has to call it. Returns nothing for a file of another format, compressed as a
+  /// whole, without vertices or elements, or with elements that VTK cannot hold, and in a build without
+  /// netCDF. O(size of the header) at the root.
   ///
-  /// @throws SharedError for a file of that kind that is damaged
+  /// @throws SharedError for an Exodus II file that is damaged
   [[nodiscard]] static std::optional<ExodusSlices> open(const Communicator& communicator,
                                                         const std::string& path);
 
   /// Returns 0 and the end of each block of elements.
   [[nodiscard]] const std::vector<GlobalIndex>& block_ends() const noexcept { return block_ends_; }
-  /// Returns whether pieces in Nemesis may have these blocks: there are not too many of them, and the file is
-  /// not a piece itself.
+  /// Returns whether Nemesis pieces can keep these blocks: there are not too many, and the file is not a
+  /// piece itself.
   [[nodiscard]] bool has_blocks_of_pieces() const noexcept { return has_blocks_of_pieces_; }
 
   /// Reads this rank's points and cells. Every rank has to call it. O(size of the slice).
   ///
-  /// @throws SharedError where a rank cannot read, for coordinates that are not finite and for cells with
+  /// @throws SharedError if a rank cannot read, for coordinates that are not finite and for cells with
   ///         vertices that do not exist
   [[nodiscard]] MeshSlice read(const Communicator& communicator) const;
 
-  /// Reads them with all that belongs to them. Every rank has to call it. O(size of the slice + entries of
-  /// sets).
+  /// Reads this rank's points and cells with their arrays, sets and ids. Every rank has to call it. O(size of
+  /// the slice + entries of sets).
   ///
-  /// @param notes  receives, at the root, what the readers of all ranks note
+  /// @param notes  receives, at the root, the notes of the readers of all ranks
   /// @throws SharedError as `read`
   [[nodiscard]] MeshPart read_part(const Communicator& communicator, Notes& notes) const;
 

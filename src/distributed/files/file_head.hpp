@@ -21,51 +21,51 @@ struct Layout;
 
 namespace meshorder::distributed {
 
-/// An array of a .vtu, .vtkhdf or .xdmf file: what it holds, and where its values are.
+/// An array of a .vtu, .vtkhdf or .xdmf file: its contents, and where its values are.
 struct FileArray {
   enum class Role : std::uint8_t { points, types, offsets, connectivity, data };
 
-  std::array<char, 41> name;  ///< or how it begins, for messages; ends with a zero
-  std::size_t element = 0;    ///< which one of the arrays of the piece in the XML, from 0 on
+  std::array<char, 41> name;  ///< its first 40 bytes, for messages; ends with a zero
+  std::size_t element = 0;    ///< place among the arrays of the piece in the XML, from 0 on
   Role role;
   Association association;
-  std::uint8_t type;  ///< number type, as the alternatives of Values
-  Offset at;          ///< first byte in the file, of the words before the values
-  Offset stored;      ///< bytes in the file, those words among them
+  std::uint8_t type;  ///< number type: index of an alternative of Values
+  Offset at;          ///< first byte in the file, of the words (sizes) before the values
+  Offset stored;      ///< bytes in the file, including those words
   Offset row;         ///< bytes of a row
-  Offset size;        ///< bytes of all rows
-  Offset blocks;      ///< in which they are compressed; 0: they are not
-  Offset block;       ///< bytes of a block, but for the last one, which has the rest
+  Offset size;        ///< bytes of all rows, uncompressed
+  Offset blocks;      ///< number of compressed blocks; 0: not compressed
+  Offset block;       ///< uncompressed bytes of a block; the last block has the rest
 };
 
-/// What all ranks know of a .vtu, .vtkhdf or .xdmf file.
+/// Facts on a .vtu, .vtkhdf or .xdmf file that all ranks have.
 struct FileFacts {
-  /// In the files of HDF5 that the last two are, arrays have no words before them, and there is no XML.
+  /// A .vtkhdf file is an HDF5 file, an .xdmf file has one. Their arrays have no words before them.
   enum class Kind : std::uint8_t { vtu, vtkhdf, xdmf };
 
   Kind kind = Kind::vtu;
   GlobalIndex vertices = 0;
   GlobalIndex cells = 0;
-  GlobalIndex entries = 0;  ///< of the connectivity
+  GlobalIndex entries = 0;  ///< length of the connectivity
   Offset bytes = 0;         ///< size of the file
-  Offset first_byte = 0;    ///< of the appended data
+  Offset first_byte = 0;    ///< first byte of the appended data
   VtuEncoding encoding;
-  // of an .xdmf file, which has no arrays of types and offsets
+  // only of an .xdmf file, which has no arrays of types and offsets
   Shape shape = Shape::vertex;  ///< of all cells
   Offset nodes = 0;             ///< of each cell
 };
 
-/// What the XML of a .vtu file says, and the words before its arrays; or what libhdf5 says of a .vtkhdf file,
-/// or of the HDF5 file of an .xdmf file.
+/// The description of a file: from the XML of a .vtu file and the words before its arrays; or from libhdf5,
+/// of a .vtkhdf file or of the HDF5 file of an .xdmf file.
 struct FileHead {
   FileFacts facts;
-  std::vector<FileArray> arrays;  ///< in the order of their bytes
+  std::vector<FileArray> arrays;  ///< sorted by their place in the file
   std::vector<std::vector<Offset>>
-      blocks;  ///< of each array: first byte of each block, and the last one's end
+      blocks;  ///< of each array: first byte of each block, then the end of the last
   VtuXml xml;
-  std::string mold;                            ///< of a .vtkhdf file: what `mold_of` makes of its arrays
-  std::string data;                            ///< path of an .xdmf file's HDF5 file
-  std::shared_ptr<const xdmf::Layout> layout;  ///< of an .xdmf file, whose fields are the elements of arrays
+  std::string mold;                            ///< of a .vtkhdf file: result of `mold_of` for its arrays
+  std::string data;                            ///< of an .xdmf file: path of its HDF5 file
+  std::shared_ptr<const xdmf::Layout> layout;  ///< of an .xdmf file; FileArray::element refers to its fields
 };
 
 }  // namespace meshorder::distributed

@@ -35,7 +35,7 @@ BlockRange blocks_with(const FileArray& array, Offset begin, Offset end) {
   return {block_of(begin), block_of(end - 1) + 1};
 }
 
-/// Returns for the blocks that this rank wants the first byte of each in the file, and the end of the last.
+/// Returns the first byte in the file of each block that this rank wants, then the end of the last one.
 std::vector<Offset> own_starts(const Communicator& communicator, const std::vector<Offset>& at_root,
                                BlockRange wanted) {
   Parcels<Offset> sent;
@@ -52,7 +52,7 @@ std::vector<Offset> own_starts(const Communicator& communicator, const std::vect
   return communicator.exchange(sent).values;
 }
 
-/// Moves bytes so that all of a block are on the rank that has its first one.
+/// Moves bytes between ranks so that each block is as a whole on the rank of its first byte.
 std::vector<std::byte> in_whole_blocks(const Communicator& communicator, const Layout& bytes,
                                        std::vector<std::byte> own, Offset block) {
   const GlobalIndex begin = bytes.begin(communicator.rank());
@@ -66,7 +66,7 @@ std::vector<std::byte> in_whole_blocks(const Communicator& communicator, const L
   return communicator.exchange(std::span<const std::byte>(own), starts).values;
 }
 
-/// Words before an array, in this machine's order.
+/// Returns the bytes of words of 4 or 8 bytes, in this machine's byte order.
 std::vector<std::byte> words_of(const std::vector<std::uint64_t>& values, bool wide) {
   std::vector<std::byte> result(values.size() * (wide ? 8 : 4));
   std::byte* at = result.data();

@@ -33,7 +33,7 @@ using Role = FileArray::Role;
 
 constexpr Offset kChunk = Offset{1} << 24;  // bytes that are copied at a time
 
-/// Copies bytes begin … end − 1 of a file to another, by the root.
+/// Copies bytes begin … end − 1 of a file to another; only the root copies.
 void copy_bytes(const Communicator& communicator, const SharedFile& in, Offset begin, Offset end,
                 const SharedFile& out, Offset to) {
   std::vector<std::byte> bytes;
@@ -44,17 +44,17 @@ void copy_bytes(const Communicator& communicator, const SharedFile& in, Offset b
   }
 }
 
-/// Where arrays are in a new file that were elsewhere in an old one.
+/// Maps places in an old file to places in a new one.
 class NewPlaces {
  public:
-  /// Takes the first bytes of both files that are no XML.
+  /// Takes the first byte after the XML in each file.
   NewPlaces(Offset old_begin, Offset new_begin) : moves_{{old_begin, new_begin}} {}
 
-  /// Says that what begins at a byte of the old file, and does not end before the next such, begins
-  /// elsewhere.
+  /// Adds a move: bytes of the old file from `old_begin` on, up to the next move, are in the new file from
+  /// `new_begin` on. Calls must ascend.
   void add(Offset old_begin, Offset new_begin) { moves_.emplace_back(old_begin, new_begin); }
 
-  /// Returns the first byte of the new file that is no XML.
+  /// Returns the first byte after the XML in the new file.
   [[nodiscard]] Offset first_byte() const { return moves_.front().second; }
   /// Returns the new offset for an old one. O(log arrays).
   [[nodiscard]] Offset of_offset(Offset old) const {
@@ -149,7 +149,7 @@ void FileSlices::read_points(const Communicator& communicator, const SharedFile&
   });
 }
 
-/// Returns VTK's types of this rank's cells.
+/// Returns the VTK types of this rank's cells.
 std::vector<int> FileSlices::types(const Communicator& communicator, const SharedFile& file,
                                    const Layout& cells) const {
   const int rank = communicator.rank();
@@ -159,7 +159,7 @@ std::vector<int> FileSlices::types(const Communicator& communicator, const Share
 }
 
 bool FileSlices::has_nodes_as_a_mesh(const Communicator& communicator) const {
-  if (head_.facts.kind == FileFacts::Kind::xdmf) return true;  // others are not opened
+  if (head_.facts.kind == FileFacts::Kind::xdmf) return true;  // `open` refuses other .xdmf files
   const SharedFile file(communicator, path_, path_, SharedFile::Use::read);
   const std::vector<int> numbers = types(communicator, file, empty_slice(communicator).cells);
   const auto other = std::count_if(numbers.begin(), numbers.end(), [](int type) {
@@ -207,7 +207,7 @@ Offset FileSlices::read_offsets(const Communicator& communicator, const SharedFi
     return first_cell * head_.facts.nodes;
   }
   const FileArray& ends = array(Role::offsets);
-  // where the cell before ends is where the first one begins
+  // the first cell begins where the cell before it ends
   const GlobalIndex before = std::max<GlobalIndex>(first_cell - 1, 0);
   const std::vector<std::byte> bytes =
       rows(communicator, file, ends, end_cell > first_cell ? before : end_cell, end_cell);
@@ -241,7 +241,7 @@ Offset FileSlices::read_offsets(const Communicator& communicator, const SharedFi
   });
 }
 
-/// Reads the vertices of the cells, whose shapes are known.
+/// Reads the vertices of the cells; `slice.shapes` must be set.
 void FileSlices::read_cells(const Communicator& communicator, const SharedFile& file,
                             MeshSlice& slice) const {
   const Offset first_entry = read_offsets(communicator, file, slice);

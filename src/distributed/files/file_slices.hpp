@@ -19,56 +19,56 @@ namespace meshorder::distributed {
 
 /// A new file, which exists and is empty.
 struct SliceFile {
-  std::string path;  ///< while it is unfinished
-  std::string name;  ///< when it is in its place, and in messages
-  std::string data;  ///< path of the HDF5 file that belongs to an .xdmf file, while it is unfinished
+  std::string path;  ///< temporary path, until it is complete
+  std::string name;  ///< final name, also in messages
+  std::string data;  ///< temporary path of the HDF5 file that belongs to an .xdmf file
 };
 
-/// A file that all ranks read and write at once, each its share of one array after another: a .vtu file of
-/// one piece with its arrays in appended data, raw or in compressed blocks; or, with datasets neither
-/// chunked nor compressed, a .vtkhdf file of one partition or an .xdmf file of one mesh of one cell type.
-/// The new file is the old one with the rows of its arrays in their new places; everything else
-/// is copied byte by byte, except the offsets of arrays after compressed ones. An .xdmf file and its
-/// HDF5 file are those that the serial writer makes. Rank 0 finds the datasets by libhdf5; no other rank
-/// needs it.
+/// A file that all ranks read and write at once, array after array, each its range of the rows. It is a .vtu
+/// file of one piece with its arrays in appended data, raw or in compressed blocks; or a .vtkhdf file of one
+/// partition or an .xdmf file of one mesh of one cell type, whose datasets are neither chunked nor
+/// compressed. The new file is the old one with the rows of its arrays in their new places; everything else
+/// is copied byte by byte, except the offsets of arrays after compressed ones. A new .xdmf file and its HDF5
+/// file are the same as those of the serial writer. Rank 0 finds the datasets by libhdf5; no other rank needs
+/// it.
 ///
 /// Formats: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, and
 /// "VTKHDF File Format".
 class FileSlices {
  public:
-  /// Looks at a file; every rank has to call it. Returns nothing for a file of another kind: of several
-  /// pieces or partitions, with text, base64, chunks, the other order of bytes, or compression that this
-  /// build lacks. O(size of its XML + blocks) at the root.
+  /// Opens a file; every rank has to call it. Returns nothing for a file of another kind: with several pieces
+  /// or partitions, with text, base64, chunks, the other byte order, or compression that this build lacks.
+  /// O(size of its XML + blocks) at the root.
   ///
-  /// @throws SharedError for a file of that kind that is damaged: XML, counts that differ, bytes beyond its
-  ///         end, blocks that cannot hold what they are said to
+  /// @throws SharedError for a file of this kind that is damaged: bad XML, counts that differ, arrays beyond
+  ///         its end, blocks whose sizes are impossible
   [[nodiscard]] static std::optional<FileSlices> open(const Communicator& communicator,
                                                       const std::string& path);
 
-  /// Returns whether all cells have their nodes in the order in which a Mesh has them, so that the checksums
-  /// of both are the same. Every rank has to call it. O(cells).
+  /// Returns whether the nodes of all cells have the same sequence in the file as in a Mesh, so that the
+  /// checksums of both are equal. Every rank has to call it. O(cells).
   ///
-  /// @throws SharedError where a rank cannot read
+  /// @throws SharedError if a rank cannot read
   [[nodiscard]] bool has_nodes_as_a_mesh(const Communicator& communicator) const;
 
   /// Reads this rank's points and cells. Every rank has to call it. O(size of the slice).
   ///
-  /// @throws SharedError for coordinates that are not finite, unknown types, cells without vertices, with too
-  ///         few, or with such that do not exist, and for blocks that are damaged
+  /// @throws SharedError for coordinates that are not finite, unknown cell types, cells with too few vertices
+  ///         or with vertices that do not exist, and for damaged blocks
   [[nodiscard]] MeshSlice read(const Communicator& communicator) const;
 
   /// Returns the mesh in its new order, valid as long as this object. Every rank has to call it. Reads
-  /// the cells once more, and each array when its rows are asked for. O(size of the slice).
+  /// the cells once more, and each array when its rows are requested. O(size of the slice).
   ///
-  /// @throws SharedError where a rank cannot read
+  /// @throws SharedError if a rank cannot read
   [[nodiscard]] GridRows in_new_order(const Communicator& communicator, const DistributedOrder& order) const;
 
-  /// Writes the mesh in its new order over a file that exists, and is empty. Every rank has to call it. Reads
-  /// the arrays once more, one after another. O(size of the slice), memory for the cells or the largest array
-  /// of a rank three times.
+  /// Writes the mesh in its new order to a file that exists and is empty. Every rank has to call it. Reads
+  /// the arrays once more, one after another. O(size of the slice); takes memory for three copies of the
+  /// cells or of the largest array of a rank.
   ///
   /// @return the new place of each cell of the slice
-  /// @throws SharedError where a rank cannot read or write
+  /// @throws SharedError if a rank cannot read or write
   [[nodiscard]] std::vector<GlobalIndex> write(const Communicator& communicator, const SliceFile& file,
                                                const DistributedOrder& order) const;
 
@@ -76,7 +76,7 @@ class FileSlices {
   /// other kinds. Every rank has to call it.
   [[nodiscard]] std::string new_data(const Communicator& communicator, const std::string& name) const;
 
-  /// Looks at a file that this object wrote. Every rank has to call it.
+  /// Opens a file that this object wrote. Every rank has to call it.
   ///
   /// @throws SharedError as `open`
   [[nodiscard]] FileSlices written(const Communicator& communicator, const SliceFile& file) const;
@@ -91,7 +91,7 @@ class FileSlices {
                                        const Layout& cells) const;
   void read_shapes(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
   void read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
-  /// Reads where this rank's cells begin and end, counted from their first entry, which it returns.
+  /// Reads the offsets of this rank's cells, relative to their first entry, which it returns.
   [[nodiscard]] Offset read_offsets(const Communicator& communicator, const SharedFile& file,
                                     MeshSlice& slice) const;
   /// Returns the rows of an array that are in this rank's places.
@@ -104,8 +104,8 @@ class FileSlices {
   [[nodiscard]] Rows moved_cells(const Communicator& communicator, const SharedFile& file, MeshSlice slice,
                                  const RowMover& mover, const std::vector<GlobalIndex>& new_vertices) const;
 
-  std::string path_;  ///< of the file that has the arrays
-  FileHead head_;     ///< blocks and XML at the root only
+  std::string path_;  ///< path of the file that has the arrays
+  FileHead head_;     ///< has its blocks and XML only at the root
 };
 
 }  // namespace meshorder::distributed

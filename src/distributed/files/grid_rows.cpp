@@ -22,7 +22,7 @@ std::vector<std::byte> bytes_of_span(std::span<const Number> numbers) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// The first row of an array.
+/// Returns an array with only the first row.
 DataArray first_row(const DataArray& array) {
   DataArray row{array.name, array.association, array.components, {}, {}, array.component_names};
   row.values = std::visit(
@@ -34,7 +34,7 @@ DataArray first_row(const DataArray& array) {
   return row;
 }
 
-/// The mesh as VTK holds it.
+/// The whole mesh in the form of a .vtu file.
 class WholeGrid {
  public:
   WholeGrid(const Mesh& mesh, Notes& notes)
@@ -54,7 +54,7 @@ class WholeGrid {
     for (auto& [text, number] : places_) number = place++;
   }
 
-  /// A file of one point and one cell with the first row of each array.
+  /// Returns a .vtu file of one point and one cell with the first row of each array.
   [[nodiscard]] std::string xml() const {
     std::vector<DataArray> rows;
     for (const DataArray* const array : arrays_) rows.push_back(first_row(*array));
@@ -71,12 +71,12 @@ class WholeGrid {
     return result;
   }
 
-  /// The bytes of the k-th array of the file.
+  /// Returns the bytes of the k-th array of the file.
   [[nodiscard]] std::vector<std::byte> bytes(std::size_t k) const {
     if (k < arrays_.size()) {
       return std::visit([&](const auto& values) { return bytes_of_values(values); }, arrays_[k]->values);
     }
-    if (k > arrays_.size()) return bytes_of_span(std::span(context_.types));  // after points and two of cells
+    if (k > arrays_.size()) return bytes_of_span(std::span(context_.types));  // the last array of the file
     const std::vector<Point>& points = context_.mesh.points;
     const std::span<const double> numbers(points.front().data(), 3 * points.size());
     if (!context_.points_are_floats()) return bytes_of_span(numbers);
@@ -84,7 +84,7 @@ class WholeGrid {
     return bytes_of_span(std::span<const float>(floats));
   }
 
-  /// Whether the k-th array of the file is one of points.
+  /// Returns whether the k-th array of the file is on vertices.
   [[nodiscard]] bool is_on_vertices(std::size_t k) const {
     return k < arrays_.size() ? arrays_[k]->association == Association::vertices : k == arrays_.size();
   }
@@ -107,7 +107,7 @@ class WholeGrid {
   vtk::WriteContext context_;
   const Cells& cells_;
   std::vector<const DataArray*> arrays_;
-  std::map<std::string, std::int32_t> places_;  ///< of texts
+  std::map<std::string, std::int32_t> places_;  ///< place of each text in `texts()`
 };
 
 }  // namespace

@@ -34,8 +34,8 @@ Incidence items_of_parts(Index parts, Index items, const ForParts& for_parts) {
   return result;
 }
 
-/// Returns the first vertex of each part among those that a rank has, and after them the end of the last
-/// one's.
+/// Returns the place of each part's first vertex among those that a rank has, followed by the end of the last
+/// part.
 std::vector<GlobalIndex> local_starts(const std::vector<GlobalIndex>& vertices,
                                       const std::vector<GlobalIndex>& part_starts) {
   std::vector<GlobalIndex> result;
@@ -49,7 +49,7 @@ std::vector<GlobalIndex> local_starts(const std::vector<GlobalIndex>& vertices,
 Incidence vertices_of_parts(const Mesh& mesh, const Incidence& cells,
                             const std::vector<GlobalIndex>& part_starts) {
   const auto count = static_cast<std::size_t>(mesh.vertex_count());
-  std::vector<Index> last(count, -1);  // part that was found to have a vertex
+  std::vector<Index> last(count, -1);  // the last part in which each vertex was found
   std::vector<std::vector<Index>> found(static_cast<std::size_t>(cells.size()));
   for (Index part = 0; part < cells.size(); ++part) {
     for (const Index cell : cells[part]) {
@@ -92,7 +92,7 @@ void MeshParts::find_own(const Mesh& mesh, const std::vector<GlobalIndex>& part_
   vertices_ = vertices_of_parts(mesh, cells_, part_starts);
   parts_of_vertices_ = transposed(vertices_);
   for (Index part = 0; part < parts; ++part) {
-    // the own ones are a range of numbers
+    // move the own vertices, which are a range of numbers, to the front
     const auto begin = vertices_.vertices.begin() + vertices_.offsets[static_cast<std::size_t>(part)];
     const auto end = vertices_.vertices.begin() + vertices_.offsets[static_cast<std::size_t>(part) + 1];
     const auto is_own = [&](Index vertex) { return part_of(vertex, part_starts) == part; };
@@ -101,8 +101,8 @@ void MeshParts::find_own(const Mesh& mesh, const std::vector<GlobalIndex>& part_
   }
 }
 
-/// Adds the parts of other ranks that have a vertex: the owner of a vertex's number learns from all ranks
-/// which parts have it, and sends the list to the ranks of these parts if there are several.
+/// Adds the parts of other ranks that have a vertex. All ranks send to the owner of a vertex's number which
+/// of their parts have it; if there are several, the owner sends the list to the ranks of these parts.
 void MeshParts::find_sharing_parts(const Communicator& communicator, const ShareNumbers& numbers) {
   if (communicator.size() == 1) return;
   struct Letter {
@@ -110,7 +110,7 @@ void MeshParts::find_sharing_parts(const Communicator& communicator, const Share
     Index part;
   };
   const Parcels<Letter> sent = communicator.together([&] {
-    // numbers and so ranks ascend
+    // numbers ascend, so ranks do too
     Parcels<Letter> letters;
     letters.starts.assign(static_cast<std::size_t>(communicator.size()) + 1, 0);
     for (Index v = 0; v < index_size(numbers.vertices); ++v) {
@@ -122,7 +122,7 @@ void MeshParts::find_sharing_parts(const Communicator& communicator, const Share
     return letters;
   });
   std::vector<Letter> asked = communicator.exchange(sent).values;
-  Rows shared;  // a vertex and its parts
+  Rows shared;  // each row is a vertex followed by its parts
   std::vector<Dispatch> dispatches;
   communicator.together([&] {
     std::sort(asked.begin(), asked.end(), [](const Letter& a, const Letter& b) {
@@ -223,7 +223,7 @@ void PartCutter::cut_data(Index part, Mesh& piece) const {
     const DataArray& array = mesh_.data[a];
     const auto all = array.association == Association::vertices ? parts_.vertices(part) : parts_.cells(part);
     const auto rows = array.is_dense() ? all : rows_[a][part];
-    if (rows.empty() && !array.is_dense()) continue;  // without indices it would be one on all
+    if (rows.empty() && !array.is_dense()) continue;  // an array without indices would count as dense
     DataArray cut{array.name, array.association, array.components, {}, {}, array.component_names};
     cut.values = rows_of_values(array.values, array.components, rows);
     if (!array.is_dense()) {

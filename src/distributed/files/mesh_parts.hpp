@@ -12,17 +12,17 @@
 
 namespace meshorder::distributed {
 
-/// Which cells and vertices the parts of a mesh have, without ghost cells: a cell is in the part of its last
-/// vertex, a vertex in each part whose cells use it; one that no cell uses is in its own. A rank knows its
-/// own parts, and which others share their vertices; others have no cells here. Vertices and cells are
-/// numbered as in what the rank has of the mesh.
+/// The cells and vertices of the parts of a mesh, without ghost cells. A cell is in the part of its largest
+/// vertex. A vertex is in each part whose cells use it or, if no cell does, in the part of its number. A rank
+/// knows its own parts, and which others share their vertices; others have no cells here. Vertices and cells
+/// are numbered as in the rank's share of the mesh.
 class MeshParts {
  public:
   /// Every rank has to call it. O(entries · log parts).
   ///
-  /// @param mesh         what this rank has of the mesh, as in `MeshShare`
+  /// @param mesh         this rank's share of the mesh, as in `MeshShare`
   /// @param numbers      of its vertices and cells
-  /// @param part_starts  as of `part_of`
+  /// @param part_starts  as in `part_of`
   /// @throws as `Communicator::exchange`
   MeshParts(const Communicator& communicator, const Mesh& mesh, const ShareNumbers& numbers,
             const std::vector<GlobalIndex>& part_starts);
@@ -30,8 +30,8 @@ class MeshParts {
   [[nodiscard]] Index size() const noexcept { return cells_.size(); }
   /// Returns the cells of a part, ascending.
   [[nodiscard]] std::span<const Index> cells(Index part) const { return cells_[part]; }
-  /// Returns the vertices of a part: the own ones, ascending, then those of other parts, ascending, by which
-  /// those of a part follow each other.
+  /// Returns the vertices of a part: the own ones, ascending, then those of other parts, ascending and so
+  /// grouped by part.
   [[nodiscard]] std::span<const Index> vertices(Index part) const { return vertices_[part]; }
   /// Returns the parts that have a vertex, on any rank, ascending.
   [[nodiscard]] std::span<const Index> parts_with(Index vertex) const { return parts_of_vertices_[vertex]; }
@@ -48,29 +48,29 @@ class MeshParts {
   Incidence parts_of_vertices_;  ///< of each vertex
 };
 
-/// Cuts the parts out of a mesh, with the arrays, sets and ids of their cells and vertices.
+/// Extracts the parts of a mesh, with the arrays, sets and ids of their cells and vertices.
 class PartCutter {
  public:
-  /// Both outlive this object. O(rows of arrays on some vertices or cells + members of sets).
+  /// Both must outlive this object. O(rows of arrays on some vertices or cells + members of sets).
   PartCutter(const Mesh& mesh, const MeshParts& parts);
 
   /// Returns a part: its vertices and cells in the order of `MeshParts`, without `cell_blocks`, and the same
-  /// metadata. Sets without members there are kept, arrays on some
-  /// vertices or cells without rows are not. O(size of the part).
+  /// metadata. Keeps sets without members in the part; drops arrays on some vertices
+  /// or cells that have no rows in it. O(size of the part).
   [[nodiscard]] Mesh cut(Index part);
 
  private:
   void cut_cells(Index part, Mesh& piece) const;
   void cut_data(Index part, Mesh& piece) const;
   void cut_sets(Index part, Mesh& piece) const;
-  /// Returns the new places of vertices or cells of the part, in their order.
+  /// Returns the places within the part of these vertices or cells, in their sequence.
   [[nodiscard]] std::vector<Index> placed(Association association, std::span<const Index> numbers) const;
 
   const Mesh& mesh_;
   const MeshParts& parts_;
-  std::vector<Incidence> rows_;       ///< of each part, by array; of arrays with a row for everything none
-  std::vector<Incidence> members_;    ///< of each part, by set: places in the list
-  std::vector<Index> vertex_places_;  ///< in the part that is cut; of what is not there of another part
+  std::vector<Incidence> rows_;       ///< of each part, by array; empty for arrays with a row for everything
+  std::vector<Incidence> members_;    ///< of each part, by set: places in the set's list of members
+  std::vector<Index> vertex_places_;  ///< places in the part being cut; stale for vertices not in it
   std::vector<Index> cell_places_;
 };
 

@@ -23,11 +23,11 @@
 namespace meshorder::distributed {
 namespace {
 
-// number types, as the alternatives of Values
+// number types: indices of alternatives of Values
 constexpr std::size_t kPlaceInList = 6;
 constexpr std::size_t kId = 8;
 
-/// Returns the numbers that bytes hold.
+/// Returns numbers of a type from their bytes.
 Values values_of(const std::vector<std::byte>& bytes, std::size_t type) {
   Values values = vtk::values_of_type(type);
   std::visit(
@@ -42,7 +42,7 @@ Values values_of(const std::vector<std::byte>& bytes, std::size_t type) {
   return values;
 }
 
-/// Gathers what a rank has of the whole mesh.
+/// Gathers a rank's share of the whole mesh.
 class ShareMaker {
  public:
   ShareMaker(const Communicator& communicator, const MovedPart& moved,
@@ -75,7 +75,7 @@ class ShareMaker {
  private:
   /// Finds the cells of the own parts and returns the vertices of each.
   ///
-  /// @param vertices  of the cells of the slice; taken
+  /// @param vertices  of the cells of the slice
   [[nodiscard]] Rows own_cells(Rows vertices, const Layout& layout) {
     const Layout ranks = ranks_of_parts(index_size(part_starts_) - 1, communicator_.size());
     Rows numbers;
@@ -105,7 +105,7 @@ class ShareMaker {
       std::vector<char> is_used(count, 0);
       for (const GlobalIndex vertex : asked.asked_of_this_rank())
         is_used[static_cast<std::size_t>(vertex - first)] = 1;
-      // parts and so ranks ascend with the vertices
+      // parts, and so ranks, ascend with the vertices
       Parcels<GlobalIndex> parcels;
       parcels.starts.assign(static_cast<std::size_t>(communicator_.size()) + 1, 0);
       for (std::size_t v = 0; v < count; ++v) {
@@ -134,7 +134,7 @@ class ShareMaker {
     }
   }
 
-  /// Returns, of numbers that the vertices or cells of the part have, those of the share's.
+  /// Takes a number for each vertex or cell of the part; returns the numbers of those of the share.
   template <class Number>
   [[nodiscard]] std::vector<Number> fetched(Association of, const std::vector<Number>& numbers,
                                             std::size_t type) const {
@@ -144,10 +144,10 @@ class ShareMaker {
     return communicator_.together([&] { return numbers_of<Number>(own, type); });
   }
 
-  /// Returns the vertices or cells of the share that a list of the file names, in the order of the list.
+  /// Returns the vertices or cells of the share that are in a list of the file, in the sequence of the list.
   ///
-  /// @param members  that the part has of it
-  /// @param entries  their places in the list, ascending; none where the order does not matter
+  /// @param members  of the list that are in the part
+  /// @param entries  their places in the list, ascending; empty if the sequence does not matter
   [[nodiscard]] std::vector<Index> listed(Association of, const std::vector<Index>& members,
                                           const std::vector<Index>& entries) const {
     const std::vector<std::int32_t> marks = communicator_.together([&] {
@@ -183,7 +183,7 @@ class ShareMaker {
                       static_cast<std::size_t>(width));
         }
         bytes = std::move(chosen);
-        if (some.empty()) return;  // without indices it would be one on all
+        if (some.empty()) return;  // an array without indices would count as dense
       }
       share_.mesh.data.push_back({of_part.name, of_part.association, of_part.components,
                                   values_of(bytes, of_part.values.index()), std::move(some),
@@ -197,7 +197,7 @@ class ShareMaker {
                                 listed(of_part.association, of_part.members, moved_.part().sets[s].entries)});
   }
 
-  /// Returns whether there are any.
+  /// Adds the ids of the share; returns whether the mesh has any.
   bool add_ids(Association of, std::vector<std::int64_t>& ids) {
     if (moved_.ids(of) == nullptr) return false;
     const std::vector<std::byte> own =

@@ -10,31 +10,31 @@
 
 namespace meshorder::distributed {
 
-/// The numbers, in the whole mesh in its new order, of the vertices and cells that a rank has.
+/// The new numbers, in the whole mesh, of the vertices and cells that a rank has.
 struct ShareNumbers {
-  Layout layout;                      ///< who answers for which vertices of the whole mesh
+  Layout layout;                      ///< for exchanges: the owners of the vertices of the whole mesh
   std::vector<GlobalIndex> vertices;  ///< ascending
   std::vector<GlobalIndex> cells;     ///< ascending
 
-  /// Returns those of a mesh that one rank has as a whole.
+  /// Returns the numbers of a mesh that one rank has as a whole.
   [[nodiscard]] static ShareNumbers of_whole(const Mesh& mesh);
 };
 
-/// What a rank has of a mesh that is written in pieces: the cells of its parts, their vertices, and the
-/// vertices of these parts that no cell uses, with all that belongs to them.
+/// A rank's share of a mesh that is written in pieces: the cells of its parts, their vertices, the unused
+/// vertices of these parts, and their arrays, sets and ids.
 struct MeshShare {
-  /// In the order of their numbers. Sets have all their names, perhaps without members; arrays on some
-  /// vertices or cells are there where they have rows. The order of rows and members is that of the file.
+  /// Vertices and cells are in the order of their numbers. All sets are kept, perhaps without members; arrays
+  /// on some vertices or cells are dropped if they have no rows here. Rows and members keep the file's order.
   Mesh mesh;
   ShareNumbers numbers;
   bool has_vertex_ids = false;  ///< on any rank
   bool has_cell_ids = false;
 };
 
-/// Returns the share of this rank, whose parts are those of `ranks_of_parts`. A cell is in the part of its
-/// last vertex. Every rank has to call it. O(size of the part + size of the share · log).
+/// Returns the share of this rank; its parts are those of `ranks_of_parts`. A cell is in the part of its
+/// largest vertex. Every rank has to call it. O(size of the part + size of the share · log).
 ///
-/// @param part_starts  as of `part_of`
+/// @param part_starts  as in `part_of`
 /// @throws as `Communicator::exchange`
 [[nodiscard]] MeshShare share_of(const Communicator& communicator, const MovedPart& moved,
                                  const std::vector<GlobalIndex>& part_starts);

@@ -10,16 +10,16 @@
 
 namespace meshorder::distributed {
 
-/// Returns a .vtu file of one point and one cell, which says what arrays and fields a mesh has.
+/// Returns a .vtu file of one point and one cell that declares the arrays and fields of a mesh.
 ///
 /// @param arrays    one row of each, those of points before those of cells
-/// @param metadata  of the mesh; how a .vtu file is coded is not looked at
-/// @param in_order_of_vtk_9  whether the nodes of higher-order hexahedra are, which the file's version says
+/// @param metadata  of the mesh; its encoding of .vtu files is ignored
+/// @param in_order_of_vtk_9  whether higher-order hexahedra have VTK 9's node order; sets the file's version
 /// @param notes     receives what .vtu files hold in another way
 [[nodiscard]] std::string mold_of(std::vector<DataArray> arrays, vtk::Metadata metadata,
                                   bool in_order_of_vtk_9, Notes& notes);
 
-/// Returns the fields of such a file as they are there, with their values; an empty text without fields.
+/// Returns the <FieldData> of such a file, unchanged, with its values; empty if it has none.
 [[nodiscard]] std::string fields_of(const std::string& mold);
 
 }  // namespace meshorder::distributed

@@ -15,8 +15,8 @@
 namespace meshorder::distributed {
 namespace {
 
-// number types, as the alternatives of Values
-constexpr std::size_t kMemberMark = 3;  // of members of a set, a byte
+// number types: indices of alternatives of Values
+constexpr std::size_t kMemberMark = 3;  // a byte that marks members of a set
 constexpr std::size_t kNumber = 6;
 constexpr std::size_t kWideNumber = 8;
 
@@ -29,8 +29,8 @@ MovedGrid::MovedGrid(const Communicator& communicator, MovedPart& moved)
   types_ = communicator.together([&] { return vtk::cell_types(moved.part().mesh); });
 }
 
-/// Returns the place, from 1 on, that each member of the part has among all members of a set; nothing if the
-/// members of the whole set ascend in the new order.
+/// Returns the place, from 1 on, of each member of the part among all members of a set; empty if the members
+/// of the whole set ascend in the new order.
 std::vector<std::int32_t> MovedGrid::ranks_in_set(std::size_t set) const {
   constexpr GlobalIndex kNone = -1;
   const MeshPart::SetRows& rows = moved_.part().sets[set];
@@ -51,7 +51,7 @@ std::vector<std::int32_t> MovedGrid::ranks_in_set(std::size_t set) const {
   };
   PlacesInList own;
   for (GlobalIndex& place : listed) {
-    if (place == kNone) continue;  // named before
+    if (place == kNone) continue;  // a member that occurs earlier in the list
     if (own.members++ == 0) own.first = place;
     own.ascends = own.ascends && place > own.last;
     own.last = place;
@@ -79,7 +79,7 @@ std::vector<std::int32_t> MovedGrid::ranks_in_set(std::size_t set) const {
   return ranks;
 }
 
-/// Lists the arrays as a .vtu file has them.
+/// Lists the arrays in the sequence of a .vtu file.
 void MovedGrid::list_arrays() {
   using Source = Array::Source;
   const Mesh& mesh = moved_.part().mesh;
@@ -103,7 +103,7 @@ void MovedGrid::list_arrays() {
   }
 }
 
-/// Returns what the vertices or cells of the part are in a set.
+/// Returns the mark of each vertex or cell of the part for a set: its place or 1; 0 if it is no member.
 std::vector<std::byte> MovedGrid::marks_of_set(const Array& array) const {
   const std::vector<std::int32_t>& ranks = set_ranks_[array.number];
   const std::vector<Index>& members = moved_.part().mesh.sets[array.number].members;
@@ -115,7 +115,7 @@ std::vector<std::byte> MovedGrid::marks_of_set(const Array& array) const {
 }
 
 std::vector<std::byte> MovedGrid::rows_of_array(std::size_t k) const {
-  if (k > arrays_.size())  // after points and two of cells
+  if (k > arrays_.size())  // types, the last array
     return moved_.moved(Association::cells, std::as_bytes(std::span(types_)), 1);
   if (k == arrays_.size()) {
     return moved_.moved(Association::vertices, std::as_bytes(std::span(moved_.part().mesh.points)),
@@ -128,7 +128,7 @@ std::vector<std::byte> MovedGrid::rows_of_array(std::size_t k) const {
   return moved_.moved(array.association, own, size_of_type(array.type));
 }
 
-/// Returns a file of one point and one cell that has all arrays, under the names that they get there.
+/// Returns a .vtu file of one point and one cell that has all arrays, with their names in .vtu files.
 std::string MovedGrid::xml(Notes& notes) const {
   Mesh sketch;
   sketch.points.resize(1);

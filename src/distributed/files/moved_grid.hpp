@@ -13,21 +13,21 @@
 
 namespace meshorder::distributed {
 
-/// A moved mesh as a .vtu file holds it: what `scattered_grid` makes of the whole mesh once that is in its
-/// new order. Labels and ids are as wide as those of any rank need, sets are marked in the order of all their
-/// members.
+/// A moved mesh in the form of a .vtu file: the same that `scattered_grid` makes of the whole mesh in its new
+/// order. The types of labels and ids fit the values of all ranks; the marks of a set follow the order of all
+/// its members.
 class MovedGrid {
  public:
   /// Every rank has to call it. O(size of the part).
   ///
-  /// @param communicator  outlives this object
-  /// @param moved  outlives this object; its cells, which VTK holds, are taken by `rows`
+  /// @param communicator  must outlive this object
+  /// @param moved  must outlive this object, and have only cells that VTK can hold; `rows` takes its cells
   MovedGrid(const Communicator& communicator, MovedPart& moved);
 
-  /// Returns the mesh, this object's as long as it lives; to be called once. Every rank has to call it.
+  /// Returns the mesh, valid as long as this object. Call it only once. Every rank has to call it.
   /// O(size of the cells).
   ///
-  /// @param notes  at the root: what VTK's files hold in another way
+  /// @param notes  receives, at the root, what VTK's files hold in another way
   [[nodiscard]] GridRows rows(Notes& notes);
 
  private:
@@ -35,9 +35,9 @@ class MovedGrid {
   struct Array {
     enum class Source : std::uint8_t { data, set, ids };
     Source source;
-    std::size_t number;  ///< among the mesh's arrays or sets
+    std::size_t number;  ///< place among the mesh's arrays or sets
     Association association;
-    std::size_t type;  ///< number type, as the alternatives of Values
+    std::size_t type;  ///< number type: index of an alternative of Values
     Index components;
   };
 
@@ -50,9 +50,9 @@ class MovedGrid {
 
   const Communicator& communicator_;
   MovedPart& moved_;
-  std::vector<std::vector<std::int32_t>> set_ranks_;  ///< of the members of each set; none: 1 for each
+  std::vector<std::vector<std::int32_t>> set_ranks_;  ///< place of each member in its set; empty: mark with 1
   std::vector<Array> arrays_;
-  std::vector<std::uint8_t> types_;  ///< VTK's
+  std::vector<std::uint8_t> types_;  ///< VTK cell types
 };
 
 }  // namespace meshorder::distributed

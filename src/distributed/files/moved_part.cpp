@@ -18,33 +18,33 @@
 namespace meshorder::distributed {
 namespace {
 
-// number types, as the alternatives of Values
+// number types: indices of alternatives of Values
 constexpr std::size_t kReal = 0;
 constexpr std::size_t kNarrow = 6;
 constexpr std::size_t kWide = 8;
 
-/// How an array is held.
+/// The number type and the components of an array.
 struct ArrayForm {
   std::size_t type = 0;
   Index components = 0;
 };
 
-/// Returns the type that an array has whose rows on two ranks have these: readers make 32-bit integers of
-/// labels and numbers where all that they read fit.
+/// Returns the type for an array whose rows have types a and b on two ranks: a rank's reader returns 32-bit
+/// integers if all labels or numbers that it reads fit.
 std::size_t common_type(std::size_t a, std::size_t b) {
   if (a == b) return a;
   const bool are_integers = (a == kNarrow || a == kWide) && (b == kNarrow || b == kWide);
   return are_integers ? kWide : kReal;
 }
 
-/// Returns what is there where an array has no value.
+/// Returns the number that stands for a missing value: NaN, or 0 for integers.
 template <class Number>
 Number nothing() {
   if constexpr (std::is_floating_point_v<Number>) return std::numeric_limits<Number>::quiet_NaN();
   return Number{};
 }
 
-/// Gives an array a type, and rows of so many components, at least as many as they have.
+/// Converts an array to a type and to a number of components, at least as many as it has.
 void give_form(DataArray& array, const ArrayForm& form) {
   if (array.values.index() == form.type && array.components == form.components) return;
   Values result = vtk::values_of_type(form.type);
@@ -66,10 +66,10 @@ void give_form(DataArray& array, const ArrayForm& form) {
   array.components = form.components;
 }
 
-/// Returns the bytes of an array, of one on some of the vertices or cells with rows of nothing for the
-/// others.
+/// Returns the bytes of an array. If it is only on some of the vertices or cells, the others get rows of
+/// missing values.
 ///
-/// @param count  of the vertices or cells
+/// @param count  number of the vertices or cells
 std::vector<std::byte> bytes_of_rows(const DataArray& array, bool is_partial, std::size_t count) {
   return std::visit(
       [&](const auto& values) {
@@ -122,8 +122,8 @@ const std::vector<std::int64_t>* MovedPart::ids(Association association) const {
   return association == Association::vertices ? &part_.mesh.vertex_ids : &part_.mesh.cell_ids;
 }
 
-/// Returns the new place of each cell of the part, where all cells are to be in the order of a list, of which
-/// this rank has its share.
+/// Returns the new place of each cell of the part. `in_order` is this rank's range of a list of all cells in
+/// their new sequence, within blocks or dimensions.
 std::vector<GlobalIndex> MovedPart::places_of_cells(const std::vector<GlobalIndex>& in_order) const {
   if (!block_ends_.empty()) return places_by_block(communicator_, cells_.layout, block_ends_, in_order);
   MeshSlice slice;
@@ -140,7 +140,7 @@ void MovedPart::note_repeated(Notes& notes) const {
   }
 }
 
-/// Gives each array the type and the components that it has on any rank.
+/// Converts each array to a type and a number of components that suit all ranks.
 void MovedPart::unify_arrays() {
   for (DataArray& array : part_.mesh.data) {
     ArrayForm common{array.values.index(), 0};
@@ -150,8 +150,8 @@ void MovedPart::unify_arrays() {
   }
 }
 
-/// Finds out whether there are ids besides the places, and where they go: the vertices, and the cells of each
-/// dimension or block, get them ascending. An order that moves nothing leaves them where they are.
+/// Finds out whether there are ids other than the places, and moves them so that they ascend along vertices,
+/// and along the cells of each dimension or block. If the order moves nothing, ids keep their places.
 void MovedPart::settle_ids(Entities& owner, std::vector<std::int64_t>& ids, const std::string& name,
                            Notes& notes) {
   if (name.empty() || are_places(communicator_, owner.layout, ids)) return ids.clear();
@@ -168,7 +168,7 @@ void MovedPart::settle_ids(Entities& owner, std::vector<std::int64_t>& ids, cons
   owner.ids_mover.emplace(communicator_, owner.layout, places_of_ids(owner, order.sorted));
 }
 
-/// Returns where the id of each vertex or cell of the part goes.
+/// Returns the new place of the id of each vertex or cell of the part.
 std::vector<GlobalIndex> MovedPart::places_of_ids(const Entities& owner,
                                                   const std::vector<GlobalIndex>& sorted) const {
   if (&owner == &cells_) return places_of_cells(sorted);

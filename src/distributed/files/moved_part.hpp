@@ -18,64 +18,64 @@
 
 namespace meshorder::distributed {
 
-/// A mesh of which each rank has read a part, and where all of it goes in a new order. Each rank has a range
-/// of the new places. Arrays are as wide as those of any rank, and ids are sorted anew, as where one rank
-/// moves the whole mesh.
+/// A mesh of which each rank has read a part, and the new places of its vertices and cells. Each rank owns a
+/// range of the new places. Array types fit all ranks, and ids are sorted anew, as if one rank moved
+/// the whole mesh.
 class MovedPart {
  public:
   /// Every rank has to call it. O(size of the part).
   ///
-  /// @param communicator  outlives this object
-  /// @param part        of this rank: an even range of the vertices and one of the cells. Arrays have the
-  /// same
+  /// @param communicator  must outlive this object
+  /// @param part        of this rank: an even range of the vertices and one of the cells. Arrays must
+  ///                    have the same
   ///                    names on all ranks
   /// @param order       the mesh's new order
-  /// @param block_ends  as of `places_by_block`; empty where cells stay among those of their dimension
-  /// @param notes       at the root: members and numbers that the file gives twice
+  /// @param block_ends  as in `places_by_block`; empty: cells keep the places of their dimension
+  /// @param notes       receives, at the root, notes on members and numbers that the file gives twice
   /// @throws as `Communicator::exchange`
   MovedPart(const Communicator& communicator, MeshPart part, const DistributedOrder& order,
             std::vector<GlobalIndex> block_ends, Notes& notes);
 
-  /// Returns what this rank has read, in the old order; cells name the old numbers of their vertices.
+  /// Returns the part that this rank has read, in the old order, with the old numbers of the cells' vertices.
   [[nodiscard]] const MeshPart& part() const noexcept { return part_; }
-  /// Returns who has which vertices or cells, by their old numbers or their new places.
+  /// Returns the owners of the vertices or cells; the ranges of old numbers and of new places are the same.
   [[nodiscard]] const Layout& layout(Association association) const { return entities(association).layout; }
   /// Returns the new place of each vertex or cell of the part.
   [[nodiscard]] const std::vector<GlobalIndex>& new_places(Association association) const {
     return entities(association).places;
   }
-  /// Returns the numbers that the file gives to the vertices or cells of the part, in their old order; null
-  /// where they are none but their places.
+  /// Returns the file's ids of the vertices or cells of the part, in their old order; null if the ids are
+  /// just the places.
   [[nodiscard]] const std::vector<std::int64_t>* ids(Association association) const;
 
-  /// Returns the points and cells of this rank's places, the nodes of cells as a Mesh has them. Every rank
-  /// has to call it. O(size of the slice).
+  /// Returns the points and cells of this rank's places, with the node order of a Mesh. Every rank has to
+  /// call it. O(size of the slice).
   [[nodiscard]] MeshSlice slice() const;
   /// Returns the cells of this rank's places, with the new numbers of their vertices. Every rank has to call
   /// it. O(entries).
   ///
-  /// @param cells  of the part; taken
+  /// @param cells  of the part; freed early
   [[nodiscard]] Rows moved_cells(Rows cells) const;
-  /// Returns the rows of the vertices or cells of this rank's places, of which there are `width` bytes for
-  /// each of the part. Every rank has to call it. O(bytes).
+  /// Returns the rows of this rank's places. `rows` has `width` bytes for each vertex or cell of the part.
+  /// Every rank has to call it. O(bytes).
   [[nodiscard]] std::vector<std::byte> moved(Association association, std::span<const std::byte> rows,
                                              Offset width) const;
-  /// The same for the k-th array of the mesh; NaN or 0 where it has no row.
+  /// As above, for the k-th array of the mesh; NaN or 0 where it has no row.
   [[nodiscard]] std::vector<std::byte> moved_array(std::size_t k) const;
-  /// Returns the ids of this rank's places, which there are, as numbers of a type. Every rank has to call it.
+  /// Returns the ids of this rank's places in a number type; there must be ids. Every rank has to call it.
   [[nodiscard]] std::vector<std::byte> moved_ids(Association association, std::size_t type) const;
 
-  /// Gives up the cells of the part, which `part` and `slice` then lack.
+  /// Moves the cells out of the part; `part` and `slice` then lack them.
   [[nodiscard]] Cells take_cells() { return std::move(part_.mesh.cells); }
 
  private:
-  /// What is known of vertices or of cells.
+  /// The vertices or the cells.
   struct Entities {
     Layout layout;
-    std::vector<GlobalIndex> places;  ///< new ones of the part's
+    std::vector<GlobalIndex> places;  ///< new place of each one of the part
     std::optional<RowMover> mover;
     bool has_ids = false;
-    std::optional<RowMover> ids_mover;  ///< to where the ids go
+    std::optional<RowMover> ids_mover;  ///< moves ids to their places
   };
 
   [[nodiscard]] const Entities& entities(Association association) const {

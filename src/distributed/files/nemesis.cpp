@@ -40,7 +40,7 @@ using exodus::BlockRecord;
 using exodus::Metadata;
 using exodus::SetRecord;
 
-/// Attribute of the files by which a later run knows them.
+/// Attribute by which a later run recognises the files.
 constexpr std::string_view kMark = "pieces_written_by";
 constexpr std::string_view kMaker = "meshorder";
 
@@ -48,9 +48,9 @@ const Metadata* exodus_metadata(const Mesh& mesh) {
   return dynamic_cast<const Metadata*>(mesh.format_metadata.get());
 }
 
-// ---- the whole mesh as a file of Exodus II
+// ---- the whole mesh as an Exodus II file
 
-/// Returns whether the metadata know all sets, and the mesh has all sets and arrays that they name.
+/// Returns whether the metadata name all sets of the mesh, and the mesh has all sets and arrays they name.
 bool knows_all(const Mesh& mesh, const Metadata& metadata) {
   const auto has_set = [&](const SetRecord& record, Association association) {
     return std::any_of(mesh.sets.begin(), mesh.sets.end(), [&](const EntitySet& set) {
@@ -77,9 +77,9 @@ bool knows_all(const Mesh& mesh, const Metadata& metadata) {
          });
 }
 
-// ---- what pieces have beside the mesh
+// ---- data that only pieces have
 
-/// Returns the bytes of numbers of a type.
+/// Returns the bytes of numbers converted to a type.
 template <class Number>
 std::string bytes_of_numbers(const std::vector<std::int64_t>& values) {
   std::string bytes;
@@ -90,18 +90,18 @@ std::string bytes_of_numbers(const std::vector<std::int64_t>& values) {
   return bytes;
 }
 
-/// Adds a dimension, unless it is 0, which netCDF takes for one without a limit.
+/// Adds a dimension unless its length is 0, which netCDF takes for an unlimited one.
 void add_dimension(Metadata& metadata, std::string_view name, std::size_t length) {
   if (length > 0) metadata.dimensions.push_back({std::string(name), length});
 }
 
-/// Adds whole numbers along a dimension, or one without; none along one of length 0.
+/// Adds integers along a dimension, or one integer if `dimension` is empty; nothing without values.
 void add_integers(Metadata& metadata, std::string_view name, std::string_view dimension,
                   const std::vector<std::int64_t>& values) {
   if (values.empty()) return;
   std::vector<exodus::Dimension> dimensions;
   if (!dimension.empty()) dimensions.push_back({std::string(dimension), values.size()});
-  // as the library of Exodus has them: of 64 bits only where a file has such ids
+  // as in the Exodus library: 64 bits only if the numbers need them
   const bool fit = std::all_of(values.begin(), values.end(),
                                [](std::int64_t value) { return std::in_range<std::int32_t>(value); });
   metadata.plain.push_back(
@@ -122,7 +122,7 @@ constexpr std::string_view kFiles = "num_procs_file";
 
 std::vector<std::int64_t> status_of(std::size_t count) { return {count > 0 ? 1 : 0}; }
 
-/// Variables and dimensions of what is at other parts and what is not.
+/// Names of variables and dimensions for nodes or elements inside a part and at its border.
 struct Names {
   std::string_view internal_status;
   std::string_view border_status;
@@ -132,15 +132,15 @@ struct Names {
   std::string_view border_count;
 };
 
-/// Variables and dimensions of communication maps.
+/// Names of variables and dimensions of communication maps.
 struct MapNames {
-  std::string kind;  ///< first letter of the others
+  std::string kind;  ///< "n" or "e", with which the other variables' names begin
   std::string_view maps;
   std::string_view entries;
   std::string_view numbers;
 };
 
-/// Adds communication maps by the parts that they are with, which are their ids, too.
+/// Adds communication maps, one for each other part. A map's id is the number of that part.
 void add_maps(Metadata& metadata, const MapNames& names,
               const std::map<Index, std::vector<std::int64_t>>& maps) {
   std::vector<std::int64_t> ids;
@@ -169,7 +169,7 @@ std::int64_t factors_of_nodes(const Mesh& mesh, const SetRecord& record) {
   return factors == nullptr ? 0 : row_count(*factors);
 }
 
-/// How many sides and distribution factors a set of sides has.
+/// Numbers of sides and of distribution factors of a set of sides.
 struct SideCounts {
   std::int64_t sides = 0;
   std::int64_t factors = 0;
@@ -201,8 +201,8 @@ SideCounts counts_of_sides(const Mesh& mesh, const SetRecord& record, const exod
   return counts;
 }
 
-/// Returns what all pieces say of the sets of nodes and sides: of each set of nodes the members and the
-/// distribution factors, then of each set of sides.
+/// Returns the counts of members and of distribution factors of each set of nodes, then those of each set of
+/// sides.
 std::vector<std::int64_t> counts_of_sets(const Mesh& mesh, const Metadata& metadata) {
   std::vector<std::int64_t> counts;
   const exodus::SideNodes nodes(mesh, metadata);
@@ -221,7 +221,7 @@ std::vector<std::int64_t> counts_of_sets(const Mesh& mesh, const Metadata& metad
   return counts;
 }
 
-/// Returns the number in Exodus II of a facet of an element.
+/// Returns the Exodus II side number of a facet of an element.
 ///
 /// @param facet  place in `facets(shape, …)`
 /// @param type   of its block
@@ -242,14 +242,14 @@ int side_of_facet(Shape shape, int facet, int coordinates, std::string_view type
   }
 }
 
-/// The blocks of a mesh that have cells, in the order of these.
+/// The blocks of a mesh that have cells, in the order of the cells.
 struct Blocks {
   std::vector<const BlockRecord*> records;
   std::vector<GlobalIndex> ends;  ///< number of the first cell after each
 };
 
-/// Returns the blocks of a whole mesh; none where its cells are not in blocks that the metadata know, in
-/// their order.
+/// Returns the blocks of a whole mesh; none if its cells are not in blocks of the metadata or not in their
+/// order.
 Blocks blocks_of(const Mesh& mesh, const Metadata& metadata) {
   Blocks blocks;
   const CellDivision division = exodus::divide(mesh);
@@ -284,24 +284,24 @@ Blocks blocks_of(const Metadata& metadata, const std::vector<GlobalIndex>& ends)
   return blocks;
 }
 
-/// What a rank has of a mesh of Exodus II in its new order.
+/// A rank's share of an Exodus II mesh in its new order.
 struct OrderedMesh {
-  const Mesh& mesh;  ///< with metadata of Exodus II
+  const Mesh& mesh;  ///< has Exodus II metadata
   const ShareNumbers& numbers;
-  const std::vector<GlobalIndex>& element_numbers;  ///< of the cells in the file of the whole mesh, from 0 on
+  const std::vector<GlobalIndex>& element_numbers;  ///< of the cells in the whole mesh's file, from 0 on
   Blocks blocks;                                    ///< of the whole mesh
   std::vector<std::int64_t> set_counts;             ///< of the whole mesh
   bool has_vertex_ids;
   bool has_cell_ids;
 };
 
-/// The parts of a mesh that a rank has, the borders between them and what their files have in common.
+/// The parts of a mesh that a rank has, the borders between them and the data that all files have in common.
 class NemesisPieces {
  public:
   /// Finds the parts and their borders. Every rank has to call it.
   ///
-  /// @param source       what it refers to outlives this object
-  /// @param part_starts  as of `part_of`
+  /// @param source       its referents must outlive this object
+  /// @param part_starts  as in `part_of`
   NemesisPieces(const Communicator& communicator, OrderedMesh source,
                 const std::vector<GlobalIndex>& part_starts);
   NemesisPieces(const NemesisPieces&) = delete;
@@ -312,8 +312,8 @@ class NemesisPieces {
 
   /// Writes the files of this rank's parts. Every rank has to call it. O(size of the parts · log).
   ///
-  /// @return how often pieces have a vertex that another has, too, the first time not counted
-  /// @throws SharedError where one cannot be written
+  /// @return number of vertices of all pieces minus that of the mesh
+  /// @throws SharedError if one cannot be written
   GlobalIndex write(const std::vector<std::string>& paths, const std::vector<std::string>& names);
 
  private:
@@ -331,7 +331,7 @@ class NemesisPieces {
   MeshParts parts_;
   std::vector<std::vector<BorderFacet>> borders_;
   PartCutter cutter_;
-  exodus::Metadata whole_;  ///< what all pieces say of the whole mesh
+  exodus::Metadata whole_;  ///< data on the whole mesh, the same in all pieces
 };
 
 NemesisPieces::NemesisPieces(const Communicator& communicator, OrderedMesh source,
@@ -345,7 +345,7 @@ NemesisPieces::NemesisPieces(const Communicator& communicator, OrderedMesh sourc
   count_whole();
 }
 
-/// Fills in what all pieces say of the whole mesh.
+/// Fills in `whole_`.
 void NemesisPieces::count_whole() {
   whole_.dimensions = {{"num_processors", static_cast<std::size_t>(parts_.size())}, {"num_procs_file", 1}};
   const Blocks& blocks = source_.blocks;
@@ -399,7 +399,7 @@ GlobalIndex NemesisPieces::write(const std::vector<std::string>& paths,
 
 void NemesisPieces::write_piece(Index part, const exodus::UnfinishedFile& file) {
   Mesh piece = cutter_.cut(part);
-  // a block that has no cells here has no set of them either: it would become one of elements
+  // drop the sets of blocks without cells in this part: they would become element sets
   const auto& element_sets = metadata_.sets[exodus::kElementSets].sets;
   std::erase_if(piece.sets, [&](const EntitySet& set) {
     return set.association == Association::cells && set.members.empty() &&
@@ -407,7 +407,7 @@ void NemesisPieces::write_piece(Index part, const exodus::UnfinishedFile& file) 
                         [&](const SetRecord& record) { return record.in_mesh == set.name; });
   });
   if (piece.cell_count() == 0) {
-    // without cells these labels divide nothing into blocks, and would become a variable
+    // drop the block labels of a part without cells: they would become a variable
     std::erase_if(piece.data, [](const DataArray& array) {
       return array.association == Association::cells && array.name == kLabel;
     });
@@ -418,12 +418,12 @@ void NemesisPieces::write_piece(Index part, const exodus::UnfinishedFile& file) 
   add_node_maps(part, metadata);
   add_element_maps(part, metadata);
   piece.format_metadata = std::make_shared<const Metadata>(std::move(metadata));
-  Notes ignored;  // they are those of the whole
+  Notes ignored;  // the same as for the whole mesh
   exodus::write(piece, file, ignored);
 }
 
-/// Gives nodes and elements their numbers in the file of the whole mesh, and keeps those that this one has as
-/// a map, unless they are the same.
+/// Sets the ids of nodes and elements to their numbers in the whole mesh. If the mesh has other ids, keeps
+/// them as a map.
 void NemesisPieces::add_numbers(Index part, Mesh& piece) const {
   const auto number = [&](Association association, bool has_ids, std::vector<std::int64_t>& ids,
                           std::span<const Index> own, const std::vector<GlobalIndex>& numbers) {
@@ -440,7 +440,7 @@ void NemesisPieces::add_numbers(Index part, Mesh& piece) const {
          source_.element_numbers);
 }
 
-/// Returns the metadata of a piece: those of the whole mesh, less arrays that it has no rows of.
+/// Returns the metadata of a piece: those of the whole mesh, without the arrays that have no rows in it.
 Metadata NemesisPieces::metadata_of(const Mesh& piece) const {
   Metadata metadata = metadata_;
   const auto has = [&](const std::string& array) {
@@ -462,7 +462,7 @@ Metadata NemesisPieces::metadata_of(const Mesh& piece) const {
   return metadata;
 }
 
-/// Adds which nodes and elements are at other parts.
+/// Adds the lists of nodes and elements inside the part and at its border.
 void NemesisPieces::add_load_balance(Index part, Metadata& metadata) const {
   const auto add = [&](std::size_t count, const auto& is_at_border, const Names& names) {
     std::vector<std::int64_t> internal;
@@ -485,8 +485,8 @@ void NemesisPieces::add_load_balance(Index part, Metadata& metadata) const {
       {"int_e_stat", "bor_e_stat", "elem_mapi", "num_int_elem", "elem_mapb", "num_bor_elem"});
 }
 
-/// Adds the communication maps of nodes, one for each part that shares some: their places in the piece, in
-/// the order of their numbers in the whole mesh, which is the same in both parts.
+/// Adds the communication maps of nodes, one for each part that shares some. A map has places in the piece,
+/// sorted by the nodes' numbers in the whole mesh, so that the maps of both parts match.
 void NemesisPieces::add_node_maps(Index part, Metadata& metadata) const {
   const auto vertices = parts_.vertices(part);
   std::vector<Index> ascending = index_range(0, index_size(vertices));
@@ -500,7 +500,7 @@ void NemesisPieces::add_node_maps(Index part, Metadata& metadata) const {
   add_maps(metadata, {"n", "num_n_cmaps", "ncnt_cmap", "n_comm_nids"}, maps);
 }
 
-/// Adds the communication maps of elements, one for each part that has a side of some.
+/// Adds the communication maps of elements, one for each part that shares a side with some.
 void NemesisPieces::add_element_maps(Index part, Metadata& metadata) const {
   const auto cells = parts_.cells(part);
   std::map<Index, std::vector<std::int64_t>> maps;
@@ -518,7 +518,7 @@ void NemesisPieces::add_element_maps(Index part, Metadata& metadata) const {
   add_integers(metadata, "e_comm_sids", "ecnt_cmap", sides);
 }
 
-/// A mesh as a file of Exodus II holds it, and the places of its cells in the given one.
+/// A mesh in the form of an Exodus II file, and the places of its cells in the given mesh.
 struct Held {
   Mesh mesh;
   std::vector<GlobalIndex> given_cells;
@@ -539,9 +539,9 @@ Held held(const Mesh& mesh, Notes& notes) {
   return {exodus::read(FilePath("the pieces", store), ignored), std::move(given_cells)};
 }
 
-/// Writes the pieces of a mesh that is as a file of Exodus II holds it.
+/// Writes the pieces of a mesh in the form of an Exodus II file.
 ///
-/// @param element_numbers  of its cells in the file of the whole mesh
+/// @param element_numbers  of its cells in the whole mesh's file
 GlobalIndex write_held(const Mesh& mesh, const ShareNumbers& numbers,
                        const std::vector<GlobalIndex>& element_numbers,
                        const std::vector<GlobalIndex>& part_starts, const std::vector<std::string>& paths,

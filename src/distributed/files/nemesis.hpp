@@ -15,30 +15,30 @@
 
 namespace meshorder::distributed {
 
-/// Writes the parts of a mesh that one rank has as files of Nemesis: Exodus II, with the numbers in the whole
-/// mesh, and what each part shares with which others. A mesh that did not come from an Exodus II file, or is
-/// not in the order of one, is written to memory as such a file first, and read from there. O(size of the
-/// mesh · log).
+/// Writes the parts of a mesh that one rank has as Nemesis files: Exodus II files that also hold the numbers
+/// in the whole mesh, and the vertices and facets shared with other parts. A mesh that did not come from an
+/// Exodus II file, or is not in the order of one, is first written to memory as such a file and read from
+/// there. O(size of the mesh · log).
 ///
 /// Format: Hennigan, Shadid, "NEMESIS I: A Set of Functions for Describing Unstructured Finite-Element Data
 /// on Parallel Computers" (Sandia, 1998), and the names of dimensions and variables in exodusII_int.h of
 /// SEACAS, https://sandialabs.github.io/seacas-docs/.
 ///
-/// @param mesh         in its new order; Exodus II holds its cells
-/// @param part_starts  as of `part_of`
-/// @param paths        of files that exist, one for each part
+/// @param mesh         in its new order; Exodus II must be able to hold its cells
+/// @param part_starts  as in `part_of`
+/// @param paths        of existing files, one for each part
 /// @param names        of the files in messages
 /// @param notes        receives what Exodus II holds in another way
-/// @return how many vertices the pieces have more than the mesh, as several have the same
-/// @throws InputError where a file cannot be written; Unavailable in a build without netCDF
+/// @return number of vertices of all pieces minus that of the mesh: vertices on borders are in several pieces
+/// @throws InputError if a file cannot be written; Unavailable in a build without netCDF
 GlobalIndex write_nemesis_pieces(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts,
                                  const std::vector<std::string>& paths, const std::vector<std::string>& names,
                                  Notes& notes);
 
-/// What a rank has of a mesh of an Exodus II file whose pieces all ranks write.
+/// A rank's share of the mesh of an Exodus II file whose pieces all ranks write.
 struct NemesisShare {
   MeshShare share;
-  std::vector<GlobalIndex> block_ends;   ///< as of `places_by_block`
+  std::vector<GlobalIndex> block_ends;   ///< as in `places_by_block`
   std::vector<std::int64_t> set_counts;  ///< members and distribution factors of the sets of the whole mesh
 };
 
@@ -51,10 +51,10 @@ struct NemesisShare {
                                          const std::vector<GlobalIndex>& block_ends,
                                          const std::vector<GlobalIndex>& part_starts);
 
-/// Writes the parts as the function above, each rank its own. Every rank has to call it. O(size of the share
+/// Writes the parts as the first function, each rank its own. Every rank has to call it. O(size of the share
 /// · log).
 ///
-/// @throws SharedError where a file cannot be written
+/// @throws SharedError if a file cannot be written
 GlobalIndex write_nemesis_pieces(const Communicator& communicator, const NemesisShare& share,
                                  const std::vector<GlobalIndex>& part_starts,
                                  const std::vector<std::string>& paths,

@@ -14,7 +14,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// A facet that more than one part may have, on its way to the rank that answers for its largest corner.
+/// A facet that more than one part may have, to be sent to the owner of its largest corner.
 struct Candidate {
   std::array<GlobalIndex, 4> corners;  ///< descending; −1 after the last
   GlobalIndex cell;
@@ -24,11 +24,11 @@ struct Candidate {
   [[nodiscard]] auto key() const { return std::tie(corners, cell, facet); }
 };
 
-/// A facet at another part, on its way to the rank of its cell.
+/// A facet shared with another part, to be sent to the rank of its cell's part.
 struct Match {
   GlobalIndex cell;
-  Index part;  ///< of the cell
-  Index other;
+  Index part;   ///< of the cell
+  Index other;  ///< part of the cell on the other side
   int facet;
 };
 
@@ -66,7 +66,7 @@ std::vector<Candidate> candidates(const Mesh& mesh, const ShareNumbers& numbers,
   return found;
 }
 
-/// Calls `take(a, b)` for every two facets that have the same corners and are of different parts.
+/// Calls `take(a, b)` for every two facets with the same corners in different parts; sorts `facets`.
 template <class Take>
 void for_pairs(std::vector<Candidate>& facets, const Take& take) {
   std::sort(facets.begin(), facets.end(),
@@ -81,7 +81,7 @@ void for_pairs(std::vector<Candidate>& facets, const Take& take) {
   }
 }
 
-/// Sends values to ranks, and returns those that arrive: by the rank that sent them, then in their order
+/// Sends values to ranks, and returns those that this rank receives: by sending rank, then in the sequence
 /// there.
 template <class T, class RankOf>
 std::vector<T> sent_to_ranks(const Communicator& communicator, std::vector<T> values, const RankOf& rank_of) {
@@ -108,7 +108,7 @@ std::vector<std::vector<BorderFacet>> facets_between(const Communicator& communi
   const std::vector<Match> own = sent_to_ranks(communicator, communicator.together([&] {
     std::vector<Match> matches;
     for_pairs(asked, [&](const Candidate& a, const Candidate& b) {
-      // both in one step, so that the two parts have their facets in one order
+      // both in one step, so that the lists of the two parts have the same sequence
       matches.push_back({a.cell, a.part, b.part, a.facet});
       matches.push_back({b.cell, b.part, a.part, b.facet});
     });

@@ -12,7 +12,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Fills in the parts of a cell's vertices, ascending, each once; the last one is the cell's own.
+/// Sets `parts` to the parts of a cell's vertices, ascending, each once; the last one is the cell's own part.
 void find_parts(std::span<const GlobalIndex> vertices, const std::vector<GlobalIndex>& starts,
                 std::vector<Index>& parts) {
   parts.clear();
@@ -21,7 +21,7 @@ void find_parts(std::span<const GlobalIndex> vertices, const std::vector<GlobalI
   parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
 }
 
-/// Cells on their way to the ranks of their pieces: rows of a cell's number and its vertices.
+/// Cells to be sent to the ranks of their pieces: a row has a cell's number, followed by its vertices.
 struct CellsToPieces {
   Rows rows;
   std::vector<Dispatch> dispatches;
@@ -49,13 +49,13 @@ CellsToPieces sent_to_pieces(const Rows& cell_vertices, GlobalIndex first_cell,
   return sent;
 }
 
-/// The rows of a piece's cells, by the parts of these.
+/// A cell of a piece.
 struct CellOfPiece {
-  Index part;
+  Index part;  ///< the cell's own part
   Offset row;
 };
 
-/// Puts the own cells first, then the others by their parts; cells of a part keep their order.
+/// Sorts the own cells first, then the others by their parts; stable.
 void sort_own_first(std::vector<CellOfPiece>& cells, Index part) {
   std::stable_sort(cells.begin(), cells.end(), [&](const CellOfPiece& a, const CellOfPiece& b) {
     if ((a.part == part) != (b.part == part)) return a.part == part;
@@ -63,7 +63,7 @@ void sort_own_first(std::vector<CellOfPiece>& cells, Index part) {
   });
 }
 
-/// Makes a piece of cells that are rows of a number and vertices.
+/// Makes a piece from its cells and its own vertices begin … end − 1; a row has a cell's number and vertices.
 PieceContents piece_of(Index part, GlobalIndex begin, GlobalIndex end, const Rows& rows,
                        const std::vector<CellOfPiece>& cells) {
   PieceContents piece;
@@ -104,7 +104,7 @@ std::vector<PieceContents> contents_of_pieces(const Communicator& communicator, 
   const Layout ranks = ranks_of_parts(part_count, communicator.size());
   const CellsToPieces sent = communicator.together(
       [&] { return sent_to_pieces(cell_vertices, cells.begin(rank), part_starts, ranks, with_ghosts); });
-  // rows came by rank, so that cells ascend
+  // rows arrive in rank order, so that cells ascend
   const Rows rows = send_rows(communicator, sent.rows, sent.dispatches);
   return communicator.together([&] {
     const auto first = static_cast<Index>(ranks.begin(rank));

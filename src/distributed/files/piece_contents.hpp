@@ -10,33 +10,33 @@
 
 namespace meshorder::distributed {
 
-/// What the piece of a part holds: the part's vertices and cells, and ghosts, those of other parts.
+/// The contents of a part's piece: the part's vertices and cells, and ghosts, which belong to other parts.
 struct PieceContents {
   Index part = 0;
-  /// New numbers: the own ones, ascending, then those that the cells use of other parts, ascending, by which
-  /// those of a part follow each other.
+  /// New numbers: the own ones, ascending, then those of other parts that the cells use, ascending and so
+  /// grouped by part.
   std::vector<GlobalIndex> vertices;
   GlobalIndex own_vertices = 0;
-  /// New numbers: the own ones, ascending, then those of other parts, by the part and then ascending.
+  /// New numbers: the own ones, ascending, then those of other parts, sorted by part, then by number.
   std::vector<GlobalIndex> cells;
   GlobalIndex own_cells = 0;
-  std::vector<Index> cell_parts;  ///< of each cell
+  std::vector<Index> cell_parts;  ///< part of each cell
   Rows cell_vertices;             ///< of each cell, as places among `vertices`
 
   [[nodiscard]] GlobalIndex ghost_vertices() const { return std::ssize(vertices) - own_vertices; }
   [[nodiscard]] GlobalIndex ghost_cells() const { return std::ssize(cells) - own_cells; }
 };
 
-/// Returns which ranks have which parts: as equal numbers as can be, in ranges.
+/// Returns the parts of each rank: ranges whose sizes differ by at most one.
 [[nodiscard]] inline Layout ranks_of_parts(Index parts, int ranks) { return Layout::even(parts, ranks); }
 
-/// Finds what the pieces of this rank's parts hold. A cell is in the part of its last vertex, and a ghost in
-/// those of its other vertices. Every rank has to call it. O(entries · log parts).
+/// Finds the contents of the pieces of this rank's parts. A cell is in the part of its largest vertex, and is
+/// a ghost in the parts of its other vertices. Every rank has to call it. O(entries · log parts).
 ///
 /// @param vertex_count   of the whole mesh
-/// @param cells          who has which cells, by new numbers
-/// @param cell_vertices  of the own ones, by new numbers; each has one at least
-/// @param part_starts    first new number of each part, and the end of the last one's
+/// @param cells          the owners of the cells, by new numbers
+/// @param cell_vertices  new numbers of the vertices of each own cell, at least one
+/// @param part_starts    first new number of each part, then the end of the last part
 /// @param with_ghosts    whether a piece has the cells of other parts that use vertices of its part
 /// @throws as `Communicator::exchange`
 [[nodiscard]] std::vector<PieceContents> contents_of_pieces(const Communicator& communicator,

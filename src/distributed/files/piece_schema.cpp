@@ -27,12 +27,12 @@ constexpr std::string_view kPointIds = "GlobalPointIds";
 constexpr std::string_view kCellIds = "GlobalCellIds";
 constexpr std::string_view kGhostType = "vtkGhostType";
 constexpr std::string_view kPart = "part";
-constexpr std::string_view kGlobalIds = "GlobalIds";  // what VTK calls the role
+constexpr std::string_view kGlobalIds = "GlobalIds";  // VTK's name of the role
 
-/// Tags of the sections, in the order of Section, which is that of a piece.
+/// Tags of the sections, in the order of Section and of a piece.
 constexpr std::array<std::string_view, 4> kSections{"PointData", "CellData", "Points", "Cells"};
 
-/// Returns attributes but for some, as they are in a tag.
+/// Returns the attributes of an element, except some, in the form of a tag.
 template <std::size_t N>
 std::string attributes_without(const vtk::VtuElement& element,
                                const std::array<std::string_view, N>& left_out) {
@@ -63,7 +63,7 @@ Offset components_of(const vtk::VtuElement& element) {
   return components;
 }
 
-/// Returns the section of an array that pieces take from the mesh.
+/// Returns the section with that tag; nothing for other tags.
 std::optional<Section> section_named(std::string_view name) {
   const auto* const found = std::find(kSections.begin(), kSections.end(), name);
   if (found == kSections.end()) return std::nullopt;
@@ -75,7 +75,7 @@ bool is_of_pieces(std::string_view name, Section section) {
          name == (section == Section::points_data ? kPointIds : kCellIds);
 }
 
-/// Makes an array that the mesh does not have.
+/// Returns an array that only the pieces have.
 PieceArray added(Section section, Source source, std::string_view type, std::string_view name,
                  std::string_view more = "") {
   const auto* const known = std::find(vtk::kXmlTypeNames.begin(), vtk::kXmlTypeNames.end(), type);
@@ -90,7 +90,7 @@ PieceArray added(Section section, Source source, std::string_view type, std::str
           {}};
 }
 
-/// Makes an array that the mesh has as the k-th.
+/// Returns the k-th array of the mesh as an array of the pieces.
 PieceArray taken(const vtk::VtuDocument& file, const vtk::VtuElement& element, Section section,
                  std::size_t k) {
   constexpr std::array<std::string_view, 5> kOfValues{"format", "offset", "RangeMin", "RangeMax",
@@ -161,7 +161,7 @@ PieceSchema::PieceSchema(const std::string& xml, std::string fields, int ghosts)
                    [](const PieceArray& a, const PieceArray& b) { return a.section < b.section; });
 }
 
-/// Keeps the roles that a section gives its arrays, but for that of the pieces' own ids.
+/// Adds the roles of a section's arrays, except that of global ids, which are the pieces' own.
 void PieceSchema::add_roles(const vtk::VtuElement& section, Section kind) {
   for (std::size_t role = 0; role < vtk::kXmlRoles.size(); ++role) {
     const std::string* const name = section.attribute(vtk::kXmlRoles[role]);

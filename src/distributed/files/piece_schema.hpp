@@ -20,29 +20,29 @@ namespace meshorder::distributed {
 struct PieceArray {
   enum class Section : std::uint8_t { points_data, cells_data, points, cells };
   enum class Source : std::uint8_t {
-    rows,          ///< of the mesh
-    texts,         ///< of the mesh
-    global_ids,    ///< new numbers among those of the whole mesh, from 0 on
-    ghost_type,    ///< VTK's: 1 for what other parts own
-    part,          ///< that owns it
-    connectivity,  ///< places of the vertices of the cells
-    offsets,       ///< ends of the cells among these
+    rows,          ///< an array of numbers of the mesh
+    texts,         ///< an array of texts of the mesh
+    global_ids,    ///< new numbers in the whole mesh, from 0 on
+    ghost_type,    ///< VTK's ghost flags: 1 for vertices and cells of other parts
+    part,          ///< the part that owns a vertex or cell
+    connectivity,  ///< places of the cells' vertices
+    offsets,       ///< ends of the cells in the connectivity
   };
   Section section;
   Source source;
   std::string name;
   std::size_t number;      ///< of rows and texts: place among the arrays of the mesh's file
-  std::uint8_t type;       ///< number type, as the alternatives of Values
-  Offset row;              ///< bytes of a row; of texts, of one of their places
-  std::string attributes;  ///< in XML, beginning with a blank, without what says where the values are
-  std::string inside;      ///< elements of XML in it
+  std::uint8_t type;       ///< number type: index of an alternative of Values
+  Offset row;              ///< bytes of a row; for texts, of a place in the list of texts
+  std::string attributes;  ///< XML attributes, beginning with a blank, without those that locate the values
+  std::string inside;      ///< XML elements inside the array's element
 
   [[nodiscard]] bool is_on_vertices() const {
     return section == Section::points_data || section == Section::points;
   }
 };
 
-/// What all pieces of a mesh have in common, made from the XML of its file.
+/// The properties that all pieces of a mesh have in common, made from the XML of its file.
 class PieceSchema {
  public:
   /// @param xml     of a .vtu file of one piece, as in `GridRows`
@@ -52,14 +52,14 @@ class PieceSchema {
 
   /// Returns the arrays in the order in which a piece has them.
   [[nodiscard]] const std::vector<PieceArray>& arrays() const noexcept { return arrays_; }
-  /// Returns the bytes of the word before an array, which is its size: 4 or 8.
+  /// Returns the bytes of the word before an array, which holds the array's size: 4 or 8.
   [[nodiscard]] Offset word() const noexcept { return word_; }
-  /// Returns the roles of arrays that the pieces have.
+  /// Returns the special roles (such as scalars or vectors) that arrays have in the pieces.
   [[nodiscard]] const std::vector<vtk::ArrayRole>& roles() const noexcept { return roles_; }
   /// Returns whether the nodes of higher-order hexahedra are in the order of VTK 9.
   [[nodiscard]] bool has_order_of_vtk_9() const noexcept { return has_order_of_vtk_9_; }
-  /// Returns "on points 'part'" and so on: arrays of the mesh that the pieces lack, as they have others of
-  /// these names.
+  /// Returns "on points 'part'" and so on: the arrays of the mesh that the pieces replace by their own arrays
+  /// of the same names.
   [[nodiscard]] const std::vector<std::string>& replaced() const noexcept { return replaced_; }
 
   /// Returns the XML of a piece up to its appended data.

@@ -33,7 +33,7 @@ namespace {
 
 using Source = PieceArray::Source;
 
-/// Takes the rows of some numbers out of those of a halo.
+/// Returns the rows of these numbers; `rows` are those of the halo's numbers.
 std::vector<std::byte> rows_of(const std::vector<std::byte>& rows, Offset width, const Halo& halo,
                                const std::vector<GlobalIndex>& numbers) {
   std::vector<std::byte> result(numbers.size() * static_cast<std::size_t>(width));
@@ -46,7 +46,7 @@ std::vector<std::byte> rows_of(const std::vector<std::byte>& rows, Offset width,
   return result;
 }
 
-/// Replaces places among texts by these, each with a zero after it.
+/// Returns the texts at these places, each followed by a zero.
 std::vector<std::byte> spelt_out(const std::vector<std::byte>& places,
                                  const std::vector<std::string>& texts) {
   std::vector<std::byte> result;
@@ -60,7 +60,7 @@ std::vector<std::byte> spelt_out(const std::vector<std::byte>& places,
   return result;
 }
 
-/// The values of an array that a piece has and its mesh does not.
+/// Returns the values of an array that a piece has and its mesh does not, or of connectivity or offsets.
 std::vector<std::byte> own_values(const PieceArray& array, const PieceContents& piece,
                                   const std::vector<GlobalIndex>& part_starts) {
   const std::vector<GlobalIndex>& numbers = array.is_on_vertices() ? piece.vertices : piece.cells;
@@ -169,7 +169,7 @@ class RankPieces {
   Halo cells_;
 };
 
-/// Appends bytes to a file that exists.
+/// Appends a text and then bytes to an existing file.
 void append(const std::string& path, const std::string& name, std::string_view text,
             std::span<const std::byte> bytes = {}) {
   Descriptor file(path, O_WRONLY | O_APPEND);
@@ -190,7 +190,7 @@ PiecesReport report_on(const Communicator& communicator, const std::vector<Piece
   return report;
 }
 
-/// The word before the values of an array.
+/// Returns the word before the values of an array: their size in bytes.
 std::string size_word(Offset size, Offset word, const std::string& name) {
   if (word == 4 && size > Offset{std::numeric_limits<std::uint32_t>::max()}) {
     throw TooLarge(name +
@@ -256,10 +256,10 @@ Notes losses_in_vtkhdf(const PieceSchema& schema) {
 #ifdef MESHORDER_HAS_HDF5
 namespace {
 
-/// Number type of connectivity and offsets, as VTK's own writer has them.
+/// Number type of connectivity and offsets, the same as in VTK's own writer.
 constexpr std::uint8_t kInt64 = 8;
 
-/// The arrays of the pieces that VTKHDF holds.
+/// Returns the arrays of the pieces that VTKHDF can hold.
 std::vector<PieceArray> arrays_in_vtkhdf(const PieceSchema& schema) {
   std::vector<PieceArray> arrays;
   for (const PieceArray& array : schema.arrays()) {
@@ -273,7 +273,7 @@ std::vector<PieceArray> arrays_in_vtkhdf(const PieceSchema& schema) {
   return arrays;
 }
 
-/// Describes an array as a dataset of all pieces together.
+/// Returns the dataset that holds an array of all pieces.
 vtkhdf::RawDataset dataset_of(const PieceArray& array, const std::vector<vtkhdf::Partition>& partitions) {
   using Role = vtkhdf::RawDataset::Role;
   const Role role = array.section == PieceArray::Section::points  ? Role::points
@@ -293,7 +293,7 @@ vtkhdf::RawDataset dataset_of(const PieceArray& array, const std::vector<vtkhdf:
   return {role, array.name, association, array.type, components, rows, 0};
 }
 
-/// Throws where hexahedra of higher order have the nodes as VTK numbered them before its version 9.
+/// Throws InputError if there are higher-order hexahedra with the node order of VTK before version 9.
 void refuse_old_hexahedra(const Communicator& communicator, const GridRows& grid, const PieceSchema& schema,
                           const std::string& name) {
   if (schema.has_order_of_vtk_9()) return;
@@ -314,7 +314,7 @@ void refuse_old_hexahedra(const Communicator& communicator, const GridRows& grid
   }
 }
 
-/// The fields of pieces.
+/// Returns the fields of the pieces.
 std::vector<DataArray> field_arrays(const PieceSchema& schema) {
   TextStore store(schema.fields_alone());
   Notes ignored;
@@ -334,7 +334,7 @@ PiecesReport write_pieces_to_vtkhdf(const Communicator& communicator, const Grid
     partitions.push_back(
         {std::ssize(piece.vertices), std::ssize(piece.cells), std::ssize(piece.cell_vertices.entries)});
   }
-  // parts go to the ranks in their order
+  // in the order of the parts, because ranks have ascending ranges of parts
   partitions = communicator.gathered_at_root(partitions);
   const std::vector<PieceArray> arrays = arrays_in_vtkhdf(schema);
   PiecesReport report = report_on(communicator, own.pieces());
@@ -355,7 +355,7 @@ PiecesReport write_pieces_to_vtkhdf(const Communicator& communicator, const Grid
   for (std::size_t k = 0; k < arrays.size(); ++k) {
     std::vector<std::byte> rows;
     own.for_values(arrays[k], [&](std::size_t /*p*/, const std::vector<std::byte>& values) {
-      // a partition's offsets begin with 0
+      // in VTKHDF a partition's offsets begin with 0
       if (arrays[k].source == Source::offsets) rows.insert(rows.end(), sizeof(std::int64_t), std::byte{0});
       rows.insert(rows.end(), values.begin(), values.end());
     });

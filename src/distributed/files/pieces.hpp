@@ -11,50 +11,50 @@
 
 namespace meshorder::distributed {
 
-/// What is reported of pieces.
+/// Figures on written pieces.
 struct PiecesReport {
-  GlobalIndex ghost_vertices = 0;  ///< of all pieces
+  GlobalIndex ghost_vertices = 0;  ///< summed over all pieces
   GlobalIndex ghost_cells = 0;
-  Notes notes;  ///< at the root: what has another name in the pieces
+  Notes notes;  ///< at the root: arrays that have another name in the pieces
 };
 
-/// Returns what the pieces of a mesh have in common. Every rank has to call it.
+/// Returns the common properties of the pieces of a mesh. Every rank has to call it.
 ///
 /// @param ghosts  layers of ghost cells, 0 or 1
 /// @throws as `Communicator::exchange`
 [[nodiscard]] PieceSchema schema_of_pieces(const Communicator& communicator, const GridRows& grid,
                                            int ghosts);
 
-/// Writes a .vtu file for each part, over files that exist and are empty; each rank writes those of its
-/// parts. Every rank has to call it. O(size of the mesh of a rank · log), memory for the cells of a rank's
-/// pieces and one of their arrays after another.
+/// Writes a .vtu file for each part, to files that exist and are empty; each rank writes those of its parts.
+/// Every rank has to call it. O(size of the mesh of a rank · log); takes memory for the cells of a rank's
+/// pieces and for one of their arrays at a time.
 ///
 /// Format: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
 ///
-/// @param part_starts  first new number of each part, and the end of the last one's
+/// @param part_starts  first new number of each part, then the end of the last part
 /// @param with_ghosts  whether a piece has the cells of other parts that use vertices of its part
 /// @param paths        of the files, one for each part
 /// @param names        of the files in messages
-/// @throws SharedError where a rank cannot write, as on a full disk, and for a piece that a file with 32-bit
-///         sizes cannot hold
+/// @throws SharedError if a rank cannot write, as on a full disk, and for a piece too large for a file with
+///         32-bit sizes
 PiecesReport write_pieces(const Communicator& communicator, const GridRows& grid, const PieceSchema& schema,
                           const std::vector<GlobalIndex>& part_starts, bool with_ghosts,
                           const std::vector<std::string>& paths, const std::vector<std::string>& names);
 
-/// Returns what pieces lose in a .vtkhdf file that .vtu files hold.
+/// Returns notes on what pieces lose in a .vtkhdf file, compared with .vtu files.
 [[nodiscard]] Notes losses_in_vtkhdf(const PieceSchema& schema);
 
-/// Writes the pieces as the partitions of one .vtkhdf file, over a file that exists; each rank writes the
-/// rows of its parts at the places where libhdf5, at the root, has made room for them. Every rank has to call
-/// it. O(size of the mesh of a rank · log), memory for the cells of a rank's pieces and one of their arrays
-/// after another.
+/// Writes the pieces as the partitions of one .vtkhdf file, to a file that exists. At the root, libhdf5 makes
+/// room for all rows; then each rank writes the rows of its parts. Every rank has to call it. O(size of the
+/// mesh of a rank · log); takes memory for the cells of a rank's pieces and for one of their arrays at a
+/// time.
 ///
 /// Format: "VTKHDF File Format", version 1.0.
 ///
 /// @param path  of the file
 /// @param name  of the file in messages
-/// @throws SharedError where a rank cannot write, as on a full disk, and for hexahedra of higher order that
-///         VTK before its version 9 numbered; Unavailable in a build without HDF5
+/// @throws SharedError if a rank cannot write, as on a full disk, and for higher-order hexahedra with the
+///         node order of VTK before version 9; Unavailable in a build without HDF5
 PiecesReport write_pieces_to_vtkhdf(const Communicator& communicator, const GridRows& grid,
                                     const PieceSchema& schema, const std::vector<GlobalIndex>& part_starts,
                                     bool with_ghosts, const std::string& path, const std::string& name);

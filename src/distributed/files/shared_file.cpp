@@ -15,8 +15,8 @@
 namespace meshorder::distributed {
 namespace {
 
-// Ranks transfer by calls of their own, not by collective ones: their bytes are contiguous, and Open
-// MPI 4.1.4 does not report a disk that is full in MPI_File_write_at_all.
+// Ranks use independent calls, not collective ones: their bytes are contiguous, and MPI_File_write_at_all of
+// Open MPI 4.1.4 does not report a full disk.
 
 std::string words_of_mpi(int fault) {
   std::array<char, MPI_MAX_ERROR_STRING> text{};
@@ -29,7 +29,7 @@ std::string words_of_mpi(int fault) {
 
 SharedFile::SharedFile(const Communicator& communicator, const std::string& path, std::string name, Use use)
     : communicator_(communicator), name_(std::move(name)) {
-  // Open MPI 4.1.4 waits for ever where only some of the ranks see the file
+  // Open MPI 4.1.4 hangs if only some of the ranks see the file, so check that first
   communicator.together([&] {
     if (use == Use::read) {
       (void)InputFile(path);

@@ -12,15 +12,15 @@
 
 namespace meshorder::distributed {
 
-/// A file that all ranks read or write at the same time, each its own bytes, by MPI-IO. All functions have to
-/// be called by every rank.
+/// A file that all ranks read or write at the same time by MPI-IO, each its own bytes. Every rank has to call
+/// all functions.
 class SharedFile {
  public:
   enum class Use : std::uint8_t { read, write };
 
-  /// Opens a file that exists. Messages have `name`.
+  /// Opens an existing file; `name` is its name in messages.
   ///
-  /// @throws SharedError where a rank cannot open it
+  /// @throws SharedError if a rank cannot open it
   SharedFile(const Communicator& communicator, const std::string& path, std::string name, Use use);
   ~SharedFile();
   SharedFile(const SharedFile&) = delete;
@@ -30,30 +30,30 @@ class SharedFile {
 
   /// Fills `bytes`, of any size on each rank, from byte `at` of the file on. O(bytes).
   ///
-  /// @throws SharedError where a rank gets fewer
+  /// @throws SharedError if a rank cannot read all of its bytes
   void read(Offset at, std::span<std::byte> bytes) const;
 
   /// Writes `bytes`, of any size on each rank, from byte `at` of the file on. O(bytes).
   ///
-  /// @throws SharedError where a rank cannot, as on a full disk
+  /// @throws SharedError if a rank cannot, as on a full disk
   void write(Offset at, std::span<const std::byte> bytes) const;
 
   /// Writes what is buffered and closes the file.
   ///
-  /// @throws SharedError where a rank cannot
+  /// @throws SharedError if a rank cannot
   void close();
 
  private:
-  /// What messages say of a call that fails, and of one that moves fewer bytes.
+  /// Words of the messages for a call that fails and for one that moves too few bytes.
   struct Words {
     std::string_view fault;
-    std::string_view too_short;  ///< before the byte where it should have ended
+    std::string_view too_short;  ///< text before the number of the byte where the transfer should have ended
     std::string_view remedy;
   };
 
   [[nodiscard]] InputError cannot_be_opened(const std::string& reason) const;
 
-  /// Moves the rank's own bytes by a function of MPI, chunk by chunk.
+  /// Reads or writes the rank's own bytes by a function of MPI, chunk by chunk.
   template <class Byte, class Call>
   void transfer(Offset at, std::span<Byte> bytes, const Call& call, const Words& words) const;
 

@@ -9,7 +9,7 @@
 
 namespace meshorder::distributed {
 
-/// One file in memory, whatever it is called: what a reader is to see of a file, or what a writer made.
+/// A store with one file in memory, under any path: the input of a reader or the output of a writer.
 class TextStore : public FileStore {
  public:
   TextStore() = default;

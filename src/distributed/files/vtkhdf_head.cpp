@@ -52,7 +52,7 @@ FileArray::Role role_of(RawDataset::Role role) {
 }
 
 FileArray array_of(const RawDataset& dataset, std::size_t element) {
-  // offsets: where cells end, as in a .vtu file, after the place where the first one begins
+  // skip the first offset: the others are the ends of cells, as in a .vtu file
   const Offset before = dataset.role == RawDataset::Role::offsets ? 1 : 0;
   FileArray array = raw_array(dataset.name, role_of(dataset.role), dataset.association, dataset.type,
                               dataset.components, dataset.rows - before,
@@ -61,7 +61,7 @@ FileArray array_of(const RawDataset& dataset, std::size_t element) {
   return array;
 }
 
-/// Whether the cells of a file begin at the first entry of its connectivity.
+/// Returns whether the first offset of a file is 0.
 bool begins_at_zero(const std::string& path, const FileArray& offsets) {
   std::vector<std::byte> first(static_cast<std::size_t>(offsets.row));
   const std::size_t got = InputFile(path).read_at(static_cast<std::uint64_t>(offsets.at - offsets.row),
@@ -69,7 +69,7 @@ bool begins_at_zero(const std::string& path, const FileArray& offsets) {
   return got == first.size() && numbers_of<Offset>(first, offsets.type).front() == 0;
 }
 
-/// Describes the arrays and fields of a mesh.
+/// Returns the mold of a mesh: see `mold_of`.
 std::string mold_of_grid(const RawGrid& grid) {
   std::vector<DataArray> rows;
   for (const RawDataset& dataset : grid.datasets) {
@@ -79,7 +79,7 @@ std::string mold_of_grid(const RawGrid& grid) {
     std::visit([&](auto& values) { values.resize(static_cast<std::size_t>(dataset.components)); },
                row.values);
   }
-  Notes ignored;  // of names that XML cannot hold
+  Notes ignored;  // on names that XML cannot hold
   return mold_of(std::move(rows), grid.metadata, true, ignored);
 }
 
@@ -90,7 +90,7 @@ std::optional<FileHead> read_vtkhdf_head(const std::string& path) {
   const ReadScope scope(file);
   std::optional<RawGrid> grid = vtkhdf::find_raw(file);
   if (!grid || grid->vertices == 0 || grid->cells == 0 || grid->entries == 0) return std::nullopt;
-  // the order of a .vtu file: arrays of points, of cells, then the mesh
+  // the sequence of a .vtu file: first the arrays of points and of cells, then the mesh
   std::stable_partition(grid->datasets.begin(), grid->datasets.end(),
                         [](const RawDataset& dataset) { return dataset.role == RawDataset::Role::data; });
   FileHead head;

@@ -8,11 +8,11 @@
 
 namespace meshorder::distributed {
 
-/// Asks libhdf5 where the arrays of a .vtkhdf file are. Returns nothing for a file that is none of HDF5, or
-/// whose arrays cannot be read by their bytes: of several partitions, chunked, in another order of bytes,
-/// with texts on points or cells, or with more than the format has. O(datasets + size of the fields).
+/// Finds the arrays of a .vtkhdf file by libhdf5. Returns nothing for a file that is no HDF5 file, or whose
+/// arrays cannot be read directly: with several partitions, chunks, another byte order, texts on points or
+/// cells, or more than the format allows. O(datasets + size of the fields).
 ///
-/// @throws InputError for a file that is damaged: counts and shapes that differ
+/// @throws InputError for a damaged file, whose counts or shapes disagree
 [[nodiscard]] std::optional<FileHead> read_vtkhdf_head(const std::string& path);
 
 /// Returns whether a file begins as those of HDF5 do.

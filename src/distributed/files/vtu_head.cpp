@@ -78,7 +78,7 @@ class HeadReader {
                          [&](const vtk::VtuElement& child) { return child.name == name; });
   }
 
-  /// Whether a field is compressed in the XML, which pieces, that are not compressed, cannot take over.
+  /// Returns whether a field is compressed inside the XML; uncompressed pieces could not copy it.
   static bool has_compressed_text(const vtk::VtuDocument& file, const vtk::VtuElement& grid) {
     const vtk::VtuElement* const fields = grid.child("FieldData");
     return file.encoding().compressor != VtuEncoding::Compressor::none && fields != nullptr &&
@@ -103,7 +103,7 @@ class HeadReader {
     });
   }
 
-  /// Returns whether an element is an array that can be read by slices, and keeps it.
+  /// Adds the array of an element; returns false if it cannot be read by slices.
   bool read_array(const vtk::VtuDocument& file, std::string_view section, const vtk::VtuElement& element) {
     const std::string* const type = element.attribute("type");
     const std::string* const name = element.attribute("Name");
@@ -151,14 +151,14 @@ class HeadReader {
     return true;
   }
 
-  /// Keeps as much of a name as there is room for, in one line.
+  /// Copies the first 40 bytes of a name, with '?' for control characters.
   static void copy_start(std::string_view name, std::array<char, 41>& target) {
     std::replace_copy_if(
         name.begin(), name.begin() + std::min<std::ptrdiff_t>(std::ssize(name), 40), target.begin(),
         [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
   }
 
-  /// Finds the bytes of an array by its offset and the words before them; returns its blocks.
+  /// Finds the bytes of an array by its offset and the words before them; returns the bounds of its blocks.
   std::vector<Offset> place(const vtk::VtuDocument& file, const vtk::VtuElement& element, FileArray& array) {
     const std::string what = fmt::format("the array '{}'", array.name.data());
     const Offset offset = whole_number(file, element, "offset");
@@ -181,7 +181,7 @@ class HeadReader {
     return blocks;
   }
 
-  /// Returns the next words of the file.
+  /// Returns the next `count` words of the file.
   std::vector<std::uint64_t> words(const vtk::VtuDocument& file, const vtk::VtuElement& element,
                                    const std::string& what, std::uint64_t count) {
     const auto left = static_cast<std::uint64_t>(head_.facts.bytes - at_);
@@ -202,7 +202,7 @@ class HeadReader {
     return result;
   }
 
-  /// Finds the bytes of an array that is not compressed, by the word before them; returns their number.
+  /// Finds the bytes of an uncompressed array by the word before them; returns their number.
   std::uint64_t place_bytes(const vtk::VtuDocument& file, const vtk::VtuElement& element,
                             const std::string& what, FileArray& array) {
     at_ = array.at;
@@ -215,8 +215,8 @@ class HeadReader {
     return size;
   }
 
-  /// Finds the blocks of a compressed array by the words before them: how many there are, the bytes of each
-  /// and of a shorter last one, and the compressed bytes of each. Returns how many bytes they hold.
+  /// Finds the blocks of a compressed array by the words before them: the number of blocks, the bytes of
+  /// each, those of the last if they differ, and the compressed bytes of each. Returns the uncompressed size.
   std::uint64_t place_blocks(const vtk::VtuDocument& file, const vtk::VtuElement& element,
                              const std::string& what, FileArray& array, std::vector<Offset>& blocks) {
     at_ = array.at;
@@ -239,7 +239,7 @@ class HeadReader {
       size += bytes;
       blocks.push_back(blocks.back() + static_cast<Offset>(compressed[b]));
     }
-    // what a rank holds of it: its share, and a block that it needs a part of
+    // claim what a rank holds of the array: its share, and a block of which it needs a part
     file.claim(element, size / static_cast<std::uint64_t>(ranks_) + std::min(head[1], size));
     array.stored = blocks.back() - array.at;
     array.blocks = std::ssize(compressed);
@@ -255,7 +255,7 @@ class HeadReader {
     }
     const std::vector<Offset> offsets = head_.xml.offsets();
     return std::none_of(offsets.begin(), offsets.end(), [&](Offset offset) {
-      if (offset > head_.facts.bytes) return false;  // found where the array is read
+      if (offset > head_.facts.bytes) return false;  // an error of its own when the array is read
       const Offset at = head_.facts.first_byte + offset;
       return std::any_of(arrays.begin(), arrays.end(), [&](const FileArray& array) {
         return array.at < at && at < array.at + array.stored;

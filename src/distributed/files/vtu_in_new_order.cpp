@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::string_view kEndOfHead = "</AppendedData></VTKFile>";
 
-/// The values of appended arrays, as the root reads them.
+/// Reads the values of appended arrays at the root.
 class AppendedValues {
  public:
   AppendedValues(const std::string& path, Offset first_byte, const vtk::VtuDocument& document)
@@ -51,7 +51,7 @@ class AppendedValues {
  private:
   [[nodiscard]] std::size_t word_size() const { return encoding_.wide_headers ? 8 : 4; }
 
-  /// The next word; nothing but words and bytes that the file has are read.
+  /// Reads the next word; throws InputError at the end of the file.
   std::uint64_t word() {
     std::uint64_t value = 0;
     take({reinterpret_cast<char*>(&value), word_size()});
@@ -70,8 +70,8 @@ class AppendedValues {
     at_ += into.size();
   }
 
-  /// The values of compressed blocks: their number, the bytes of each and of a shorter last one, and the
-  /// compressed bytes of each are before them.
+  /// Reads the values of compressed blocks. Words before them are the number of blocks, the bytes of each,
+  /// the bytes of the last one if it differs, and the compressed bytes of each.
   std::string from_blocks(const vtk::VtuElement& element) {
     const std::uint64_t count = word();
     const std::uint64_t each = word();
@@ -107,7 +107,7 @@ class AppendedValues {
   VtuEncoding encoding_;
 };
 
-/// Returns the fields of a file with their values in them.
+/// Returns the <FieldData> of a file with all values inline.
 std::string fields_with_values(const std::string& head, const std::string& path) {
   TextStore store(head + std::string(kEndOfHead));
   const FilePath in_store(path, store);

@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view kOffset = "offset";
 constexpr std::size_t kMostDigits = std::numeric_limits<Offset>::digits10 + 1;
 
-/// Returns where the value of an attribute begins and how many bytes it has, in a tag that has it.
+/// Returns the place and the size of the value of an attribute in a tag, which must have it.
 std::pair<std::size_t, std::size_t> value_in_tag(std::string_view text, std::size_t tag,
                                                  std::string_view attribute) {
   std::size_t at = text.find_first_of(vtk::kXmlBlanks, tag);
@@ -80,7 +80,7 @@ std::string VtuXml::with_offsets(const std::function<Offset(Offset)>& moved, Off
     at = place.at + place.size;
   }
   result += std::string_view(text_).substr(at, text_.size() - 1 - at);
-  result.resize(static_cast<std::size_t>(bytes) - 1, ' ');  // or without blanks that an earlier change left
+  result.resize(static_cast<std::size_t>(bytes) - 1, ' ');  // pads, or cuts blanks that an earlier call added
   return result + '_';
 }
 

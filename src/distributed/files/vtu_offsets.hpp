@@ -17,30 +17,30 @@ class VtuXml {
  public:
   VtuXml() = default;
 
-  /// @param text  of the file, the underscore at its end
-  /// @param file  what was parsed from it
-  /// @throws InputError for an offset that is no whole number from 0 on
+  /// @param text  of the file, up to and including the underscore
+  /// @param file  the parsed file
+  /// @throws InputError for an offset that is no integer ≥ 0
   VtuXml(std::string text, const vtk::VtuDocument& file);
 
   [[nodiscard]] const std::string& text() const noexcept { return text_; }
 
-  /// Returns the offsets, in the order of the text.
+  /// Returns the offsets, in the sequence of the text.
   [[nodiscard]] std::vector<Offset> offsets() const;
 
-  /// Returns how many bytes the text may have with other offsets. No more than now, if it is itself such a
-  /// text.
+  /// Returns the most bytes that the text can have with other offsets. For a text of `with_offsets` of that
+  /// size, the same size.
   [[nodiscard]] Offset most_bytes() const;
 
-  /// Returns the text with other offsets, filled up with blanks before the underscore.
+  /// Returns the text with other offsets, padded with blanks before the underscore.
   ///
-  /// @param moved  the new offset for an old one
-  /// @param bytes  of the result: those of the text, if no offset changes, or `most_bytes`
+  /// @param moved  returns the new offset for an old one
+  /// @param bytes  size of the result: that of the text if no offset changes, else `most_bytes`
   [[nodiscard]] std::string with_offsets(const std::function<Offset(Offset)>& moved, Offset bytes) const;
 
  private:
   struct Place {
-    std::size_t at;    ///< first digit in the text
-    std::size_t size;  ///< digits
+    std::size_t at;    ///< place of the first digit in the text
+    std::size_t size;  ///< number of digits
     Offset offset;
   };
 
@@ -50,9 +50,9 @@ class VtuXml {
   std::vector<Place> places_;
 };
 
-/// Returns a count in an attribute; `otherwise`, unless it is negative, without the attribute.
+/// Returns the count in an attribute, or `otherwise` if there is no such attribute and `otherwise` ≥ 0.
 ///
-/// @throws InputError for what is no whole number from 0 on, and without the attribute
+/// @throws InputError for a value that is no integer ≥ 0, and for a missing attribute if `otherwise` < 0
 [[nodiscard]] Offset whole_number(const vtk::VtuDocument& file, const vtk::VtuElement& element,
                                   std::string_view name, Offset otherwise = -1);
 

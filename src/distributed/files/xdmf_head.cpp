@@ -46,7 +46,7 @@ std::optional<FileHead> read_xdmf_head(const std::string& path) {
   head.facts.bytes = static_cast<Offset>(std::filesystem::file_size(grid->data));
   for (const xdmf::RawDataset& dataset : grid->datasets) {
     const bool is_topology = dataset.role == xdmf::RawDataset::Role::topology;
-    // the rows of the connectivity are entries, as in other files
+    // a row of the connectivity is one entry, as in other files
     const Offset row = is_topology ? 1 : dataset.components;
     const Offset rows = is_topology ? dataset.rows * dataset.components : dataset.rows;
     FileArray array = raw_array(dataset.name, role_in_xdmf(dataset.role), dataset.association, dataset.type,

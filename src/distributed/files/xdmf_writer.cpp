@@ -15,12 +15,12 @@
 #include <utility>
 #include <vector>
 
-// Writes .xdmf files: rank 0 has libhdf5 make the HDF5 file, and all ranks fill it.
+// Writes .xdmf files: rank 0 makes the HDF5 file by libhdf5, and all ranks fill it.
 
 namespace meshorder::distributed {
 namespace {
 
-/// Returns the checksum by which the writer of whole meshes marks both files, on all ranks.
+/// Returns, on all ranks, the checksum with which the writer of whole meshes marks both files.
 std::uint64_t checksum_of_xdmf(const Communicator& communicator, const FileFacts& facts,
                                const FileArray& array, const std::vector<std::byte>& points,
                                const Rows& cells) {
@@ -52,7 +52,7 @@ std::vector<GlobalIndex> FileSlices::write_xdmf(const Communicator& communicator
   std::vector<GlobalIndex> new_cells = places_by_dimension(communicator, slice, order.cells);
   const RowMover cells(communicator, slice.cells, new_cells);
 
-  // before the files are made: both begin with the mark
+  // compute the checksum first, because both files begin with it
   const FileArray& points = array(FileArray::Role::points);
   const std::vector<std::byte> moved_points = moved_rows(communicator, in, points, vertices, cells);
   const Rows moved = moved_cells(communicator, in, std::move(slice), cells, order.new_vertices);

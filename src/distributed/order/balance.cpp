@@ -11,7 +11,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Weight on its way to the owner of a vertex.
+/// Weight to be sent to the owner of a vertex.
 struct Share {
   GlobalIndex vertex;
   GlobalIndex weight;
@@ -28,7 +28,7 @@ Parcels<Share> shares_by_owner(const Layout& layout, const Rows& elements) {
   Parcels<Share> parcels;
   parcels.starts.assign(static_cast<std::size_t>(layout.ranks()) + 1, 0);
   parcels.values.reserve(weights.size());
-  for (std::size_t k = 0; k < weights.size(); ++k) {  // ascending, and so by owner
+  for (std::size_t k = 0; k < weights.size(); ++k) {  // ascending numbers, so owners ascend too
     parcels.values.push_back({vertices.numbers()[k], weights[k]});
     ++parcels.starts[static_cast<std::size_t>(layout.owner(vertices.numbers()[k])) + 1];
   }

@@ -14,10 +14,10 @@
 
 namespace meshorder::distributed {
 
-/// What parts have about equally much of.
+/// The quantity that is balanced among the parts.
 enum class Balance : std::uint8_t {
   vertices,
-  cells,  ///< elements, each shared out among its vertices in equal shares
+  cells,  ///< elements, the weight of each divided equally among its vertices
 };
 
 }  // namespace meshorder::distributed
@@ -35,14 +35,14 @@ struct EnumNames<distributed::Balance> {
 
 namespace meshorder::distributed {
 
-/// Weight of an element: a number that most numbers of vertices divide, so that shares are whole.
+/// Weight of an element: divisible by the vertex counts of most shapes, so that shares are integers.
 inline constexpr GlobalIndex kElementWeight = 840;
 
-/// Returns the shares of each own vertex in the elements that use it. Every rank has to call it.
-/// O(entries · log).
+/// Returns the weight of each own vertex: its shares in all elements that use it. Every rank has to call it.
+/// O(entries · log entries) at most.
 ///
 /// @param layout    of the vertices
-/// @param elements  vertices of the elements that this rank has; each element on one rank
+/// @param elements  vertices of the elements on this rank; each element is on one rank
 /// @throws as `Communicator::exchange`
 [[nodiscard]] std::vector<GlobalIndex> shares_in_elements(const Communicator& communicator,
                                                           const Layout& layout, const Rows& elements);
@@ -51,7 +51,7 @@ inline constexpr GlobalIndex kElementWeight = 840;
 /// it. O(vertices + parts).
 ///
 /// @param part_of  of each own vertex
-/// @param weights  of each own vertex; none: all alike
+/// @param weights  of each own vertex; empty: all 1
 /// @throws as `Communicator::exchange`
 [[nodiscard]] double imbalance_of(const Communicator& communicator, const std::vector<Index>& part_of,
                                   const std::vector<GlobalIndex>& weights, Index parts);

@@ -10,7 +10,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// The graph without the edges between pieces, which go by their first parts.
+/// Returns the graph without the edges between pieces. A piece is identified by its first part.
 GlobalGraph within_pieces(const GlobalGraph& graph, const HaloValues<Index>& piece_of) {
   GlobalGraph within{graph.layout, {}};
   for (Offset row = 0; row < graph.rows.size(); ++row) {
@@ -22,7 +22,7 @@ GlobalGraph within_pieces(const GlobalGraph& graph, const HaloValues<Index>& pie
   return within;
 }
 
-/// Weight of each piece on the ranks before this one, and on all.
+/// Weight of each piece on the ranks before this one, and on all ranks.
 struct PieceWeights {
   std::vector<GlobalIndex> before;
   std::vector<GlobalIndex> all;
@@ -32,7 +32,7 @@ PieceWeights weights_of(const Communicator& communicator, const std::vector<Inde
                         const std::vector<GlobalIndex>& weights, Index parts) {
   std::vector<GlobalIndex> own(static_cast<std::size_t>(parts), 0);
   for (std::size_t k = 0; k < pieces.size(); ++k) own[static_cast<std::size_t>(pieces[k])] += weights[k];
-  // each piece's weights of all ranks at the root, which adds them up in rank order
+  // the root adds up the weights of each piece in rank order
   const std::vector<GlobalIndex> of_ranks = communicator.gathered_at_root(own);
   std::vector<GlobalIndex> sums = communicator.at_root([&] {
     const auto ranks = static_cast<std::size_t>(communicator.size());
@@ -57,7 +57,7 @@ std::vector<Index> bisected(const Communicator& communicator, const GlobalGraph&
   const bool is_weighted = communicator.sum(static_cast<GlobalIndex>(weights.size())) > 0;
   const std::vector<GlobalIndex> of_vertices = is_weighted ? weights : std::vector<GlobalIndex>(own_count, 1);
   std::vector<Index> piece_of(own_count, 0);
-  // parts of the piece that begins with a part; 0: none does
+  // for each part, the number of parts of the piece that begins with it; 0 if no piece does
   std::vector<Index> parts_of(static_cast<std::size_t>(parts), 0);
   parts_of[0] = parts;
   while (*std::max_element(parts_of.begin(), parts_of.end()) > 1) {
@@ -65,7 +65,7 @@ std::vector<Index> bisected(const Communicator& communicator, const GlobalGraph&
     const GlobalGraph within = communicator.together([&] { return within_pieces(graph, pieces); });
     const std::vector<GlobalIndex> numbers =
         fiedler_order(communicator, within, halo, number_in_file, options).new_numbers;
-    // by these numbers, in which each piece ascends
+    // piece and weight by new number: the vertices of a piece follow its Fiedler vector
     std::vector<Index> halves = delivered<Index>(communicator, graph.layout, numbers, pieces.own(), Index{0});
     const std::vector<GlobalIndex> in_order =
         delivered<GlobalIndex>(communicator, graph.layout, numbers, of_vertices, GlobalIndex{0});

@@ -11,16 +11,16 @@
 namespace meshorder::distributed {
 
 /// Cuts a graph into parts by recursive spectral bisection (Simon 1991: Partitioning of unstructured problems
-/// for parallel processing): in two by the order of its Fiedler vector, and so each half, until there are
-/// enough. All pieces of a round are ordered by one call, whose components they are. Parts differ in weight
-/// by a vertex a round at most. The same parts for the same graph on the same number of ranks. Every rank has
-/// to call it. O(log parts) Fiedler vectors.
+/// for parallel processing). Each round cuts every piece in two by the order of its Fiedler vector, until
+/// there are enough parts. One call orders all pieces of a round, which are its components. A round adds at
+/// most one vertex to the difference of the parts' weights. The same parts for the same graph on the same
+/// number of ranks. Every rank has to call it. O(log parts) Fiedler vectors.
 ///
 /// @param halo            of the graph's ghosts
-/// @param number_in_file  as of `fiedler_order`
+/// @param number_in_file  as in `fiedler_order`
 /// @param parts           ≥ 1
-/// @param weights         > 0, of each own vertex; none on any rank: all alike
-/// @param options         as of `fiedler_order`
+/// @param weights         > 0, of each own vertex; empty on all ranks: all 1
+/// @param options         as in `fiedler_order`
 /// @return the part of each own vertex
 /// @throws as `fiedler_order`
 [[nodiscard]] std::vector<Index> bisected(const Communicator& communicator, const GlobalGraph& graph,

@@ -13,7 +13,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// The cells as they travel: rows of the cell's number and its vertices.
+/// Returns the cells as rows to be sent: the cell's number, followed by its vertices.
 Rows with_numbers(const Rows& cell_vertices, GlobalIndex first) {
   Rows rows;
   rows.entries.reserve(cell_vertices.entries.size() + cell_vertices.offsets.size());
@@ -26,7 +26,7 @@ Rows with_numbers(const Rows& cell_vertices, GlobalIndex first) {
   return rows;
 }
 
-/// The vertices in the rows of travelling cells.
+/// Returns the vertices of the cells in such rows.
 NumberSet vertices_in(const Rows& rows) {
   std::vector<GlobalIndex> vertices;
   vertices.reserve(rows.entries.size());
@@ -35,8 +35,8 @@ NumberSet vertices_in(const Rows& rows) {
   return NumberSet(vertices);
 }
 
-/// Cells that came by rank, so that their numbers ascend, in their new order. Vertices are numbered by their
-/// places among those of the cells, which compare as they do.
+/// Returns the numbers of the cells in such rows, sorted by `lexmax`. The cells' numbers must ascend.
+/// Vertices are renumbered 0, 1, … within these rows, which keeps their sequence.
 std::vector<GlobalIndex> sorted_by_lexmax(Rows rows) {
   Incidence cells;
   std::vector<GlobalIndex> numbers;

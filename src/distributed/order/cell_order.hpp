@@ -9,19 +9,19 @@
 
 namespace meshorder::distributed {
 
-/// Orders cells by the new numbers of their vertices, largest first, compared like words, ties by the cells'
-/// numbers: the serial order `lexmax` of all of them. Every rank has to call it. O(entries + m log m) for m
-/// cells of a rank.
+/// Orders cells lexicographically by the new numbers of their vertices, sorted from the largest down; ties by
+/// the cells' numbers. This is the serial order `lexmax` of all cells. Every rank has to call it.
+/// O(entries + m log m) for m cells of a rank.
 ///
-/// @param cells          who has which cells
-/// @param cell_vertices  new numbers of the vertices of the own ones, each with one at least; taken
-/// @param vertices       of the new numbers: the rank of a cell's largest one orders it
-/// @return this rank's share of the cells' numbers in their new order, which goes on on the next rank
-/// @throws as `Communicator::exchange`; SharedError where a rank gets more than 2,147,483,647 cells
+/// @param cells          the owners of the cells
+/// @param cell_vertices  new numbers of the vertices of each own cell, at least one; freed early
+/// @param vertices       layout of the new numbers: the owner of a cell's largest one sorts it
+/// @return this rank's range of the cells' numbers in their new order; ranges follow in rank order
+/// @throws as `Communicator::exchange`; SharedError if a rank gets more than 2,147,483,647 cells
 [[nodiscard]] std::vector<GlobalIndex> cells_by_lexmax(const Communicator& communicator, const Layout& cells,
                                                        Rows cell_vertices, const Layout& vertices);
 
-/// The same for the cells of this rank alone. Returns their places, from 0 on, in their new order.
+/// Returns the places, from 0 on, of this rank's cells in the order `lexmax` of these cells alone.
 ///
 /// @throws TooLarge for more than 2,147,483,647 cells
 [[nodiscard]] std::vector<GlobalIndex> own_cells_by_lexmax(const Rows& cell_vertices);

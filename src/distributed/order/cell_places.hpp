@@ -9,19 +9,19 @@
 
 namespace meshorder::distributed {
 
-/// Returns the new place of each cell of a slice: those of a dimension take their places in the order in
-/// which `in_order`, this rank's share of all cells, lists them. Every rank has to call it. O(cells).
+/// Returns the new place of each cell of a slice. The cells of a dimension keep the places of that dimension,
+/// in the sequence of `in_order`, this rank's range of all cells. Every rank has to call it. O(cells).
 ///
 /// @throws as `Communicator::exchange`
 [[nodiscard]] std::vector<GlobalIndex> places_by_dimension(const Communicator& communicator,
                                                            const MeshSlice& slice,
                                                            const std::vector<GlobalIndex>& in_order);
 
-/// Returns the new place of each cell of this rank where cells stay in their blocks: those of a block take
-/// its places in the order in which `in_order` lists them. Every rank has to call it. O(cells · log blocks),
+/// Returns the new place of each cell of this rank if cells stay in their blocks: the cells of a block keep
+/// its places, in the sequence of `in_order`. Every rank has to call it. O(cells · log blocks),
 /// O(blocks · ranks) at the root.
 ///
-/// @param cells       who has which cells
+/// @param cells       the owners of the cells
 /// @param block_ends  0 and the end of each block, the same on all ranks
 /// @throws as `Communicator::exchange`
 [[nodiscard]] std::vector<GlobalIndex> places_by_block(const Communicator& communicator, const Layout& cells,

@@ -14,7 +14,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// The graph of a rank's own vertices, without edges to those of others.
+/// Returns the subgraph of a rank's own vertices.
 CsrGraph own_graph(const GlobalGraph& graph, int rank) {
   const GlobalIndex first = graph.layout.begin(rank);
   const GlobalIndex count = graph.layout.size(rank);
@@ -39,7 +39,7 @@ struct Link {
   auto operator<=>(const Link&) const = default;
 };
 
-/// The links that this rank sees from the smaller number, each once.
+/// Returns the links whose smaller piece is on this rank, each once.
 std::vector<Link> links_of(const GlobalGraph& graph, const HaloValues<GlobalIndex>& piece_of, int rank) {
   const GlobalIndex first = graph.layout.begin(rank);
   const GlobalIndex end = graph.layout.end(rank);
@@ -56,7 +56,7 @@ std::vector<Link> links_of(const GlobalGraph& graph, const HaloValues<GlobalInde
   return links;
 }
 
-/// For each piece the smallest number of a piece of its component.
+/// Returns for each piece the smallest number of a piece in its component (union–find).
 std::vector<GlobalIndex> smallest_pieces(std::size_t count, const std::vector<Link>& links) {
   std::vector<GlobalIndex> parent(count);
   std::iota(parent.begin(), parent.end(), GlobalIndex{0});
@@ -77,7 +77,7 @@ std::vector<GlobalIndex> smallest_pieces(std::size_t count, const std::vector<Li
   return parent;
 }
 
-/// The component of each piece, and those that are for all ranks.
+/// The component of each piece, and the components that all ranks solve.
 struct Found {
   std::vector<Component> of_piece;
   std::vector<Component> of_all_ranks;
@@ -86,7 +86,7 @@ struct Found {
 Found joined_pieces(const std::vector<GlobalIndex>& sizes, const std::vector<Link>& links,
                     const Layout& pieces, GlobalIndex alone) {
   const std::vector<GlobalIndex> first_piece = smallest_pieces(sizes.size(), links);
-  std::vector<GlobalIndex> size_of(sizes.size(), 0);  // of the component that begins with a piece
+  std::vector<GlobalIndex> size_of(sizes.size(), 0);  // size of the component whose first piece it is
   std::vector<char> is_shared(sizes.size(), 0);
   for (std::size_t piece = 0; piece < sizes.size(); ++piece) {
     const auto first = static_cast<std::size_t>(first_piece[piece]);

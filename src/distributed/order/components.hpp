@@ -10,25 +10,25 @@
 
 namespace meshorder::distributed {
 
-/// A connected component of a graph, and who finds its Fiedler vector.
+/// A connected component of a graph, and the rank that computes its Fiedler vector.
 struct Component {
   GlobalIndex place;  ///< 0 … components − 1: the largest first, ties by their smallest vertices
-  GlobalIndex start;  ///< vertices of those before it
-  GlobalIndex size;   ///< vertices, ≥ 1
-  int solver;         ///< the rank that does so alone, or `kAllRanks`
+  GlobalIndex start;  ///< number of vertices of the components before it
+  GlobalIndex size;   ///< number of vertices, ≥ 1
+  int solver;         ///< the rank that solves it alone, or `kAllRanks`
 };
 
 constexpr int kAllRanks = -1;
 
-/// The components of a graph, as a rank sees them.
+/// The components of a graph that have vertices on this rank, and those that all ranks solve.
 struct Components {
-  ComponentNumbering pieces;            ///< what its own vertices are joined to by own vertices
-  std::vector<Component> of_piece;      ///< of each piece
-  std::vector<Component> of_all_ranks;  ///< those that all ranks solve together; the same on all
+  ComponentNumbering pieces;            ///< components of the subgraph of the own vertices
+  std::vector<Component> of_piece;      ///< the component of each piece
+  std::vector<Component> of_all_ranks;  ///< components that all ranks solve together; the same on all
 };
 
-/// Finds the components of a graph. Those on several ranks with more vertices than `alone` are for all ranks,
-/// any other for the rank of its smallest vertex. Every rank has to call it. O(entries), and
+/// Finds the components of a graph. A component on several ranks with more than `alone` vertices is solved by
+/// all ranks, any other by the rank of its smallest vertex. Every rank has to call it. O(entries), and
 /// O(pieces of all ranks) at the root.
 ///
 /// @param halo   of the graph's ghosts

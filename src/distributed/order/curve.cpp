@@ -14,10 +14,10 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Key of what is not used: above those of all points.
+/// Key of unused vertices: larger than those of all points.
 constexpr std::uint64_t kUnused = std::numeric_limits<std::uint64_t>::max();
 
-/// The lattice of the box around the used points of all ranks.
+/// Returns the lattice of the bounding box of all ranks' used points.
 Lattice lattice_of(const Communicator& communicator, const std::vector<Point>& points,
                    const std::vector<char>& used) {
   Box box;
@@ -29,7 +29,7 @@ Lattice lattice_of(const Communicator& communicator, const std::vector<Point>& p
   return {of_all.low, of_all.high};
 }
 
-/// The sum of a count over the ranks before this one.
+/// Returns the sum of a count over the ranks before this one.
 GlobalIndex before_this_rank(const Communicator& communicator, std::size_t count) {
   const std::vector<std::size_t> counts = communicator.gathered(count);
   return std::accumulate(counts.begin(), counts.begin() + communicator.rank(), GlobalIndex{0},
@@ -54,7 +54,7 @@ Curve along_hilbert_curve(const Communicator& communicator, const Layout& vertic
   });
   entries = sample_sorted(communicator, std::move(entries));
 
-  // places in the sorted sequence
+  // the numbers are the places in the sorted sequence
   const GlobalIndex first = before_this_rank(communicator, entries.size());
   std::vector<GlobalIndex> in_file;
   std::vector<GlobalIndex> numbers;
@@ -67,7 +67,7 @@ Curve along_hilbert_curve(const Communicator& communicator, const Layout& vertic
   Curve curve;
   curve.number_of = delivered<GlobalIndex>(communicator, vertices, in_file, numbers, 0);
 
-  // to their owners
+  // send the used vertices to the owners of their numbers
   struct Vertex {
     GlobalIndex number_in_file;
     Point point;

@@ -9,20 +9,20 @@
 
 namespace meshorder::distributed {
 
-/// The vertices of a mesh numbered along Hilbert's curve, ties by their numbers in the file; after them
-/// those that nothing uses, in the order of the file. The numbers are the same on any number of ranks.
+/// The numbers of a mesh's vertices along a Hilbert curve, ties by their numbers in the file; unused vertices
+/// come last, in the order of the file. The numbers are the same on any number of ranks.
 struct Curve {
   Layout layout;                            ///< of the numbers of used vertices: equal shares
-  std::vector<GlobalIndex> number_of;       ///< of each vertex of the slice: its number
-  std::vector<GlobalIndex> number_in_file;  ///< of each own number
-  std::vector<Point> points;                ///< of each own number
+  std::vector<GlobalIndex> number_of;       ///< number along the curve of each vertex of the slice
+  std::vector<GlobalIndex> number_in_file;  ///< of each own number along the curve
+  std::vector<Point> points;                ///< of each own number along the curve
 };
 
 /// Numbers the vertices of a mesh. Every rank has to call it. O(n log n) for n vertices of a rank.
 ///
-/// @param vertices  who has which vertices
-/// @param points    of the own ones
-/// @param used      whether each of them is to be ordered
+/// @param vertices  the owners of the vertices
+/// @param points    of the own vertices
+/// @param used      for each own vertex, whether an element uses it
 /// @throws as `Communicator::exchange`
 [[nodiscard]] Curve along_hilbert_curve(const Communicator& communicator, const Layout& vertices,
                                         const std::vector<Point>& points, const std::vector<char>& used);

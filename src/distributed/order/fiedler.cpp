@@ -23,11 +23,11 @@
 namespace meshorder::distributed {
 namespace {
 
-// A vertex on its way to the rank that solves its component: a row of these entries, and then of its
+// A vertex as it is sent to the rank that solves its component: a row of these entries, followed by its
 // neighbours.
 enum VertexEntry : std::size_t { kNumber, kInFile, kPlace, kStart, kFirstNeighbour };
 
-/// New numbers of vertices, before they go to the owners of these, and reports by the components' places.
+/// New numbers of vertices of any owners, as this rank has found them, and reports on components.
 struct Places {
   struct Report {
     GlobalIndex place;
@@ -38,8 +38,8 @@ struct Places {
   std::vector<Report> reports;
 };
 
-/// What decides the sign of a vector: its largest magnitude, and the first vertex in the file that reaches
-/// half of it.
+/// The vertex that decides the sign of a vector: of those with at least half of the largest magnitude, the
+/// first in the file.
 struct Sign {
   GlobalIndex first = std::numeric_limits<GlobalIndex>::max();
   bool is_positive = false;
@@ -54,14 +54,14 @@ struct Sign {
   }
 };
 
-/// Numbers that ascend as the values do; −0 is 0, and what is no number comes like 0.
+/// Returns bits that ascend with the values; −0, NaN and infinities count as 0.
 std::uint64_t ascending_bits(double value) {
   constexpr std::uint64_t kSignBit = std::uint64_t{1} << 63;
   const auto bits = std::bit_cast<std::uint64_t>(std::isfinite(value) ? value + 0.0 : 0.0);
   return (bits & kSignBit) != 0 ? ~bits : bits | kSignBit;
 }
 
-/// The rows of vertices whose components one rank solves.
+/// Sends the vertices of components that one rank solves; returns the rows that this rank receives.
 Rows rows_to_solvers(const Communicator& communicator, const GlobalGraph& graph, const Components& components,
                      const std::vector<GlobalIndex>& number_in_file) {
   Rows rows;
@@ -87,7 +87,7 @@ Rows rows_to_solvers(const Communicator& communicator, const GlobalGraph& graph,
   return send_rows(communicator, std::move(rows), std::move(dispatches));
 }
 
-/// The graph of the rows, which are in ascending order of their vertices and have all neighbours of each.
+/// Returns the graph of the rows. Their vertices must ascend and include all neighbours.
 CsrGraph graph_of_rows(const Rows& rows) {
   std::vector<GlobalIndex> numbers;
   numbers.reserve(static_cast<std::size_t>(rows.size()));
@@ -126,7 +126,7 @@ void order_alone(const Rows& rows, const FiedlerOptions& options, Places& places
   }
 }
 
-/// The own vertices of a component that all ranks solve, in the order of the rows of its Laplacian.
+/// Returns the own vertices of a component that all ranks solve, in the sequence of its Laplacian's rows.
 std::vector<Index> own_members(const Components& components, const Component& component) {
   std::vector<Index> members;
   for (Index piece = 0; piece < components.pieces.component_count(); ++piece) {
@@ -137,7 +137,7 @@ std::vector<Index> own_members(const Components& components, const Component& co
   return members;
 }
 
-/// The Laplacian of a component, its rows numbered from rank to rank.
+/// Returns the Laplacian of a component, its rows numbered rank by rank.
 SharedLevel finest_level(const Communicator& communicator, const GlobalGraph& graph, const Halo& ghosts,
                          const std::vector<Index>& members) {
   const int rank = communicator.rank();
@@ -186,7 +186,7 @@ std::vector<double> solve(const Communicator& communicator, SharedLevel finest, 
     companion = column(start, 1);
   }
   SharedProblem problem(hierarchy, 0);
-  // noise of its own on every rank
+  // different random numbers on every rank
   const std::uint64_t seed =
       options.seed + static_cast<std::uint64_t>(communicator.rank()) * 0x9e3779b97f4a7c15U;
   const LobpcgResult solved = lowest_eigenvector(
@@ -202,8 +202,8 @@ std::vector<double> solve(const Communicator& communicator, SharedLevel finest, 
   return values;
 }
 
-/// Turns a vector round where the first vertex in the file that reaches half its largest magnitude is
-/// positive.
+/// Changes the sign of a vector if the entry of the vertex that decides it (see Sign) is positive.
+///
 void give_sign(const Communicator& communicator, const std::vector<GlobalIndex>& in_file,
                std::vector<double>& values) {
   double largest = 0;
@@ -256,7 +256,7 @@ SharedFiedlerOrder fiedler_order(const Communicator& communicator, const GlobalG
                                  const std::vector<GlobalIndex>& number_in_file, const OrderOptions& options,
                                  SharedSizes sizes) {
   FiedlerOptions for_solver = communicator.together([&] { return solver_options(options); });
-  for_solver.start = {};  // belongs to the vertices of one process
+  for_solver.start = {};  // a start vector is for a graph on one process
   const GlobalIndex few = std::max(sizes.few, graph.layout.size() / communicator.size());
   const Components components = components_of(communicator, graph, halo, sizes.alone);
   Places places;

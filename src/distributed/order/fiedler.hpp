@@ -11,30 +11,30 @@
 
 namespace meshorder::distributed {
 
-/// Sizes from which ranks work together.
+/// Problem sizes up to which one rank works alone.
 struct SharedSizes {
-  GlobalIndex alone = 50'000;  ///< vertices of a component that one rank solves at most
-  GlobalIndex few = 50'000;    ///< coarse vertices that go to the root, or as many as a rank has if more
+  GlobalIndex alone = 50'000;  ///< most vertices of a component on several ranks that one rank solves
+  GlobalIndex few = 50'000;    ///< most coarse vertices that go to the root; more if a rank has more
 };
 
-/// The order by the Fiedler vector of a graph that the ranks share.
+/// The order by the Fiedler vector of a distributed graph.
 struct SharedFiedlerOrder {
   std::vector<GlobalIndex> new_numbers;      ///< of the vertices in the graph's rows
   std::vector<FiedlerComponent> components;  ///< of all ranks, largest first; at the root
 };
 
-/// Orders a graph as the serial `fiedler` does: component after component, largest first, ties by their
-/// smallest vertices, each by ascending entries of its Fiedler vector, ties by number. Every rank has to call
-/// it. O(entries · iterations).
+/// Orders a graph as the serial `fiedler` does. Components follow each other, largest first, ties by their
+/// smallest vertices. Within a component the entries of its Fiedler vector ascend, ties by number. Every rank
+/// has to call it. O(entries · iterations).
 ///
-/// A component on several ranks with many vertices is solved by all of them, another one by the rank of its
-/// smallest vertex. The same order for the same graph and number of ranks, whatever the number of threads.
+/// A large component on several ranks is solved by all ranks, another one by the rank of its smallest vertex.
+/// The same order for the same graph and number of ranks, for any number of threads.
 ///
 /// @param halo            of the graph's ghosts
-/// @param number_in_file  of each own vertex: the first by this that reaches half of a vector's largest
-///                        magnitude is negative, as in the serial order
+/// @param number_in_file  of each own vertex. Fixes the sign as in the serial order: of the entries with at
+///                        least half of the largest magnitude, the first in the file is negative
 /// @param options         tolerance, max_iterations and seed
-/// @throws SharedError for a tolerance or number of iterations that is not positive; as
+/// @throws SharedError if the tolerance or the number of iterations is not positive; as
 ///         `Communicator::exchange`
 [[nodiscard]] SharedFiedlerOrder fiedler_order(const Communicator& communicator, const GlobalGraph& graph,
                                                const Halo& halo,

@@ -12,7 +12,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// A dispatch of each element to each rank that owns one of its vertices.
+/// Returns a dispatch of each element to each rank that owns one of its vertices.
 std::vector<Dispatch> to_owners(const Layout& layout, const Rows& elements) {
   std::vector<Dispatch> dispatches;
   std::vector<int> owners;
@@ -26,7 +26,7 @@ std::vector<Dispatch> to_owners(const Layout& layout, const Rows& elements) {
   return dispatches;
 }
 
-/// The elements with their vertices numbered by their places in `numbers`.
+/// Returns the elements with each vertex replaced by its place in `numbers`.
 Incidence renumbered(const Rows& elements, const NumberSet& numbers) {
   Incidence result;
   result.vertex_count = index_size(numbers.numbers());
@@ -37,8 +37,8 @@ Incidence renumbered(const Rows& elements, const NumberSet& numbers) {
   return result;
 }
 
-/// The rows of a rank's own vertices, of a graph whose k-th vertex is `numbers[k]`. Vertices that are not
-/// among these have no neighbours.
+/// Returns the rows of a rank's own vertices from a graph whose k-th vertex has the global number
+/// `numbers[k]`. Own vertices that are not in `numbers` get empty rows.
 Rows own_rows(const CsrGraph& graph, const std::vector<GlobalIndex>& numbers, const Layout& layout,
               int rank) {
   const auto place_of = [&](GlobalIndex number) {
@@ -65,7 +65,7 @@ GlobalGraph global_graph(const Communicator& communicator, const Layout& layout,
   std::vector<Dispatch> dispatches = communicator.together([&] { return to_owners(layout, elements); });
   Rows received = send_rows(communicator, std::move(elements), std::move(dispatches));
   return communicator.together([&] {
-    // numbers of the rank's own, which rise with those among all ranks: the serial graph's rows then do, too
+    // local numbers that ascend with the global ones, so that rows of the local graph ascend in both
     const NumberSet set(received.entries);
     const std::vector<GlobalIndex>& numbers = set.numbers();
     if (numbers.size() > static_cast<std::size_t>(kMaxIndex)) {

@@ -9,22 +9,22 @@
 
 namespace meshorder::distributed {
 
-/// The rows that a rank owns of an undirected graph: rising numbers of neighbours on any rank, no loops, no
-/// repeats; every edge in the rows of both its ends. The arrays are those that PT-Scotch takes.
+/// The rows that a rank owns of an undirected graph: ascending global numbers of neighbours, without loops
+/// and repeats. Every edge is in the rows of both its ends. PT-Scotch takes these arrays as they are.
 struct GlobalGraph {
   Layout layout;  ///< of the vertices
   Rows rows;      ///< the neighbours of the own ones
 };
 
-/// Builds the graph that joins any two vertices of a common element, from elements that are anywhere. Every
-/// rank has to call it. O(sum of element sizes squared · log degree).
+/// Builds the graph that joins any two vertices of a common element. Elements may be on any rank. Every rank
+/// has to call it. O(sum of element sizes squared · log degree).
 ///
 /// @param layout    of the vertices
-/// @param elements  vertices of the elements that this rank has; each element on one rank. Taken: they would
-///                  need as much memory as the graph
-/// @throws SharedError where the rows of a rank have more than 2,147,483,647 vertices, and where a rank has
-/// no
-///         memory
+/// @param elements  vertices of the elements on this rank; each element is on one rank. Freed early, because
+///                  they take as much memory as the graph
+/// @throws SharedError if a rank's elements have more than 2,147,483,647 different vertices,
+///
+///         or a rank lacks memory
 [[nodiscard]] GlobalGraph global_graph(const Communicator& communicator, const Layout& layout, Rows elements);
 
 /// Returns the neighbours of own vertices that other ranks own, ascending, each once.

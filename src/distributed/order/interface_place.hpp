@@ -10,9 +10,9 @@
 
 namespace meshorder::distributed {
 
-/// Where a part has its interface: the vertices that share an element with vertices of other parts.
+/// Where a part's interface is in its order: the vertices that share an element with vertices of other parts.
 enum class InterfacePlace : std::uint8_t {
-  mixed,  ///< wherever the method puts them
+  mixed,  ///< anywhere, as the method orders them
   last,   ///< after the other vertices of the part; both keep the order that the method gives them
 };
 

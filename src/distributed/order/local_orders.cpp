@@ -15,18 +15,18 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Methods whose sequence is as good from its end as from its beginning.
+/// Methods whose order is as good reversed.
 constexpr std::array<std::string_view, 4> kReversible{"fiedler", "minla", "hilbert", "morton"};
 
-// A vertex on its way to the rank of its part: a row of these entries, and then of its neighbours in the
+// A vertex as it is sent to the rank of its part: a row of these entries, followed by its neighbours in the
 // part.
 enum Entry : std::size_t { kVertex, kPart, kPull, kIsInterface, kX, kY, kZ, kNeighbours };
 
-/// The rows of this rank's vertices, and to whom they go.
+/// The rows of this rank's vertices, and the ranks to send them to.
 struct Departure {
   Rows rows;
   std::vector<Dispatch> dispatches;
-  GlobalIndex ghosts = 0;  ///< parts beside its own that need a vertex, summed over the vertices
+  GlobalIndex ghosts = 0;  ///< number of other parts next to a vertex, summed over the vertices
 };
 
 Departure departing(const GlobalGraph& graph, const Curve& curve, const HaloValues<Index>& place_of,
@@ -62,16 +62,16 @@ Departure departing(const GlobalGraph& graph, const Curve& curve, const HaloValu
   return departure;
 }
 
-/// A part as the serial methods take it: its vertices numbered along the curve.
+/// A part in the form that serial methods take: its vertices are numbered 0, 1, … along the curve.
 struct Part {
-  std::vector<GlobalIndex> names;  ///< in the whole graph, ascending
+  std::vector<GlobalIndex> names;  ///< numbers in the whole graph, ascending
   CsrGraph graph;
   std::vector<Point> points;
   std::vector<float> pull;
-  std::vector<char> is_interface;  ///< whether each has neighbours in other parts
+  std::vector<char> is_interface;  ///< for each vertex, whether it has neighbours in other parts
 };
 
-/// A part of vertices that are the given rows, ascending.
+/// Returns the part whose vertices are the rows `members`, ascending.
 Part part_of_rows(const Rows& rows, std::span<const Offset> members) {
   Part part;
   part.names.reserve(members.size());
@@ -92,7 +92,7 @@ Part part_of_rows(const Rows& rows, std::span<const Offset> members) {
   return part;
 }
 
-/// Whether the vertices that are pulled forward come after those that are pulled back.
+/// Returns whether vertices that edges pull to the front are at the end rather than those pulled back.
 bool is_the_wrong_way_round(std::span<const Index> places, const std::vector<float>& pull) {
   const double middle = 0.5 * (static_cast<double>(places.size()) - 1);
   double along = 0;
@@ -112,7 +112,7 @@ void put_interface_last(std::vector<Index>& places, const std::vector<char>& is_
   }
 }
 
-/// The new place of each vertex of a part within it.
+/// Returns the new place of each vertex of a part within the part.
 std::vector<Index> places_in(const Part& part, std::string_view method, InterfacePlace interface_place,
                              const OrderOptions& options) {
   const Order order = in_call(options.run, [&] {
@@ -145,14 +145,14 @@ PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph&
   result.starts.assign(1, 0);
   for (const GlobalIndex size : sizes) result.starts.push_back(result.starts.back() + size);
 
-  // to the ranks of the parts
+  // send vertices to the ranks of their parts
   const Layout ranks_of_parts = Layout::even(parts, communicator.size());
   Departure departure = communicator.together(
       [&] { return departing(graph, curve, place_of, ranks_of_parts, communicator.rank()); });
   result.ghosts = communicator.sum(departure.ghosts);
   const Rows rows = send_rows(communicator, std::move(departure.rows), std::move(departure.dispatches));
 
-  // part by part; rows came by rank, so those of a part ascend
+  // order part by part; rows arrived in rank order, so the vertices of a part ascend
   std::vector<GlobalIndex> names;
   std::vector<GlobalIndex> numbers;
   result.interfaces.assign(static_cast<std::size_t>(parts), 0);

@@ -13,22 +13,22 @@
 
 namespace meshorder::distributed {
 
-/// New numbers of vertices, contiguous by part, and what is reported of the parts.
+/// New numbers of vertices, contiguous by part, and figures on the parts.
 struct PartOrders {
   std::vector<GlobalIndex> new_numbers;  ///< of the vertices in the graph's rows
-  std::vector<GlobalIndex> starts;       ///< first new number of each part, and the end of the last one's
-  std::vector<GlobalIndex> interfaces;   ///< of each part: vertices with neighbours in other parts
-  GlobalIndex ghosts = 0;                ///< vertices that parts need of others, summed over the parts
+  std::vector<GlobalIndex> starts;       ///< first new number of each part, then the end of the last part
+  std::vector<GlobalIndex> interfaces;   ///< for each part, the number of vertices with outside neighbours
+  GlobalIndex ghosts = 0;                ///< number of outside neighbours, summed over the parts
 };
 
-/// Orders each part by a method, on the rank that the part falls to. `spectral` gets the pull of the parts
-/// before and after; what other methods make is turned round where that brings the ends of edges between
-/// parts nearer. Every rank has to call it. O(entries) and what the method costs.
+/// Orders each part by a method, on the rank of that part. In `spectral`, edges to earlier and later parts
+/// pull vertices forward or back. The orders of `fiedler`, `minla`, `hilbert` and `morton` are reversed if
+/// that brings the ends of edges between parts nearer. Every rank has to call it. Costs O(entries) + method.
 ///
-/// @param graph     numbered as `curve` says, and ordered within a part from there
-/// @param place_of  part of each vertex, numbered by the order of the parts
+/// @param graph     numbered along `curve`; a part's vertices go to the method in that order
+/// @param place_of  of each vertex, the place of its part in the order of the parts
 /// @param method    name of a vertex method
-/// @param interface_place where a part has the vertices with neighbours in other parts
+/// @param interface_place place of the vertices with neighbours in other parts
 /// @throws as `Communicator::exchange`; SharedError with what the method throws
 [[nodiscard]] PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph& graph,
                                           const Curve& curve, const HaloValues<Index>& place_of, Index parts,

@@ -8,7 +8,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Sends each rank the values of the root that `starts` says, and returns this rank's.
+/// Returns this rank's part of the root's values. `starts` counts only at the root.
 template <class T>
 std::vector<T> shared_out(const Communicator& communicator, const std::vector<T>& values,
                           std::vector<Offset> starts) {
@@ -34,7 +34,7 @@ MeshSlice scattered(const Communicator& communicator, const Mesh& mesh) {
   const std::vector<Offset> cell_starts = starts_of(slice.cells);
   slice.shapes = shared_out(communicator, mesh.cells.shapes, cell_starts);
 
-  // where the rows begin among all of the root's, then where among the own
+  // rows begin at these places in the root's array; the places in the own array follow below
   const std::vector<Offset> begins = shared_out(communicator, mesh.cells.offsets, cell_starts);
   std::vector<Offset> vertex_starts(cell_starts.size(), 0);
   if (communicator.is_root()) {

@@ -10,24 +10,24 @@
 
 namespace meshorder::distributed {
 
-/// What a rank holds of a mesh before anything is known of it: vertices and cells in ranges of their numbers
-/// in the file. What a reader of slices gives, too.
+/// A rank's part of a mesh as it is read or scattered: ranges of the vertices and cells by their numbers in
+/// the file.
 struct MeshSlice {
   Layout vertices;
   Layout cells;
   std::vector<Point> points;  ///< of the own vertices
-  Rows cell_vertices;         ///< of the own cells, by their numbers among all
+  Rows cell_vertices;         ///< global numbers of the vertices of the own cells
   std::vector<Shape> shapes;  ///< of the own cells
 };
 
-/// Shares out the points and cells of a mesh that the root has read. Every rank has to call it. O(size of the
-/// mesh) at the root.
+/// Distributes the points and cells of a mesh at the root. Every rank has to call it. O(size of the mesh) at
+/// the root.
 ///
-/// @param mesh  at the root; not looked at elsewhere
+/// @param mesh  ignored on other ranks
 /// @throws as `Communicator::exchange`
 [[nodiscard]] MeshSlice scattered(const Communicator& communicator, const Mesh& mesh);
 
-/// Returns whether cells are elements: of the highest dimension that any rank has. Every rank has to call it.
+/// Returns for each cell whether its dimension is the highest on any rank. Every rank has to call it.
 [[nodiscard]] std::vector<char> are_elements(const Communicator& communicator,
                                              const std::vector<Shape>& shapes);
 

@@ -11,11 +11,11 @@ namespace {
 
 constexpr std::uint64_t kSign = std::uint64_t{1} << 63U;
 
-/// Maps numbers to keys that ascend with them, and back.
+/// Returns a key that ascends with the number; number_of is the inverse.
 std::uint64_t key_of(std::int64_t number) { return static_cast<std::uint64_t>(number) ^ kSign; }
 std::int64_t number_of(std::uint64_t key) { return static_cast<std::int64_t>(key ^ kSign); }
 
-/// What other ranks have to know of the sorted numbers of a rank.
+/// Facts on the sorted numbers of a rank from which all ranks find the smallest duplicate.
 struct Ends {
   bool is_empty = true;
   std::uint64_t first = 0;

@@ -10,15 +10,15 @@
 
 namespace meshorder::distributed {
 
-/// Vertices or cells by the numbers that their file gives them.
+/// Vertices or cells sorted by the numbers (ids) that their file gives them.
 struct NumberOrder {
-  std::vector<GlobalIndex> sorted;    ///< places in the file, by number; goes on on the next rank
-  std::optional<std::int64_t> twice;  ///< the smallest number that is given twice
+  std::vector<GlobalIndex> sorted;    ///< places in the file, by number: this rank's range of them
+  std::optional<std::int64_t> twice;  ///< the smallest number that occurs twice
 };
 
 /// Sorts the numbers of vertices or cells. Every rank has to call it. O(n log n) for n of a rank.
 ///
-/// @param layout   who has which vertices or cells
+/// @param layout   the owners of the vertices or cells
 /// @param numbers  of the own ones
 /// @throws as `Communicator::exchange`
 [[nodiscard]] NumberOrder order_of_numbers(const Communicator& communicator, const Layout& layout,

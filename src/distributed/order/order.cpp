@@ -26,10 +26,10 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Methods that go by the order of the file, which parts do not have, or by an own choice.
+/// Methods without meaning within a part: they choose by the whole mesh or depend on the order in the file.
 constexpr std::array<std::string_view, 3> kNotInParts{"auto", "original", "scrambled"};
 
-/// The stages of a run, each from where the one before ended.
+/// Records the time of each stage; a stage begins where the one before ended.
 class Stages {
  public:
   explicit Stages(DistributedReport& report) : report_(report) {}
@@ -43,7 +43,7 @@ class Stages {
   Stopwatch stopwatch_;
 };
 
-/// Elements of a slice, or the pieces that join their vertices, by the numbers of their vertices in the file.
+/// Returns the elements of a slice, or the pieces into which their shapes are divided to join vertices.
 Rows elements_of(const Communicator& communicator, const MeshSlice& slice) {
   const std::vector<char> is_element = are_elements(communicator, slice.shapes);
   return communicator.together([&] {
@@ -62,12 +62,12 @@ Rows elements_of(const Communicator& communicator, const MeshSlice& slice) {
   });
 }
 
-/// Replaces each vertex in the rows by its value: that at its position in the halo.
+/// Replaces each vertex in the rows by its value; `values` are those of the halo's numbers.
 void renumber(Rows& rows, const Halo& halo, const std::vector<GlobalIndex>& values) {
   for (GlobalIndex& vertex : rows.entries) vertex = values[halo.position(vertex)];
 }
 
-/// Marks the vertices of a slice that elements use: those that the elements' halo asks of this rank.
+/// Marks the vertices of a slice that elements use: those that the elements' halo fetches from this rank.
 std::vector<char> used_vertices(const Communicator& communicator, const Layout& vertices, const Halo& halo) {
   return communicator.together([&] {
     std::vector<char> used(static_cast<std::size_t>(vertices.size(communicator.rank())), 0);
@@ -77,7 +77,7 @@ std::vector<char> used_vertices(const Communicator& communicator, const Layout& 
   });
 }
 
-/// New numbers of the vertices of a slice: those that are unused keep their places on the curve.
+/// Returns the new numbers of the vertices of a slice. Unused vertices keep their numbers on the curve.
 std::vector<GlobalIndex> numbers_in_file(const Communicator& communicator, const MeshSlice& slice,
                                          const Curve& curve, std::span<const GlobalIndex> new_numbers) {
   constexpr GlobalIndex kNone = -1;
@@ -130,7 +130,7 @@ PartOrders in_one_order(const Communicator& communicator, const GlobalGraph& gra
   return std::move(ranges.parts);
 }
 
-/// Throws InvalidArgument for what ranges of one order cannot have.
+/// Throws InvalidArgument for options that do not apply to ranges of one order.
 void check_one_order(const DistributedOptions& options) {
   const std::string remedy = "; take --partition ptscotch or hilbert, which orders each part";
   if (options.vertices != "fiedler")
@@ -142,7 +142,7 @@ void check_one_order(const DistributedOptions& options) {
     throw InvalidArgument("the partition 'order' leaves interfaces at their places in the order" + remedy);
 }
 
-/// Throws InvalidArgument for more parts than vertices, if they are so many that their tables take memory.
+/// Throws InvalidArgument for more than a million parts, whose tables take memory, if vertices are fewer.
 void check_parts(Index parts, GlobalIndex vertices) {
   constexpr Index kOfAnyMesh = 1'000'000;
   if (parts <= kOfAnyMesh || parts <= vertices) return;
@@ -184,7 +184,7 @@ DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
   Stages stages(report);
   const int rank = communicator.rank();
 
-  // vertices along the curve, and the graph in these numbers
+  // number the vertices along the curve, and build the graph in these numbers
   Rows elements = elements_of(communicator, slice);
   std::optional<Curve> curve;
   {

@@ -17,10 +17,10 @@
 
 namespace meshorder::distributed {
 
-/// How a mesh is ordered by many ranks.
+/// Options for ordering a mesh on many ranks.
 struct DistributedOptions {
-  /// Vertex method inside a part, not `auto`, `original` or `scrambled`. With `Partitioner::order` that of
-  /// the whole mesh, which is `fiedler`.
+  /// Vertex method within a part: not `auto`, `original` or `scrambled`. With `Partitioner::order` it orders
+  /// the whole mesh and must be `fiedler`.
   std::string vertices = "spectral";
   Partitioner partitioner = Partitioner::ptscotch;
   Index parts = 0;  ///< 0: one for each rank
@@ -29,46 +29,46 @@ struct DistributedOptions {
   OrderOptions order = {};  ///< seed, tolerance, max_iterations and run
 };
 
-/// Throws InvalidArgument for a method that there is not or that has no meaning within parts, and for fewer
-/// than no parts.
+/// Throws InvalidArgument for a method that does not exist or has no meaning within parts, and for a negative
+/// number of parts.
 void check_options(const DistributedOptions& options);
 
-/// What is reported of an order.
+/// Figures on an order.
 struct DistributedReport {
   Index parts = 0;
-  Partitioner partitioner = Partitioner::ptscotch;  ///< that made the parts
-  std::string partition_reason;                     ///< why that is not the one asked for; else empty
-  double imbalance = 1;  ///< the largest part relative to the mean, in what is balanced: vertices or cells
+  Partitioner partitioner = Partitioner::ptscotch;  ///< the one that made the parts
+  std::string partition_reason;                     ///< why it is not the requested one; empty if it is
+  double imbalance = 1;  ///< largest part / mean part, in the balanced quantity: vertices or cells
   GlobalIndex edges = 0;
-  GlobalIndex cut = 0;                   ///< edges between parts
-  GlobalIndex ghosts = 0;                ///< vertices that parts need of others, summed over the parts
-  std::vector<GlobalIndex> part_starts;  ///< first new number of each part, and the end of the last one's
-  std::vector<GlobalIndex> interfaces;   ///< of each part: vertices that share an element with other parts'
+  GlobalIndex cut = 0;                   ///< number of edges between parts
+  GlobalIndex ghosts = 0;                ///< number of neighbours outside a part, summed over the parts
+  std::vector<GlobalIndex> part_starts;  ///< first new number of each part, then the end of the last part
+  std::vector<GlobalIndex> interfaces;   ///< for each part, the number of vertices on its interface
   std::vector<FiedlerComponent>
       fiedler;  ///< `Partitioner::order`: of all components, largest first; at the root
   GlobalEdgeSpan before;
   GlobalEdgeSpan after;
-  std::vector<std::pair<std::string_view, double>> seconds;  ///< of each stage, in their order
+  std::vector<std::pair<std::string_view, double>> seconds;  ///< of each stage, in sequence
 };
 
 /// A rank's share of the order of a mesh.
 struct DistributedOrder {
   std::vector<GlobalIndex> new_vertices;  ///< new number of each vertex of the slice
-  std::vector<GlobalIndex> cells;  ///< numbers of cells in their new order, which goes on on the next rank
+  std::vector<GlobalIndex> cells;  ///< old numbers of cells in their new order: this rank's range of it
   DistributedReport report;
 };
 
-/// Orders a mesh: parts, numbered so that those that touch are near each other; the vertices of a part by the
-/// method, those that no element uses after all others, in their old order; cells by `lexmax`. With
-/// `Partitioner::order` the method orders all vertices, and parts are equal ranges of that. Every rank has to
+/// Orders a mesh. Parts that touch get near numbers. The method orders the vertices of a part; vertices that
+/// no element uses come last, in their old order. Cells are in the order `lexmax`. With `Partitioner::order`
+/// the method orders all vertices, and parts are equal ranges of that order. Every rank has to
 /// call it.
 ///
-/// @param slice  taken: what is done with is given up
-/// @throws SharedError for a method that there is not or that has no meaning within parts, for fewer than one
-///         part, where `Partitioner::order` goes with another method than `fiedler` or with a balance or
-///         place of interfaces that equal ranges cannot have, and where a rank fails
-/// @note The same order for the same mesh, options and number of ranks; with `Partitioner::hilbert` and the
-///       number of parts given, on any number of ranks and threads.
+/// @param slice  its arrays are freed as soon as they are no longer needed
+/// @throws SharedError for a method that does not exist or has no meaning within parts, for a negative number
+///         of parts, for `Partitioner::order` with another method than `fiedler` or with a balance or place
+///         of interfaces that equal ranges cannot have, and if a rank fails
+/// @note The same order for the same mesh, options and number of ranks; with `Partitioner::hilbert` and a
+///       given number of parts, on any number of ranks and threads.
 [[nodiscard]] DistributedOrder order_slices(const Communicator& communicator, MeshSlice slice,
                                             const DistributedOptions& options);
 

@@ -16,7 +16,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// The numbers of the vertices of cells after `new_numbers`, which every rank has for its own.
+/// Returns the cells with their vertices renumbered; `new_numbers` are those of this rank's own vertices.
 Rows renumbered(const Communicator& communicator, const Layout& vertices, const Rows& cells,
                 const std::vector<GlobalIndex>& new_numbers) {
   const Halo halo(communicator, vertices, cells.entries);
@@ -28,7 +28,7 @@ Rows renumbered(const Communicator& communicator, const Layout& vertices, const 
   });
 }
 
-/// Whether any rank has coordinates. Throws SharedError where another one with vertices lacks them.
+/// Returns whether any rank has coordinates. Throws SharedError if another rank with vertices lacks them.
 bool has_points(const Communicator& communicator, const OwnedMesh& mesh) {
   const auto own_count = static_cast<std::size_t>(mesh.vertices.size(communicator.rank()));
   const std::vector<char> given = communicator.gathered(static_cast<char>(mesh.points.empty() ? 0 : 1));
@@ -90,7 +90,7 @@ OwnedParts order_parts_of_owned(const Communicator& communicator, OwnedMesh mesh
     slice.cells = Layout(std::move(starts));
     slice.points = std::move(mesh.points);
     slice.cell_vertices = mesh.cells;
-    // all are elements: of one dimension, whichever
+    // one shape for all cells, so that all count as elements; its dimension does not matter
     slice.shapes.assign(static_cast<std::size_t>(mesh.cells.size()), Shape::tetrahedron);
   });
   DistributedOrder order = order_slices(communicator, std::move(slice), options);

@@ -11,34 +11,34 @@
 
 namespace meshorder::distributed {
 
-/// A mesh that the ranks of a running solver share.
+/// A mesh as the ranks of a running solver have distributed it.
 struct OwnedMesh {
-  Layout vertices;            ///< who owns which
-  std::vector<Point> points;  ///< of the own vertices; or none, on all ranks
+  Layout vertices;            ///< the owners of the vertices
+  std::vector<Point> points;  ///< of the own vertices; or empty on all ranks
   Rows cells;                 ///< numbers of the vertices of this rank's elements
 };
 
-/// Order of what a rank has.
+/// The order of a rank's own vertices and elements.
 struct OwnedOrder {
   std::vector<GlobalIndex> new_numbers;  ///< of each own vertex, within the rank's range
   std::vector<GlobalIndex> cells;        ///< places of this rank's elements in their new order
 };
 
-/// Orders the vertices of every rank among themselves, and the elements of each by `lexmax`. Every rank has
-/// to call it. O(sum of element sizes squared · log degree) and what the method costs.
+/// Orders the vertices of every rank among themselves, and the elements of each rank by `lexmax`. Every rank
+/// has to call it. O(sum of element sizes squared · log degree), plus the cost of the method.
 ///
 /// @param mesh     elements may be on several ranks
-/// @param options  of which `vertices` and `order` count
-/// @throws SharedError for a method that there is not, or that needs coordinates where there are none, and
-///         where a rank fails
+/// @param options  only `vertices`, `interface_place` and `order` are used
+/// @throws SharedError for a method that does not exist or needs coordinates that are missing, and if a rank
+///         fails
 [[nodiscard]] OwnedOrder order_owned(const Communicator& communicator, const OwnedMesh& mesh,
                                      const DistributedOptions& options);
 
-/// Parts of a mesh, and the order in which they and their vertices follow each other.
+/// Parts of a mesh, and new numbers of its vertices, contiguous by part.
 struct OwnedParts {
   std::vector<GlobalIndex> new_numbers;  ///< of each own vertex
-  std::vector<GlobalIndex> starts;       ///< first new number of each part, and the end of the last one's
-  std::vector<GlobalIndex> cells;        ///< part of each element: that of its last vertex
+  std::vector<GlobalIndex> starts;       ///< first new number of each part, then the end of the last part
+  std::vector<GlobalIndex> cells;        ///< part of each element: that of its vertex with the largest number
 };
 
 /// Orders the vertices as `order_slices` does. Every rank has to call it.

@@ -12,14 +12,14 @@
 namespace meshorder::distributed {
 namespace {
 
-// PT-Scotch fails, or does not end, where ranks have few vertices; parts of a few vertices are none to cut
+// PT-Scotch fails, or does not end, if ranks have few vertices; and parts of a few vertices cannot be cut
 // well.
 constexpr GlobalIndex kLeastPerRank = 100;
 constexpr GlobalIndex kLeastPerPart = 16;
-// Graphs of up to as many vertices are cut twice, which takes some tenths of a second.
+// Graphs of up to so many vertices are cut twice, which takes some tenths of a second.
 constexpr GlobalIndex kCutTwice = 100'000;
 
-/// Equal ranges of the vertices' numbers.
+/// Returns the parts that are equal ranges of the vertices' numbers.
 std::vector<Index> cut_by_numbers(const Communicator& communicator, const GlobalGraph& graph, Index parts) {
   return communicator.together([&] {
     const Layout ranges = Layout::even(graph.layout.size(), parts);
@@ -32,7 +32,7 @@ std::vector<Index> cut_by_numbers(const Communicator& communicator, const Global
   });
 }
 
-/// Ranges of the vertices' numbers of equal weight: a vertex goes to the part that its middle lies in.
+/// Returns the parts that are ranges of numbers of equal weight: the middle of a vertex's weight decides.
 std::vector<Index> cut_by_weights(const Communicator& communicator, const std::vector<GlobalIndex>& weights,
                                   Index parts) {
   const std::vector<GlobalIndex> of_ranks =
@@ -53,7 +53,7 @@ std::vector<Index> cut_by_weights(const Communicator& communicator, const std::v
   });
 }
 
-/// Why PT-Scotch is not to be asked; empty if it is.
+/// Returns why the graph is too small for PT-Scotch; empty if it is not.
 std::string too_small(const GlobalGraph& graph, Index parts) {
   const GlobalIndex n = graph.layout.size();
   if (n < kLeastPerRank * graph.layout.ranks())
@@ -63,7 +63,7 @@ std::string too_small(const GlobalGraph& graph, Index parts) {
   return "";
 }
 
-/// Edges between parts.
+/// Returns the number of edges between parts.
 GlobalIndex cut_between(const Communicator& communicator, const GlobalGraph& graph, const Halo& halo,
                         const std::vector<Index>& part_of) {
   const HaloValues<Index> parts(halo, graph.layout.begin(communicator.rank()), part_of);
@@ -76,7 +76,7 @@ GlobalIndex cut_between(const Communicator& communicator, const GlobalGraph& gra
   return communicator.sum(entries) / 2;
 }
 
-/// Cuts the graph by PT-Scotch, small graphs by both of its strategies. Returns whether it did.
+/// Cuts the graph by PT-Scotch; tries both strategies on small graphs. Returns whether it succeeded.
 bool cut_by_best_strategy(const Communicator& communicator, const GlobalGraph& graph, Index parts,
                           const std::vector<GlobalIndex>& weights, std::vector<Index>& part_of) {
   if (!cut_by_ptscotch(communicator, graph, parts, weights, ScotchStrategy::speed, part_of)) return false;

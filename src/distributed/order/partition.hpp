@@ -19,7 +19,7 @@ enum class Partitioner : std::uint8_t {
   ptscotch,  ///< few edges between parts; the same parts for the same graph on the same number of ranks
   hilbert,   ///< ranges of equal weight of the graph's own order; the same parts on any number of ranks
   rsb,       ///< recursive spectral bisection, see `bisected`
-  order,     ///< equal ranges of one order of the whole graph, which no part has an order of its own in
+  order,     ///< equal ranges of one order of the whole graph; parts are not ordered separately
 };
 
 }  // namespace meshorder::distributed
@@ -42,35 +42,35 @@ namespace meshorder::distributed {
 /// Parts of a graph.
 struct Partition {
   std::vector<Index> part_of;  ///< of each own vertex, 0 … parts − 1
-  Partitioner by;              ///< what made them
-  std::string reason;          ///< why that is not what was asked for; else empty
+  Partitioner by;              ///< the partitioner that made them
+  std::string reason;          ///< why it is not the requested one; empty if it is
 };
 
 /// Cuts a graph into parts of about the same weight. `ptscotch` cuts graphs of up to 100,000 vertices by two
-/// of its strategies, and keeps the parts with fewer edges between them; it gives way to `hilbert` where it
-/// fails or the graph is too small for it. Every rank has to call it.
+/// of its strategies, and keeps the parts with fewer edges between them. If it fails or the graph is too
+/// small for it, `hilbert` is used instead. Every rank has to call it.
 ///
-/// @param graph    numbered along Hilbert's curve from 0 on, equal shares on all ranks
+/// @param graph    numbered along a Hilbert curve from 0 on, equal shares on all ranks
 /// @param parts    ≥ 1
 /// @param by       `ptscotch` or `hilbert`
-/// @param weights  > 0, of each own vertex; none: all alike
+/// @param weights  > 0, of each own vertex; empty: all 1
 /// @throws as `Communicator::exchange`
 [[nodiscard]] Partition partitioned(const Communicator& communicator, const GlobalGraph& graph, Index parts,
                                     Partitioner by, const std::vector<GlobalIndex>& weights = {});
 
-/// Strategies of PT-Scotch. Which of them leaves fewer edges between parts differs from graph to graph.
+/// Strategies of PT-Scotch. Which of them cuts fewer edges depends on the graph.
 enum class ScotchStrategy : std::uint8_t { speed, quality };
 
-/// Cuts a graph by PT-Scotch, with one thread a rank, always alike. Every rank has to call it.
+/// Cuts a graph by PT-Scotch, with one thread per rank; deterministic. Every rank has to call it.
 ///
-/// @param graph     as of `partitioned`
+/// @param graph     as in `partitioned`
 /// @param parts     ≥ 2
-/// @param weights   as of `partitioned`
+/// @param weights   as in `partitioned`
 /// @param strategy  `quality` takes up to twice as long as `speed`
 /// @param part_of   receives the part of each own vertex
-/// @return whether it did; the same on all ranks
-/// @throws SharedError where a rank has no memory, and where this program was linked with a PT-Scotch of
-///         other than 64-bit numbers
+/// @return whether PT-Scotch succeeded; the same on all ranks
+/// @throws SharedError if a rank lacks memory, and if this program was linked with a PT-Scotch whose numbers
+///         do not have 64 bits
 [[nodiscard]] bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph, Index parts,
                                    const std::vector<GlobalIndex>& weights, ScotchStrategy strategy,
                                    std::vector<Index>& part_of);

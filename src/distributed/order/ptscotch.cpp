@@ -14,7 +14,7 @@
 static_assert(std::is_same_v<SCOTCH_Num, meshorder::distributed::GlobalIndex>,
               "the header is that of a PT-Scotch with other than 64-bit numbers");
 
-// What PT-Scotch calls to report a fault. Its functions return one, too, which is reported once for all
+// Silences PT-Scotch's own error messages. Its functions also return errors, which are reported once for all
 // ranks.
 extern "C" {
 void SCOTCH_errorProg(const char* /*program*/) {}
@@ -25,9 +25,9 @@ void SCOTCH_errorPrintW(const char* /*format*/, ...) {}
 namespace meshorder::distributed {
 namespace {
 
-constexpr double kImbalance = 0.02;  // of the largest part, relative to the mean
+constexpr double kImbalance = 0.02;  // largest part / mean part − 1
 
-/// Ends one of PT-Scotch's objects when it leaves its scope.
+/// Deleter that frees the contents of one of PT-Scotch's objects.
 template <class Object, void (*Exit)(Object*)>
 struct End {
   void operator()(Object* object) const noexcept { Exit(object); }
@@ -36,15 +36,15 @@ using Context = std::unique_ptr<SCOTCH_Context, End<SCOTCH_Context, SCOTCH_conte
 using Strategy = std::unique_ptr<SCOTCH_Strat, End<SCOTCH_Strat, SCOTCH_stratExit>>;
 using Graph = std::unique_ptr<SCOTCH_Dgraph, End<SCOTCH_Dgraph, SCOTCH_dgraphExit>>;
 
-/// Fills `context` with what makes results repeatable: random numbers of its own, which go on from nothing
-/// that was cut before, and one thread. Returns whether that is possible.
+/// Sets up `context` for repeatable results: a fixed seed, its own random numbers, which do not depend on
+/// earlier calls, and one thread. Returns whether that succeeded.
 bool make_deterministic(SCOTCH_Context* context) {
   return SCOTCH_contextOptionSetNum(context, SCOTCH_OPTIONNUMDETERMINISTIC, 1) == 0 &&
          SCOTCH_contextOptionSetNum(context, SCOTCH_OPTIONNUMRANDOMFIXEDSEED, 1) == 0 &&
          SCOTCH_contextRandomClone(context) == 0 && SCOTCH_contextThreadSpawn(context, 1, nullptr) == 0;
 }
 
-/// Whether all ranks have done something.
+/// Returns whether `done` is true on all ranks.
 bool all(const Communicator& communicator, bool done) {
   const std::vector<char> others = communicator.gathered(static_cast<char>(done ? 1 : 0));
   return std::find(others.begin(), others.end(), 0) == others.end();
@@ -61,10 +61,10 @@ bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph,
                                              "-bit numbers; build it with that of scotch-int64");
   }
   const SCOTCH_Num vertices = graph.rows.size();
-  // PT-Scotch takes arrays that it may change, and does not change these
+  // PT-Scotch takes non-const arrays, but does not change these
   std::vector<SCOTCH_Num> starts;
   std::vector<SCOTCH_Num> result;
-  std::vector<SCOTCH_Num> loads;  // an array on all ranks, also on those without vertices, or on none
+  std::vector<SCOTCH_Num> loads;  // weights; must be passed on all ranks, even without vertices, or on none
   const bool is_weighted = communicator.sum(static_cast<GlobalIndex>(weights.size())) > 0;
   communicator.together([&] {
     starts.assign(graph.rows.offsets.begin(), graph.rows.offsets.end());

@@ -13,10 +13,10 @@
 namespace meshorder::distributed {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // of a vector that costs nothing beside the rest
-constexpr int kPasses = 20;          // over all parts; a few are enough until none moves
+constexpr double kTolerance = 1e-6;  // of the Fiedler vector, which is cheap for a graph this small
+constexpr int kPasses = 20;          // most passes over all parts; usually a few suffice until none moves
 
-/// Edges between two parts, of which `a` is the smaller number.
+/// The number of edges between two parts, a < b.
 struct Border {
   Index a;
   Index b;
@@ -25,7 +25,7 @@ struct Border {
 
 bool have_same_parts(const Border& x, const Border& y) { return x.a == y.a && x.b == y.b; }
 
-/// Adds up the edges of borders between the same parts.
+/// Returns the borders with those between the same parts added up.
 std::vector<Border> merged(std::vector<Border> borders) {
   std::sort(borders.begin(), borders.end(),
             [](const Border& x, const Border& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
@@ -40,9 +40,9 @@ std::vector<Border> merged(std::vector<Border> borders) {
   return result;
 }
 
-/// The borders that this rank sees from the part of smaller number: each edge of the graph is seen once.
+/// Returns the borders on this rank. An edge is counted once, at its vertex in the part of smaller number.
 std::vector<Border> borders_of(const GlobalGraph& graph, const HaloValues<Index>& part_of) {
-  constexpr std::size_t kEnough = 1 << 20;  // borders before they are merged
+  constexpr std::size_t kEnough = 1 << 20;  // number of borders from which on they are merged
   std::vector<Border> borders;
   std::size_t limit = kEnough;
   for (Offset row = 0; row < graph.rows.size(); ++row) {
@@ -58,7 +58,7 @@ std::vector<Border> borders_of(const GlobalGraph& graph, const HaloValues<Index>
   return merged(std::move(borders));
 }
 
-/// The graph of the parts, each of them one place long: they are about equally large.
+/// Returns the quotient graph. Each part has length 1, since parts are about equally large.
 ArrangementGraph graph_of(const std::vector<Border>& borders, Index parts) {
   ArrangementGraph graph;
   graph.offsets.assign(static_cast<std::size_t>(parts) + 1, 0);
@@ -83,8 +83,8 @@ ArrangementGraph graph_of(const std::vector<Border>& borders, Index parts) {
   return graph;
 }
 
-/// The places of the parts along the Fiedler vector of their graph, each then moved to where the edges
-/// between parts are shortest; parts that touch no other come last.
+/// Returns the places of the parts: first along the Fiedler vector of their graph, then improved by moving
+/// single parts as long as that shortens edges. Parts without borders come last.
 std::vector<Index> places_of(const std::vector<Border>& borders, Index parts) {
   const ArrangementGraph graph = graph_of(borders, parts);
   const std::vector<double> weights(graph.weights.begin(), graph.weights.end());

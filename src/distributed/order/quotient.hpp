@@ -9,15 +9,15 @@
 
 namespace meshorder::distributed {
 
-/// The graph of the parts: two are joined by as many edges as there are between them.
+/// An order of the parts of a graph.
 struct Quotient {
-  std::vector<Index> place_of;  ///< of each part in the order of the parts
-  GlobalIndex cut = 0;          ///< edges between parts
+  std::vector<Index> place_of;  ///< place of each part in the order
+  GlobalIndex cut = 0;          ///< number of edges between parts
 };
 
-/// Numbers the parts by the Fiedler vector of their graph, and moves single parts as long as that brings
-/// those with many edges between them nearer. Every rank has to call it; the root solves. O(entries + edges
-/// between parts · log).
+/// Orders the parts by the Fiedler vector of their quotient graph, whose weights are the numbers of edges
+/// between parts, and then moves single parts while that brings strongly joined parts nearer. Every rank has
+/// to call it; the root solves. O(entries + cut · log cut).
 ///
 /// @param part_of  part of each vertex in the graph's rows, 0 … parts − 1
 /// @throws as `Communicator::exchange`

@@ -13,11 +13,11 @@ namespace meshorder::distributed {
 /// Parts that are ranges of one order of the whole graph.
 struct RangesOfOrder {
   PartOrders parts;
-  double imbalance = 1;  ///< the largest part relative to the mean
-  GlobalIndex cut = 0;   ///< edges between parts
+  double imbalance = 1;  ///< size of the largest part / mean size
+  GlobalIndex cut = 0;   ///< number of edges between parts
 };
 
-/// Cuts an order into ranges of equal size, but for one vertex. Every rank has to call it. O(entries).
+/// Cuts an order into ranges whose sizes differ by at most one. Every rank has to call it. O(entries).
 ///
 /// @param halo         of the graph's ghosts
 /// @param new_numbers  of the vertices in the graph's rows

@@ -16,7 +16,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// One sweep over the own rows, which takes the values of others as they are.
+/// Makes one Gauss–Seidel sweep over the own rows; the values of other ranks stay fixed.
 template <int M, class RightSide>
 void sweep_forwards(const SharedLevel& level, RightSide b, VectorBlock<M>& x) {
   const Index rows = level.laplacian.size();
@@ -28,7 +28,7 @@ void sweep_backwards(const SharedLevel& level, RightSide b, VectorBlock<M>& x) {
   for (Index v = level.laplacian.size(); v-- > 0;) relax_row<M>(level.laplacian, v, b, x);
 }
 
-/// Sweeps forwards and backwards on L x = 0: damps what prolongation left rough.
+/// Sweeps forwards and backwards on L x = 0, which smooths x after prolongation.
 void smooth(const SharedLevel& level, StartBlock& x) {
   const auto zero = [](Index, int) { return 0.0; };
   fetch_others(level, x);
@@ -56,7 +56,7 @@ bool SharedHierarchy::coarsen(GlobalIndex few) {
   fine.aggregation = aggregation;
   const Layout layout = Layout::of_sizes(communicator_.gathered(GlobalIndex{aggregation.count()}));
 
-  // the aggregates of other ranks
+  // fetch the aggregates of the neighbours on other ranks
   const std::vector<GlobalIndex> names = communicator_.together([&] {
     std::vector<GlobalIndex> result;
     result.reserve(fine.rows());
@@ -90,7 +90,7 @@ bool SharedHierarchy::coarsen(GlobalIndex few) {
   return false;
 }
 
-/// Gives a level to the root.
+/// Gathers a level at the root, which builds the coarser levels from it.
 void SharedHierarchy::gather(const SharedLevel& coarse) {
   gathered_ = coarse.layout;
   communicator_.at_root([&] {
@@ -124,7 +124,7 @@ void SharedHierarchy::gather(const SharedLevel& coarse) {
   });
 }
 
-/// The correction that the root finds for the level that it has alone.
+/// Returns the correction of the level that the root has gathered, for the own rows.
 template <int M>
 VectorBlock<M> SharedHierarchy::corrected_at_root(const VectorBlock<M>& own) {
   VectorBlock<M> b = communicator_.gathered_at_root(own);
@@ -137,7 +137,7 @@ VectorBlock<M> SharedHierarchy::corrected_at_root(const VectorBlock<M>& own) {
   return communicator_.scattered_from_root(x, gathered_.starts());
 }
 
-/// The correction of a level after the finest one, for the own rows.
+/// Returns the correction of a level other than the finest one, by two cycles, for the own rows.
 template <int M>
 VectorBlock<M> SharedHierarchy::coarse_correction(std::size_t level, VectorBlock<M> b) {
   if (level == levels_.size()) return corrected_at_root<M>(b);

@@ -16,34 +16,34 @@
 
 namespace meshorder::distributed {
 
-/// The rows that a rank has of the Laplacian of a graph, and the way to the next coarser one.
+/// A rank's rows of the Laplacian of a graph, and their aggregation to the next coarser level.
 struct SharedLevel {
   Layout layout;                    ///< of the rows' numbers
   Halo halo;                        ///< of the neighbours on other ranks
-  Laplacian laplacian;              ///< own rows; columns are these and after them the halo's numbers
-  std::vector<double> masses = {};  ///< as of `Level`, of the own rows
+  Laplacian laplacian;              ///< own rows; columns: first the own rows, then the halo's numbers
+  std::vector<double> masses = {};  ///< of the own rows, as in `Level`
   Aggregation aggregation = {};     ///< of the own rows
 
   [[nodiscard]] std::size_t rows() const { return static_cast<std::size_t>(laplacian.size()); }
 };
 
-/// A `Hierarchy` of one connected graph that the ranks share. Each rank aggregates its own rows, until all
-/// ranks together have few coarse vertices: those go to the root, which coarsens on by itself. Every rank has
-/// to call all functions.
+/// A `Hierarchy` of one connected, distributed graph. Each rank aggregates its own rows until all ranks
+/// together have few coarse vertices. Those go to the root, which builds the coarser levels alone. Every rank
+/// has to call all functions.
 ///
-/// The cycle is the serial one but for Gauss–Seidel, which takes the values of other ranks as they were
-/// before the sweep. That lowers the energy of the error for any graph, as 2 D − L of it is no less than 0.
+/// The cycle is the serial one, except that Gauss–Seidel uses the values that other ranks had before the
+/// sweep. This still lowers the energy of the error, since 2 D − L is positive semi-definite for any graph.
 class SharedHierarchy {
  public:
-  /// @param few  coarse vertices of all ranks together that go to the root; more do only where coarsening
-  ///             leaves most of them
-  /// @throws SharedError where a rank has no memory
+  /// @param few  most coarse vertices of all ranks together that go to the root; more go there only if a step
+  ///             of coarsening leaves most of them
+  /// @throws SharedError if a rank lacks memory
   SharedHierarchy(const Communicator& communicator, SharedLevel finest, GlobalIndex few);
 
   [[nodiscard]] const std::vector<SharedLevel>& levels() const noexcept { return levels_; }
   [[nodiscard]] const Communicator& communicator() const noexcept { return communicator_; }
 
-  /// As `Hierarchy::cycle`; x receives the own rows.
+  /// As `Hierarchy::cycle`, for the own rows.
   template <int M>
   void cycle(std::size_t level, const VectorBlock<M>& b, VectorBlock<M>& x);
 
@@ -60,11 +60,11 @@ class SharedHierarchy {
 
   const Communicator& communicator_;
   std::vector<SharedLevel> levels_;
-  Layout gathered_;                  ///< of the vertices of the first level that the root has alone
-  std::optional<Hierarchy> bottom_;  ///< at the root
+  Layout gathered_;                  ///< of the vertices of the finest level that only the root has
+  std::optional<Hierarchy> bottom_;  ///< the levels that only the root has
 };
 
-/// Adds to the own rows of x those of others that they touch. Every rank has to call it.
+/// Truncates x to the own rows and appends the values of the level's halo. Every rank has to call it.
 template <class Row>
 void fetch_others(const SharedLevel& level, std::vector<Row>& x) {
   x.resize(level.rows());

@@ -12,10 +12,10 @@
 
 namespace meshorder::distributed {
 
-/// The eigenproblem on a level of a hierarchy that the ranks share. Sums are added up in rank order.
+/// The eigenproblem on a level of a distributed hierarchy. Sums are added up in rank order.
 class SharedProblem : public EigenProblem {
  public:
-  /// @param hierarchy  outlives this object
+  /// @param hierarchy  must outlive this object
   SharedProblem(SharedHierarchy& hierarchy, std::size_t level)
       : EigenProblem(hierarchy.levels()[level].laplacian.size(), hierarchy.levels()[level].masses),
         hierarchy_(hierarchy),
@@ -65,7 +65,7 @@ class SharedProblem : public EigenProblem {
 
   SharedHierarchy& hierarchy_;
   std::size_t level_;
-  mutable VectorBlock<1> one_;  ///< room for a vector with the entries of others
+  mutable VectorBlock<1> one_;  ///< work space: a vector followed by the halo's entries
   mutable VectorBlock<2> two_;
 };
 

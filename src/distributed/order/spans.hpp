@@ -7,16 +7,16 @@
 
 namespace meshorder::distributed {
 
-/// As `EdgeSpan`, of numbers beyond 32 bits.
+/// As `EdgeSpan`, for 64-bit numbers.
 struct GlobalEdgeSpan {
   double mean = 0;
   GlobalIndex max = 0;
   double mean_log2 = 0;
 };
 
-/// Spans of a graph's edges in an order. Every rank has to call it. O(entries).
+/// Returns the spans of a graph's edges in an order. Every rank has to call it. O(entries).
 ///
-/// @param place_of  of each vertex
+/// @param place_of  place of each vertex in the order
 /// @throws as `Communicator::exchange`
 [[nodiscard]] GlobalEdgeSpan edge_span(const Communicator& communicator, const GlobalGraph& graph,
                                        const HaloValues<GlobalIndex>& place_of);
