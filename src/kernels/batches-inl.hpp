@@ -102,7 +102,7 @@ HWY_INLINE void add_batch(const ElasticPass& pass, Offset batch, const Index* ta
 /// Computes all batches or those of a share; boundary batches of a share have their own targets and blocks.
 template <int D, class Lanes, class Law, class Tangent>
 HWY_INLINE void add_batches(const ElasticPass& pass) {
-  constexpr Offset kAhead = 8;  // batches from a prefetch to its use
+  constexpr Offset kAhead = 8;  // batches between the one in use and the one prefetched
   const OwnedBatches* const share = pass.share;
   const Offset count = share ? static_cast<Offset>(share->batches.size()) : pass.rest.batches();
   for (Offset i = 0; i < count; ++i) {

@@ -52,7 +52,7 @@ struct RowSums {
     q[2] = s[6] + s[7] + last;
   }
 
-  /// q = r − the sums
+  /// Sets q to r minus the sums.
   HWY_INLINE void subtract_from(const double* r, double* q) const {
     alignas(64) double s[8];
     for (int i = 0; i < kVectors; ++i) hn::Store(sums[i], Tag(), s + i * kLanes);
@@ -101,7 +101,7 @@ struct RowSums {
     q[2] = s[6] + s[7] + s[8];
   }
 
-  /// q = r − the sums
+  /// Sets q to r minus the sums.
   HWY_INLINE void subtract_from(const double* r, double* q) const {
     q[0] = r[0] - (s[0] + s[1] + s[2]);
     q[1] = r[1] - (s[3] + s[4] + s[5]);

@@ -35,7 +35,7 @@ struct HalfBlockCsrOf {
 
 using HalfBlockCsr = HalfBlockCsrOf<double>;
 
-/// Returns the bounds of the slabs of a matrix: 16 slabs, or one per row if it has fewer rows. O(16 log n).
+/// Returns the bounds of the slabs of a matrix: 16 slabs, or one per row if it has fewer rows. O(log n).
 std::vector<Index> slabs_of(const BlockCsr& matrix);
 
 /// Returns the share of a matrix's blocks whose row and column are in different slabs, 0 … 1; of these both
@@ -48,15 +48,15 @@ double share_between_slabs(const BlockCsr& matrix);
 template <class Value>
 void store_half(const BlockCsr& matrix, HalfBlockCsrOf<Value>& result);
 
-/// y = A x for the rows of one slab; returns their part of xᵀA x. x and y hold 3 doubles for each vertex and
-/// must not overlap; all of x is read. All sums are in double, even if the matrix is in float. Each product
-/// with a block is rounded as with the full matrix; sums have another order. Throws InvalidArgument if a
-/// size differs. O(blocks).
+/// Computes y = A x for the rows of one slab; returns their part of xᵀA x. x and y hold 3 doubles for each
+/// vertex and must not overlap; all of x is read. All sums are in double, even if the matrix is in float.
+/// Products with a block are rounded as with the full matrix, but added in another sequence. Throws
+/// InvalidArgument if a size differs. O(blocks).
 template <class Value>
 double multiply_slab_dot(const HalfBlockCsrOf<Value>& matrix, std::span<const double> x, std::span<double> y,
                          Index slab);
 
-/// y = A x on all threads, with the same bits for any number of them.
+/// Computes y = A x on all threads, with the same bits for any number of them.
 template <class Value>
 void multiply(const HalfBlockCsrOf<Value>& matrix, std::span<const double> x, std::span<double> y);
 

@@ -95,7 +95,7 @@ struct RotationTerms {
 /// The largest eigenvalue of N is λ = tr S, the largest root of λ⁴ − 2aλ² − 8dλ + a² − 4b with a = ‖F‖²,
 /// b = ‖cof F‖² and d = det F. Halley's method decreases to it from √3 ‖F‖ without overshooting, since all
 /// roots are real. R = ∂λ/∂F then follows by differentiating the polynomial:
-/// R = ((λ² + a) F + 2λ cof F − 2 F FᵀF) / (λ³ − aλ − 2d), whose denominator is Π (σᵢ + σⱼ), i < j.
+/// R = ((λ² + a) F + 2λ cof F − 2 F FᵀF) / (λ³ − aλ − 2d), whose denominator is 2 Π (σᵢ + σⱼ), i < j.
 template <class Lanes>
 HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3], typename Lanes::Value (&r)[3][3],
                                      RotationTerms<Lanes>& terms) {

@@ -181,7 +181,7 @@ class AccessStream {
     }
   }
 
-  /// Element forces, or assembly.
+  /// Visits the accesses of element forces or of assembly.
   template <class Visitor>
   void visit_elements(Visitor& visitor) const {
     const Offset corners = simplices_.dimension + 1;
@@ -261,7 +261,7 @@ class AccessStream {
     }
   }
 
-  static constexpr Offset kAhead = 12;  ///< elements
+  static constexpr Offset kAhead = 12;  ///< elements between a prefetch by this simulation and its use
 
   Kernel kernel_;
   GraphRef graph_;  ///< for a product with a matrix: its rows; the pattern need not be symmetric

@@ -53,8 +53,8 @@ struct AdviceOptions {
 };
 
 /// Computes the candidates, and the times of the kernels in each of them and in the mesh's own order. `graph`
-/// is the vertex graph of `mesh`. Throws InvalidArgument if neither prediction nor measurement is asked for,
-/// if the machine's costs are for another number of threads, if tuned kernels or a race lack what they need.
+/// is the vertex graph of `mesh`. Throws InvalidArgument if nothing is to be predicted or measured, for a
+/// race without predictions, and for predictions of tuned kernels or by costs of another number of threads.
 Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options = {});
 
 /// Returns the factor up to which two times of a kernel count as equal. It is 1.05 for measured times and for
@@ -63,8 +63,8 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
 /// repeated timings of one problem on this machine differ by more.
 double same_time(const Advice& advice, Kernel kernel);
 
-/// Returns the best candidate for each kernel, in the order of kKernels. A mesh without cells gains nothing:
-/// its entries are empty.
+/// Returns the best candidate for each kernel, in the order of kKernels. If there is nothing to gain, as for
+/// a mesh without cells, the factor is 1.
 std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice);
 
 /// Returns the speedup of a candidate over the mesh's own order: of the kernel of the workload, or the
@@ -92,8 +92,8 @@ std::string command_for(const Candidate& candidate, bool is_matrix = false);
 /// gain.
 std::optional<std::size_t> advised(const Advice& advice);
 
-/// Returns how many times faster the kernel that loses most runs in that order; nothing where nothing is to
-/// be gained, and where by how much is in doubt.
+/// Returns the speedup, in the order of `advised`, of the kernel that can gain most; nothing if there is
+/// nothing to gain or the size of the gain is in doubt.
 std::optional<double> certain_gain(const Advice& advice);
 
 /// Returns the place in kKernels of the kernel that a workload is about; kKernels.size() if it is about all

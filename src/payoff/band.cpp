@@ -43,8 +43,8 @@ std::vector<std::array<Index, 4>> stencils(int dimension, Index k) {
   }
 }
 
-/// Simplices of that dimension, each within k + 1 consecutive vertices, spread evenly over the first
-/// `corners` ones.
+/// Returns `count` simplices of that dimension, each within k + 1 consecutive vertices, spread evenly over
+/// the first `corners` vertices.
 Cells streamed_simplices(int dimension, Offset count, Index corners, Index k) {
   constexpr std::array kShape{Shape::vertex, Shape::line, Shape::triangle, Shape::tetrahedron};
   Cells cells;

@@ -80,7 +80,7 @@ Explanation explained(std::span<const ProbePoint> points, const std::vector<std:
   return result;
 }
 
-/// Whether missing each level costs enough, relative to the levels before it, to be a cache of its own
+/// Returns whether missing each level costs enough, relative to the levels before it, to be a cache
 /// and not an effect of page tables or a disturbance.
 bool has_steps(const Explanation& explanation) {
   constexpr double kLeastStep = 0.25;
@@ -92,7 +92,7 @@ bool has_steps(const Explanation& explanation) {
   return true;
 }
 
-/// Returns the best explanation by that many levels; one of infinite error where none has steps.
+/// Returns the best explanation by that many levels; its error is infinite if none passes has_steps.
 Explanation best_explanation(std::span<const ProbePoint> points, std::size_t levels) {
   Explanation best;
   std::vector<std::size_t> sizes(levels);
@@ -147,7 +147,7 @@ std::vector<ProbePoint> probe_latencies(std::span<const Offset> sizes, int round
       }
       const auto lines = static_cast<std::uint64_t>(std::max<Offset>(1, sizes[i] / kLineBytes));
       arithmetic = std::min(arithmetic, seconds_of<false>(buffer.data(), lines, kSteps, 1));
-      // the caches must hold lines of this part of the buffer
+      // fill the caches with lines of this part of the buffer
       fill_caches(std::span(buffer).first(static_cast<std::size_t>(lines) * kLineWords), kMostFilled);
       const double seconds =
           seconds_of<true>(buffer.data(), lines, kSteps, 2 * static_cast<std::uint64_t>(round) + 1);

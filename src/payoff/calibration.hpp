@@ -68,7 +68,7 @@ Calibration measure_machine(const CalibrationEffort& effort = {});
 struct TimedReuse {
   RunReuse reuse;
   double milliseconds = 0;
-  int lattice = 0;  ///< number of the lattice; runs of one lattice were timed in the same rounds
+  int lattice = 0;  ///< number of the lattice; runs of one lattice share a part of their error
 };
 
 /// The costs of a kernel that fit its runs best.
@@ -100,7 +100,7 @@ FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, co
 /// Multiplies all costs by the one factor that fits the runs best.
 FittedCosts scale_costs(std::span<const TimedReuse> runs, const KernelCosts& costs, const Caches& caches);
 
-/// What a quick check of a machine finds changed since its calibration.
+/// The result of a quick check of a machine against its calibration.
 struct Recheck {
   std::array<double, kKernels.size()> ratio{};  ///< time now / predicted time, by kernel
   std::string moved;                            ///< why the calibration should be done anew, or empty

@@ -35,7 +35,7 @@ KernelCosts as_costs(const CostRow& row);
 /// Costs of the kernels on a machine.
 struct CostModel {
   std::string machine;  ///< in words, "2-core Zen 5, 48 KB L1, 1 MB L2, 32 MB L3"
-  Caches caches;        ///< what the costs belong to
+  Caches caches;        ///< to which the costs belong
   /// Number of threads that share each run (KernelBench). With several, the costs predict the elapsed time
   /// from the accesses that one thread would make; the prediction is then multiplied by `times_computed`.
   int threads = 1;

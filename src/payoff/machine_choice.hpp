@@ -34,8 +34,8 @@ struct MachineChoice {
   std::array<double, kKernels.size()> floor{};
   std::string fault;  ///< see StoredCalibration
 
-  /// Returns what times are predicted for: "this machine, calibrated 2026-11-22" (perhaps "this machine on 2
-  /// threads", and "while it was busy"), "zen3" or "this machine's caches at the costs of zen3".
+  /// Returns the name of the target of predictions: "this machine, calibrated 2026-11-22" (or "this machine
+  /// on 2 threads", "while it was busy"), "zen3" or "this machine's caches at the costs of zen3".
   [[nodiscard]] std::string in_words() const;
 };
 
@@ -49,10 +49,10 @@ struct MachineChoice {
 /// on another number of threads than there are now. Without a calibration the costs are of one thread.
 MachineChoice choose_machine(std::string_view name = {}, bool all_threads = false);
 
-/// Returns what choose_machine returns for "this" where this machine is not calibrated.
+/// Returns the result of choose_machine("this") on a machine that is not calibrated.
 MachineChoice not_calibrated();
 
-/// Returns what choose_machine returns for a calibrated machine.
+/// Returns the result of choose_machine("this") on a machine with this calibration.
 MachineChoice chosen(const Calibration& calibration, bool all_threads = false);
 
 }  // namespace meshorder

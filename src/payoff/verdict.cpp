@@ -42,7 +42,7 @@ std::size_t worst(const std::array<KernelAdvice, kKernels.size()>& kernels) {
   return static_cast<std::size_t>(std::max_element(kernels.begin(), kernels.end(), less) - kernels.begin());
 }
 
-/// Returns a clause on the kernels that run slower in a candidate: "; it makes the springs kernel 1.2×
+/// Returns a clause on the kernels that a candidate slows down: "; it makes the springs kernel 1.2× slower".
 std::string losses(const Advice& advice, std::size_t candidate) {
   std::string words;
   const KernelMilliseconds& ordered = advice.candidates[candidate].costs.best_known();
@@ -80,7 +80,7 @@ std::string runs_to_pay(const Advice& advice, const Candidate& candidate, std::s
                      kKernelTitles[kernel]);
 }
 
-/// Returns "the springs kernel runs", "the kernels run", or of a matrix "products are".
+/// Returns "the springs kernel runs" or "the kernels run"; for a matrix "products are".
 std::string runs_of(const Advice& advice, Workload workload) {
   if (advice.is_matrix) return "products are";
   const std::size_t k = kernel_of(workload);

@@ -60,7 +60,7 @@ std::vector<std::byte> spelt_out(const std::vector<std::byte>& places,
   return result;
 }
 
-/// Returns the values of an array that a piece has and its mesh does not, or of connectivity or offsets.
+/// Returns the values of an array that a piece does not take from the mesh.
 std::vector<std::byte> own_values(const PieceArray& array, const PieceContents& piece,
                                   const std::vector<GlobalIndex>& part_starts) {
   const std::vector<GlobalIndex>& numbers = array.is_on_vertices() ? piece.vertices : piece.cells;

@@ -202,8 +202,8 @@ std::vector<double> solve(const Communicator& communicator, SharedLevel finest, 
   return values;
 }
 
-/// Changes the sign of a vector if the entry of the vertex that decides it (see Sign) is positive.
-///
+/// Changes the sign of a vector so that the entry that decides it (see Sign) is
+/// not positive.
 void give_sign(const Communicator& communicator, const std::vector<GlobalIndex>& in_file,
                std::vector<double>& values) {
   double largest = 0;

@@ -14,7 +14,7 @@ namespace meshorder::distributed {
 /// Problem sizes up to which one rank works alone.
 struct SharedSizes {
   GlobalIndex alone = 50'000;  ///< most vertices of a component on several ranks that one rank solves
-  GlobalIndex few = 50'000;    ///< most coarse vertices that go to the root; more if a rank has more
+  GlobalIndex few = 50'000;    ///< most coarse vertices that go to the root; n / ranks if that is more
 };
 
 /// The order by the Fiedler vector of a distributed graph.

@@ -22,9 +22,9 @@ struct GlobalGraph {
 /// @param layout    of the vertices
 /// @param elements  vertices of the elements on this rank; each element is on one rank. Freed early, because
 ///                  they take as much memory as the graph
-/// @throws SharedError if a rank's elements have more than 2,147,483,647 different vertices,
-///
-///         or a rank lacks memory
+/// @throws SharedError if the elements at a rank's own vertices have more than
+///         2,147,483,647 different vertices,
+///         or if a rank lacks memory
 [[nodiscard]] GlobalGraph global_graph(const Communicator& communicator, const Layout& layout, Rows elements);
 
 /// Returns the neighbours of own vertices that other ranks own, ascending, each once.

@@ -41,7 +41,7 @@ struct DistributedReport {
   double imbalance = 1;  ///< largest part / mean part, in the balanced quantity: vertices or cells
   GlobalIndex edges = 0;
   GlobalIndex cut = 0;                   ///< number of edges between parts
-  GlobalIndex ghosts = 0;                ///< number of neighbours outside a part, summed over the parts
+  GlobalIndex ghosts = 0;                ///< number of neighbours outside each part, summed over the parts
   std::vector<GlobalIndex> part_starts;  ///< first new number of each part, then the end of the last part
   std::vector<GlobalIndex> interfaces;   ///< for each part, the number of vertices on its interface
   std::vector<FiedlerComponent>

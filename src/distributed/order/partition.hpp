@@ -14,7 +14,7 @@
 
 namespace meshorder::distributed {
 
-/// How a graph is cut into parts.
+/// Methods of cutting a graph into parts.
 enum class Partitioner : std::uint8_t {
   ptscotch,  ///< few edges between parts; the same parts for the same graph on the same number of ranks
   hilbert,   ///< ranges of equal weight of the graph's own order; the same parts on any number of ranks

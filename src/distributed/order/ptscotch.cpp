@@ -27,7 +27,7 @@ namespace {
 
 constexpr double kImbalance = 0.02;  // largest part / mean part − 1
 
-/// Deleter that frees the contents of one of PT-Scotch's objects.
+/// Deleter that frees the contents of a PT-Scotch object.
 template <class Object, void (*Exit)(Object*)>
 struct End {
   void operator()(Object* object) const noexcept { Exit(object); }
