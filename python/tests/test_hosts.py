@@ -316,6 +316,7 @@ def test_refusals_of_scikit_fem():
         meshio.Mesh(np.full((4, 3), np.nan), [("tetra", [[0, 1, 2, 3]])]),
         meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 4]])]),
         meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])], point_sets={"s": [7]}),
+        meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])], point_sets={"s": [-(2**32)]}),
         meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])], cell_sets={"s": [[-1]]}),
         meshorder.Permutation.identity(3),
     ],

@@ -346,10 +346,16 @@ Permutation permutation_of(const IndexView& new_to_old, int base) {
   return Permutation::from_new_to_old(std::move(map));
 }
 
+/// Returns a number that counts from `base` as one that counts from 0; the smallest one of all stays, and is
+/// out of every range.
+std::int64_t from_zero_on(std::int64_t number, int base) {
+  return number == std::numeric_limits<std::int64_t>::min() ? number : number - base;
+}
+
 /// Returns the previous places, numbered from 0; -1 for new vertices.
 std::vector<std::int64_t> places_before(const IndexView& previous, int base) {
   std::vector<std::int64_t> places(previous.size());
-  for (std::size_t v = 0; v < places.size(); ++v) places[v] = previous[v] - base;
+  for (std::size_t v = 0; v < places.size(); ++v) places[v] = from_zero_on(previous[v], base);
   return places;
 }
 
@@ -446,7 +452,7 @@ mo_status mo_order_edges(const mo_in* ends, const mo_in* vertex_new_to_old, int3
     const Permutation vertices =
         permutation_of(integers(vertex_new_to_old, "vertex_new_to_old"), base_of(base));
     std::vector<std::int64_t> from_zero(given.size());
-    for (std::size_t k = 0; k < given.size(); ++k) from_zero[k] = given[k] - base;
+    for (std::size_t k = 0; k < given.size(); ++k) from_zero[k] = from_zero_on(given[k], base);
     write(order_edges(from_zero, vertices).new_to_old(), base, new_to_old, "new_to_old");
   });
 }

@@ -426,7 +426,7 @@ Calibration measure_machine(const CalibrationEffort& effort) {
   constexpr Offset kRowBytes = 180;
   const auto rows_in = [&](Offset bytes, double part) {
     const auto rows = static_cast<Offset>(part * static_cast<double>(bytes) / kRowBytes);
-    return static_cast<Index>(std::clamp<Offset>(rows, 300, largest / 4));
+    return static_cast<Index>(std::clamp<Offset>(rows, 300, std::max<Offset>(300, largest / 4)));
   };
   const std::array<Offset, 4> sizes = sizes_that_cost(model.caches);
   /// A lattice, and its share of the time. Some are also timed on all threads; the smallest is not, because
