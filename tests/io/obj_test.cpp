@@ -44,6 +44,17 @@ l 1 2 3
 p 6
 )";
 
+TEST(Obj, TakesSmoothingGroupsWithZerosBefore) {
+  const TemporaryFolder folder;
+  const auto groups = [&](const std::string& line) {
+    std::string text(kHouseWithRoof);
+    text.replace(text.find("s 1\n"), 4, line);
+    return find_array(read_mesh(folder.file("a.obj", text)), "smoothing", Association::cells)->values;
+  };
+  EXPECT_EQ(groups("s 01\n"), groups("s 1\n"));
+  EXPECT_EQ(groups("s 0010\n"), Values(std::vector<std::int32_t>{10, 0, 0, 0, 0, 0, 0}));
+}
+
 TEST(Obj, ReadsCellsWithTheirStates) {
   const TemporaryFolder folder;
   const Mesh mesh = read_mesh(folder.file("a.obj", kHouseWithRoof));

@@ -297,6 +297,7 @@ TEST(OpenFoam, KnowsADictionaryThatTakesItsOrder) {
   EXPECT_TRUE(takes("writeMaps true; // mine\nmanualCoeffs\n{\n dataFile cellOrder;\n}\nmethod manual;"));
   EXPECT_TRUE(
       takes("method manual; manualCoeffs { dataFile \"cellOrder\"; } blockCoeffs { method scotch; }"));
+  EXPECT_TRUE(takes("note \"\"; method manual; manualCoeffs { dataFile \"cellOrder\"; }"));
   EXPECT_FALSE(takes("manualCoeffs { dataFile \"cellOrder\"; } blockCoeffs { method manual; }"));
   EXPECT_FALSE(takes("method CuthillMcKee; manualCoeffs { dataFile \"cellOrder\"; }"));
   EXPECT_FALSE(takes("method manual; manualCoeffs { dataFile \"cellMap\"; }"));

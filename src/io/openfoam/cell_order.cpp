@@ -49,7 +49,8 @@ bool takes_cell_order(const FilePath& dictionary) {
   bool is_manual = false;
   bool names_order = false;
   int depth = 0;  // of braces: only outside of them is `method` that of the dictionary
-  for (std::string key = ";"; !key.empty();) {
+  std::string key = ";";
+  while (!file.at_end()) {
     const std::string value(file.token());
     if (key == "{") ++depth;
     if (key == "}") --depth;

@@ -102,6 +102,11 @@ std::string_view FoamFile::token() {
   return rest.substr(0, size);
 }
 
+bool FoamFile::at_end() {
+  skip_blanks();
+  return position_ >= text_.size();
+}
+
 // ---- the header
 
 void FoamFile::read_header() {

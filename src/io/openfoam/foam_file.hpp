@@ -54,6 +54,8 @@ class FoamFile {
 
   /// Takes the next word, quoted text or punctuation mark; empty at the end of the file. Quotes are left out.
   std::string_view token();
+  /// Returns whether nothing but blanks and comments is left.
+  [[nodiscard]] bool at_end();
 
  private:
   void read_header();

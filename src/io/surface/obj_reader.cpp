@@ -316,6 +316,7 @@ class Reader {
     if (i == kSmoothing) {
       if (text == "off" || text.empty()) text = "0";
       if (text == "on") text = "1";
+      text.erase(0, std::min(text.find_first_not_of('0'), text.size() - 1));
       if (!as_integer(text))
         scanner_.fail("the smoothing group '" + text.substr(0, 40) + "'", "a number or off");
     }
