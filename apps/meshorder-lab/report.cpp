@@ -291,7 +291,7 @@ void compare_studies(Console& console, const ReportArguments& arguments) {
     files.push_back(file.string());
     console.print("wrote {}", file.string());
   }
-  console.print_json({{"page", page.string()}, {"files", files}, {"savings", savings_json(a, b)}});
+  console.print_json({{"page", output.path().string()}, {"files", files}, {"savings", savings_json(a, b)}});
 }
 
 void run(const ReportArguments& arguments) {

@@ -34,7 +34,8 @@ def test_the_order_that_was_advised_has_nothing_to_gain(command, scrambled):
     assert "nothing to gain" in command.ok("info", "ordered.node").stdout.splitlines()[0]
 
 
-def test_a_tiny_mesh_is_judged_without_running_anything(command, tmp_path):
+def test_a_tiny_mesh_is_judged_without_running_anything(command, tmp_path, monkeypatch):
+    monkeypatch.delenv("MESHORDER_MACHINE", raising=False)
     meshes.write_tetgen(tmp_path)
     done = command.run("info", "mesh.node")
     assert done.stdout.splitlines()[0] == \
