@@ -141,7 +141,7 @@ TEST(Med, NamesThatAreTooLongAreCutWithANote) {
 
 TEST(Med, CutsNamesBetweenCharacters) {
   Mesh mesh = tagged();
-  mesh.data.push_back({"stress",
+  mesh.data.push_back({"traction",
                        Association::vertices,
                        2,
                        std::vector<double>(2 * mesh.points.size(), 1),
@@ -150,8 +150,9 @@ TEST(Med, CutsNamesBetweenCharacters) {
   Notes notes;
   const Mesh read = through_med(mesh, &notes);
   EXPECT_THAT(notes, Contains(HasSubstr("are cut to 16 characters")));
-  EXPECT_THAT(find_array(read, "stress", Association::vertices)->component_names,
-              ElementsAre("contrainte maxi", "y"));
+  const DataArray* const traction = find_array(read, "traction", Association::vertices);
+  ASSERT_NE(traction, nullptr);
+  EXPECT_THAT(traction->component_names, ElementsAre("contrainte maxi", "y"));
 }
 
 TEST(Med, IsToldByItsBytesAndReadFromMemory) {

@@ -49,7 +49,8 @@ TEST(Obj, TakesSmoothingGroupsWithZerosBefore) {
   const auto groups = [&](const std::string& line) {
     std::string text(kHouseWithRoof);
     text.replace(text.find("s 1\n"), 4, line);
-    return find_array(read_mesh(folder.file("a.obj", text)), "smoothing", Association::cells)->values;
+    const Mesh mesh = read_mesh(folder.file("a.obj", text));
+    return find_array(mesh, "smoothing", Association::cells)->values;
   };
   EXPECT_EQ(groups("s 01\n"), groups("s 1\n"));
   EXPECT_EQ(groups("s 0010\n"), Values(std::vector<std::int32_t>{10, 0, 0, 0, 0, 0, 0}));

@@ -244,8 +244,8 @@ TEST(Vega, KeepsIdsOfElementsThatCountFromAnotherNumberThanVertices) {
 
 TEST(Vega, ARegionNamesItsSetAsTheSetIsWritten) {
   const TemporaryFolder folder;
-  Mesh mesh = read_mesh(folder.file(
-      "a.veg", with(with(kTwoTets, "*SET upper", "*SET up # per"), "upper, hard", "up # per, hard")));
+  Mesh mesh = read_mesh(folder.file("a.veg", with(with(std::string(kTwoTets), "*SET upper", "*SET up # per"),
+                                                  "upper, hard", "up # per, hard")));
   Notes notes;
   write_mesh(mesh, folder.path() / "b.veg", &notes);
   const Mesh back = read_mesh(folder.path() / "b.veg");
