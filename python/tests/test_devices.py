@@ -75,11 +75,16 @@ class OfCupy(OfStrict):
         ndarray.__module__ = "cupy"
         self.ndarray = ndarray
         cupy = types.ModuleType("cupy")
-        cupy.asarray, cupy.iinfo, cupy.int32 = asarray, np.iinfo, np.int32
-        cupy.take = lambda a, indices, axis: ndarray(np.take(a.values, indices.values, axis=axis))
-        cupy.reshape = lambda a, shape: ndarray(a.values.reshape(shape))
-        cupy.astype = lambda a, dtype: ndarray(a.values.astype(dtype))
-        cupy.min, cupy.max = (lambda a: a.values.min()), (lambda a: a.values.max())
+        vars(cupy).update(
+            asarray=asarray,
+            iinfo=np.iinfo,
+            int32=np.int32,
+            take=lambda a, indices, axis: ndarray(np.take(a.values, indices.values, axis=axis)),
+            reshape=lambda a, shape: ndarray(a.values.reshape(shape)),
+            astype=lambda a, dtype: ndarray(a.values.astype(dtype)),
+            min=lambda a: a.values.min(),
+            max=lambda a: a.values.max(),
+        )
         monkeypatch.setitem(sys.modules, "cupy", cupy)
 
     def made(self, values):

@@ -46,7 +46,7 @@ class Standard:
 
     def _beside(self, values: Any, numbers: NDArray[np.int32]) -> Any:
         """Returns numbers on the device of an array."""
-        device = values.device
+        device: Any = getattr(values, "device", None)  # none while JAX traces
         if hasattr(device, "__enter__"):  # a device of CuPy, which has to be made current
             with device:
                 return self._functions.asarray(numbers)
@@ -62,7 +62,8 @@ class Warp:
 
         indices: list[Any] = [None] * values.ndim
         indices[axis] = warp.array(new_to_old, dtype=warp.int32, device=values.device)
-        return warp.indexedarray(values, indices).contiguous()
+        view: Any = warp.indexedarray(values, indices)
+        return view.contiguous()
 
     def renumbered(self, numbers: Any, old_to_new: NDArray[np.int32]) -> Any:
         """Returns the new number of each old one in an array, through the host; raises as `Standard` does."""

@@ -212,7 +212,7 @@ class Permutation:
             from .hosts import torch  # which imports this module
 
             if out is not None:
-                raise InvalidArgument("renumber: a tensor has no out; it is for arrays")
+                raise InvalidArgument("renumber: a tensor has no out; it is for arrays of NumPy")
             return torch.renumbered(numbers, self)
         library = _devices.library_of(numbers)
         if library is not None:
@@ -281,7 +281,7 @@ class Permutation:
 
 def _refuse(axis: int, out: Any, what: str) -> None:
     if axis != 0 or out is not None:
-        raise InvalidArgument(f"move: {what} has no {'axis' if axis != 0 else 'out'}; it is for arrays")
+        raise InvalidArgument(f"move: {what} has no {'axis' if axis != 0 else 'out'}; it is for arrays of NumPy")
 
 
 def _takes(out: Any, array: NDArray[Any]) -> bool:
