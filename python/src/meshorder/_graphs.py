@@ -110,8 +110,8 @@ class Order:
 class Fiedler:
     """The Fiedler vectors of all connected components of a graph of n vertices.
 
-    values: n numbers: the Fiedler vector of each component at its vertices, with norm 1 and sum 0 within the
-        component; 0 for vertices without neighbours. Signs are the same on every run.
+    Attributes:
+        values: n numbers: the Fiedler vector of each component at its vertices, with norm 1 and sum 0 within the
             component; 0 for vertices without neighbours. Signs are the same on every run.
         component_of: n numbers, the position of each vertex's component in ``components``.
         components: the eigensolver's report for each component, the largest component first.
