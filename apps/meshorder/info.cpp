@@ -79,7 +79,7 @@ bool is_predicted(const InfoArguments& arguments, SimplicesRef simplices) {
 /// another.
 bool fits_in_first_cache(const CsrGraph& graph) {
   constexpr Offset kBytesPerEntry = sizeof(double) + sizeof(Index);
-  const Offset entries = graph.neighbours.size() + graph.size();
+  const Offset entries = std::ssize(graph.neighbours) + graph.size();
   return entries * kBytesPerEntry + Offset{2} * graph.size() * sizeof(double) <= kFirstCache;
 }
 

@@ -46,10 +46,10 @@ void ask_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::si
 
 void clear_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__)
-  constexpr Offset kAtOnce = Offset{8 * kLargePage};
+  constexpr std::size_t kAtOnce = 8 * kLargePage;
   if (bytes < 2 * kAtOnce) return;
   const Pages pages(memory, bytes);
-  for_each_range(static_cast<Offset>(pages.bytes), kAtOnce, [&](Offset begin, Offset end) {
+  for_each_range(static_cast<Offset>(pages.bytes), Offset{kAtOnce}, [&](Offset begin, Offset end) {
     (void)::madvise(pages.begin + begin, static_cast<std::size_t>(end - begin), MADV_POPULATE_WRITE);
   });
 #endif

@@ -107,7 +107,7 @@ def test_the_first_prediction_calibrates_and_the_next_one_does_not(here):
 def test_kernels_are_judged_as_all_threads_share_them(here, measured):
     threads = ["--threads", str(measured["threads"])]
     on = "" if measured["threads"] == 1 else f" on {measured['threads']} threads"
-    assert here.json("info", "mesh.node", *threads)["verdict"]["threads"] == 1
+    assert here.json("info", "mesh.node", "--measure", *threads)["verdict"]["threads"] == 1
     for words in ["info", "mesh.node", "--predict"], ["info", "mesh.node", "--measure"], ["order", "mesh.node", "-o", "out.node", "--predict"]:
         result = here.json(*words, "--all-threads", *threads)
         verdict = result["verdict"] if words[0] == "info" else result["race"]

@@ -43,7 +43,10 @@ class VegaWriter {
     choose_sections();
     note_losses();
     for (const Section& section : sections_) {
-      if (section.kind == Kind::set) names_.push_back(name_of(set_of(section)));
+      if (section.kind != Kind::set) continue;
+      const EntitySet& set = set_of(section);
+      names_.push_back(name_of(set));
+      written_names_.try_emplace(set.name, names_.back());
     }
     for (const Section& section : sections_) write_section(section);
     if (native_) out_.write(native_->closing_comments);
@@ -239,14 +242,9 @@ class VegaWriter {
   }
 
   /// Returns the name under which the set of that name is written.
-  [[nodiscard]] std::string written_name(const std::string& of_set) const {
-    std::size_t k = 0;
-    for (const Section& section : sections_) {
-      if (section.kind != Kind::set) continue;
-      if (set_of(section).name == of_set) return names_[k];
-      ++k;
-    }
-    return of_set;  // all elements
+  [[nodiscard]] const std::string& written_name(const std::string& of_set) const {
+    const auto found = written_names_.find(of_set);
+    return found == written_names_.end() ? of_set : found->second;  // no set: all elements
   }
 
   /// Returns a name that a line of Vega can hold.
@@ -279,6 +277,7 @@ class VegaWriter {
   DistinctNames set_names_;
   std::vector<std::string> names_;  ///< of the sets, in the order of their sections
   std::size_t sets_written_ = 0;
+  std::map<std::string, std::string> written_names_;  ///< of the first set of each name
 };
 
 std::string vega_conflict(const Mesh& mesh) {
