@@ -47,7 +47,8 @@ void ask_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::si
 void clear_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__)
   constexpr std::size_t kAtOnce = 8 * kLargePage;
-  if (bytes < 2 * kAtOnce) return;
+  // one thread had better clear each page when it fills it, while the page is in the cache
+  if (bytes < 2 * kAtOnce || thread_count() < 2) return;
   const Pages pages(memory, bytes);
   for_each_range(static_cast<Offset>(pages.bytes), Offset{kAtOnce}, [&](Offset begin, Offset end) {
     (void)::madvise(pages.begin + begin, static_cast<std::size_t>(end - begin), MADV_POPULATE_WRITE);
