@@ -73,13 +73,17 @@ def halved(image):
     return image[:2 * height, :2 * width].reshape(height, 2, width, 2, 3).mean(axis=(1, 3))
 
 
-def row(name, maker, path, seconds):
+def row(name, maker, path, ordered, seconds):
     """A row of the table: how many times as fast the kernels run in `auto`'s order as in the file's, and what it costs."""
+    made = json.loads(meshorder("order", path, "-o", ordered, "--json"))
+    cells = [f"{name}, {maker}", f"{made['vertices']['count']:,}"]
+    if made["vertices"]["kept"] and made["cells"]["kept"]:
+        return f"| {' | '.join([*cells, *['–' for _ in KERNELS], 'stays as it is'])} |"
     found = json.loads(meshorder("compare", path, "--methods", "auto", "--budget", seconds, "--json"))
-    _, ordered = found["methods"]
-    factors = [f"{ordered['kernels'][kernel]['speedup']:.2f}" for kernel in KERNELS]
-    taken = f"`{ordered['taken']['vertices']}`, {1000 * ordered['seconds']:.0f} ms"
-    return f"| {' | '.join([name + ', ' + maker, format(found['vertices'], ','), *factors, taken])} |"
+    _, taken = found["methods"]
+    factors = [f"{taken['kernels'][kernel]['speedup']:.2f}" for kernel in KERNELS]
+    methods = f"`{made['vertices']['method']}/{made['cells']['method']}`, {1000 * taken['seconds']:.0f} ms"
+    return f"| {' | '.join([*cells, *factors, methods])} |"
 
 
 def main():
@@ -91,10 +95,10 @@ def main():
         path, ordered = folder / f"{name}.vtu", folder / f"{name}-ordered.vtu"
         if not path.exists():
             make(path)
-        meshorder("order", path, "-o", ordered)
+        line = row(name, maker, path, ordered, sys.argv[2] if len(sys.argv) > 2 else 30)
         panels = cropped([draw_orders.panel(path), draw_orders.panel(ordered)])
         write_png(HERE / f"gallery-{name}.png", halved(numpy.concatenate(panels, axis=1)))
-        print(row(name, maker, path, sys.argv[2] if len(sys.argv) > 2 else 30))
+        print(line)
 
 
 if __name__ == "__main__":
