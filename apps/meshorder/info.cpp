@@ -294,9 +294,8 @@ void print_findings(const Console& console, const InfoArguments& arguments, cons
       !found.has_elements ? "nothing to compute on: it has no elements"
       : fits_in_first_cache(found.graph)
           ? "nothing to gain: its data fit in a processor's first cache, in any order"
-          : "too large to be judged unasked; --measure runs the kernels, and --cache this predicts cache "
-            "misses "
-            "and times";
+          : "too large to be judged unasked; --measure runs the kernels, and "
+            "--cache this predicts cache misses and times";
   console.print("{}: {}", arguments.input, advice ? to_string(*advice) : without_advice);
   if (advice) print_next(console, *advice, arguments.input);
   console.print("\n{:<12} {}", "format", found.format);

@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/run_scope.hpp"
+
 #include <algorithm>
 #include <cstddef>
 
@@ -27,8 +29,13 @@ void reserve_large(Container& container, std::size_t size) {
 template <class Container>
 void resize_large(Container& container, std::size_t size) {
   reserve_large(container, size);
+  constexpr std::size_t kStep = (std::size_t{1} << 25) / sizeof(*container.data());
   if (const std::size_t old = container.size(); size > old)
     clear_pages(container.data() + old, (size - old) * sizeof(*container.data()));
+  while (size > container.size() && size - container.size() > kStep) {
+    poll();
+    container.resize(container.size() + kStep);
+  }
   container.resize(size);
 }
 

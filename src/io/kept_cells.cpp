@@ -25,8 +25,8 @@ struct TypeCount {
   int vertices;
   Index count;
 
-  [[nodiscard]] bool is_type_of(const Mesh& mesh, Index cell) const {
-    return mesh.cells.shapes[cell] == shape && mesh.cells.vertex_count(cell) == vertices;
+  [[nodiscard]] bool is(Shape other, int other_vertices) const {
+    return shape == other && vertices == other_vertices;
   }
 };
 
@@ -36,11 +36,9 @@ struct TypeCounts {
   std::size_t last = 0;  ///< of the types: neighbours are mostly of one
 
   void add(Shape shape, int vertices, Index count) {
-    const auto is_it = [&](const TypeCount& type) {
-      return type.shape == shape && type.vertices == vertices;
-    };
-    if (types.empty() || !is_it(types[last])) {
-      const auto found = std::find_if(types.begin(), types.end(), is_it);
+    if (types.empty() || !types[last].is(shape, vertices)) {
+      const auto found = std::find_if(types.begin(), types.end(),
+                                      [&](const TypeCount& type) { return type.is(shape, vertices); });
       last = static_cast<std::size_t>(found - types.begin());
       if (found == types.end()) types.push_back({shape, vertices, 0});
     }
@@ -91,8 +89,9 @@ std::vector<Index> cells_but(const Mesh& mesh, const std::vector<TypeCount>& lef
   std::vector<Index> kept;
   kept.reserve(mesh.cells.shapes.size());
   for (Index c = 0; c < mesh.cell_count(); ++c) {
-    if (std::none_of(left_out.begin(), left_out.end(),
-                     [&](const TypeCount& type) { return type.is_type_of(mesh, c); })) {
+    if (std::none_of(left_out.begin(), left_out.end(), [&](const TypeCount& type) {
+          return type.is(mesh.cells.shapes[c], mesh.cells.vertex_count(c));
+        })) {
       kept.push_back(c);
     }
   }

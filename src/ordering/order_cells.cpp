@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -24,17 +23,12 @@ bool is_one_class(std::span<const Index> classes) {
 
 bool has_one_slot_class(const CellArrays& cells) {
   if (cells.block_starts.size() > 1) return false;
-  constexpr std::size_t kShapesAtMost = 256;
-  std::array<bool, kShapesAtMost> occurs{};
-  for (const Shape shape : cells.shapes) occurs[static_cast<std::uint8_t>(shape)] = true;
-  int found = -1;
-  for (int shape = 0; shape < kShapes; ++shape) {
-    if (!occurs[shape]) continue;
-    const int of_shape = dimension(static_cast<Shape>(shape));
-    if (found >= 0 && of_shape != found) return false;
-    found = of_shape;
-  }
-  return true;
+  std::array<int, kShapes> dimensions{};
+  for (int shape = 0; shape < kShapes; ++shape) dimensions[shape] = dimension(static_cast<Shape>(shape));
+  return std::all_of(cells.shapes.begin(), cells.shapes.end(), [&](Shape shape) {
+    return dimensions[static_cast<std::size_t>(shape)] ==
+           dimensions[static_cast<std::size_t>(cells.shapes.front())];
+  });
 }
 
 std::vector<Index> slot_classes(const CellArrays& cells) {

@@ -153,6 +153,44 @@ void expect_same_arrays(vtkUnstructuredGrid* grid, const Mesh& mesh) {
 
 }  // namespace
 
+TEST(Vtu, TheFirstPieceThatIsNotEmptyDecides) {
+  const TemporaryFolder folder;
+  const auto file = [](const char* version, const std::string& piece) {
+    return std::string("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"") + version +
+           "\" byte_order=\"LittleEndian\"><UnstructuredGrid><FieldData><DataArray type=\"Float64\" "
+           "Name=\"time\" "
+           "NumberOfTuples=\"1\" format=\"ascii\">0.5</DataArray></FieldData>" +
+           piece + "</UnstructuredGrid></VTKFile>\n";
+  };
+  std::string points;
+  std::string corners;
+  for (int v = 0; v < 20; ++v) {
+    points += std::to_string(v) + " 0 " + std::to_string(v * v) + " ";
+    corners += std::to_string(v) + " ";
+  }
+  const auto array = [](const char* type, const std::string& attributes, const std::string& values) {
+    return std::string("<DataArray type=\"") + type + "\" " + attributes + " format=\"ascii\">" + values +
+           "</DataArray>";
+  };
+  const std::string whole = "<Piece NumberOfPoints=\"20\" NumberOfCells=\"1\"><Points>" +
+                            array("Float64", "NumberOfComponents=\"3\"", points) + "</Points><Cells>" +
+                            array("Int64", "Name=\"connectivity\"", corners) +
+                            array("Int64", "Name=\"offsets\"", "20") +
+                            array("UInt8", "Name=\"types\"", "25") + "</Cells></Piece>";
+  (void)folder.file("empty.vtu", file("0.1", "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"/>"));
+  for (const char* const version : {"0.1", "2.2"}) {
+    const Mesh expected = read_mesh(folder.file("whole.vtu", file(version, whole)));
+    const Mesh found = read_mesh(folder.file(
+        "a.pvtu",
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\" "
+        "byte_order=\"LittleEndian\">"
+        "<PUnstructuredGrid GhostLevel=\"0\"><Piece Source=\"empty.vtu\"/><Piece Source=\"whole.vtu\"/>"
+        "</PUnstructuredGrid></VTKFile>\n"));
+    EXPECT_EQ(found.cells, expected.cells) << version;
+    EXPECT_EQ(found.format_metadata->contents(), expected.format_metadata->contents()) << "each field once";
+  }
+}
+
 TEST(Vtu, ReadsPointsCellsAndAllArrays) {
   const TemporaryFolder folder;
   Notes notes;

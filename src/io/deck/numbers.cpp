@@ -37,7 +37,7 @@ std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::in
   const auto width = static_cast<std::uint64_t>(step);
   const std::uint64_t steps = distance(to) / width;
   const auto count = static_cast<std::uint64_t>(items.size());
-  claim_memory(std::min(steps, count) * sizeof(Index), "a range of numbers");
+  claim_memory((steps < count ? steps + 1 : count) * sizeof(Index), "a range of numbers");
   if (steps < count) {
     for (std::uint64_t k = 0; k <= steps; ++k) {
       const auto number = static_cast<std::int64_t>(static_cast<std::uint64_t>(from) + k * width);

@@ -45,8 +45,7 @@ class VegaWriter {
     for (const Section& section : sections_) {
       if (section.kind != Kind::set) continue;
       const EntitySet& set = set_of(section);
-      names_.push_back(name_of(set));
-      written_names_.try_emplace(set.name, names_.back());
+      names_.emplace(&set, name_of(set));
     }
     for (const Section& section : sections_) write_section(section);
     if (native_) out_.write(native_->closing_comments);
@@ -243,8 +242,8 @@ class VegaWriter {
 
   /// Returns the name under which the set of that name is written.
   [[nodiscard]] const std::string& written_name(const std::string& of_set) const {
-    const auto found = written_names_.find(of_set);
-    return found == written_names_.end() ? of_set : found->second;  // no set: all elements
+    const auto found = names_.find(parts_.set(of_set, Association::cells));
+    return found == names_.end() ? of_set : found->second;  // no set: all elements
   }
 
   /// Returns a name that a line of Vega can hold.
@@ -258,7 +257,7 @@ class VegaWriter {
 
   void write_set(const EntitySet& set) {
     constexpr std::size_t kPerLine = 8;
-    out_.print("*SET {}\n", names_[sets_written_++]);
+    out_.print("*SET {}\n", names_.at(&set));
     for (std::size_t i = 0; i < set.members.size(); ++i) {
       const bool last = i + 1 == set.members.size();
       const bool full = (i + 1) % kPerLine == 0;
@@ -275,9 +274,7 @@ class VegaWriter {
   std::vector<Section> sections_;
   std::vector<EntitySet> label_sets_;
   DistinctNames set_names_;
-  std::vector<std::string> names_;  ///< of the sets, in the order of their sections
-  std::size_t sets_written_ = 0;
-  std::map<std::string, std::string> written_names_;  ///< of the first set of each name
+  std::map<const EntitySet*, std::string> names_;  ///< under which sets are written
 };
 
 std::string vega_conflict(const Mesh& mesh) {
