@@ -47,19 +47,20 @@ double rotate_floats(const float* matrices, Index count) { return rotate<ManyFlo
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include <hwy/targets.h>
+
+#include "kernels/simd_dispatch.hpp"
 
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(rotate_doubles);
-HWY_EXPORT(rotate_floats);
+MESHORDER_SIMD_VERSIONS(rotate_doubles);
+MESHORDER_SIMD_VERSIONS(rotate_floats);
 
 double rotate_chosen(const double* matrices, Index count) {
-  return HWY_DYNAMIC_DISPATCH(rotate_doubles)(matrices, count);
+  return MESHORDER_SIMD(rotate_doubles)(matrices, count);
 }
 double rotate_chosen(const float* matrices, Index count) {
-  return HWY_DYNAMIC_DISPATCH(rotate_floats)(matrices, count);
+  return MESHORDER_SIMD(rotate_floats)(matrices, count);
 }
 
 constexpr Index kMatrices = 1024;  // in the nearest cache
@@ -91,13 +92,11 @@ std::vector<RotationTime> rotation_times() {
   }
   const mo::AlignedVector<float> floats(doubles.begin(), doubles.end());
   std::vector<RotationTime> times;
-  for (std::int64_t targets = hwy::SupportedTargets() & HWY_TARGETS; targets != 0; targets &= targets - 1) {
-    hwy::SetSupportedTargetsForTest(targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  for (std::int64_t targets = simd_targets() & HWY_TARGETS; targets != 0; targets &= targets - 1) {
+    limit_simd_targets(targets);
     times.push_back({hwy::TargetName(targets & -targets), mo::best_ns(doubles), mo::best_ns(floats)});
   }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  limit_simd_targets(0);
   return times;
 }
 #endif

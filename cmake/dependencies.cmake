@@ -26,6 +26,27 @@ macro(meshorder_require library debian)
   endif()
 endmacro()
 
+# meshorder_load_when_needed(<library>): adds a library of a file format to loaded_libraries, as its headers and the
+# definition MESHORDER_<LIBRARY>_FILE, the name that the system's loader finds it by. An archive, or a library that tells
+# no such name, is added to file_libraries and linked.
+function(meshorder_load_when_needed library)
+  string(TOUPPER ${library} name)
+  get_target_property(path ${library}::${library} IMPORTED_LOCATION)
+  set(facts "")
+  if(MESHORDER_LOAD_LIBRARIES AND path AND CMAKE_READELF)
+    execute_process(COMMAND ${CMAKE_READELF} -d ${path} OUTPUT_VARIABLE facts ERROR_QUIET)
+  endif()
+  if(NOT facts MATCHES "SONAME[^[]*\\[([^]]+)\\]")
+    set(file_libraries ${file_libraries} ${library}::${library} PARENT_SCOPE)
+    return()
+  endif()
+  add_library(meshorder_${library} INTERFACE)
+  target_compile_definitions(meshorder_${library} INTERFACE MESHORDER_${name}_FILE="${CMAKE_MATCH_1}")
+  target_include_directories(meshorder_${library} SYSTEM
+                             INTERFACE $<TARGET_PROPERTY:${library}::${library},INTERFACE_INCLUDE_DIRECTORIES>)
+  set(loaded_libraries ${loaded_libraries} meshorder_${library} PARENT_SCOPE)
+endfunction()
+
 if(MESHORDER_SANITIZER STREQUAL "thread")
   # ThreadSanitizer must see how threads wait for each other: headers on std::thread in place of oneTBB's library
   find_package(Threads REQUIRED)
@@ -68,9 +89,15 @@ if("io" IN_LIST components)
   meshorder_switch(ZLIB ZLIB::ZLIB file_libraries)
   meshorder_switch(LZMA LibLZMA::LibLZMA file_libraries)
   meshorder_switch(LZ4 lz4::lz4 file_libraries)
-  meshorder_switch(NETCDF netcdf::netcdf file_libraries)
-  meshorder_switch(HDF5 hdf5::hdf5 file_libraries)
-  meshorder_switch(CGNS cgns::cgns file_libraries)
+  set(loaded_libraries "")  # needed to build only
+  foreach(library netcdf hdf5 cgns)
+    string(TOUPPER ${library} option)
+    set(found "")
+    meshorder_switch(${option} ${library}::${library} found)
+    if(found)
+      meshorder_load_when_needed(${library})
+    endif()
+  endforeach()
   set(MESHORDER_HAS_XDMF OFF)
   if(MESHORDER_HAS_HDF5 AND TARGET pugixml::pugixml)
     set(MESHORDER_HAS_XDMF ON)
@@ -81,6 +108,15 @@ if("io" IN_LIST components)
 endif()
 if("payoff" IN_LIST components)
   meshorder_require(hwy libhwy-dev)                    # SIMD chosen at run time
+  # Its headers alone: its library takes 7 ms whenever a program with it starts. Of the instruction sets, SSSE3 gains
+  # nothing for doubles over SSE4; vectors of unknown length (SVE, RISC-V) cannot be members of structs, as the kernels'
+  # values are.
+  add_library(meshorder_highway INTERFACE)
+  target_compile_definitions(
+    meshorder_highway INTERFACE
+    HWY_DISABLED_TARGETS=\(HWY_SSSE3|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV\))
+  target_include_directories(meshorder_highway SYSTEM
+                             INTERFACE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
 endif()
 if("payoff" IN_LIST components OR MESHORDER_CLI OR MESHORDER_FUZZ OR build_lab)
   meshorder_require(nlohmann_json nlohmann-json3-dev)  # results, calibrations

@@ -30,6 +30,21 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(minor ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(debian_version ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 
+# packages of the libraries that are loaded when a file needs them, which shlibdeps does not see
+set(recommended "")
+foreach(library IN LISTS loaded_libraries)
+  string(REPLACE meshorder_ "" library ${library})
+  get_target_property(path ${library}::${library} IMPORTED_LOCATION)
+  file(REAL_PATH ${path} path)
+  execute_process(COMMAND dpkg -S ${path} OUTPUT_VARIABLE owner ERROR_QUIET)
+  if(owner MATCHES "^([^:]+):")
+    list(APPEND recommended ${CMAKE_MATCH_1})
+  endif()
+endforeach()
+list(JOIN recommended ", " recommended)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS ${recommended})
+set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS ${recommended})
+
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libmeshorder${minor})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_DESCRIPTION

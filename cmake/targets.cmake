@@ -55,10 +55,6 @@ if(UNIX AND NOT APPLE AND NOT sanitizers)
   target_link_options(meshorder_warnings INTERFACE LINKER:--gc-sections)
 endif()
 
-# Instruction sets that Highway does not compile the kernels for. SSSE3 gains nothing for doubles over SSE4; vectors of
-# unknown length (SVE, RISC-V) cannot be members of structs, as the kernels' values are.
-set(MESHORDER_SIMD_TARGETS HWY_DISABLED_TARGETS=\(HWY_SSSE3|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV\))
-
 # what a program says it was made with
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
 string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}} -std=c++20" flags)

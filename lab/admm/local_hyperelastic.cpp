@@ -34,6 +34,9 @@ void log_neo_hookean_floats(const LocalPass<float>& pass) { floats<LogNeoHookean
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
 namespace meshorder {
 
 MESHORDER_EXPORT_LOCAL_PASS(stvk)

@@ -48,8 +48,8 @@ void pass_log_neo_hookean(const LocalPass<float>& pass);
 
 /// Defines both functions pass_<law> by the kernels <law>_doubles and <law>_floats of all instruction sets;
 /// to be used in namespace meshorder where HWY_ONCE.
-#define MESHORDER_EXPORT_LOCAL_PASS(law)                                                        \
-  HWY_EXPORT(law##_doubles);                                                                    \
-  HWY_EXPORT(law##_floats);                                                                     \
-  void pass_##law(const LocalPass<double>& pass) { HWY_DYNAMIC_DISPATCH(law##_doubles)(pass); } \
-  void pass_##law(const LocalPass<float>& pass) { HWY_DYNAMIC_DISPATCH(law##_floats)(pass); }
+#define MESHORDER_EXPORT_LOCAL_PASS(law)                                                  \
+  MESHORDER_SIMD_VERSIONS(law##_doubles);                                                 \
+  MESHORDER_SIMD_VERSIONS(law##_floats);                                                  \
+  void pass_##law(const LocalPass<double>& pass) { MESHORDER_SIMD(law##_doubles)(pass); } \
+  void pass_##law(const LocalPass<float>& pass) { MESHORDER_SIMD(law##_floats)(pass); }

@@ -101,6 +101,9 @@ void springs_floats(const LocalPass<float>& pass) { pass_any<ManyFloatLanes>(pas
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
 namespace meshorder {
 
 MESHORDER_EXPORT_LOCAL_PASS(springs)

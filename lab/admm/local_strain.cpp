@@ -38,6 +38,9 @@ void strain_floats(const LocalPass<float>& pass) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
 namespace meshorder {
 
 MESHORDER_EXPORT_LOCAL_PASS(strain)

@@ -75,6 +75,16 @@ const std::vector<LackingFormat> kLackingFormats{
                                 where, format.name, format.library, format.option));
 }
 
+/// Returns a format whose library is loaded. Throws Unavailable if it cannot be.
+const Format& with_library(const Format& format, const std::string& where) {
+  try {
+    if (format.load_library != nullptr) format.load_library();
+  } catch (const Unavailable& unavailable) {
+    throw Unavailable(where + ": " + unavailable.what());
+  }
+  return format;
+}
+
 std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -235,7 +245,7 @@ const Format& format_of(const std::filesystem::path& path) {
   std::vector<std::string> known;
   for (const Format& format : kFormats) {
     for (const std::string_view candidate : format.extensions) {
-      if (candidate == extension) return format;
+      if (candidate == extension) return with_library(format, path.string());
       known.emplace_back(candidate);
     }
   }
@@ -287,7 +297,7 @@ bool has_numbers(const Format& format) {
 const Format& format_named(std::string_view name) {
   const auto found = std::find_if(kFormats.begin(), kFormats.end(),
                                   [&](const Format& format) { return same_but_for_case(format.name, name); });
-  if (found != kFormats.end()) return *found;
+  if (found != kFormats.end()) return with_library(*found, "the format '" + std::string(name) + "'");
   for (const LackingFormat& format : kLackingFormats) {
     if (same_but_for_case(format.name, name)) throw_lacking(format, "the format '" + std::string(name) + "'");
   }

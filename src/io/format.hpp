@@ -45,6 +45,9 @@ struct Format {
   std::int64_t (*first_number_of)(const Mesh&, Association) = nullptr;
   bool holds_ids = true;          ///< whether files can give vertices and cells any numbers
   std::string_view library = {};  ///< name of the library that parses the files; empty: none, meshorder does
+  /// Loads that library, which must happen before a process gives up its right to open files. Null: it is
+  /// linked, or there is none.
+  void (*load_library)() = nullptr;
 
   /// Returns the name in lower case, as the public functions take it.
   [[nodiscard]] std::string key() const;
@@ -55,7 +58,7 @@ std::span<const Format> all_formats();
 
 /// Returns the format of the extension of `path`; case and a final ".gz" are ignored. Throws InputError,
 /// which suggests or lists known extensions, if the extension is unknown, and Unavailable if this build lacks
-/// the library of the format.
+/// the library of the format or cannot load it.
 const Format& format_of(const std::filesystem::path& path);
 
 /// As `format_of`, for a file to be written. Throws InputError for .pvtu: it lists pieces and is only read.

@@ -180,13 +180,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include "base/parallel.hpp"
 #include "kernels/owned_batches.hpp"
+#include "kernels/simd_dispatch.hpp"
 #include <meshorder/error.hpp>
 
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(half_product_of_doubles);
-HWY_EXPORT(half_product_of_floats);
+MESHORDER_SIMD_VERSIONS(half_product_of_doubles);
+MESHORDER_SIMD_VERSIONS(half_product_of_floats);
 
 constexpr Index kSlabs = 16;
 
@@ -292,9 +293,9 @@ double multiply_slab_dot(const HalfBlockCsrOf<Value>& matrix, std::span<const do
   if (begin == end) return 0.0;
   double* const sums = sums_of_thread(static_cast<std::size_t>(end - begin));
   if constexpr (std::is_same_v<Value, double>) {
-    return HWY_DYNAMIC_DISPATCH(half_product_of_doubles)(matrix, x.data(), sums, y.data(), begin, end);
+    return MESHORDER_SIMD(half_product_of_doubles)(matrix, x.data(), sums, y.data(), begin, end);
   } else {
-    return HWY_DYNAMIC_DISPATCH(half_product_of_floats)(matrix, x.data(), sums, y.data(), begin, end);
+    return MESHORDER_SIMD(half_product_of_floats)(matrix, x.data(), sums, y.data(), begin, end);
   }
 }
 

@@ -72,16 +72,19 @@ void add_one_by_one(const ElasticPass& pass) { add_any<OneLane>(pass); }
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(add);
-HWY_EXPORT(energy);
+MESHORDER_SIMD_VERSIONS(add);
+MESHORDER_SIMD_VERSIONS(energy);
 
 }  // namespace
 
 ElasticKernels MESHORDER_LAW_KERNELS() {
-  return {HWY_DYNAMIC_DISPATCH(add), HWY_STATIC_DISPATCH(add_one_by_one), HWY_DYNAMIC_DISPATCH(energy)};
+  return {MESHORDER_SIMD(add), HWY_STATIC_DISPATCH(add_one_by_one), MESHORDER_SIMD(energy)};
 }
 
 }  // namespace meshorder

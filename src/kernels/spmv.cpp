@@ -75,13 +75,14 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include "base/processor.hpp"
+#include "kernels/simd_dispatch.hpp"
 
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(product_of_doubles);
-HWY_EXPORT(product_of_streamed_doubles);
-HWY_EXPORT(product_of_floats);
+MESHORDER_SIMD_VERSIONS(product_of_doubles);
+MESHORDER_SIMD_VERSIONS(product_of_streamed_doubles);
+MESHORDER_SIMD_VERSIONS(product_of_floats);
 
 /// Returns whether the processor is known to read blocks of doubles faster without prefetches. Zen 4 does,
 /// Zen 3 does not, others were not measured (docs/evidence/benchmarks.md, What the product asks for).
@@ -101,12 +102,11 @@ double multiply_rows_dot(const BlockCsrOf<Value>& matrix, std::span<const double
   }
   if constexpr (std::is_same_v<Value, double>) {
     if (streams_by_itself()) {
-      return HWY_DYNAMIC_DISPATCH(product_of_streamed_doubles)(matrix, x.data(), y.data(), begin_row,
-                                                               end_row);
+      return MESHORDER_SIMD(product_of_streamed_doubles)(matrix, x.data(), y.data(), begin_row, end_row);
     }
-    return HWY_DYNAMIC_DISPATCH(product_of_doubles)(matrix, x.data(), y.data(), begin_row, end_row);
+    return MESHORDER_SIMD(product_of_doubles)(matrix, x.data(), y.data(), begin_row, end_row);
   } else {
-    return HWY_DYNAMIC_DISPATCH(product_of_floats)(matrix, x.data(), y.data(), begin_row, end_row);
+    return MESHORDER_SIMD(product_of_floats)(matrix, x.data(), y.data(), begin_row, end_row);
   }
 }
 

@@ -81,12 +81,15 @@ void add_forces_one_by_one(const Springs& springs, double stiffness, const doubl
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
 #include <cmath>
 
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(add_forces_in_batches);
+MESHORDER_SIMD_VERSIONS(add_forces_in_batches);
 
 double distance(const double* a, const double* b) {
   return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
@@ -128,14 +131,14 @@ double spring_energy(const Springs& springs, double stiffness, std::span<const d
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces) {
   check_same_size(positions, forces, "add_spring_forces");
-  HWY_DYNAMIC_DISPATCH(add_forces_in_batches)
+  MESHORDER_SIMD(add_forces_in_batches)
   (springs, stiffness, positions.data(), forces.data(), nullptr);
 }
 
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces, const OwnedBatches& share) {
   check_room(forces, share, "add_spring_forces");
-  HWY_DYNAMIC_DISPATCH(add_forces_in_batches)
+  MESHORDER_SIMD(add_forces_in_batches)
   (springs, stiffness, positions.data(), forces.data(), &share);
 }
 

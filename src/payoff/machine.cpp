@@ -2,7 +2,7 @@
 #include "payoff/machine.hpp"
 
 #include "base/text.hpp"
-#include "kernels/simd_target.hpp"
+#include "kernels/simd_dispatch.hpp"
 
 #include <sched.h>
 #include <unistd.h>

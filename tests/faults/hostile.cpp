@@ -4,7 +4,7 @@
 // file or a stranger: the first opening of a file does what HOSTILE says, and says on stdout whether that was
 // possible.
 //
-//   HOSTILE=ATTACK      a name in the table of `attacks`
+//   HOSTILE=ATTACK      a name in the table of `attacks`; "be absent": the libraries cannot be loaded
 //   HOSTILE_PATH=PATH   the file that it is about
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -24,6 +24,8 @@
 #include <string>
 
 namespace {
+
+constexpr const char* kVersion = "GLIBC_2.34";  // of dlsym and dlopen
 
 const char* path() {
   const char* const value = std::getenv("HOSTILE_PATH");
@@ -123,23 +125,47 @@ void attack_once() {
   (void)has_attacked;
 }
 
-template <class Function>
-Function* real(const char* name) {
-  return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
+using Opening = std::int64_t(const char* name, unsigned flags, std::int64_t access);
+using ClassicOpening = int(const char* name, int mode, std::size_t* buffer, int* file);
+
+// the libraries' own
+Opening* real_opening = nullptr;
+ClassicOpening* real_classic_opening = nullptr;
+
+std::int64_t open_file(const char* name, unsigned flags, std::int64_t access) {
+  attack_once();
+  return real_opening(name, flags, access);
+}
+
+// files of netCDF-3, which libhdf5 does not see
+int open_classic_file(const char* name, int mode, std::size_t* buffer, int* file) {
+  attack_once();
+  return real_classic_opening(name, mode, buffer, file);
 }
 
 }  // namespace
 
-extern "C" {
-
-std::int64_t H5Fopen(const char* name, unsigned flags, std::int64_t access) {
-  attack_once();
-  return real<std::int64_t(const char*, unsigned, std::int64_t)>("H5Fopen")(name, flags, access);
+/// The command finds the functions of both libraries by their names.
+extern "C" void* dlsym(void* library, const char* name) {
+  static const auto find =
+      reinterpret_cast<void* (*)(void*, const char*)>(::dlvsym(RTLD_NEXT, "dlsym", kVersion));
+  void* const found = find(library, name);
+  if (std::strcmp(name, "H5Fopen") == 0) {
+    real_opening = reinterpret_cast<Opening*>(found);
+    return reinterpret_cast<void*>(open_file);
+  }
+  if (std::strcmp(name, "nc__open") == 0) {
+    real_classic_opening = reinterpret_cast<ClassicOpening*>(found);
+    return reinterpret_cast<void*>(open_classic_file);
+  }
+  return found;
 }
 
-// of files of netCDF-3, which libhdf5 does not see
-int nc__open(const char* name, int mode, std::size_t* buffer, int* file) {
-  attack_once();
-  return real<int(const char*, int, std::size_t*, int*)>("nc__open")(name, mode, buffer, file);
-}
+/// The library cannot be loaded.
+extern "C" void* dlopen(const char* name, int mode) {
+  static const auto load =
+      reinterpret_cast<void* (*)(const char*, int)>(::dlvsym(RTLD_NEXT, "dlopen", kVersion));
+  const char* const wanted = std::getenv("HOSTILE");
+  const bool is_absent = wanted != nullptr && std::strcmp(wanted, "be absent") == 0;
+  return load(is_absent && name != nullptr ? "libabsent.so.1" : name, mode);
 }

@@ -74,6 +74,14 @@ def test_a_crash_is_one_line(extension, tmp_path, how):
     assert interposed.contents(tmp_path) == before
 
 
+def test_a_library_that_is_not_there_is_one_line(extension, tmp_path):
+    before = interposed.contents(tmp_path)
+    for arguments, named in ((["info"], "mesh"), (["order", "-o", f"out.{extension}"], "out")):
+        done = run(tmp_path, *arguments, f"mesh.{extension}", hostile="be absent")
+        one_line(done, f"{named}.{extension}", LIBRARIES[extension], "could not be loaded (libabsent.so.1", "install it")
+    assert interposed.contents(tmp_path) == before
+
+
 def test_a_crash_is_the_users_where_files_are_trusted(med):
     assert run(med, "info", "mesh.med", "--trust", hostile="crash").returncode == -signal.SIGSEGV
 

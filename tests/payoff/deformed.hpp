@@ -4,10 +4,10 @@
 #include "base/random.hpp"
 #include "kernels/material.hpp"
 #include "kernels/positions.hpp"
+#include "kernels/simd_dispatch.hpp"
 #include "kernels/simplices.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
@@ -85,14 +85,12 @@ inline void expect_balanced(std::span<const double> forces, std::span<const doub
 /// Calls `check` with each instruction set that this processor has.
 template <class Check>
 void for_each_target(Check check) {
-  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
+  for (std::int64_t targets = simd_targets(); targets != 0; targets &= targets - 1) {
     // all but the best ones so far; what is left when there is nothing else is the baseline
-    hwy::SetSupportedTargetsForTest(targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    limit_simd_targets(targets);
     check(hwy::TargetName(targets & -targets));
   }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  limit_simd_targets(0);
 }
 
 }  // namespace meshorder::test

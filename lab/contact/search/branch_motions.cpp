@@ -118,13 +118,14 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include "kernels/positions.hpp"
+#include "kernels/simd_dispatch.hpp"
 
 #include <algorithm>
 
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(fit_motion);
+MESHORDER_SIMD_VERSIONS(fit_motion);
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
@@ -195,7 +196,7 @@ void BranchMotions::update(Index branch, std::span<const double> positions, Tetr
   Motion& motion = motions_[branch];
   alignas(64) std::array<double, kPaddedStride> lower{};
   alignas(64) std::array<double, kPaddedStride> upper{};
-  HWY_DYNAMIC_DISPATCH(fit_motion)
+  MESHORDER_SIMD(fit_motion)
   (corners, shapes_[branch], positions.data(), motion, lower.data(), upper.data());
   const Matrix columns = linear_part(motion);
   motion.inverse_norm = norm_bound(inverse(columns));

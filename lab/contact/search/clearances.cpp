@@ -49,6 +49,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include "base/parallel.hpp"
 #include "base/point.hpp"
+#include "kernels/simd_dispatch.hpp"
 #include "lab/contact/search/leaf_planes.hpp"
 
 #include <algorithm>
@@ -58,7 +59,7 @@ HWY_AFTER_NAMESPACE();
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(points_in_doubt);
+MESHORDER_SIMD_VERSIONS(points_in_doubt);
 
 constexpr Index kClustersAtOnce = 8;
 
@@ -139,8 +140,8 @@ std::uint64_t Clearances::in_doubt(Index c, Index branch, const PointCluster& cl
   if (place == known.branches.end() || *place != branch) return cluster.points;
   const float* const clearances =
       known.clearances.data() + PointCluster::kMaxPoints * (place - known.branches.begin());
-  return cluster.points & HWY_DYNAMIC_DISPATCH(points_in_doubt)(cluster, known.rest[0].data(), clearances,
-                                                                motions.motion(branch));
+  return cluster.points &
+         MESHORDER_SIMD(points_in_doubt)(cluster, known.rest[0].data(), clearances, motions.motion(branch));
 }
 
 std::size_t Clearances::bytes() const {

@@ -185,27 +185,30 @@ void clearances_of_task(const TetrahedronLeaves& tetrahedra, const PointCluster&
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(planes_of_leaf);
-HWY_EXPORT(hits_of_task);
-HWY_EXPORT(clearances_of_task);
+MESHORDER_SIMD_VERSIONS(planes_of_leaf);
+MESHORDER_SIMD_VERSIONS(hits_of_task);
+MESHORDER_SIMD_VERSIONS(clearances_of_task);
 
 }  // namespace
 
 void update_planes(TetrahedronLeaves& tetrahedra, Index leaf, std::span<const double> positions) {
-  HWY_DYNAMIC_DISPATCH(planes_of_leaf)(tetrahedra, leaf, positions.data());
+  MESHORDER_SIMD(planes_of_leaf)(tetrahedra, leaf, positions.data());
 }
 
 void lower_clearances(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
                       std::span<const double> positions, std::span<float> clearances) {
-  HWY_DYNAMIC_DISPATCH(clearances_of_task)(tetrahedra, cluster, task, positions.data(), clearances.data());
+  MESHORDER_SIMD(clearances_of_task)(tetrahedra, cluster, task, positions.data(), clearances.data());
 }
 
 void hits_of(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
              std::span<const double> positions, std::vector<LeafHit>& hits) {
-  HWY_DYNAMIC_DISPATCH(hits_of_task)(tetrahedra, cluster, task, positions.data(), hits);
+  MESHORDER_SIMD(hits_of_task)(tetrahedra, cluster, task, positions.data(), hits);
 }
 
 }  // namespace meshorder

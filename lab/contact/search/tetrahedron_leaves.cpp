@@ -156,13 +156,16 @@ void leaves_meeting(const TetrahedronLeaves& tetrahedra, Index branch, const Poi
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(boxes_of_branch);
-HWY_EXPORT(branches_meeting);
-HWY_EXPORT(leaves_meeting);
-HWY_EXPORT(read_points);
+MESHORDER_SIMD_VERSIONS(boxes_of_branch);
+MESHORDER_SIMD_VERSIONS(branches_meeting);
+MESHORDER_SIMD_VERSIONS(leaves_meeting);
+MESHORDER_SIMD_VERSIONS(read_points);
 
 }  // namespace
 
@@ -196,7 +199,7 @@ std::size_t TetrahedronLeaves::bytes() const {
 }
 
 void update_boxes(TetrahedronLeaves& tetrahedra, Index branch, std::span<const double> positions) {
-  HWY_DYNAMIC_DISPATCH(boxes_of_branch)(tetrahedra, branch, positions.data());
+  MESHORDER_SIMD(boxes_of_branch)(tetrahedra, branch, positions.data());
 }
 
 PointCluster::PointCluster(std::span<const Index> some)
@@ -205,17 +208,17 @@ PointCluster::PointCluster(std::span<const Index> some)
 }
 
 void update_points(PointCluster& cluster, std::span<const double> positions) {
-  HWY_DYNAMIC_DISPATCH(read_points)(cluster, positions.data());
+  MESHORDER_SIMD(read_points)(cluster, positions.data());
 }
 
 void branches_at(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster,
                  std::vector<Index>& branches) {
-  HWY_DYNAMIC_DISPATCH(branches_meeting)(tetrahedra, cluster, branches);
+  MESHORDER_SIMD(branches_meeting)(tetrahedra, cluster, branches);
 }
 
 void leaves_at(const TetrahedronLeaves& tetrahedra, Index branch, const PointCluster& cluster,
                std::uint64_t points, std::vector<LeafTask>& tasks) {
-  HWY_DYNAMIC_DISPATCH(leaves_meeting)(tetrahedra, branch, cluster, points, tasks);
+  MESHORDER_SIMD(leaves_meeting)(tetrahedra, branch, cluster, points, tasks);
 }
 
 }  // namespace meshorder

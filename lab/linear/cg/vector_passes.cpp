@@ -105,14 +105,17 @@ void step_lanes(double alpha, double beta, const double* z, double* p, double* x
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
 namespace meshorder::passes {
 namespace {
 
-HWY_EXPORT(dot_lanes);
-HWY_EXPORT(subtract_from_lanes);
-HWY_EXPORT(subtract_lanes);
-HWY_EXPORT(add_lanes);
-HWY_EXPORT(step_lanes);
+MESHORDER_SIMD_VERSIONS(dot_lanes);
+MESHORDER_SIMD_VERSIONS(subtract_from_lanes);
+MESHORDER_SIMD_VERSIONS(subtract_lanes);
+MESHORDER_SIMD_VERSIONS(add_lanes);
+MESHORDER_SIMD_VERSIONS(step_lanes);
 
 Offset entries(Index begin, Index end) { return Offset{3} * (end - begin); }
 
@@ -124,24 +127,24 @@ auto* at(Vector vector, Index vertex) {
 }  // namespace
 
 double dot(std::span<const double> a, std::span<const double> b, Index begin, Index end) {
-  return HWY_DYNAMIC_DISPATCH(dot_lanes)(at(a, begin), at(b, begin), entries(begin, end));
+  return MESHORDER_SIMD(dot_lanes)(at(a, begin), at(b, begin), entries(begin, end));
 }
 
 double subtract_from(std::span<const double> b, std::span<double> y, Index begin, Index end) {
-  return HWY_DYNAMIC_DISPATCH(subtract_from_lanes)(at(b, begin), at(y, begin), entries(begin, end));
+  return MESHORDER_SIMD(subtract_from_lanes)(at(b, begin), at(y, begin), entries(begin, end));
 }
 
 double subtract(double alpha, std::span<const double> q, std::span<double> r, Index begin, Index end) {
-  return HWY_DYNAMIC_DISPATCH(subtract_lanes)(alpha, at(q, begin), at(r, begin), entries(begin, end));
+  return MESHORDER_SIMD(subtract_lanes)(alpha, at(q, begin), at(r, begin), entries(begin, end));
 }
 
 void add(double alpha, std::span<const double> p, std::span<double> x, Index begin, Index end) {
-  HWY_DYNAMIC_DISPATCH(add_lanes)(alpha, at(p, begin), at(x, begin), entries(begin, end));
+  MESHORDER_SIMD(add_lanes)(alpha, at(p, begin), at(x, begin), entries(begin, end));
 }
 
 void step(double alpha, double beta, std::span<const double> z, std::span<double> p, std::span<double> x,
           Index begin, Index end) {
-  HWY_DYNAMIC_DISPATCH(step_lanes)
+  MESHORDER_SIMD(step_lanes)
   (alpha, beta, at(z, begin), at(p, begin), at(x, begin), entries(begin, end));
 }
 

@@ -215,30 +215,33 @@ void backwards_of_floats(const PanelView<float>& view, const PanelRange& range, 
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(forwards_of_doubles);
-HWY_EXPORT(forwards_of_floats);
-HWY_EXPORT(backwards_of_doubles);
-HWY_EXPORT(backwards_of_floats);
+MESHORDER_SIMD_VERSIONS(forwards_of_doubles);
+MESHORDER_SIMD_VERSIONS(forwards_of_floats);
+MESHORDER_SIMD_VERSIONS(backwards_of_doubles);
+MESHORDER_SIMD_VERSIONS(backwards_of_floats);
 
 }  // namespace
 
 void sweep_forwards(const PanelView<double>& view, const PanelRange& range, double* x) {
-  HWY_DYNAMIC_DISPATCH(forwards_of_doubles)(view, range, x);
+  MESHORDER_SIMD(forwards_of_doubles)(view, range, x);
 }
 
 void sweep_forwards(const PanelView<float>& view, const PanelRange& range, float* x) {
-  HWY_DYNAMIC_DISPATCH(forwards_of_floats)(view, range, x);
+  MESHORDER_SIMD(forwards_of_floats)(view, range, x);
 }
 
 void sweep_backwards(const PanelView<double>& view, const PanelRange& range, double* x) {
-  HWY_DYNAMIC_DISPATCH(backwards_of_doubles)(view, range, x);
+  MESHORDER_SIMD(backwards_of_doubles)(view, range, x);
 }
 
 void sweep_backwards(const PanelView<float>& view, const PanelRange& range, float* x) {
-  HWY_DYNAMIC_DISPATCH(backwards_of_floats)(view, range, x);
+  MESHORDER_SIMD(backwards_of_floats)(view, range, x);
 }
 
 }  // namespace meshorder

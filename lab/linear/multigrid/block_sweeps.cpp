@@ -121,6 +121,9 @@ void residual_6(const SweptRows& rows, const float* before, float* residual) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -131,12 +134,12 @@ HWY_AFTER_NAMESPACE();
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(forwards_3);
-HWY_EXPORT(forwards_6);
-HWY_EXPORT(backwards_3);
-HWY_EXPORT(backwards_6);
-HWY_EXPORT(residual_3);
-HWY_EXPORT(residual_6);
+MESHORDER_SIMD_VERSIONS(forwards_3);
+MESHORDER_SIMD_VERSIONS(forwards_6);
+MESHORDER_SIMD_VERSIONS(backwards_3);
+MESHORDER_SIMD_VERSIONS(backwards_6);
+MESHORDER_SIMD_VERSIONS(residual_3);
+MESHORDER_SIMD_VERSIONS(residual_6);
 
 /// Returns whether all neighbours of every row are in its own or an adjacent chunk.
 bool touch_only_the_next(const Laplacian& graph, const RowChunks& chunks) {
@@ -258,8 +261,8 @@ void BlockSweeps<R>::forwards(const AlignedVector<float>& b, AlignedVector<float
     const SweptRows swept{
         offsets_.data(), columns_.data(), values_.data(),          inverse_diagonal_.data(), begin, end,
         b.data(),        x.data(),        given.from_below.data(), given.from_above.data()};
-    if constexpr (R == 3) HWY_DYNAMIC_DISPATCH(forwards_3)(swept);
-    if constexpr (R == 6) HWY_DYNAMIC_DISPATCH(forwards_6)(swept);
+    if constexpr (R == 3) MESHORDER_SIMD(forwards_3)(swept);
+    if constexpr (R == 6) MESHORDER_SIMD(forwards_6)(swept);
   });
   chunks_.for_each([&](Index, Index begin, Index end) {
     const Offset first = Offset{kNodeStride<R>} * begin;
@@ -282,8 +285,8 @@ void BlockSweeps<R>::backwards(const AlignedVector<float>& b, AlignedVector<floa
     const SweptRows swept{
         offsets_.data(), columns_.data(), values_.data(),          inverse_diagonal_.data(), begin, end,
         b.data(),        x.data(),        given.from_below.data(), given.from_above.data()};
-    if constexpr (R == 3) HWY_DYNAMIC_DISPATCH(backwards_3)(swept);
-    if constexpr (R == 6) HWY_DYNAMIC_DISPATCH(backwards_6)(swept);
+    if constexpr (R == 3) MESHORDER_SIMD(backwards_3)(swept);
+    if constexpr (R == 6) MESHORDER_SIMD(backwards_6)(swept);
   });
 }
 
@@ -295,8 +298,8 @@ void BlockSweeps<R>::residual_after_backwards(const AlignedVector<float>& before
     const SweptRows swept{
         offsets_.data(), columns_.data(), values_.data(), inverse_diagonal_.data(), begin, end, x.data(),
         nullptr,         nullptr,         nullptr};
-    if constexpr (R == 3) HWY_DYNAMIC_DISPATCH(residual_3)(swept, before.data(), residual.data());
-    if constexpr (R == 6) HWY_DYNAMIC_DISPATCH(residual_6)(swept, before.data(), residual.data());
+    if constexpr (R == 3) MESHORDER_SIMD(residual_3)(swept, before.data(), residual.data());
+    if constexpr (R == 6) MESHORDER_SIMD(residual_6)(swept, before.data(), residual.data());
   });
 }
 

@@ -64,13 +64,16 @@ void prolong_6(const Prolongation<6>& p, const float* correction, Index begin, I
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(restrict_3);
-HWY_EXPORT(restrict_6);
-HWY_EXPORT(prolong_3);
-HWY_EXPORT(prolong_6);
+MESHORDER_SIMD_VERSIONS(restrict_3);
+MESHORDER_SIMD_VERSIONS(restrict_6);
+MESHORDER_SIMD_VERSIONS(prolong_3);
+MESHORDER_SIMD_VERSIONS(prolong_6);
 
 }  // namespace
 
@@ -81,9 +84,9 @@ void restrict_residual(const MultigridLevel<R>& level, const AlignedVector<float
   const Prolongation<R>& p = level.prolongation;
   for_each_chunk(p.columns_count, kColumns, [&](Index, Index begin, Index end) {
     if constexpr (R == 3) {
-      HWY_DYNAMIC_DISPATCH(restrict_3)(p, level.transposed, residual.data(), begin, end, result.data());
+      MESHORDER_SIMD(restrict_3)(p, level.transposed, residual.data(), begin, end, result.data());
     } else {
-      HWY_DYNAMIC_DISPATCH(restrict_6)(p, level.transposed, residual.data(), begin, end, result.data());
+      MESHORDER_SIMD(restrict_6)(p, level.transposed, residual.data(), begin, end, result.data());
     }
   });
 }
@@ -94,8 +97,8 @@ void add_prolonged(const MultigridLevel<R>& level, const AlignedVector<float>& c
   constexpr Index kRows = 4096;
   const Prolongation<R>& p = level.prolongation;
   for_each_chunk(p.rows(), kRows, [&](Index, Index begin, Index end) {
-    if constexpr (R == 3) HWY_DYNAMIC_DISPATCH(prolong_3)(p, correction.data(), begin, end, x.data());
-    if constexpr (R == 6) HWY_DYNAMIC_DISPATCH(prolong_6)(p, correction.data(), begin, end, x.data());
+    if constexpr (R == 3) MESHORDER_SIMD(prolong_3)(p, correction.data(), begin, end, x.data());
+    if constexpr (R == 6) MESHORDER_SIMD(prolong_6)(p, correction.data(), begin, end, x.data());
   });
 }
 

@@ -80,20 +80,23 @@ void upper(const BlockFactor& factor, double* z, Index begin, Index end) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+
+#include "kernels/simd_dispatch.hpp"
+
 namespace meshorder {
 namespace {
 
-HWY_EXPORT(lower);
-HWY_EXPORT(upper);
+MESHORDER_SIMD_VERSIONS(lower);
+MESHORDER_SIMD_VERSIONS(upper);
 
 }  // namespace
 
 void solve_lower(const BlockFactor& factor, const double* r, double* z, Index begin, Index end) {
-  HWY_DYNAMIC_DISPATCH(lower)(factor, r, z, begin, end);
+  MESHORDER_SIMD(lower)(factor, r, z, begin, end);
 }
 
 void solve_upper(const BlockFactor& factor, double* z, Index begin, Index end) {
-  HWY_DYNAMIC_DISPATCH(upper)(factor, z, begin, end);
+  MESHORDER_SIMD(upper)(factor, z, begin, end);
 }
 
 void solve_diagonal(const BlockFactor& factor, double* z, Index begin, Index end) {

@@ -2,6 +2,7 @@
 #include "io/cgns/tree.hpp"
 
 #include "base/run_scope.hpp"
+#include "io/cgns/cgns_library.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/stream/descriptor.hpp"
 #include "io/stream/output_file.hpp"
@@ -10,7 +11,6 @@
 #include "io/stream/system_fault.hpp"
 #include <meshorder/error.hpp>
 
-#include <cgns_io.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>

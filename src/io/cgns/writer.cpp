@@ -3,6 +3,7 @@
 #include "io/all_formats.hpp"
 #include "io/cell_division.hpp"
 #include "io/cgns/cgns.hpp"
+#include "io/cgns/cgns_library.hpp"
 #include "io/cgns/filler.hpp"
 #include "io/unsupported.hpp"
 
@@ -238,7 +239,8 @@ Format cgns_format() {
           .holds = cgns::holds,
           .places = cgns::places,
           .first_number = 1,
-          .library = "CGNS"};
+          .library = "CGNS",
+          .load_library = cgns::load_library};
 }
 
 }  // namespace meshorder

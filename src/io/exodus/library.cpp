@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/exodus/library.hpp"
 
+#include "io/exodus/netcdf_library.hpp"
 #include <meshorder/error.hpp>
 
-#include <netcdf.h>
 #include <unistd.h>
 
 #ifdef MESHORDER_HAS_HDF5
@@ -47,6 +47,15 @@ void start_library() {
 }
 
 }  // namespace
+
+void load_library() {
+#ifdef MESHORDER_NETCDF_FILE
+  netcdf_library.load();
+#endif
+#ifdef MESHORDER_HAS_HDF5
+  hdf5::load_library();
+#endif
+}
 
 #ifdef MESHORDER_HAS_HDF5
 Library::Library() : lock_(hdf5::enter_library()) {

@@ -7,6 +7,10 @@
 
 namespace meshorder::exodus {
 
+/// Loads netCDF and HDF5, where this is put off until a file needs them. Throws Unavailable if one is not
+/// found.
+void load_library();
+
 /// While an object of this class lives, other threads cannot enter libnetcdf or libhdf5, and no plug-ins are
 /// loaded. The first object starts libnetcdf so that it does not read settings in the current folder or in
 /// HOME (.ncrc, .daprc, .dodsrc) or cloud credentials.

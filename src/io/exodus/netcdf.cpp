@@ -3,12 +3,11 @@
 
 #include "base/memory.hpp"
 #include "io/exact_values.hpp"
+#include "io/exodus/netcdf_library.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/stream/system_fault.hpp"
 
 #include <fmt/format.h>
-#include <netcdf.h>
-#include <netcdf_mem.h>
 
 #include <algorithm>
 #include <array>

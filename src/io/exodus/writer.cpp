@@ -3,6 +3,7 @@
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/exodus/exodus.hpp"
+#include "io/exodus/library.hpp"
 #include "io/exodus/writing.hpp"
 #include "io/names.hpp"
 #include "io/unsupported.hpp"
@@ -497,7 +498,8 @@ Format exodus_format() {
           .conflict = exodus::conflict,
           .places = exodus::places,
           .first_number = 1,
-          .library = "netCDF"};
+          .library = "netCDF",
+          .load_library = exodus::load_library};
 }
 
 }  // namespace meshorder

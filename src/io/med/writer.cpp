@@ -447,7 +447,8 @@ Format med_format() {
           .write = med::write,
           .holds = med::holds,
           .first_number = 1,
-          .library = "HDF5"};
+          .library = "HDF5",
+          .load_library = hdf5::load_library};
 }
 
 }  // namespace meshorder

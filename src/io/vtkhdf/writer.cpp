@@ -231,7 +231,8 @@ Format vtkhdf_format() {
                 return vtk::holds(mesh, shape, vertices) &&
                        !(shape == Shape::polyhedron && vtk::has_polyhedra(mesh));
               },
-          .library = "HDF5"};
+          .library = "HDF5",
+          .load_library = hdf5::load_library};
 }
 
 }  // namespace meshorder

@@ -72,7 +72,8 @@ Format xdmf_format() {
           .holds = xdmf::holds,
           .places = xdmf::places,
           .single_file = false,
-          .library = "HDF5"};
+          .library = "HDF5",
+          .load_library = hdf5::load_library};
 }
 
 }  // namespace meshorder

@@ -1,0 +1,47 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "io/hdf5/library.hpp"
+
+#include <cgns_io.h>
+
+#ifdef MESHORDER_CGNS_FILE
+#include "io/loaded_library.hpp"
+
+namespace meshorder {
+
+inline constinit const LoadedLibrary cgns_library{"the CGNS library", MESHORDER_CGNS_FILE};
+
+#define MESHORDER_CGNS_FUNCTION(name) MESHORDER_LOADED_FUNCTION(cgns_library, name)
+
+MESHORDER_CGNS_FUNCTION(cgio_check_file);
+MESHORDER_CGNS_FUNCTION(cgio_children_ids);
+MESHORDER_CGNS_FUNCTION(cgio_close_file);
+MESHORDER_CGNS_FUNCTION(cgio_error_message);
+MESHORDER_CGNS_FUNCTION(cgio_get_data_type);
+MESHORDER_CGNS_FUNCTION(cgio_get_dimensions);
+MESHORDER_CGNS_FUNCTION(cgio_get_label);
+MESHORDER_CGNS_FUNCTION(cgio_get_name);
+MESHORDER_CGNS_FUNCTION(cgio_get_root_id);
+MESHORDER_CGNS_FUNCTION(cgio_is_link);
+MESHORDER_CGNS_FUNCTION(cgio_new_node);
+MESHORDER_CGNS_FUNCTION(cgio_number_children);
+MESHORDER_CGNS_FUNCTION(cgio_open_file);
+MESHORDER_CGNS_FUNCTION(cgio_read_all_data);
+MESHORDER_CGNS_FUNCTION(cgio_release_id);
+
+}  // namespace meshorder
+#endif
+
+namespace meshorder::cgns {
+
+/// Loads CGNS's library and HDF5, where this is put off until a file needs it. Throws Unavailable if it is
+/// not found.
+inline void load_library() {
+  hdf5::load_library();
+#ifdef MESHORDER_CGNS_FILE
+  cgns_library.load();
+#endif
+}
+
+}  // namespace meshorder::cgns

@@ -1,0 +1,49 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+// The table of a function's versions, one for each instruction set, and the choice among them. Highway's own
+// choice needs its library, which measures the processor's clock for 7 ms whenever a program with it starts.
+
+#include <hwy/highway.h>
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace meshorder {
+
+/// Returns the instruction sets of this processor among those that Highway compiles for, as bits of
+/// HWY_TARGETS. Better ones have lower bits. Those that the compiler takes for granted are among them.
+std::int64_t simd_targets();
+
+/// Makes `simd_targets` return no others than these, for tests; 0: all again. To be called while no kernel
+/// runs.
+void limit_simd_targets(std::int64_t targets);
+
+/// Returns Highway's name of the instruction set that the kernels use on this processor: "AVX3", "AVX2",
+/// "NEON".
+std::string simd_target();
+
+/// Returns the place of the best version in a table of MESHORDER_SIMD_VERSIONS.
+///
+/// @param targets  the instruction sets that there is a version for, as bits of HWY_TARGETS
+inline std::size_t simd_version(std::int64_t targets) {
+  constexpr int kLowest = HWY_HIGHEST_TARGET_BIT + 1 - HWY_MAX_DYNAMIC_TARGETS;
+  constexpr std::uint64_t kFallback = std::uint64_t{1} << HWY_MAX_DYNAMIC_TARGETS;
+  const auto usable = static_cast<std::uint64_t>(simd_targets() & targets) >> kLowest;
+  return static_cast<std::size_t>(std::countr_zero(usable | kFallback));
+}
+
+}  // namespace meshorder
+
+/// Makes the table of the versions of a function that foreach_target.h has compiled.
+#define MESHORDER_SIMD_VERSIONS(function)                                                     \
+  constexpr std::array<decltype(&HWY_STATIC_DISPATCH(function)), HWY_MAX_DYNAMIC_TARGETS + 1> \
+      function##_versions {                                                                   \
+    HWY_CHOOSE_TARGET_LIST(function), HWY_CHOOSE_FALLBACK(function)                           \
+  }
+
+/// The version for this processor.
+#define MESHORDER_SIMD(function) (*function##_versions[::meshorder::simd_version(HWY_TARGETS)])
