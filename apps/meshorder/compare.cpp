@@ -45,6 +45,7 @@ struct CompareArguments : Common {
   std::string machine;
   KernelSet kernels = KernelSet::plain;
   bool details = false;
+  bool gpu = false;
 };
 
 std::vector<std::string> default_methods() {
@@ -162,6 +163,15 @@ void compute_orders(Comparison& comparison, const Mesh& mesh, const CsrGraph& gr
 }
 
 void run(const CompareArguments& arguments) {
+  if (arguments.gpu) {
+    throw CommandError(
+        "--gpu is in the command of the Python package only, which pip installs from the sources of "
+        "meshorder, "
+        "in a virtual environment: venv/bin/pip install . 'cupy-cuda12x[ctk]'; then venv/bin/meshorder "
+        "compare "
+        "--gpu",
+        2);
+  }
   Console console(arguments);
   Comparison comparison;
   comparison.file = arguments.input;
@@ -242,6 +252,10 @@ void add_compare(CLI::App& subcommand) {
       ->delimiter(',');
   subcommand.add_flag("--details", arguments->details,
                       "Also show edge spans, cache misses and milliseconds of each order");
+  subcommand.add_flag(
+      "--gpu", arguments->gpu,
+      "Run kernels on this machine's GPU instead; in the command of the Python package, with\n"
+      "CuPy. Other options are then --methods, --threads, --json and --quiet");
   subcommand.add_option("--budget", arguments->budget_seconds, "Seconds to spend on running the kernels")
       ->check(positive())
       ->capture_default_str();

@@ -160,6 +160,12 @@ def test_compare_on_two_threads(command):
     assert alone["threads"] == 1 and "parallel_kernels" not in alone["methods"][0]
 
 
+def test_compare_on_a_gpu_is_in_the_python_package(command, tmp_path):
+    meshes.write_tetgen(tmp_path)
+    said = command.fails("compare", "mesh.node", "--gpu", "--json")
+    assert said.startswith("meshorder: --gpu is in the command of the Python package only") and "pip install" in said
+
+
 def rows_of_compare(text):
     """The numbers of the table by the name of the order, and whether they are marked."""
     table = text.split("the best marked by *\n")[1]

@@ -16,7 +16,7 @@ A mesh, with its data and sets, and a prediction of what its order costs before 
 """
 
 import importlib
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _interpreter  # noqa: F401  # before anything loads the extension module
 from ._core import build_info
@@ -35,19 +35,24 @@ from ._permutation import Permutation
 from ._show import show
 from ._try import Trial, TriedOrder, try_orders
 
+if TYPE_CHECKING:
+    from ._gpu import GpuComparison, GpuOrder, GpuTime, compare_on_gpu
 
 __all__ = [
     "Advice", "Calibration", "Candidate", "Colours", "Comparison", "Error", "Fiedler", "FiedlerComponent", "GatherLists",
-    "GpuCost", "InputError", "InternalError", "InvalidArgument", "Mesh", "MeshOrder", "MethodInfo", "Options", "Order",
-    "Patches", "Permutation", "Quality", "Reorderer", "Stopped", "TooLarge", "Trial", "TriedOrder", "Unavailable", "Update",
-    "__version__", "advise", "build_info", "calibrate", "colours", "compare", "fiedler", "gather_lists", "gpu_cost",
-    "load_methods", "make_mesh", "methods", "order", "order_edges", "order_mesh", "patches", "quality", "read", "register",
-    "reorder", "show", "sort_corners", "to_bytes", "try_orders", "unregister", "write",
+    "GpuComparison", "GpuCost", "GpuOrder", "GpuTime", "InputError", "InternalError", "InvalidArgument", "Mesh",
+    "MeshOrder", "MethodInfo", "Options", "Order", "Patches", "Permutation", "Quality", "Reorderer", "Stopped", "TooLarge",
+    "Trial", "TriedOrder", "Unavailable", "Update", "__version__", "advise", "build_info", "calibrate", "colours",
+    "compare", "compare_on_gpu", "fiedler", "gather_lists", "gpu_cost", "load_methods", "make_mesh", "methods", "order",
+    "order_edges", "order_mesh", "patches", "quality", "read", "register", "reorder", "show", "sort_corners", "to_bytes",
+    "try_orders", "unregister", "write",
 ]  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
-    """Imports the modules for other libraries when they are first used."""
+    """Imports the modules for other libraries and for GPUs when they are first used."""
     if name in ("csgraph", "gmsh", "mpi", "networkx", "pyvista"):
         return importlib.import_module(f"{__name__}.{name}")
+    if name in ("GpuComparison", "GpuOrder", "GpuTime", "compare_on_gpu"):
+        return getattr(importlib.import_module(f"{__name__}._gpu"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

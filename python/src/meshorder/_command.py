@@ -1,8 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """The command `meshorder` of the Python package.
 
-It runs the C++ command that the package contains. A mesh in a format that only meshio has is converted to .vtu first,
-and for an output in such a format the command writes .vtu, which is then converted.
+It runs the C++ command that the package contains, and by itself `compare --gpu`. A mesh in a format that only meshio has is
+converted to .vtu first, and for an output in such a format the command writes .vtu, which is then converted.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import sys
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import IO, NoReturn
 
 import numpy as np
@@ -31,7 +31,9 @@ from .hosts.meshio import GROUPED, Blocks, to_meshio
 _MESH_PLACE = {"order": 0, "apply": 1, "info": 0, "compare": 0}
 #: options without a value; all others have one
 _FLAGS = {"--json", "--quiet", "-q", "--inverse", "--measure", "--predict", "--strict", "--timings", "--all-threads", "--trust",
-          "--details"}
+          "--details", "--gpu"}
+#: those that may come with --gpu
+_WITH_GPU = {"--gpu", "--methods", "--threads", "--json", "--quiet", "-q"}
 _BAD_INPUT = 2
 
 
@@ -50,6 +52,8 @@ def main() -> int:
     arguments = sys.argv[1:]
     try:
         words = _Words.of(arguments)
+        if words is not None and words.subcommand == "compare" and "--gpu" in words.options:
+            return _compare_on_gpu(words)
         if words is None or not any(_foreign.format_of_meshio(path) for path in words.files()):
             return _run_as_is(arguments)
         return _run_through_meshio(arguments, words)
@@ -97,6 +101,8 @@ class _Words:
     json: bool = False
     quiet: bool = False
     strict: bool = False
+    options: dict[str, str | None] = field(default_factory=dict)  #: by name, with their value
+    others: list[str] = field(default_factory=list)  #: further positional arguments
 
     def files(self) -> Iterator[str]:
         yield self.mesh.path
@@ -133,6 +139,8 @@ class _Words:
             elif place + 1 < len(arguments):
                 place += 1
                 values[option] = _Word(arguments[place], place)
+            else:
+                flags.add(word)  # without its value
             place += 1
         subcommand = arguments[plain[0]] if plain else ""
         mesh = _MESH_PLACE.get(subcommand, len(arguments)) + 1
@@ -146,7 +154,35 @@ class _Words:
             "--json" in flags,
             not flags.isdisjoint({"--quiet", "-q"}),
             "--strict" in flags,
+            {**dict.fromkeys(flags), **{name: word.path for name, word in values.items()}},
+            [arguments[place] for place in plain[mesh + 1 :]],
         )
+
+
+def _compare_on_gpu(words: _Words) -> int:
+    """Runs ``compare --gpu``, which the C++ command does not have."""
+    from ._gpu.comparison import compare_on_gpu
+
+    for name in sorted(words.options.keys() - _WITH_GPU):
+        raise Error(f"{name} is not possible with --gpu; --methods, --threads, --json and --quiet are")
+    if words.others:
+        raise Error(f"unexpected argument '{words.others[0]}'; see meshorder compare --help")
+    methods = words.options.get("--methods")
+    if "--methods" in words.options and not methods:
+        raise Error("--methods: the value is empty; see meshorder compare --help")
+    threads = words.options.get("--threads", "0") or ""
+    if not threads.isdecimal():
+        raise Error(f"--threads: expected a whole number, not '{threads}'; see meshorder compare --help")
+    found = compare_on_gpu(words.mesh.path, methods.split(",") if methods else None, threads=int(threads))
+    if not words.quiet:
+        for note in found.notes:
+            print(f"meshorder: warning: {note}", file=sys.stderr)
+    if words.json:
+        result = {**found.as_dict(), "version": _core.version}
+        _print(json.dumps(result, indent=2, ensure_ascii=False) + "\n")
+    elif not words.quiet:
+        _print(f"{found}\n")
+    return 0
 
 
 class _Maps:

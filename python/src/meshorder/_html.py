@@ -158,3 +158,12 @@ def advice(of: Advice, kernels: Sequence[str]) -> str:
     """Shows the verdict, and below it the candidates."""
     verdict = re.sub("`([^`]*)`", r"<code>\1</code>", escape(of.verdict))
     return _lines([f"<b>{verdict}</b>", candidates([of.as_is, *of.candidates], kernels)])
+
+
+def gpu_comparison(verdict: str, gpu: str, rows: Sequence[Sequence[str]]) -> str:
+    """Shows the verdict of a comparison on a GPU, and below it its table, whose first two rows are titles."""
+    words = re.sub("`([^`]*)`", r"<code>\1</code>", escape(verdict)).replace("\n", "<br>")
+    groups, titles, *rest = rows
+    heads = [f"{group} {title}".strip() for group, title in zip(groups, titles)]
+    body = [_words(row[0]) + "".join(_cell(escape(cell)) for cell in row[1:]) for row in rest]
+    return _lines([f"<b>{words}</b>", _table(heads, body, f"{gpu}: how many times faster than in the file's order")])
