@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import importlib
 import pathlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -94,10 +95,8 @@ class Device:
         Raises:
             Unavailable: NVRTC cannot compile them.
         """
-        for launch in launches:
-            blocks = -(-launch.threads // BLOCK)
-            given = tuple(np.int32(value) if isinstance(value, int) else value for value in launch.arguments)
-            self._function(launch.kernel)((blocks,), (BLOCK,), given, shared_mem=launch.shared)
+        for start in self._ready(launches):
+            start()
 
     def milliseconds(self, runs: Sequence[Sequence[Launch]]) -> NDArray[np.float64]:
         """Times runs against each other: in rounds, in each of which every one runs several times.
@@ -105,26 +104,38 @@ class Device:
         Returns:
             Milliseconds of one run, for each of 15 rounds and each run.
         """
-        once = [self._batch(run, 1) for run in runs for _ in range(2)][1::2]  # the first ones warm up
+        ready = [self._ready(run) for run in runs]
+        once = [self._batch(run, 1) for run in ready for _ in range(2)][1::2]  # the first ones warm up
         most = max(1, _MOST_LAUNCHES // max(map(len, runs)))
         repeats = int(np.clip(_BATCH_MILLISECONDS / max(float(np.median(once)), 1e-4), 1, most))
         times = np.empty((_ROUNDS, len(runs)))
         for row in range(_ROUNDS):
             for column in np.roll(np.arange(len(runs)), row).tolist():
-                times[row, column] = self._batch(runs[column], repeats) / repeats
+                times[row, column] = self._batch(ready[column], repeats) / repeats
         return times
 
     def free(self) -> None:
         """Returns memory that arrays no longer use to the device."""
         self._cupy.get_default_memory_pool().free_all_blocks()
 
-    def _batch(self, run: Sequence[Launch], repeats: int) -> float:
+    def _ready(self, launches: Sequence[Launch]) -> list[Callable[[], None]]:
+        """Returns functions that start the kernels in as little time as possible."""
+        ready: list[Callable[[], None]] = []
+        for launch in launches:
+            blocks = -(-launch.threads // BLOCK)
+            given = tuple(np.int32(value) if isinstance(value, int) else value for value in launch.arguments)
+            function = self._function(launch.kernel)
+            ready.append(functools.partial(function, (blocks,), (BLOCK,), given, shared_mem=launch.shared))
+        return ready
+
+    def _batch(self, run: Sequence[Callable[[], None]], repeats: int) -> float:
         """Returns the milliseconds of some runs. The device is kept busy until all of them wait in its queue."""
         begin, end = self._cupy.cuda.Event(), self._cupy.cuda.Event()
         self._function("hold")((1,), (1,), (np.int64(_CYCLES_TO_LAUNCH * (10 + len(run) * repeats)),), shared_mem=0)
         begin.record()
         for _ in range(repeats):
-            self.launch(run)
+            for start in run:
+                start()
         end.record()
         end.synchronize()
         return float(self._cupy.cuda.get_elapsed_time(begin, end))

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .problem import Ordered, Problem, Rows, Single, gradients, lengths
+from .problem import Ordered, Problem, Rows, Single, lengths
 
 Double = NDArray[np.float64]
 
@@ -92,7 +92,7 @@ class Results:
         tetrahedra = self.problem.tetrahedra
         corners = self.problem.now.astype(np.float64)[tetrahedra]
         edges = corners[:, 1:] - corners[:, :1]
-        rest = gradients(self.problem.rest, tetrahedra)
+        rest = self.problem.gradients
         displaced = np.einsum("eki,ekj->eij", edges, rest.of) - np.eye(3)
         stress = displaced + displaced.transpose(0, 2, 1)
         stress += np.trace(displaced, axis1=1, axis2=2)[:, np.newaxis, np.newaxis] * np.eye(3)

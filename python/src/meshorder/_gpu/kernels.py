@@ -14,7 +14,7 @@ from .._layouts import colours, gather_lists, patches
 from . import expected
 from .device import BLOCK, Device, Launch
 from .expected import Expected, Results
-from .problem import Ordered, Problem, Rows, Single, gradients, lengths
+from .problem import Ordered, Problem, Single, lengths
 
 
 class Run(NamedTuple):
@@ -63,8 +63,12 @@ class Arrays:
         return self.device.upload(self.order.tetrahedra)
 
     @cached_property
+    def rest_on_host(self) -> Single:
+        return self.order.gradients().runs()
+
+    @cached_property
     def rest(self) -> Any:
-        return self.device.upload(rest_of(self.order, self.order.tetrahedra))
+        return self.device.upload(self.rest_on_host)
 
     @cached_property
     def springs(self) -> tuple[Any, Any]:
@@ -90,12 +94,6 @@ class Arrays:
 def with_ones(rows: Single) -> Single:
     """Returns n × 4 numbers, of which the last are 1."""
     return np.concatenate([rows, np.ones((len(rows), 1), dtype=np.float32)], axis=1)
-
-
-def rest_of(order: Ordered, tetrahedra: Rows) -> Single:
-    """Returns the ten runs of numbers of elements at rest that the kernels read."""
-    found = gradients(order.rest, tetrahedra)
-    return np.concatenate([found.of.reshape(-1, 9).T, found.volume[np.newaxis]]).astype(np.float32)
 
 
 def _three(values: Single) -> Single:
@@ -152,7 +150,7 @@ def _forces_patches(arrays: Arrays) -> Run:
     cut = patches(arrays.order.tetrahedra, BLOCK, vertices=arrays.n)
     given = (
         arrays.device.upload(cut.offsets.astype(np.int32)), arrays.device.upload(cut.vertices),
-        arrays.device.upload(cut.local), arrays.device.upload(rest_of(arrays.order, arrays.order.tetrahedra[cut.cells])),
+        arrays.device.upload(cut.local), arrays.device.upload(arrays.rest_on_host[:, cut.cells]),
     )  # fmt: skip
     shared = 24 * int(np.diff(cut.offsets).max())
     return _forces(

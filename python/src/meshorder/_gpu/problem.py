@@ -62,6 +62,12 @@ class Problem:
         return moved[moved >= 0]
 
 
+    @cached_property
+    def gradients(self) -> Gradients:
+        """Those of the tetrahedra at rest."""
+        return gradients(self.rest, self.tetrahedra)
+
+
 class Gradients(NamedTuple):
     """Derivatives of the coordinates of points in tetrahedra.
 
@@ -72,6 +78,10 @@ class Gradients(NamedTuple):
 
     of: NDArray[np.float64]
     volume: NDArray[np.float64]
+
+    def runs(self) -> Single:
+        """Returns the ten runs of numbers that the kernels read."""
+        return np.concatenate([self.of.reshape(-1, 9).T, self.volume[np.newaxis]]).astype(np.float32)
 
 
 def gradients(points: Single, tetrahedra: Rows) -> Gradients:
@@ -112,7 +122,8 @@ class Ordered:
         self.vertices = found.vertices.permutation
         self.methods = found.vertices.method, found.cells.method
         self.name = self._name()
-        new = self.vertices.renumber(problem.tetrahedra)[problem.tetrahedra_in(found.cells.permutation)]
+        self._old_tetrahedra = problem.tetrahedra_in(found.cells.permutation)
+        new = self.vertices.renumber(problem.tetrahedra[self._old_tetrahedra])
         self.tetrahedra: Rows = sort_corners(new) if self.sorts_corners and len(new) else new
         self.springs = self._springs()
         self.now: Single = self.vertices.move(problem.now)
@@ -131,6 +142,13 @@ class Ordered:
             springs = order_edges(springs, self.vertices).move(springs)
         ends: Rows = self.vertices.renumber(springs)
         return ends
+
+    def gradients(self) -> Gradients:
+        """Returns those of the tetrahedra at rest, in their new order."""
+        if self.sorts_corners:
+            return gradients(self.rest, self.tetrahedra)
+        of, volume = self.problem.gradients
+        return Gradients(of[self._old_tetrahedra], volume[self._old_tetrahedra])
 
     @cached_property
     def rest(self) -> Single:
@@ -171,6 +189,9 @@ def ordered(problem: Problem, names: Sequence[str] | None, options: dict[str, An
     found = [Ordered(problem, "original", options)]
     for name in names:
         made = Ordered(problem, name, options)
-        if all(earlier.name != made.name for earlier in found):
+        equal = [earlier for earlier in found if earlier.name == made.name]
+        if not equal:
             found.append(made)
+        elif made.by_auto:
+            equal[0].by_auto = True
     return found
