@@ -52,12 +52,13 @@ def grid(points=400, cells=900, seed=1):
     return made
 
 
-def write(path, made, wide=True, compressor=None, block=None, mode="appended"):
+def write(path, made, wide=True, compressor=None, block=None, mode="appended", big=False):
     writer = vtkXMLUnstructuredGridWriter()
     writer.SetFileName(str(path))
     writer.SetInputData(made)
     writer.SetDataModeToAppended() if mode == "appended" else writer.SetDataModeToBinary()
     writer.EncodeAppendedDataOff()
+    writer.SetByteOrderToBigEndian() if big else writer.SetByteOrderToLittleEndian()
     writer.SetHeaderTypeToUInt64() if wide else writer.SetHeaderTypeToUInt32()
     writer.SetCompressor(compressor() if compressor else None)
     if block:
@@ -218,6 +219,20 @@ def test_fewer_cells_than_ranks(tmp_path, compressor):
     write(tmp_path / "a.vtu", grid(points=25, cells=2, seed=3), True, compressor)
     order(5, tmp_path / "a.vtu", "-o", tmp_path / "b.vtu")
     assert_same_but_for_order(read(tmp_path / "a.vtu"), read(tmp_path / "b.vtu"))
+
+
+@pytest.mark.parametrize("compressor", [None, vtkZLibDataCompressor])
+def test_another_order_of_bytes_is_read_by_rank_0(tmp_path, compressor):
+    write(tmp_path / "a.vtu", grid(), True, compressor, big=True)
+    before = read(tmp_path / "a.vtu")
+    done = order(2, tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", "--json")
+    assert json.loads(done.stdout)["files_by"] == "rank 0"
+    assert_same_but_for_order(before, read(tmp_path / "b.vtu"))
+    order(2, tmp_path / "a.vtu", "--pieces", tmp_path / "out")
+    serial("order", tmp_path / "out" / "a.pvtu", "-o", tmp_path / "c.vtu", "--vertices", "original", "--elements", "original")
+    cells = {name: sorted((kind, tuple(u["id"][row].tolist())) for kind, row in made)
+             for name, (_, made, (u, _), _) in (("a", before), ("c", read(tmp_path / "c.vtu")))}
+    assert cells["a"] == cells["c"]
 
 
 @pytest.mark.parametrize("arguments", [["--ids", "attach"], ["--only", "volume"], ["--strict"]])

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/scenario_obstacles.hpp"
 
+#include "lab/scenario/fingerprint.hpp"
 #include "support/files.hpp"
 #include <meshorder/error.hpp>
 
@@ -8,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace meshorder {
@@ -62,6 +65,21 @@ TEST(Obstacles, AreNumberedAsInTheScenario) {
   EXPECT_TRUE(std::is_sorted(numbers.begin(), numbers.end()));
   EXPECT_EQ(numbers.front(), 0);
   EXPECT_EQ(numbers.back(), 2);
+}
+
+TEST(Obstacles, CountForTheFingerprintWithTheirFiles) {
+  const test::TemporaryFolder folder;
+  ProjectiveScenario scenario;
+  scenario.obstacles.resize(1);
+  scenario.obstacles[0].kind = Kind::surface;
+  scenario.obstacles[0].folder = folder.path();
+  const auto checksum_with = [&](const std::string& content) {
+    scenario.obstacles[0].file = folder.file("bowl.off", content);
+    return checksum_of(ProjectiveOptions{}, scenario, ProjectiveBody{}, MotionState{});
+  };
+  const std::uint64_t first = checksum_with("OFF 1");
+  EXPECT_NE(checksum_with("OFF 2"), first);
+  EXPECT_EQ(checksum_with("OFF 1"), first);
 }
 
 TEST(Obstacles, AreReadFromClosedSurfacesAlone) {

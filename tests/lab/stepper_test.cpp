@@ -31,6 +31,25 @@ std::vector<json> answers_to(const std::vector<json>& questions) {
   return answers;
 }
 
+TEST(StepperMessages, HoldPathsOfAnyBytes) {
+  const auto sent = [](const json& message) { return json::parse(message.dump()); };
+  const StepperTurn turn = stepper_turn(sent(to_json(StepperTurn{1, "\xff.npy", 1, true, "\xfe/é"})));
+  EXPECT_EQ(turn.frames, "\xff.npy");
+  EXPECT_EQ(turn.surfaces, "\xfe/é");
+  const StepperTask task = stepper_task(sent(to_json(StepperTask{"\xf0",
+                                                                 "mesh\xff.vtu",
+                                                                 "\x80v",
+                                                                 "\x81"
+                                                                 "c",
+                                                                 {}})));
+  EXPECT_EQ(task.scenario, "\xf0");
+  EXPECT_EQ(task.mesh, "mesh\xff.vtu");
+  EXPECT_EQ(task.vertex_order, "\x80v");
+  EXPECT_EQ(task.cell_order,
+            "\x81"
+            "c");
+}
+
 class Steps : public testing::Test {
  protected:
   Steps() : mesh_(make_ball({.size = 3})) { write_mesh(mesh_, file("ball.vtu")); }
