@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <functional>
 #include <span>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -35,6 +36,30 @@ void keep_unmatched(std::vector<ElementFacet>& facets) {
   facets.erase(kept, facets.end());
   std::sort(facets.begin(), facets.end(),
             [](const ElementFacet& a, const ElementFacet& b) { return a.element < b.element; });
+}
+
+/// Removes the facets whose corners one polyhedron has, too: they are between it and their element. O(facets
+/// · corners of the polyhedra at a vertex).
+void drop_facets_of_polyhedra(const Mesh& mesh, std::vector<ElementFacet>& facets) {
+  std::vector<std::pair<Index, Index>> polyhedra;  // a vertex and a polyhedron there
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    if (mesh.cells.shapes[c] != Shape::polyhedron) continue;
+    for (const Index v : mesh.cells[c]) polyhedra.emplace_back(v, c);
+  }
+  if (polyhedra.empty()) return;
+  std::sort(polyhedra.begin(), polyhedra.end());
+  std::erase_if(facets, [&](const ElementFacet& facet) {
+    const Index v = facet.corners[0];
+    for (auto at = std::lower_bound(polyhedra.begin(), polyhedra.end(), std::pair(v, Index{0}));
+         at != polyhedra.end() && at->first == v; ++at) {
+      const auto cell = mesh.cells[at->second];
+      const bool has_all = std::all_of(facet.corners.begin(), facet.corners.end(), [&](Index corner) {
+        return corner < 0 || std::find(cell.begin(), cell.end(), corner) != cell.end();
+      });
+      if (has_all) return true;
+    }
+    return false;
+  });
 }
 
 /// Removes the facets of `element` from the front of `facets` and returns them.
@@ -90,6 +115,7 @@ std::vector<std::array<Index, 3>> boundary_triangles(const Mesh& mesh) {
   const CellArrays cells = cell_arrays(mesh);
   std::vector<ElementFacet> outer = matched_facets(cells, CellSelection::elements(cells));
   keep_unmatched(outer);
+  drop_facets_of_polyhedra(mesh, outer);
   std::span<const ElementFacet> left(outer);
   FacetsOfTypes facets_of;
   for_elements(mesh, [&](Index element, Index c) {

@@ -164,6 +164,19 @@ TEST(SurfaceView, OfASurfaceIsItsTriangles) {
   EXPECT_EQ(view.vertices.size(), 4U);
 }
 
+TEST(SurfaceView, IsOpenWherePolyhedraAre) {
+  Mesh mesh;  // a cube with a polyhedron above it, whose faces are not known
+  for (const double z : {0.0, 1.0, 2.0}) {
+    for (const auto& [x, y] : {std::pair(0.0, 0.0), {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}})
+      mesh.points.push_back({x, y, z});
+  }
+  mesh.cells.push_back(Shape::hexahedron, index_range(0, 8));
+  mesh.cells.push_back(Shape::polyhedron, index_range(4, 8));
+  const SurfaceView view = surface_view(mesh, kAll);
+  EXPECT_EQ(view.triangles.size(), 10U) << "the face between the two is none of the surface";
+  EXPECT_TRUE(surface_view(test::cells_of_type(Shape::polyhedron, 8, 2), kAll).triangles.empty());
+}
+
 TEST(SurfaceView, OfLinesIsAnError) {
   EXPECT_THROW((void)surface_view(test::cells_of_type(Shape::line, 2, 3), 10), InputError);
 }
