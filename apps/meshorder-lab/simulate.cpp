@@ -266,9 +266,8 @@ void add_scenario_options(CLI::App& subcommand, SimulateArguments& arguments) {
                         "Mesh instead of the scenario's own: a file, or a name from `meshorder models`");
   CLI::Option* const order = subcommand.add_option(
       "--order", arguments.order,
-      "VERTICES or VERTICES/ELEMENTS. With only VERTICES, elements keep the file's order\n"
-      "for original, are scrambled for scrambled and follow lexmax otherwise; those of water\n"
-      "follow max");
+      "VERTICES or VERTICES/ELEMENTS. With only VERTICES, elements have the same method for\n"
+      "auto, original and scrambled, and lexmax for others; those of water follow max");
   subcommand.add_option("--vertices", arguments.vertices, "Method for vertices, see `meshorder methods`")
       ->excludes(order);
   subcommand.add_option("--elements", arguments.elements, "Method for elements, see `meshorder methods`")

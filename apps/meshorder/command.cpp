@@ -84,8 +84,11 @@ OrderNames order_named(const std::string& name) {
   OrderNames order;
   const auto slash = name.find('/');
   order.vertices = name.substr(0, slash);
-  const bool plain = order.vertices == "original" || order.vertices == "scrambled";
-  order.elements = slash != std::string::npos ? name.substr(slash + 1) : plain ? order.vertices : "lexmax";
+  constexpr std::array<std::string_view, 3> kOfBoth{"auto", "original", "scrambled"};
+  const bool is_of_both = std::find(kOfBoth.begin(), kOfBoth.end(), order.vertices) != kOfBoth.end();
+  order.elements = slash != std::string::npos ? name.substr(slash + 1)
+                   : is_of_both               ? order.vertices
+                                              : "lexmax";
   return order;
 }
 

@@ -38,8 +38,8 @@ struct OrderNames {
   std::string elements;
 };
 
-/// Splits VERTICES/ELEMENTS. If only VERTICES is given, elements keep the file's order for `original`, are
-/// scrambled for `scrambled` and follow lexmax otherwise.
+/// Splits VERTICES/ELEMENTS. If only VERTICES is given, elements have the same method for `auto`, `original`
+/// and `scrambled`, and lexmax for others.
 OrderNames order_named(const std::string& name);
 
 // Each function adds the options of a subcommand, which runs once all arguments are parsed.

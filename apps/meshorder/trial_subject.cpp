@@ -89,8 +89,8 @@ class TriedMesh final : public TrialSubject {
     const std::string output = (folder.add_order(number) / name()).string();
     TrialCommand command{
         .words = {own_program(), "order", fs::absolute(path_).string(), "-o", output, "--vertices",
-                  order.methods.vertices, "--elements", order.by_auto ? "auto" : order.methods.elements,
-                  "--ids", options_.ids, "--threads", std::to_string(options_.threads), "--json", "--quiet"},
+                  order.methods.vertices, "--elements", order.methods.elements, "--ids", options_.ids,
+                  "--threads", std::to_string(options_.threads), "--json", "--quiet"},
         .folder = fs::current_path(),
         .log = folder.log()};
     command.words.insert(command.words.end(), options_.words.begin(), options_.words.end());

@@ -210,12 +210,22 @@ def test_the_line_that_compare_proposes_makes_the_order_that_it_names(command):
 
 def test_compare_names_an_order_that_auto_takes_once(command):
     made = command.json("models", "make", "grid", "--size", "4")["models"][0]["path"]
-    methods = command.json("compare", made, "--budget", "0.01")["methods"]
+    command.ok("order", made, "-o", "scrambled.node", "--vertices", "scrambled", "--elements", "scrambled")
+    methods = command.json("compare", "scrambled.node", "--budget", "0.01")["methods"]
     assert [method["vertices"] for method in methods[:2]] == ["original", "auto"]
     taken = [tuple(method["taken"].values()) for method in methods]
     assert len(set(taken)) == len(taken) and {"scrambled"} & {vertices for vertices, _ in taken} == set()
-    named = command.json("compare", made, "--methods", f"auto,{'/'.join(taken[1])}", "--budget", "0.01")["methods"]
+    named = command.json("compare", "scrambled.node", "--methods", f"auto,{'/'.join(taken[1])}", "--budget", "0.01")["methods"]
     assert [tuple(method["taken"].values()) for method in named[1:]] == [taken[1]] * 2, "but both that somebody names"
+
+
+def test_the_auto_of_compare_is_what_order_makes(command):
+    made = command.json("models", "make", "grid", "--size", "8")["models"][0]["path"]
+    command.ok("order", made, "-o", "ordered.node")
+    for mesh in (made, "ordered.node"):
+        order = command.json("order", mesh, "-o", "again.node")
+        [_, auto] = command.json("compare", mesh, "--methods", "auto", "--budget", "0.01")["methods"]
+        assert auto["taken"] == {"vertices": order["vertices"]["method"], "elements": order["cells"]["method"]}
 
 
 def test_models_keys(command, tmp_path, monkeypatch):
