@@ -353,6 +353,36 @@ def test_data_of_ranges_stay_with_their_elements(command, tmp_path, named):
         assert ("PointRange" in zone["ZoneBC/bare"]) == (not named)
 
 
+@pytest.mark.parametrize("location", ["Vertex", "CellCenter"])
+def test_ranges_of_holes_become_one_list(command, tmp_path, location):
+    points, tetrahedra, _ = box(2, 1)
+    with new_file(tmp_path / "a.cgns") as file:
+        base = put(file, "Base", "CGNSBase_t", numpy.array([3, 3], "int32"))
+        zone = put_zone(base, "A", points, len(tetrahedra))
+        put_section(zone, "cells", 10, 1, len(tetrahedra), tetrahedra + 1)
+        holes = put(put(zone, "ZoneGridConnectivity", "ZoneGridConnectivity_t"), "Holes", "OversetHoles_t")
+        put(holes, "GridLocation", "GridLocation_t", text(location))
+        for name, span in (("PointRange1", (1, 3)), ("PointRange2", (3, 4)), ("PointRange3", (8, 9))):
+            put(holes, name, "IndexRange_t", numpy.array(span, "int32")[:, None])
+
+    def in_holes(path):
+        with h5py.File(path) as opened:
+            parts = Zone(opened["Base/A"])
+            node = opened["Base/A/ZoneGridConnectivity/Holes"]
+            return sorted(parts.items(node, location)), [child for child in node if child.startswith("Point")]
+
+    keep(command, "a.cgns", "b.cgns")
+    command.ok("order", "b.cgns", "-o", "c.cgns", "--vertices", "scrambled", "--elements", "scrambled")
+    items = [tuple(point) for point in points.tolist()]
+    if location == "CellCenter":
+        items = [(10, tuple(items[v] for v in cell)) for cell in tetrahedra]
+    wanted = sorted(items[k - 1] for k in (1, 2, 3, 4, 8, 9))
+    assert in_holes(tmp_path / "b.cgns") == (wanted, ["PointList"])
+    assert in_holes(tmp_path / "c.cgns") == (wanted, ["PointList"])
+    if shutil.which("cgnscheck"):
+        checked(tmp_path, "c.cgns")
+
+
 def test_arrays_sets_and_steps_get_names(command, tmp_path):
     write_rich(tmp_path / "a.cgns")
     info = command.ok("info", "a.cgns").stdout

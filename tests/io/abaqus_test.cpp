@@ -28,6 +28,7 @@ namespace {
 using abaqus::ElementKind;
 using test::TemporaryFolder;
 using test::with;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -363,6 +364,22 @@ TEST(Abaqus, KeepsNumbersWhereACardMayNameThem) {
   notes.clear();
   (void)read_deck(with(std::string(kDeck), "*FILM\n20, F2FC, 13, 5", "*NEW LOAD\n200, F2FC, 1000"), &notes);
   EXPECT_THAT(notes, IsEmpty()) << "no node or element has such a number";
+}
+
+TEST(Abaqus, RefusesIdsThatAreNoNumbersOfADeck) {
+  const Mesh right = read_deck(kDeck);
+  const TemporaryFolder folder;
+  const auto refusal = [&](auto change) {
+    Mesh mesh = right;
+    change(mesh);
+    return test::write_error(mesh, folder.path() / "m.inp");
+  };
+  EXPECT_THAT(refusal([](Mesh& mesh) { mesh.vertex_ids[3] = -5; }),
+              HasSubstr("the id of vertex 3 is -5; ids are 1 to 999999999"));
+  EXPECT_THAT(refusal([](Mesh& mesh) { mesh.cell_ids[2] = 1'000'000'000; }),
+              HasSubstr("the id of cell 2 is 1000000000"));
+  EXPECT_THAT(refusal([](Mesh& mesh) { mesh.cell_ids[1] = mesh.cell_ids[4]; }),
+              HasSubstr("the id 13 is that of cell 1 and of cell 4"));
 }
 
 TEST(Abaqus, KeepsNumbersWhereResultsGoByThem) {

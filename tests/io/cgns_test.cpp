@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -88,6 +89,45 @@ cgns::Node* find_node(cgns::Node& node, const std::string& name) {
     if (cgns::Node* const found = find_node(child, name)) return found;
   }
   return nullptr;
+}
+
+TEST(Cgns, DataOfARegionGoWithTheMembersOfItsCondition) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "a.cgns";
+  write_mesh(test::tetrahedral_bar(2), path);
+  const auto number = [](const Mesh& mesh) {
+    return std::find_if(mesh.sets.begin(), mesh.sets.end(),
+                        [](const EntitySet& set) { return set.name == "fixed"; }) -
+           mesh.sets.begin();
+  };
+  Mesh mesh = read_mesh(path);
+  cgns::Tree tree = cgns::read_tree(path);
+  cgns::Node region = cgns::integer_node("Region", "ZoneSubRegion_t", {2});
+  region.children.push_back(cgns::text_node("BCRegionName", "Descriptor_t", "fixed"));
+  region.children.push_back(cgns::integer_node(
+      "Heat", "DataArray_t", std::vector<std::int32_t>(mesh.sets[number(mesh)].members.size(), 5)));
+  find_node(tree.root, "Zone")->children.push_back(std::move(region));
+  cgns::write_tree(tree, path, [](cgns::Node& /*node*/) {});
+
+  const auto written = [&](Notes& notes) {
+    write_mesh(mesh, folder.path() / "b.cgns", &notes);
+    return cgns::read_tree(folder.path() / "b.cgns");
+  };
+  mesh = read_mesh(path);
+  Notes notes;
+  tree = written(notes);
+  EXPECT_NE(find_node(tree.root, "Heat"), nullptr);
+  EXPECT_TRUE(notes.empty());
+  mesh.sets[number(mesh)].members.pop_back();
+  tree = written(notes);
+  EXPECT_NE(find_node(tree.root, "Region"), nullptr);
+  EXPECT_EQ(find_node(tree.root, "Heat"), nullptr);
+  EXPECT_EQ(notes, Notes{"the data of 'Region' are left out: 'fixed' has other members now"});
+  notes.clear();
+  mesh.sets.erase(mesh.sets.begin() + number(mesh));
+  tree = written(notes);
+  EXPECT_EQ(find_node(tree.root, "Region"), nullptr);
+  EXPECT_EQ(notes, Notes{"the region 'Region' is left out: it is that of 'fixed', which has no members"});
 }
 
 TEST(Cgns, WhatItsTypeCannotHoldIsWrittenInAWiderOne) {

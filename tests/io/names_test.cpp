@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
-#include "support/files.hpp"
+#include "support/round_trip.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
@@ -112,30 +112,6 @@ Mesh named(const Mesh& bare, const std::string& name) {
   return mesh;
 }
 
-struct Written {
-  std::vector<MemoryFile> files;
-  Notes notes;
-};
-
-Written written_as(const Mesh& mesh, const Format& format) {
-  Written result;
-  result.files =
-      write_mesh_to_memory(mesh, format.key(), "a" + std::string(format.extensions.front()), &result.notes)
-          .files;
-  return result;
-}
-
-Mesh read_back(const Written& written, const Format& format) {
-  const auto companion = [&](std::string_view name) {
-    const auto found = std::find_if(written.files.begin(), written.files.end(),
-                                    [&](const MemoryFile& file) { return file.name == name; });
-    return found == written.files.end() ? std::string() : found->bytes;
-  };
-  const MemoryFile& first = written.files.front();
-  return read_mesh(std::as_bytes(std::span(first.bytes)),
-                   {.format = format.key(), .name = first.name, .companion = companion});
-}
-
 /// The formats with a mesh that each can hold; none of those for matrices.
 std::vector<std::pair<const Format*, Mesh>> formats_and_meshes() {
   Mesh tetrahedra = test::tetrahedral_bar(2);
@@ -185,12 +161,12 @@ TEST_F(Names, AreKeptOrNotedAndChangeNothingElse) {
            std::count_if(mesh.sets.begin(), mesh.sets.end(), is_it);
   };
   for (const auto& [format, bare] : formats_) {
-    const Mesh plain = read_back(written_as(named(bare, "plain"), *format), *format);
+    const Mesh plain = test::read_back(test::written_as(named(bare, "plain"), *format).files, *format);
     for (const std::string& name : difficult_names()) {
       SCOPED_TRACE(format->key() + ": " + testing::PrintToString(name));
-      const Written written = written_as(named(bare, name), *format);
+      const test::Written written = test::written_as(named(bare, name), *format);
       Mesh found;
-      ASSERT_NO_THROW(found = read_back(written, *format)) << written.files.front().bytes;
+      ASSERT_NO_THROW(found = test::read_back(written.files, *format)) << written.files.front().bytes;
       EXPECT_EQ(found.points, plain.points);
       EXPECT_EQ(found.cells, plain.cells);
       EXPECT_EQ(found.data.size(), plain.data.size());
@@ -226,8 +202,8 @@ TEST_F(Names, ThatBecomeAlikeStayApart) {
       mesh.sets.back().members.resize(1 + i % 2);
       numbered.sets.push_back({std::string(i + 1, 's'), Association::cells, mesh.sets.back().members});
     }
-    EXPECT_EQ(members_of(read_back(written_as(mesh, *format), *format)),
-              members_of(read_back(written_as(numbered, *format), *format)));
+    EXPECT_EQ(members_of(test::read_back(test::written_as(mesh, *format).files, *format)),
+              members_of(test::read_back(test::written_as(numbered, *format).files, *format)));
   }
 }
 

@@ -110,6 +110,12 @@ TEST(Su2, NamesThatAreNumbersAreLabels) {
               ElementsAre(EntitySet{"07", Association::cells, {4, 5}}));
 }
 
+TEST(Su2, CommentsOfAMarkerStayInIt) {
+  const std::string text =
+      with(std::string(kPlane), "MARKER_TAG= sides\n", "MARKER_TAG= sides\n% inlet and outlet\n\n");
+  EXPECT_EQ(su2_of(read_su2(text)), text);
+}
+
 TEST(Su2, KeywordsMayBeInAnyCaseAndOrderWithBlanksAndComments) {
   const Mesh mesh = read_su2(kVolumes);
   EXPECT_THAT(mesh.cells.shapes, ElementsAre(Shape::hexahedron, Shape::pyramid, Shape::tetrahedron,

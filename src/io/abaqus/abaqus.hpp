@@ -16,6 +16,8 @@
 
 namespace meshorder::abaqus {
 
+inline constexpr std::int64_t kLargest = 999'999'999;  ///< largest number of a node or element
+
 enum class Part : std::uint8_t { text, nodes, elements };
 
 /// A card of a deck.

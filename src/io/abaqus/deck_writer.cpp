@@ -39,7 +39,10 @@ class DeckWriter {
         more_of_nodes_(by_place(deck_.more_of_nodes, nodes_)),
         more_of_elements_(by_place(deck_.more_of_elements, elements_)),
         same_numbers_(nodes_.all_as_in_file() && elements_.all_as_in_file()) {
-    if (!same_numbers_) require_known_references(deck_.unknown, path);
+    if (same_numbers_) return;
+    require_valid(nodes_, "vertex", kLargest, path);
+    require_valid(elements_, "cell", kLargest, path);
+    require_known_references(deck_.unknown, path);
   }
 
   void write() {

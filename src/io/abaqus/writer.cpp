@@ -15,8 +15,6 @@
 namespace meshorder::abaqus {
 namespace {
 
-constexpr std::int64_t kLargest = 999'999'999;  // largest number of a node or element
-
 /// Writes a deck of nodes, elements and sets for a mesh that has no deck of its own.
 class PlainWriter {
  public:

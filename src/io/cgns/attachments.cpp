@@ -107,8 +107,9 @@ class AttachmentReader {
     return cell;
   }
 
-  /// Reads a node that lists vertices or elements by number or as a range. Returns the index of the list.
-  int read_list(Node& node, int of_zone, Association association, const std::string& path) {
+  /// Reads a node that lists vertices or elements by number or as a range.
+  [[nodiscard]] PointList list_in(const Node& node, int of_zone, Association association,
+                                  const std::string& path) const {
     const ZonePlaces& owner = reading_.zones[of_zone];
     PointList list{.zone = of_zone, .association = association};
     list.is_range = node.label == "IndexRange_t";
@@ -135,10 +136,19 @@ class AttachmentReader {
         list.members.push_back(position_of(owner, association, number, path));
       }
     }
+    return list;
+  }
+
+  /// Makes a list the contents of a node. Returns the index of the list.
+  int bind_list(Node& node, PointList list) {
     const auto place = static_cast<int>(metadata_.lists.size());
+    reading_.bind(node, {.role = Field::Role::list, .place = place, .association = list.association});
     metadata_.lists.push_back(std::move(list));
-    reading_.bind(node, {.role = Field::Role::list, .place = place, .association = association});
     return place;
+  }
+
+  int read_list(Node& node, int of_zone, Association association, const std::string& path) {
+    return bind_list(node, list_in(node, of_zone, association, path));
   }
 
   // ---- nodes by their labels
@@ -298,14 +308,7 @@ class AttachmentReader {
       reading_.fail(path, "connects zones by ranges of points, which an order would break",
                     "save it as GridConnectivity_t with PointList and PointListDonor");
     }
-    if (node.label == "OversetHoles_t") {
-      const Association association = location_of(node, Association::vertices);
-      for (Node& child : node.children) {
-        if (child.label == "IndexRange_t" || child.label == "IndexArray_t") {
-          (void)read_list(child, zone_, association, path + "/" + child.name);
-        }
-      }
-    }
+    if (node.label == "OversetHoles_t") read_holes(node, path);
     if (node.label != "GridConnectivity_t") return;
     const Association association = location_of(node, Association::vertices);
     (void)read_own_list(node, association, path);
@@ -314,6 +317,34 @@ class AttachmentReader {
       const Association of_donor = child.name == "CellListDonor" ? Association::cells : association;
       (void)read_list(child, donor(node, path), of_donor, path + "/" + child.name);
     }
+  }
+
+  /// Reads the holes of a zone. Several ranges become one, or a list: CGNS allows one list or several ranges,
+  /// and in a new order some of the ranges may be lists.
+  void read_holes(Node& node, const std::string& path) {
+    const Association association = location_of(node, Association::vertices);
+    const auto is_list = [](const Node& child) {
+      return child.label == "IndexRange_t" || child.label == "IndexArray_t";
+    };
+    const auto first = std::find_if(node.children.begin(), node.children.end(), is_list);
+    if (first == node.children.end()) return;
+    PointList holes = list_in(*first, zone_, association, path + "/" + first->name);
+    bool is_only = true;
+    for (auto child = first + 1; child != node.children.end(); ++child) {
+      if (!is_list(*child)) continue;
+      const PointList more = list_in(*child, zone_, association, path + "/" + child->name);
+      holes.members.insert(holes.members.end(), more.members.begin(), more.members.end());
+      holes.is_range = holes.is_range && more.is_range;
+      is_only = false;
+    }
+    if (!is_only) {
+      std::sort(holes.members.begin(), holes.members.end());
+      holes.members.erase(std::unique(holes.members.begin(), holes.members.end()), holes.members.end());
+      first->name = holes.is_range ? "PointRange" : "PointList";
+      first->label = holes.is_range ? "IndexRange_t" : "IndexArray_t";
+      node.children.erase(std::remove_if(first + 1, node.children.end(), is_list), node.children.end());
+    }
+    bind_list(*first, std::move(holes));
   }
 
   [[nodiscard]] int donor(const Node& node, const std::string& path) const {

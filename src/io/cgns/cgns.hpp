@@ -141,7 +141,7 @@ struct Field {
   int place = 0;           ///< index of the zone, the section, the list or the parents
   int axis = 0;            ///< of a coordinate
   std::string type = {};   ///< type of values and coordinates in the file
-  std::string array = {};  ///< name of the mesh's array
+  std::string array = {};  ///< name of the mesh's array; empty if there is none
   Index component = 0;     ///< of the array
   Association association = Association::vertices;
   int section = -1;  ///< section whose cells have the values, in their order; −1: see `list`
@@ -169,6 +169,11 @@ struct Metadata final : FormatMetadata {
   /// Returns the present position of the vertex at `place` in the file.
   [[nodiscard]] Index vertex_at(Index place) const {
     return vertex_places.empty() ? place : vertex_places[static_cast<std::size_t>(place)];
+  }
+
+  /// Returns the zone of a vertex.
+  [[nodiscard]] int zone_of(Index vertex) const {
+    return zone_of_vertex.empty() ? 0 : zone_of_vertex[static_cast<std::size_t>(vertex)];
   }
 
   [[nodiscard]] std::vector<std::string> contents() const override { return lost; }

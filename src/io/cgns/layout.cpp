@@ -272,7 +272,7 @@ class Addition {
   [[nodiscard]] int zone_of(Association association, Index position) const {
     if (association == Association::cells)
       return metadata_.sections[metadata_.section_of_cell[position]].zone;
-    return metadata_.zone_of_vertex.empty() ? 0 : metadata_.zone_of_vertex[position];
+    return metadata_.zone_of(position);
   }
 
   /// Returns the names of the children of `parent`: a zone, or a node in it or in one of its sections.

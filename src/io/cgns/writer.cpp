@@ -6,11 +6,15 @@
 #include "io/cgns/cgns_library.hpp"
 #include "io/cgns/filler.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <string>
+#include <unordered_set>
 #include <utility>
 
 // Chooses the nodes of a file and writes them with the values of the mesh.
@@ -92,11 +96,67 @@ void take_sets(const Mesh& mesh, Metadata& metadata) {
     for (const Index member : set->members) {
       const Index zone = list.association == Association::cells
                              ? metadata.sections[metadata.section_of_cell[member]].zone
-                         : metadata.zone_of_vertex.empty() ? 0
-                                                           : metadata.zone_of_vertex[member];
+                             : metadata.zone_of(member);
       if (zone == list.zone) list.members.push_back(member);
     }
     list.is_shortened = true;
+  }
+}
+
+/// The fields with the values of an array, and what they hold.
+class ArrayFields {
+ public:
+  explicit ArrayFields(const Metadata& metadata) : metadata_(metadata) {}
+
+  void add(const Field& field) {
+    if (field.section >= 0) {
+      sections_.insert(field.section);
+    } else if (field.list >= 0) {
+      const std::vector<Index>& members = metadata_.lists[field.list].members;
+      listed_.insert(members.begin(), members.end());
+    } else {
+      zones_.insert(field.place);
+    }
+  }
+
+  /// Returns whether there is a place for each row of an array. O(rows · log fields).
+  [[nodiscard]] bool hold(const Mesh& mesh, const DataArray& array) const {
+    if (array.components != 1 || are_texts(array.values)) return false;
+    for (Index row = 0; row < row_count(array); ++row) {
+      if (!has_place(mesh, array.association, array.is_dense() ? row : array.indices[row])) return false;
+    }
+    return true;
+  }
+
+ private:
+  [[nodiscard]] bool has_place(const Mesh& mesh, Association association, Index item) const {
+    if (listed_.contains(item)) return true;
+    if (association == Association::vertices) return zones_.contains(metadata_.zone_of(item));
+    const int s = metadata_.section_of_cell[item];
+    return sections_.contains(s) || (zones_.contains(metadata_.sections[s].zone) &&
+                                     dimension(mesh.cells.shapes[item]) == metadata_.cell_dimension);
+  }
+
+  const Metadata& metadata_;
+  std::set<int> zones_;
+  std::set<int> sections_;
+  std::unordered_set<Index> listed_;
+};
+
+/// Takes the arrays from fields that cannot hold all of them any more.
+void release_arrays(const Mesh& mesh, Metadata& metadata) {
+  std::map<std::pair<Association, std::string>, ArrayFields> by_array;
+  for (const Field& field : metadata.fields) {
+    if (field.role != Field::Role::values || field.array.empty()) continue;
+    by_array.try_emplace({field.association, field.array}, metadata).first->second.add(field);
+  }
+  std::set<std::pair<Association, std::string>> released;
+  for (const auto& [key, fields] : by_array) {
+    const DataArray* const array = find_array(mesh, key.second, key.first);
+    if (array != nullptr && !fields.hold(mesh, *array)) released.insert(key);
+  }
+  for (Field& field : metadata.fields) {
+    if (released.contains({field.association, field.array})) field.array.clear();
   }
 }
 
@@ -108,6 +168,7 @@ class Pruner {
       : metadata_(metadata), filler_(filler), notes_(notes) {}
 
   void prune(Node& node) const {
+    if (node.label == "Zone_t") prune_regions(node);
     std::erase_if(node.children, [&](const Node& child) { return is_gone(child); });
     if (const Node* const list = shortened_list(node)) {
       const auto before = node.children.size();
@@ -125,6 +186,42 @@ class Pruner {
   }
 
  private:
+  /// Removes the data of a zone's regions that name a condition or connectivity with other members now, and
+  /// regions that name one that is gone.
+  void prune_regions(Node& zone) const {
+    std::set<std::string> gone;
+    std::set<std::string> changed;
+    for (const Node& group : zone.children) {
+      if (group.label != "ZoneBC_t" && group.label != "ZoneGridConnectivity_t") continue;
+      for (const Node& part : group.children) {
+        if (is_gone(part)) gone.insert(part.name);
+        if (shortened_list(part) != nullptr) changed.insert(part.name);
+      }
+    }
+    std::erase_if(zone.children, [&](Node& region) {
+      const std::string part = region.label == "ZoneSubRegion_t" ? named_part(region) : "";
+      if (gone.contains(part)) {
+        notes_.push_back(fmt::format("the region '{}' is left out: it is that of '{}', which has no members",
+                                     region.name, part));
+        return true;
+      }
+      const auto is_data = [](const Node& child) { return child.label == "DataArray_t"; };
+      if (changed.contains(part) && std::erase_if(region.children, is_data) > 0) {
+        notes_.push_back(
+            fmt::format("the data of '{}' are left out: '{}' has other members now", region.name, part));
+      }
+      return false;
+    });
+  }
+
+  /// Returns the name of the condition or connectivity that a region names; empty if none.
+  static std::string named_part(const Node& region) {
+    for (const std::string_view name : {"BCRegionName", "GridConnectivityRegionName"}) {
+      if (const Node* const part = region.child(name)) return part->text();
+    }
+    return {};
+  }
+
   [[nodiscard]] bool has_gone_field(const Node& node) const {
     return node.field >= 0 && filler_.is_gone(metadata_.fields[static_cast<std::size_t>(node.field)]);
   }
@@ -208,6 +305,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   if (own != nullptr && still_fits(mesh, *own)) {
     metadata = std::make_shared<Metadata>(*own);
     take_sets(mesh, *metadata);
+    release_arrays(mesh, *metadata);
   } else {
     metadata = layout_of(mesh);
     note_metadata_unsupported(mesh, "CGNS", notes);

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 namespace meshorder {
 
@@ -96,6 +98,31 @@ void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t larg
         fmt::format("the ids of {} are not written: numbers of {} are {} to {} and differ from each other",
                     to_string(association), format, smallest, largest));
   }
+}
+
+void require_valid(const FileNumbers& numbers, std::string_view item, std::int64_t largest,
+                   const FilePath& path) {
+  std::int64_t smallest = 1;
+  std::vector<std::pair<std::int64_t, Index>> given;  // number and position in the mesh
+  for (Index k = 0; k < numbers.of_file().size(); ++k) {
+    smallest = std::min(smallest, numbers.of_file().id(k));
+    largest = std::max(largest, numbers.of_file().id(k));
+    given.emplace_back(numbers.at(numbers.place(k)), numbers.place(k));
+  }
+  if (given.empty()) return;
+  std::sort(given.begin(), given.end());
+  const std::string remedy = fmt::format("ids are {} to {} and differ from each other", smallest, largest);
+  for (const auto& [number, place] : {given.front(), given.back()}) {
+    if (number >= smallest && number <= largest) continue;
+    throw InputError(path.string(), fmt::format("the id of {} {} is {}", item, place, number), remedy);
+  }
+  const auto same = std::adjacent_find(given.begin(), given.end(),
+                                       [](const auto& a, const auto& b) { return a.first == b.first; });
+  if (same == given.end()) return;
+  throw InputError(path.string(),
+                   fmt::format("the id {} is that of {} {} and of {} {}", same->first, item, same->second,
+                               item, (same + 1)->second),
+                   remedy);
 }
 
 void require_known_references(const std::vector<std::string>& unknown, const FilePath& path) {

@@ -90,6 +90,11 @@ std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
 void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes,
                     std::int64_t smallest = 1);
 
+/// Throws InputError unless the numbers in the mesh are valid: from 1, or the least in the file, to
+/// `largest`, or the greatest in the file, each only once. `item` is "vertex" or "cell". O(n log n).
+void require_valid(const FileNumbers& numbers, std::string_view item, std::int64_t largest,
+                   const FilePath& path);
+
 /// Throws InputError if there are `unknown` cards: they may name items by number, so no number can change.
 void require_known_references(const std::vector<std::string>& unknown, const FilePath& path);
 

@@ -105,7 +105,7 @@ Columns attributes_of(Writing& writing, const BlockPlan& block) {
   Columns columns;
   if (block.record != nullptr) {
     for (const auto& [name, array] : block.record->attributes) {
-      if (const DataArray* const found = writing.take(array, Association::cells))
+      if (const DataArray* const found = writing.take_column(array, Association::cells))
         columns.emplace_back(name, found);
     }
     return columns;

@@ -97,7 +97,7 @@ class SeriesPlanner {
         .name = series.name, .type = series.type, .present = series.present, .declared = series.declared};
     bool found = series.arrays.empty();
     for (const std::string& name : series.arrays) {
-      plan.arrays.push_back(writing_.take(name, association_));
+      plan.arrays.push_back(writing_.take_column(name, association_));
       const DataArray* const array = plan.arrays.back();
       found = found || array != nullptr;
       if (array != nullptr) plan.type = written_type(plan.type, array->values);

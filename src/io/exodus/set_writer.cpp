@@ -133,9 +133,12 @@ class FamilyPlanner {
   }
 
   void take_variables(SetPlan& plan) {
+    const bool is_sides = kind_.word == kSetKinds[kSideSets].word;
     for (std::size_t v = 0; v < plan.record->variables.size(); ++v) {
       for (const std::string& array : plan.record->variables[v].arrays) {
-        plan.variables[v].push_back(writing_.take(array, kind_.association));
+        // a side set's array has a component for each side of a cell
+        plan.variables[v].push_back(is_sides ? writing_.take(array, kind_.association)
+                                             : writing_.take_column(array, kind_.association));
       }
     }
   }

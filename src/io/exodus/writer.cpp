@@ -37,6 +37,11 @@ const DataArray* Writing::take(std::string_view name, Association association) {
   return array;
 }
 
+const DataArray* Writing::take_column(std::string_view name, Association association) {
+  const DataArray* const array = name.empty() ? nullptr : find_array(mesh, name, association);
+  return array != nullptr && array->components == 1 ? take(name, association) : nullptr;
+}
+
 NcSink Writing::declare(const std::string& variable, NcType type, const std::vector<std::string>& dimensions,
                         std::vector<Attribute> attributes) {
   const auto kept = metadata.variable_attributes.find(variable);
@@ -193,20 +198,26 @@ struct MapPlan {
   const DataArray* array;
 };
 
+/// Returns whether a named map can hold an array: a whole number for each vertex or cell.
+bool fits_map(const DataArray& array) {
+  return array.is_dense() && array.components == 1 && are_whole(array.values);
+}
+
 /// Returns the maps of the file that the mesh came from, then the arrays "map NAME" and `kOriginal`.
 std::vector<MapPlan> plan_maps(Writing& writing, Association association) {
   const bool on_vertices = association == Association::vertices;
   std::vector<MapPlan> plans;
   std::int64_t last = 0;
   for (const MapRecord& record : on_vertices ? writing.metadata.node_maps : writing.metadata.element_maps) {
-    const DataArray* const array = writing.take(record.array, association);
-    if (array == nullptr) continue;
+    const DataArray* const array = find_array(writing.mesh, record.array, association);
+    if (array == nullptr || !fits_map(*array)) continue;
+    writing.placed.insert(array);
     plans.push_back({record.id, record.name, record.type, array});
     last = std::max(last, record.id);
   }
   for (const DataArray& array : writing.mesh.data) {
-    const bool is_map = array.association == association && array.is_dense() && array.components == 1 &&
-                        (array.name.starts_with(kMap) || array.name == kOriginal) && are_whole(array.values);
+    const bool is_map = array.association == association &&
+                        (array.name.starts_with(kMap) || array.name == kOriginal) && fits_map(array);
     if (!is_map || !writing.placed.insert(&array).second) continue;
     const std::size_t prefix = array.name == kOriginal ? 0 : kMap.size();
     plans.push_back({++last, array.name.substr(prefix), kInt, &array});
@@ -232,16 +243,23 @@ void write_maps(Writing& writing, const std::string& of, const std::string& pref
   writing.write_names(prefix + "ap_names", count, names);
 }
 
+/// Returns whether nodal attributes can hold an array: a number for each vertex.
+bool fits_nodal_attribute(const DataArray& array) {
+  return array.is_dense() && array.components == 1 &&
+         !std::holds_alternative<std::vector<std::string>>(array.values);
+}
+
 Columns plan_nodal_attributes(Writing& writing) {
   Columns columns;
-  for (const auto& [name, array] : writing.metadata.nodal_attributes) {
-    if (const DataArray* const found = writing.take(array, Association::vertices))
-      columns.emplace_back(name, found);
+  for (const auto& [name, of_mesh] : writing.metadata.nodal_attributes) {
+    const DataArray* const array = find_array(writing.mesh, of_mesh, Association::vertices);
+    if (array == nullptr || !fits_nodal_attribute(*array)) continue;
+    writing.placed.insert(array);
+    columns.emplace_back(name, array);
   }
   for (const DataArray& array : writing.mesh.data) {
-    const bool is_attribute = array.association == Association::vertices && array.is_dense() &&
-                              array.components == 1 && array.name.starts_with(kAttribute) &&
-                              !std::holds_alternative<std::vector<std::string>>(array.values);
+    const bool is_attribute = array.association == Association::vertices &&
+                              array.name.starts_with(kAttribute) && fits_nodal_attribute(array);
     if (!is_attribute || !writing.placed.insert(&array).second) continue;
     columns.emplace_back(array.name.substr(kAttribute.size()), &array);
   }

@@ -28,6 +28,8 @@ struct Writing {
 
   /// Returns the array of that name and adds it to `placed`; null if it does not exist or cannot be written.
   const DataArray* take(std::string_view name, Association association);
+  /// Does the same for an array of one component; null for others.
+  const DataArray* take_column(std::string_view name, Association association);
 
   /// Declares a variable; adds the attributes that it had in the file that the mesh came from.
   NcSink declare(const std::string& variable, NcType type, const std::vector<std::string>& dimensions,

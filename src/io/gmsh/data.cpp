@@ -257,6 +257,7 @@ void read_view(ReadContext& reading, std::string_view section) {
   array.name = *view.array;
   array.association = view.association;
   std::vector<double> values = even_rows(reading, entries, view, array.components);
+  view.width = array.components;
   expect_end(reading, section);
   reading.metadata.sections.push_back({SectionKind::view, view.section, "", reading.metadata.views.size()});
   reading.view_arrays.push_back(reading.mesh.data.size());
@@ -297,12 +298,16 @@ std::string name_in_quotes(std::string_view name) {
   return result;
 }
 
-bool add_view(Metadata& layout, const DataArray& array, Notes& notes) {
+namespace {
+
+/// Returns whether a view can hold an array.
+bool has_place(const DataArray& array) {
+  return !are_texts(array.values) && gmsh_components(array.components) > 0;
+}
+
+/// Returns the components of a view of an array that has a place. Notes what changes.
+Index components_of_view(const DataArray& array, Notes& notes) {
   const Index components = gmsh_components(array.components);
-  if (are_texts(array.values) || components == 0) {
-    note_array_unsupported(array, "Gmsh", notes);
-    return false;
-  }
   if (components != array.components) {
     notes.push_back("the array '" + array.name +
                     "' is filled up with zeros: Gmsh's data have 1, 3 or 9 components");
@@ -310,6 +315,35 @@ bool add_view(Metadata& layout, const DataArray& array, Notes& notes) {
   if (!are_exact<double>(array.values)) {
     notes.push_back("the array '" + array.name + "' loses digits: Gmsh's data are real numbers of 53 bits");
   }
+  return components;
+}
+
+}  // namespace
+
+void refit_views(Metadata& layout, const Mesh& mesh, Notes& notes) {
+  for (Section& section : layout.sections) {
+    if (section.kind != SectionKind::view) continue;
+    View& view = layout.views[section.view];
+    const DataArray* const array = view.array ? find_array(mesh, *view.array, view.association) : nullptr;
+    if (array == nullptr || (array->components == view.width && !are_texts(array->values))) continue;
+    if (!has_place(*array)) {
+      view.array.reset();
+      continue;
+    }
+    view.width = array->components;
+    view.integers[1] = components_of_view(*array, notes);
+    if (view.per == PerElement::one) continue;
+    view.per = PerElement::one;
+    view.section = section.name = "ElementData";
+  }
+}
+
+bool add_view(Metadata& layout, const DataArray& array, Notes& notes) {
+  if (!has_place(array)) {
+    note_array_unsupported(array, "Gmsh", notes);
+    return false;
+  }
+  const Index components = components_of_view(array, notes);
   View view;
   view.section = array.association == Association::vertices ? "NodeData" : "ElementData";
   view.association = array.association;

@@ -71,6 +71,7 @@ struct View {
   std::string section;
   Association association = Association::vertices;
   std::optional<std::string> array;    ///< name of the array in the mesh; none: the view has no values
+  Index width = 1;                     ///< components of that array
   std::vector<std::string> strings;    ///< verbatim, quotes included
   std::vector<double> reals;           ///< the time first
   std::vector<std::int32_t> integers;  ///< step, components, entries (set anew when written), partition …
@@ -317,6 +318,10 @@ void classify(Metadata& layout, WriteContext& output, Notes& notes);
 
 /// Adds a view for an array that has none yet; returns false, with a note, if Gmsh has no place for it.
 bool add_view(Metadata& layout, const DataArray& array, Notes& notes);
+
+/// Fits the views of arrays that were replaced to the components that these have now. Views without a place
+/// for their array lose it. Notes what changes.
+void refit_views(Metadata& layout, const Mesh& mesh, Notes& notes);
 
 /// Returns a name that fits between double quotes in one line.
 std::string name_in_quotes(std::string_view name);

@@ -39,12 +39,12 @@ std::vector<const ElementType*> types_of_cells(const Mesh& mesh) {
   return types;
 }
 
-/// Returns the ids of another format if they are valid in Gmsh (positive, distinct); else none, with a note.
+/// Returns ids if they are valid in Gmsh (at least `smallest`, distinct); else none, with a note.
 std::vector<std::int64_t> usable_ids(const std::vector<std::int64_t>& ids, std::string_view what,
-                                     Notes& notes) {
+                                     std::int64_t smallest, Notes& notes) {
   std::vector<std::int64_t> sorted = ids;
   std::sort(sorted.begin(), sorted.end());
-  const bool usable = sorted.empty() || (sorted.front() > 0 &&
+  const bool usable = sorted.empty() || (sorted.front() >= smallest &&
                                          std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end());
   if (usable) return ids;
   notes.push_back(fmt::format("the {} are renumbered: Gmsh's numbers are positive and distinct", what));
@@ -68,13 +68,14 @@ bool still_fits(const Mesh& mesh, const Metadata& layout) {
 }
 
 /// Fills `output` with the ids, entities and tags of a mesh that came from a Gmsh file.
-void take_layout(const Metadata& layout, WriteContext& output) {
+void take_layout(const Metadata& layout, WriteContext& output, Notes& notes) {
   const Mesh& mesh = output.mesh;
   const auto place = [&](std::string_view name, Association association) {
     output.placed.push_back(find_array(mesh, name, association));
   };
-  output.node_ids = mesh.vertex_ids;
-  output.cell_ids = mesh.cell_ids;
+  constexpr std::int64_t kSmallestRead = 0;
+  output.node_ids = usable_ids(mesh.vertex_ids, "vertices", kSmallestRead, notes);
+  output.cell_ids = usable_ids(mesh.cell_ids, "cells", kSmallestRead, notes);
   place(kCellEntity, Association::cells);
   if (layout.is_version_2()) {
     if (!integers_of(mesh, kLabel, Association::cells).empty()) place(kLabel, Association::cells);
@@ -186,12 +187,13 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   WriteContext output{mesh, layout, types_of_cells(mesh), {}, {}, {}, {}, {}, {}, NamedParts(mesh)};
   output.placed.push_back(find_array(mesh, kCellType, Association::cells));
   if (keeps_layout) {
-    take_layout(layout, output);
+    refit_views(layout, mesh, notes);
+    take_layout(layout, output, notes);
     note_sets(mesh, layout, notes);
   } else {
     note_metadata_unsupported(mesh, "Gmsh", notes);
-    output.node_ids = usable_ids(mesh.vertex_ids, "vertices", notes);
-    output.cell_ids = usable_ids(mesh.cell_ids, "cells", notes);
+    output.node_ids = usable_ids(mesh.vertex_ids, "vertices", 1, notes);
+    output.cell_ids = usable_ids(mesh.cell_ids, "cells", 1, notes);
     classify(layout, output, notes);
   }
   add_views(layout, output, notes);

@@ -36,7 +36,10 @@ class BulkWriter {
         notes_(notes),
         file_(path),
         same_numbers_(nodes_.all_as_in_file() && elements_.all_as_in_file()) {
-    if (!same_numbers_) require_known_references(deck_.unknown, path);
+    if (same_numbers_) return;
+    require_valid(nodes_, "vertex", kLargestNumber, path);
+    require_valid(elements_, "cell", kLargestNumber, path);
+    require_known_references(deck_.unknown, path);
   }
 
   void write() {

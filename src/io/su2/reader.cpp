@@ -327,6 +327,7 @@ class Su2Reader {
     metadata_->sections.push_back({Part::marker, name});
     (void)in_.raw_line();
     while (in_.bytes_left() > 0 && !find_keyword()) keep_line();
+    metadata_->sections.back().comments = std::exchange(lines_, {});
     if (in_.bytes_left() == 0 || keyword_ != "MARKER_ELEMS") {
       in_.fail("the marker " + shown(name) + " has no MARKER_ELEMS=", "it must follow MARKER_TAG=");
     }

@@ -57,7 +57,8 @@ struct Metadata final : FormatMetadata {
   };
   struct Section {
     Part part;
-    std::string text = {};  ///< the name of a marker; the lines of what is kept as it is
+    std::string text = {};      ///< the name of a marker; the lines of what is kept as it is
+    std::string comments = {};  ///< the lines between MARKER_TAG= and MARKER_ELEMS=
     std::vector<SurfacePoint> surface_points = {};
   };
   std::vector<Section> sections;        ///< in the order of the file

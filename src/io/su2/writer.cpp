@@ -180,7 +180,7 @@ class Su2Writer {
         {Part::dimension}, {Part::elements}, {Part::points}, {Part::marker_count}};
     for (const Metadata::Section& section : own_ != nullptr ? own_->sections : plain) write(section);
     for (std::size_t i = 0; i < markers_.markers.size(); ++i) {
-      if (!written_[i]) write(markers_.markers[i]);
+      if (!written_[i]) write(markers_.markers[i], {});
     }
   }
 
@@ -196,7 +196,7 @@ class Su2Writer {
       case Part::marker_count:
         return out_.print("NMARK= {}\n", markers_.markers.size() + empty_labels());
       case Part::marker:
-        return write_marker(section.text);
+        return write_marker(section);
       case Part::surface_points:
         return write_surface_points(section.surface_points);
       case Part::verbatim:
@@ -267,17 +267,19 @@ class Su2Writer {
   }
 
   /// Writes a marker of the file that the mesh came from.
-  void write_marker(const std::string& name) {
-    if (const auto place = place_of(name)) {
-      write(markers_.markers[*place]);
+  void write_marker(const Metadata::Section& section) {
+    if (const auto place = place_of(section.text)) {
+      write(markers_.markers[*place], section.comments);
       written_[*place] = true;
-    } else if (label_of_name(name) != 0) {
-      write(Marker{name, {}});
+    } else if (label_of_name(section.text) != 0) {
+      write(Marker{section.text, {}}, section.comments);
     }
   }
 
-  void write(const Marker& marker) {
-    out_.print("MARKER_TAG= {}\nMARKER_ELEMS= {}\n", marker.name, marker.cells.size());
+  void write(const Marker& marker, std::string_view comments) {
+    out_.print("MARKER_TAG= {}\n", marker.name);
+    out_.write(comments);
+    out_.print("MARKER_ELEMS= {}\n", marker.cells.size());
     write(marker.cells, own_ != nullptr && own_->numbers_marker_elements);
   }
 

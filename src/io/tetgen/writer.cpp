@@ -3,6 +3,7 @@
 #include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
+#include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/text_rows.hpp"
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <system_error>
 #include <type_traits>
 #include <utility>
@@ -228,16 +230,19 @@ bool has_markers(const Labels& labels, const std::vector<Index>& items, std::str
   return given > 0;
 }
 
+constexpr std::int64_t kLargestNumber = std::numeric_limits<std::int64_t>::max();  // number of a vertex
+
 struct WriteContext {
   const Mesh& mesh;
   const Metadata& metadata;
   Layout layout;
-  bool own_ids;  // the ids came from TetGen's files; others are not written
+  bool own_ids;     // the ids came from TetGen's files; others are not written
+  bool vertex_ids;  // those of vertices are written
   Labels vertex_labels;
   Labels cell_labels;
 
   [[nodiscard]] std::int64_t vertex_number(Index v) const {
-    return own_ids && !mesh.vertex_ids.empty() ? mesh.vertex_ids[v] : v + std::int64_t{metadata.base};
+    return vertex_ids ? mesh.vertex_ids[v] : v + std::int64_t{metadata.base};
   }
   /// Returns the number of the cell at position `place` of its file.
   [[nodiscard]] std::int64_t cell_number(Index c, Index place) const {
@@ -333,6 +338,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
                     own ? *own : standard,
                     {},
                     own != nullptr,
+                    own != nullptr && can_be_numbers(mesh.vertex_ids, kLargestNumber, 0),
                     labels_of(mesh, Association::vertices),
                     labels_of(mesh, Association::cells)};
   from.layout = layout_of(mesh, from.metadata, own != nullptr);
@@ -359,6 +365,10 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   }
   OutputFile::commit_all(files);
 
+  if (own && !mesh.vertex_ids.empty() && !from.vertex_ids) {
+    notes.emplace_back(
+        "the ids of vertices are not written: TetGen's are at least 0 and differ from each other");
+  }
   if (!own) {
     note_ids_unsupported(mesh, "TetGen", notes);
     note_metadata_unsupported(mesh, "TetGen", notes);

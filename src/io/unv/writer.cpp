@@ -153,7 +153,10 @@ class UnvWriter {
     file_node_ = inverse(own_->vertex_of);
     file_element_ = inverse(own_->cell_of);
     const bool same_numbers = nodes_.all_as_in_file() && elements_.all_as_in_file();
-    if (!same_numbers) require_known_references(file_.unknown, path);
+    if (same_numbers) return;
+    require_valid(nodes_, "vertex", kLargestNumber, path);
+    require_valid(elements_, "cell", kLargestNumber, path);
+    require_known_references(file_.unknown, path);
   }
 
   void write() {

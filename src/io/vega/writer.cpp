@@ -5,6 +5,7 @@
 // come in VTK's order.
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
+#include "io/deck/numbers.hpp"
 #include "io/named_parts.hpp"
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <map>
 #include <type_traits>
 
@@ -29,6 +31,9 @@ bool vega_holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
   return (shape == Shape::tetrahedron && vertices == 4) || (shape == Shape::hexahedron && vertices == 8);
 }
 
+constexpr std::int64_t kLargestNumber =
+    std::numeric_limits<std::int64_t>::max();  // number of a vertex or cell
+
 /// Writes one mesh; the sections of a Vega file in their order, those of other meshes in the usual one.
 class VegaWriter {
  public:
@@ -37,6 +42,8 @@ class VegaWriter {
         parts_(mesh),
         notes_(notes),
         native_(dynamic_cast<const vega::Metadata*>(mesh.format_metadata.get())),
+        vertex_ids_(native_ && can_be_numbers(mesh.vertex_ids, kLargestNumber, 0)),
+        cell_ids_(native_ && can_be_numbers(mesh.cell_ids, kLargestNumber, 0)),
         out_(path) {}
 
   void write() {
@@ -107,6 +114,7 @@ class VegaWriter {
       for (const std::string& name : native_->included) {
         notes_.push_back("the file '" + name + "', which was included, is written inline");
       }
+      note_unfit_ids(mesh_, "Vega", kLargestNumber, notes_, 0);
     } else {
       note_ids_unsupported(mesh_, "Vega", notes_);
       note_metadata_unsupported(mesh_, "Vega", notes_);
@@ -161,12 +169,10 @@ class VegaWriter {
 
   // a mesh from a Vega file keeps the file's numbers, although Vega itself counts lines when it reads
   [[nodiscard]] std::int64_t vertex_number(Index v) const {
-    if (!native_) return v + std::int64_t{1};
-    return mesh_.vertex_ids.empty() ? v + std::int64_t{native_->vertex_base} : mesh_.vertex_ids[v];
+    return vertex_ids_ ? mesh_.vertex_ids[v] : v + std::int64_t{native_ ? native_->vertex_base : 1};
   }
   [[nodiscard]] std::int64_t element_number(Index c) const {
-    if (!native_) return c + std::int64_t{1};
-    return mesh_.cell_ids.empty() ? c + std::int64_t{native_->element_base} : mesh_.cell_ids[c];
+    return cell_ids_ ? mesh_.cell_ids[c] : c + std::int64_t{native_ ? native_->element_base : 1};
   }
 
   void write_section(const Section& section) {
@@ -270,6 +276,8 @@ class VegaWriter {
   NamedParts parts_;
   Notes& notes_;
   const vega::Metadata* native_;
+  bool vertex_ids_;  // the mesh's are written, not positions; so for cells
+  bool cell_ids_;
   OutputFile out_;
   std::vector<Section> sections_;
   std::vector<EntitySet> label_sets_;

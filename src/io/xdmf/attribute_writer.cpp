@@ -54,7 +54,7 @@ void Writer::add_others() {
   const std::set<std::pair<Association, std::string>> covered = names_;
   const std::set<std::pair<Association, std::string>> placed = placed_sets();
   for (const DataArray& array : mesh_.data) {
-    if (!covered.contains({array.association, array.name})) add_array(array);
+    if (!covered.contains({array.association, array.name}) || are_texts(array.values)) add_array(array);
   }
   for (const EntitySet& set : mesh_.sets) {
     if (placed.contains({set.association, set.name}) ||
