@@ -42,7 +42,7 @@ void put_number(std::string& bytes, std::size_t begin, Choice& choice) {
     value = kLimits[choice.below(kLimits.size())];
   } else {  // near to what is there
     std::memcpy(&value, bytes.data() + at, width);
-    value += static_cast<std::int64_t>(choice.below(9)) - 4;
+    value = static_cast<std::int64_t>(static_cast<std::uint64_t>(value) + choice.below(9) - 4);
   }
   std::memcpy(bytes.data() + at, &value, width);
 }

@@ -2,7 +2,9 @@
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/hdf5/visitor.hpp"
+#include <meshorder/error.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -42,6 +44,34 @@ TEST(Hdf5File, ReplacesADatasetBesideOneWithTheNameThatItWouldTakeMeanwhile) {
   EXPECT_EQ(file.names("/"), (std::vector<std::string>{"a", "a.old", "t", "t.old"}));
   EXPECT_EQ(file.read_texts("/t.old"), std::vector<std::string>{"mine"});
   EXPECT_EQ(file.read_texts("/t"), (std::vector<std::string>{"y", "z"}));
+}
+
+TEST(Hdf5File, RefusesAGroupWithinItself) {
+  const Session session;
+  std::string bytes;
+  haddr_t at = 0;
+  {
+    const File file = File::in_memory("", "new.h5");
+    const Handle group(H5Gcreate2(file.id(), "a", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+    ASSERT_GE(H5Lcreate_hard(file.id(), "a", group.id(), "self", H5P_DEFAULT, H5P_DEFAULT), 0);
+    EXPECT_TRUE(file.datasets().empty());
+    H5O_info_t object;
+    ASSERT_GE(H5Oget_info(group.id(), &object), 0);
+    at = object.addr;
+    bytes = file.bytes();
+  }
+  constexpr std::size_t kLinks = 4;  // where the header of version 1 counts the links to its object
+  ASSERT_EQ(bytes[at], 1);
+  ASSERT_EQ(bytes[at + kLinks], 2);
+  bytes[at + kLinks] = 1;
+  const File damaged = File::in_memory(bytes, "damaged.h5");
+  try {
+    (void)damaged.datasets();
+    FAIL() << "the group was taken for many";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("damaged.h5: the group '/a/self' is in the file twice, or within"));
+  }
 }
 
 }  // namespace

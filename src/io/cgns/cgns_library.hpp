@@ -35,13 +35,13 @@ MESHORDER_CGNS_FUNCTION(cgio_release_id);
 
 namespace meshorder::cgns {
 
-/// Loads CGNS's library and HDF5, where this is put off until a file needs it. Throws Unavailable if it is
-/// not found.
+/// Loads the CGNS library and HDF5, where this is put off until a file needs them. Throws Unavailable if one
+/// is not found.
 inline void load_library() {
-  hdf5::load_library();
 #ifdef MESHORDER_CGNS_FILE
   cgns_library.load();
 #endif
+  hdf5::load_library();
 }
 
 }  // namespace meshorder::cgns

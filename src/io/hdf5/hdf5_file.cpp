@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <new>
+#include <set>
 
 namespace meshorder::hdf5 {
 namespace {
@@ -160,7 +161,14 @@ Handle File::open_dataset(const std::string& path) const {
 std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
   const Session session;
   std::vector<std::pair<std::string, std::uint64_t>> result;
+  // The library visits an object once if the object's count of links is right. Without this, a damaged group
+  // within itself is visited for ever.
+  std::set<haddr_t> groups;
   Visitor<H5O_info_t> visitor([&](hid_t file, const char* name, const H5O_info_t& object) {
+    if (object.type == H5O_TYPE_GROUP && !groups.insert(object.addr).second)
+      throw InputError(
+          name_, fmt::format("the group '{}' is in the file twice, or within itself", normal_path(name)),
+          "the file is damaged");
     if (object.type != H5O_TYPE_DATASET) return;
     const Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
     const Handle space(dataset.is_open() ? H5Dget_space(dataset.id()) : -1, H5Sclose);
