@@ -1,17 +1,19 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// Layouts for graphics processors, where many threads work on elements at once, and the cost of their atomic
-// additions. Order the mesh first: a layout keeps the order of cells and vertices, and is better if elements
-// that share vertices are near each other.
+// Layouts for graphics processors, where many threads work on elements at once, and what kernels cost there.
+// Order the mesh first: a layout keeps the order of cells and vertices, and is better if elements that share
+// vertices are near each other.
 
 #include <meshorder/export.hpp>
 #include <meshorder/options.hpp>
 #include <meshorder/view.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace meshorder {
@@ -96,36 +98,77 @@ struct Colours {
 [[nodiscard]] MESHORDER_API std::vector<Index> sort_corners(const CellsView& cells, std::size_t vertex_count,
                                                             const Run& run = {});
 
-/// Where a kernel keeps the numbers, of 4 bytes each, that it adds to the vertices of its cells.
+/// Where a kernel keeps the numbers, of 4 bytes each, that it reads for the vertices of its cells and adds to
+/// them. `patches` and `gathered` have three numbers of a vertex side by side.
 enum class GpuLayout {
-  packed,  ///< the three numbers of a vertex side by side, each added separately
-  apart,   ///< three arrays, one for each number
-  padded   ///< four numbers of a vertex side by side, added at once
+  packed,   ///< the three numbers of a vertex side by side, each added separately
+  apart,    ///< three arrays, one for each number
+  padded,   ///< four numbers of a vertex side by side, added at once
+  patches,  ///< as `packed`, in patches of 256 cells: each block adds once to each of its vertices
+  gathered  ///< two passes: cells store 16 bytes for each corner, vertices sum what their gather lists name
 };
 
-/// Cost of the atomic additions of a pass over cells with one thread for each cell.
+/// All values of `GpuLayout`.
+inline constexpr std::array kGpuLayouts{GpuLayout::packed, GpuLayout::apart, GpuLayout::padded,
+                                        GpuLayout::patches, GpuLayout::gathered};
+
+/// Returns "packed", "apart", "padded", "patches" or "gathered". Valid for the life of the program.
+MESHORDER_API std::string_view to_string(GpuLayout layout);
+
+/// Size of the last cache of an NVIDIA H100, bytes.
+inline constexpr std::size_t kGpuCacheBytes = std::size_t{50} << 20;
+
+/// Cost of a kernel on a graphics processor.
 struct GpuCost {
-  Offset requests = 0;  ///< additions, each of a warp of 32 threads at once
-  /// Sectors of 32 bytes that these additions write. A sector counts t times, where t is the largest number
-  /// of threads of the warp that add to the same number in it: they wait for each other.
+  Offset requests = 0;  ///< additions, or loads and stores, each of a warp of 32 threads at once
+  /// Sectors of 32 bytes that these requests touch. A sector of additions counts t times, where t is the
+  /// largest number of threads of the warp that add to the same number in it: they wait for each other.
   Offset sectors = 0;
-  Offset floor = 0;  ///< `sectors` if the vertices of each warp were all different and side by side
+  /// `sectors` if the numbers that each warp touches at once were all different and side by side; for
+  /// patches, if no vertex were in two of them, too.
+  Offset floor = 0;
+  Offset dram_bytes = 0;  ///< bytes read from memory, if the cache is filled again and again
+  Offset dram_floor = 0;  ///< `dram_bytes` if each number were read once
 
   bool operator==(const GpuCost&) const = default;
 };
 
-/// Counts the cost of atomic additions to the vertices of cells on a graphics processor. Of two orders of
-/// the same cells, the one with fewer sectors is faster there. The counters of an NVIDIA H100 agree within
-/// 1.2 % (docs/gpu.md).
+/// Counts what adding to the vertices of cells costs on a graphics processor, with one thread for each cell.
+/// Of two orders of the same cells, the one with fewer sectors is faster there. The counters of an NVIDIA
+/// H100 agree within 1.2 % for tetrahedra; docs/gpu.md has all.
+///
+/// `sectors` are those of atomic additions; for `gathered`, those that the first pass stores and the second
+/// one loads. `dram_bytes` are vertex numbers of 4 bytes, of 2 bytes within patches, and what the layout has
+/// for each vertex in two arrays: one is read, the other is added to. Other data of the cells is not counted.
 ///
 /// @param cells         cells with the same number of vertices; edges are lines
 /// @param vertex_count  n
 /// @param layout        where the numbers are
+/// @param cache_bytes   size of the last cache, ≥ 1
 /// @param run           threads
-/// @throws InvalidArgument for faulty cells and cells of several types; TooLarge as `patches`
-/// @note O(Σ vertices of a cell), on all threads.
+/// @throws InvalidArgument for faulty cells, cells of several types and no cache; for `patches` and
+/// `gathered`
+///         as the functions of these names; TooLarge as `patches`
+/// @note O(Σ vertices of a cell), on all threads but for `dram_bytes` and `gathered`.
 [[nodiscard]] MESHORDER_API GpuCost gpu_cost(const CellsView& cells, std::size_t vertex_count,
-                                             GpuLayout layout, const Run& run = {});
+                                             GpuLayout layout, std::size_t cache_bytes = kGpuCacheBytes,
+                                             const Run& run = {});
+
+/// Counts what the product of a sparse matrix with a vector costs on a graphics processor. The matrix has an
+/// entry for each neighbour in the graph, and a diagonal, in compressed sparse rows with numbers of 4 bytes.
+///
+/// `sectors` and `dram_bytes` are those of loads: of offsets, columns, values and the vector. Loops are
+/// unrolled as by NVIDIA's compiler. The counters of an NVIDIA H100 had the same numbers (docs/gpu.md).
+///
+/// @param graph        the pattern of the matrix, which is symmetric
+/// @param lanes        threads of a row: 1, 2, 4, 8, 16 or 32
+/// @param cache_bytes  size of the last cache, ≥ 1
+/// @param run          threads
+/// @throws InvalidArgument for other numbers of threads, no cache, and as `quality`; TooLarge as `quality`
+/// @note O(n + entries), on all threads but for `dram_bytes`. Memory: a copy of the graph.
+[[nodiscard]] MESHORDER_API GpuCost gpu_product_cost(const GraphView& graph, int lanes = 1,
+                                                     std::size_t cache_bytes = kGpuCacheBytes,
+                                                     const Run& run = {});
 
 }  // namespace v0_3
 }  // namespace meshorder

@@ -81,8 +81,28 @@ def test_cost_is_that_of_its_definition(cells, layout, record, additions, arrays
                 requests += arrays
     cost = meshorder.gpu_cost(cells, layout)
     assert (cost.sectors, cost.requests) == (sectors, requests) and cost.floor < cost.sectors
-    with pytest.raises(InvalidArgument, match="'packed', 'apart' or 'padded'"):
+    with pytest.raises(InvalidArgument, match="'packed', 'apart', 'padded', 'patches' or 'gathered'"):
         meshorder.gpu_cost(cells, "float3")
+
+
+def test_costs_have_floors(cells):
+    for layout in ("packed", "apart", "padded", "patches", "gathered"):
+        cost = meshorder.gpu_cost(cells, layout)
+        small = meshorder.gpu_cost(cells, layout, cache_bytes=2000)
+        assert cost.floor <= cost.sectors == small.sectors
+        assert cost.dram_floor <= cost.dram_bytes < small.dram_bytes
+        with pytest.raises(InvalidArgument, match="a cache of 0 bytes"):
+            meshorder.gpu_cost(cells, layout, cache_bytes=0)
+
+
+def test_products_load_offsets_columns_values_and_vector():
+    path = [0, 1, 3, 5, 6], [1, 0, 2, 1, 3, 2]  # with a diagonal: 10 entries in rows of 2, 3, 3 and 2
+    cost = meshorder.gpu_product_cost(path)
+    assert (cost.requests, cost.dram_bytes) == (2 + 3 * 3, 10 * 8 + 5 * 4 + 32)
+    assert cost.dram_floor == cost.dram_bytes
+    assert meshorder.gpu_product_cost(path, 8).requests == 2 + 3
+    with pytest.raises(InvalidArgument, match="give 1, 2, 4, 8, 16 or 32"):
+        meshorder.gpu_product_cost(path, 3)
 
 
 def test_faults_are_named(cells):

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <numeric>
+#include <string>
 #include <utility>
 
 namespace meshorder {
@@ -297,6 +298,18 @@ CellSelection::CellSelection(const CellArrays& cells, Wanted wanted) : all_(cell
     own_.vertices.insert(own_.vertices.end(), vertices.begin(), vertices.end());
     own_.offsets.push_back(static_cast<Offset>(own_.vertices.size()));
   }
+}
+
+int uniform_width(const CellArrays& cells, const char* caller) {
+  if (cells.size() == 0) return 0;
+  const Offset width = cells.offsets[1];
+  for (Index c = 0; c < cells.size(); ++c) {
+    const bool other_shape = !cells.shapes.empty() && cells.shapes[c] != cells.shapes[0];
+    if (cells.offsets[c + 1] - cells.offsets[c] == width && !other_shape) continue;
+    throw InvalidArgument(std::string(caller) + ": cell " + std::to_string(c) +
+                          " is of another type than cell 0; take the cells of each type apart");
+  }
+  return static_cast<int>(width);
 }
 
 namespace {

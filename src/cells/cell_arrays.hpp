@@ -51,6 +51,11 @@ std::optional<Shape> shape_of_vtk_type(int type);
 /// @note O(entries), on all threads of the arena.
 CellArrays cell_arrays(const CellsView& view, std::size_t vertex_count, Check check);
 
+/// Returns how many vertices each cell has; 0 without cells. O(cells).
+///
+/// @throws InvalidArgument where they differ; the message begins with `caller`
+int uniform_width(const CellArrays& cells, const char* caller);
+
 /// Some cells, and the vertices that each joins.
 class CellSelection {
  public:

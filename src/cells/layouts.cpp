@@ -20,19 +20,6 @@ namespace {
 constexpr Index kCellsInChunk = 1 << 14;
 constexpr Index kFirstColours = 256;  ///< each vertex records which of these colours are taken
 
-/// Returns how many vertices each cell has; 0 without cells. Throws InvalidArgument where they differ.
-int uniform_width(const CellArrays& cells, const char* caller) {
-  if (cells.size() == 0) return 0;
-  const Offset width = cells.offsets[1];
-  for (Index c = 0; c < cells.size(); ++c) {
-    const bool other_shape = !cells.shapes.empty() && cells.shapes[c] != cells.shapes[0];
-    if (cells.offsets[c + 1] - cells.offsets[c] == width && !other_shape) continue;
-    throw InvalidArgument(std::string(caller) + ": cell " + std::to_string(c) +
-                          " is of another type than cell 0; take the cells of each type apart");
-  }
-  return static_cast<int>(width);
-}
-
 /// Calls `work(cell)` for the cells begin … end − 1, in the order of a patch: each thread of a warp takes a
 /// run of adjacent cells, and warp w has the w-th cell of each run. The last warp may have fewer threads.
 template <class Work>
@@ -239,16 +226,6 @@ std::vector<Index> sort_corners(const CellsView& cells, std::size_t vertex_count
       }
     });
     return sorted;
-  });
-}
-
-GpuCost gpu_cost(const CellsView& cells, std::size_t vertex_count, GpuLayout layout, const Run& run) {
-  return in_call(run, [&] {
-    const CellArrays arrays = cell_arrays(cells, vertex_count, Check::full);
-    const int width = uniform_width(arrays, "gpu_cost");
-    GpuCost cost = requests_and_floor(arrays.size(), width, layout);
-    cost.sectors = sectors_of_additions({.elements = arrays.incidence()}, layout);
-    return cost;
   });
 }
 

@@ -24,12 +24,12 @@ struct Additions {
 
 Additions additions_of(GpuLayout layout) {
   switch (layout) {
-    case GpuLayout::packed:
-      return {3 * kNumberBytes, 3, 1};
     case GpuLayout::apart:
       return {kNumberBytes, 1, 3};
-    default:
+    case GpuLayout::padded:
       return {4 * kNumberBytes, 1, 1};
+    default:
+      return {3 * kNumberBytes, 3, 1};
   }
 }
 
@@ -62,7 +62,7 @@ Offset sectors_of_additions(std::span<const Index> ascending, const Additions& a
   return sectors;
 }
 
-/// The vertices or sectors that the threads of a warp touch at one step.
+/// The vertices that the threads of a warp touch at one step.
 class Touched {
  public:
   void clear() { size_ = 0; }
@@ -76,6 +76,84 @@ class Touched {
  private:
   std::array<Index, kWarp> vertices_{};
   std::size_t size_ = 0;
+};
+
+/// Returns how many different numbers there are; sorts them.
+Offset different(std::span<Offset> numbers) {
+  if (!std::ranges::is_sorted(numbers)) std::ranges::sort(numbers);
+  Offset count = numbers.empty() ? 0 : 1;
+  for (std::size_t i = 1; i < numbers.size(); ++i) count += numbers[i] != numbers[i - 1] ? 1 : 0;
+  return count;
+}
+
+/// A warp in a loop over lists.
+class WarpLoop {
+ public:
+  WarpLoop(const RecordLists& lists, int lanes) : lists_(lists), lanes_(lanes) {}
+
+  /// Adds the threads of a list.
+  void add(Index list) {
+    const Offset begin = lists_.offsets[list];
+    const Offset end = lists_.offsets[list + 1];
+    for (int lane = 0; lane < lanes_; ++lane)
+      threads_[size_++] = {begin + lane, std::max<Offset>(0, (end - begin - lane + lanes_ - 1) / lanes_)};
+  }
+
+  /// Runs the loop to its end, and forgets the threads.
+  ListLoads run() {
+    loads_ = {};
+    for (Thread& thread : threads()) thread.first = thread.left % kUnrolled;
+    for (Offset step = 0; step + 1 < kUnrolled; ++step)
+      read(1, [step](const Thread& thread) { return thread.first > step; });
+    while (read(4 * kUnrolled, [](const Thread& thread) { return thread.left > 3 * kUnrolled; })) {
+    }
+    read(2 * kUnrolled, [](const Thread& thread) { return thread.left > kUnrolled; });
+    read(kUnrolled, [](const Thread& thread) { return thread.left > 0; });
+    size_ = 0;
+    return loads_;
+  }
+
+ private:
+  static constexpr Offset kUnrolled = 4;
+
+  struct Thread {
+    Offset next = 0;   ///< its next entry
+    Offset left = 0;   ///< number of entries that it has not read
+    Offset first = 0;  ///< number of entries that it reads one by one
+  };
+
+  std::span<Thread> threads() { return std::span(threads_).first(size_); }
+
+  /// Lets the threads that take part read entries, one at each step. Returns whether any take part.
+  template <class TakesPart>
+  bool read(Offset steps, TakesPart takes_part) {
+    std::array<Thread*, kWarp> active{};
+    std::size_t count = 0;
+    for (Thread& thread : threads())
+      if (takes_part(thread)) active[count++] = &thread;
+    if (count == 0) return false;
+    std::array<Offset, kWarp> of_lists{};
+    std::array<Offset, kWarp> of_records{};
+    const Offset records_in_sector = kSectorBytes / lists_.record_bytes;
+    for (Offset step = 0; step < steps; ++step) {
+      for (std::size_t i = 0; i < count; ++i) {
+        Thread& thread = *active[i];
+        of_lists[i] = thread.next * kNumberBytes / kSectorBytes;
+        of_records[i] = lists_.record(thread.next) / records_in_sector;
+        thread.next += lanes_;
+        --thread.left;
+      }
+      loads_ +=
+          {1, different(std::span(of_lists).first(count)), different(std::span(of_records).first(count))};
+    }
+    return true;
+  }
+
+  const RecordLists& lists_;
+  Offset lanes_;
+  std::array<Thread, kWarp> threads_{};
+  std::size_t size_ = 0;
+  ListLoads loads_;
 };
 
 /// Calls `count(begin, end)` for the places of every stride-th warp of `size` threads; returns the sum.
@@ -126,28 +204,51 @@ GpuCost requests_and_floor(Index elements, int width, GpuLayout layout) {
           .floor = width * (elements / kWarp * floor_of(kWarp) + floor_of(elements % kWarp))};
 }
 
+GpuCost additions_to(std::span<const Index> ascending, GpuLayout layout) {
+  const Additions additions = additions_of(layout);
+  GpuCost cost;
+  for (std::size_t begin = 0; begin < ascending.size(); begin += kWarp) {
+    const auto warp = ascending.subspan(begin, std::min<std::size_t>(kWarp, ascending.size() - begin));
+    cost.sectors += sectors_of_additions(warp, additions);
+    cost.requests += Offset{additions.count} * additions.arrays;
+  }
+  return cost;
+}
+
+ListLoads& ListLoads::operator+=(const ListLoads& other) {
+  requests += other.requests;
+  lists += other.lists;
+  records += other.records;
+  return *this;
+}
+
+ListLoads loads_of_lists(const RecordLists& lists, int lanes) {
+  const auto count = static_cast<Index>(lists.offsets.size() - 1);
+  const Index lists_in_warp = kWarp / lanes;
+  return sum_over_chunks<ListLoads>(count, lists_in_warp * kWarpsInChunk, [&](Index begin, Index end) {
+    ListLoads loads;
+    WarpLoop warp(lists, lanes);
+    for (Index list = begin; list < end; ++list) {
+      warp.add(list);
+      if ((list + 1) % lists_in_warp == 0 || list + 1 == end) loads += warp.run();
+    }
+    return loads;
+  });
+}
+
 Offset sectors_of_product(GraphRef graph, const Permutation& order, Index stride) {
   return sum_over_warps(graph.size(), stride, [&](Index begin, Index end) {
-    std::array<std::vector<Index>, kWarp> columns;  // of each row, ascending
-    std::size_t longest = 0;
+    std::vector<Index> columns;  // of the warp's rows, ascending in each
+    std::array<Offset, kWarp + 1> offsets{};
     for (Index place = begin; place < end; ++place) {
-      std::vector<Index>& row = columns[place - begin];
-      for (const Index u : graph[order.new_to_old()[place]]) row.push_back(order.old_to_new()[u]);
-      std::ranges::sort(row);
-      longest = std::max(longest, row.size());
+      const auto first = static_cast<std::ptrdiff_t>(columns.size());
+      columns.push_back(place);
+      for (const Index u : graph[order.new_to_old()[place]]) columns.push_back(order.old_to_new()[u]);
+      std::sort(columns.begin() + first, columns.end());
+      offsets[place - begin + 1] = std::ssize(columns);
     }
-    Offset sectors = 0;
-    Touched touched;
-    for (std::size_t step = 0; step < longest; ++step) {
-      touched.clear();
-      for (const std::vector<Index>& row : columns) {
-        if (step < row.size()) touched.add(row[step] / (kSectorBytes / kNumberBytes));
-      }
-      const std::span<const Index> ascending = touched.ascending();
-      sectors += 1;
-      for (std::size_t i = 1; i < ascending.size(); ++i) sectors += ascending[i] != ascending[i - 1] ? 1 : 0;
-    }
-    return sectors;
+    const auto rows = static_cast<std::size_t>(end - begin);
+    return loads_of_lists({.offsets = std::span(offsets).first(rows + 1), .records = columns}, 1).records;
   });
 }
 

@@ -25,7 +25,18 @@ from ._errors import Error, InputError, InternalError, InvalidArgument, Stopped,
 from ._changing import Reorderer, Update
 from ._files import make_mesh, read, to_bytes, write
 from ._graphs import Fiedler, FiedlerComponent, Order, Quality, fiedler, quality
-from ._layouts import Colours, GatherLists, GpuCost, Patches, colours, gather_lists, gpu_cost, patches, sort_corners
+from ._layouts import (
+    Colours,
+    GatherLists,
+    GpuCost,
+    Patches,
+    colours,
+    gather_lists,
+    gpu_cost,
+    gpu_product_cost,
+    patches,
+    sort_corners,
+)
 from ._meshes import Mesh, MeshOrder
 from ._methods import MethodInfo, load_methods, methods, register, unregister
 from ._options import Options
@@ -43,9 +54,9 @@ __all__ = [
     "GpuComparison", "GpuCost", "GpuOrder", "GpuTime", "InputError", "InternalError", "InvalidArgument", "Mesh",
     "MeshOrder", "MethodInfo", "Options", "Order", "Patches", "Permutation", "Quality", "Reorderer", "Stopped", "TooLarge",
     "Trial", "TriedOrder", "Unavailable", "Update", "__version__", "advise", "build_info", "calibrate", "colours",
-    "compare", "compare_on_gpu", "fiedler", "gather_lists", "gpu_cost", "load_methods", "make_mesh", "methods", "order",
-    "order_edges", "order_mesh", "patches", "quality", "read", "register", "reorder", "show", "sort_corners", "to_bytes",
-    "try_orders", "unregister", "write",
+    "compare", "compare_on_gpu", "fiedler", "gather_lists", "gpu_cost", "gpu_product_cost", "load_methods", "make_mesh",
+    "methods", "order", "order_edges", "order_mesh", "patches", "quality", "read", "register", "reorder", "show",
+    "sort_corners", "to_bytes", "try_orders", "unregister", "write",
 ]  # fmt: skip
 
 

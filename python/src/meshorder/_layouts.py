@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._errors import InvalidArgument
+from ._graphs import graph_arrays
 from ._meshes import cell_arrays
 from ._options import whole
 
 
-_LAYOUTS = ("packed", "apart", "padded")
+_LAYOUTS = ("packed", "apart", "padded", "patches", "gathered")
+_CACHE_BYTES = 50 * 2**20  # of an H100
 
 
 class Patches(NamedTuple):
@@ -62,18 +64,23 @@ class Colours(NamedTuple):
 
 
 class GpuCost(NamedTuple):
-    """Cost of the atomic additions of a pass over cells on a GPU, with one thread for each cell.
+    """Cost of a kernel on a GPU.
 
     Attributes:
-        requests: additions, each of a warp of 32 threads at once.
-        sectors: sectors of 32 bytes that these additions write. A sector counts t times, where t is the largest number of
-            threads of the warp that add to the same number in it.
-        floor: ``sectors`` if the vertices of each warp were all different and side by side.
+        requests: additions, or loads and stores, each of a warp of 32 threads at once.
+        sectors: sectors of 32 bytes that these requests touch. A sector of additions counts t times, where t is the largest
+            number of threads of the warp that add to the same number in it.
+        floor: ``sectors`` if the numbers that each warp touches at once were all different and side by side; for patches, if
+            no vertex were in two of them, too.
+        dram_bytes: bytes read from memory, if the cache is filled again and again.
+        dram_floor: ``dram_bytes`` if each number were read once.
     """
 
     requests: int
     sectors: int
     floor: int
+    dram_bytes: int
+    dram_floor: int
 
 
 def _given(cells: Any, vertices: int | None) -> tuple[Any, int]:
@@ -171,19 +178,26 @@ def sort_corners(cells: Any, *, vertices: int | None = None) -> NDArray[np.int32
     return _rows(_core.sort_corners(arrays, count), arrays)
 
 
-def gpu_cost(cells: Any, layout: str = "padded", *, vertices: int | None = None) -> GpuCost:
-    """Counts the cost of atomic additions to the vertices of cells on a GPU. The count needs no GPU.
+def gpu_cost(
+    cells: Any, layout: str = "padded", *, vertices: int | None = None, cache_bytes: int = _CACHE_BYTES
+) -> GpuCost:
+    """Counts what adding to the vertices of cells costs on a GPU, with one thread for each cell. The count needs no GPU.
 
-    Of two orders of the same cells, the one with fewer sectors is faster there. The counters of an H100 agree within 1.2 %.
+    Of two orders of the same cells, the one with fewer sectors is faster there. ``sectors`` are those of atomic additions;
+    for "gathered", those that the first pass stores and the second one loads. ``dram_bytes`` are vertex numbers of 4 bytes, of
+    2 bytes within patches, and what the layout has for each vertex in two arrays: one is read, the other is added to. Other
+    data of the cells is not counted.
 
     Args:
         cells: cells of one type, in one of the forms that `order_mesh` takes; rows of two are edges.
         layout: where the kernel keeps the numbers of 4 bytes that it adds to vertices: "packed" has three side by side,
-            each added separately; "apart" has three arrays; "padded" has four side by side, added at once.
+            each added separately; "apart" has three arrays; "padded" has four side by side, added at once; "patches" is
+            "packed" by `patches` of 256 cells; "gathered" is two passes by `gather_lists`.
         vertices: number of vertices n; None: as many as the cells name.
+        cache_bytes: size of the last cache, ≥ 1; by default that of an H100.
 
     Raises:
-        InvalidArgument: faulty cells, cells of several types, another layout.
+        InvalidArgument: faulty cells, cells of several types, another layout, no cache.
         TooLarge: 2³¹ or more cells.
 
     Example:
@@ -193,5 +207,27 @@ def gpu_cost(cells: Any, layout: str = "padded", *, vertices: int | None = None)
         (32, 48)
     """
     if layout not in _LAYOUTS:
-        raise InvalidArgument(f"layout: expected 'packed', 'apart' or 'padded', not {layout!r}")
-    return GpuCost(*_core.gpu_cost(*_given(cells, vertices), _LAYOUTS.index(layout)))
+        known = ", ".join(map(repr, _LAYOUTS[:-1]))
+        raise InvalidArgument(f"layout: expected {known} or {_LAYOUTS[-1]!r}, not {layout!r}")
+    cache = whole(cache_bytes, 2**62, "cache_bytes")
+    return GpuCost(*_core.gpu_cost(*_given(cells, vertices), _LAYOUTS.index(layout), cache))
+
+
+def gpu_product_cost(graph: Any, lanes: int = 1, *, cache_bytes: int = _CACHE_BYTES) -> GpuCost:
+    """Counts what the product of a sparse matrix with a vector costs on a GPU. The count needs no GPU.
+
+    The matrix has an entry for each neighbour in the graph, and a diagonal, in compressed sparse rows with numbers of 4 bytes.
+    ``sectors`` and ``dram_bytes`` are those of loads: of offsets, columns, values and the vector.
+
+    Args:
+        graph: the pattern of the matrix, in one of the forms that `order` takes; that of A + Aᵀ where it is not symmetric.
+        lanes: threads of a row: 1, 2, 4, 8, 16 or 32.
+        cache_bytes: size of the last cache, ≥ 1; by default that of an H100.
+
+    Raises:
+        InvalidArgument: another number of threads, no cache, a faulty graph.
+        TooLarge: 2³¹ or more rows.
+    """
+    offsets, neighbours, _ = graph_arrays(graph, mirror=True)
+    cache = whole(cache_bytes, 2**62, "cache_bytes")
+    return GpuCost(*_core.gpu_product_cost(offsets, neighbours, whole(lanes, 32, "lanes"), cache))
