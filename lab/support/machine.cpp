@@ -5,7 +5,7 @@
 #include "base/parallel.hpp"
 #include "base/processor.hpp"
 #include "base/text.hpp"
-#include "kernels/simd_target.hpp"
+#include "kernels/simd_dispatch.hpp"
 #include "lab/support/revision.hpp"
 #include "payoff/bandwidth.hpp"
 #include "payoff/machine.hpp"

@@ -141,7 +141,8 @@ struct Field {
   int place = 0;           ///< index of the zone, the section, the list or the parents
   int axis = 0;            ///< of a coordinate
   std::string type = {};   ///< type of values and coordinates in the file
-  std::string array = {};  ///< name of the mesh's array; empty if there is none
+  std::string array = {};  ///< name of the mesh's array
+  bool has_left = false;   ///< of values: the mesh has no such array any more
   Index component = 0;     ///< of the array
   Association association = Association::vertices;
   int section = -1;  ///< section whose cells have the values, in their order; −1: see `list`

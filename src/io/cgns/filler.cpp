@@ -52,7 +52,7 @@ bool Filler::is_gone(const Field& field) const {
     case Field::Role::connectivity:
       return element_count(field.place) == 0;
     case Field::Role::values:
-      return field.array.empty() || find_array(mesh_, field.array, field.association) == nullptr;
+      return field.has_left || find_array(mesh_, field.array, field.association) == nullptr;
     case Field::Role::list:
       return metadata_.lists[field.place].members.empty();
     default:

@@ -238,7 +238,7 @@ class Addition {
   void add() {
     std::set<std::pair<Association, std::string>> known;
     for (const Field& field : metadata_.fields) {
-      if (!field.array.empty()) known.insert({field.association, field.array});
+      if (!field.array.empty() && !field.has_left) known.insert({field.association, field.array});
     }
     if (metadata_.zones.size() > 1) known.insert({Association::cells, std::string(kZone)});
     if (metadata_.has_labels) known.insert({Association::cells, std::string(kLabel)});

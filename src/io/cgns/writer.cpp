@@ -147,7 +147,7 @@ class ArrayFields {
 void release_arrays(const Mesh& mesh, Metadata& metadata) {
   std::map<std::pair<Association, std::string>, ArrayFields> by_array;
   for (const Field& field : metadata.fields) {
-    if (field.role != Field::Role::values || field.array.empty()) continue;
+    if (field.role != Field::Role::values || field.has_left) continue;
     by_array.try_emplace({field.association, field.array}, metadata).first->second.add(field);
   }
   std::set<std::pair<Association, std::string>> released;
@@ -156,7 +156,7 @@ void release_arrays(const Mesh& mesh, Metadata& metadata) {
     if (array != nullptr && !fields.hold(mesh, *array)) released.insert(key);
   }
   for (Field& field : metadata.fields) {
-    if (released.contains({field.association, field.array})) field.array.clear();
+    if (released.contains({field.association, field.array})) field.has_left = true;
   }
 }
 
