@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <functional>
 #include <span>
+#include <tuple>
 #include <utility>
 
 namespace meshorder {
@@ -39,7 +40,7 @@ void keep_unmatched(std::vector<ElementFacet>& facets) {
 }
 
 /// Removes the facets whose corners one polyhedron has, too: they are between it and their element. O(facets
-/// · corners of the polyhedra at a vertex).
+/// · corners of the polyhedra at that corner which fewest of them have).
 void drop_facets_of_polyhedra(const Mesh& mesh, std::vector<ElementFacet>& facets) {
   std::vector<std::pair<Index, Index>> polyhedra;  // a vertex and a polyhedron there
   for (Index c = 0; c < mesh.cell_count(); ++c) {
@@ -48,17 +49,22 @@ void drop_facets_of_polyhedra(const Mesh& mesh, std::vector<ElementFacet>& facet
   }
   if (polyhedra.empty()) return;
   std::sort(polyhedra.begin(), polyhedra.end());
+  const auto of_vertex = [&](Index v) {
+    return std::pair(std::lower_bound(polyhedra.begin(), polyhedra.end(), std::pair(v, Index{0})),
+                     std::lower_bound(polyhedra.begin(), polyhedra.end(), std::pair(v + 1, Index{0})));
+  };
   std::erase_if(facets, [&](const ElementFacet& facet) {
-    const Index v = facet.corners[0];
-    for (auto at = std::lower_bound(polyhedra.begin(), polyhedra.end(), std::pair(v, Index{0}));
-         at != polyhedra.end() && at->first == v; ++at) {
-      const auto cell = mesh.cells[at->second];
-      const bool has_all = std::all_of(facet.corners.begin(), facet.corners.end(), [&](Index corner) {
+    auto [first, last] = of_vertex(facet.corners[0]);
+    for (const Index corner : facet.corners) {
+      const auto others = corner < 0 ? std::pair(first, last) : of_vertex(corner);
+      if (others.second - others.first < last - first) std::tie(first, last) = others;
+    }
+    return std::any_of(first, last, [&](const std::pair<Index, Index>& at) {
+      const auto cell = mesh.cells[at.second];
+      return std::all_of(facet.corners.begin(), facet.corners.end(), [&](Index corner) {
         return corner < 0 || std::find(cell.begin(), cell.end(), corner) != cell.end();
       });
-      if (has_all) return true;
-    }
-    return false;
+    });
   });
 }
 

@@ -5,6 +5,7 @@
 #include "io/cgns/cgns.hpp"
 #include "io/cgns/cgns_library.hpp"
 #include "io/cgns/filler.hpp"
+#include "io/named_parts.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
 
@@ -150,9 +151,10 @@ void release_arrays(const Mesh& mesh, Metadata& metadata) {
     if (field.role != Field::Role::values || field.has_left) continue;
     by_array.try_emplace({field.association, field.array}, metadata).first->second.add(field);
   }
+  const NamedParts parts(mesh);
   std::set<std::pair<Association, std::string>> released;
   for (const auto& [key, fields] : by_array) {
-    const DataArray* const array = find_array(mesh, key.second, key.first);
+    const DataArray* const array = parts.array(key.second, key.first);
     if (array != nullptr && !fields.hold(mesh, *array)) released.insert(key);
   }
   for (Field& field : metadata.fields) {

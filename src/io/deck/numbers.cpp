@@ -23,10 +23,24 @@ bool move_places(std::vector<Index>& places, std::span<const Index> moves) {
   return std::none_of(places.begin(), places.end(), [](Index place) { return place < 0; });
 }
 
-bool can_be_numbers(std::vector<std::int64_t> ids, std::int64_t largest, std::int64_t smallest) {
-  std::sort(ids.begin(), ids.end());
-  return !ids.empty() && ids.front() >= smallest && ids.back() <= largest &&
-         std::adjacent_find(ids.begin(), ids.end()) == ids.end();
+bool can_be_numbers(std::span<const std::int64_t> ids, std::int64_t largest, std::int64_t smallest) {
+  if (ids.empty()) return false;
+  const auto [least, greatest] = std::minmax_element(ids.begin(), ids.end());
+  if (*least < smallest || *greatest > largest) return false;
+  constexpr std::uint64_t kDense = 8;  // numbers of the range for each id
+  const std::uint64_t range = static_cast<std::uint64_t>(*greatest) - static_cast<std::uint64_t>(*least);
+  if (range / kDense >= ids.size()) {
+    std::vector<std::int64_t> sorted(ids.begin(), ids.end());
+    std::sort(sorted.begin(), sorted.end());
+    return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+  }
+  std::vector<bool> is_taken(range + 1);
+  return std::none_of(ids.begin(), ids.end(), [&, least = *least](std::int64_t id) {
+    auto taken = is_taken[static_cast<std::size_t>(id - least)];
+    const bool was_taken = taken;
+    taken = true;
+    return was_taken;
+  });
 }
 
 std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step) {
@@ -102,14 +116,19 @@ void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t larg
 
 void require_valid(const FileNumbers& numbers, std::string_view item, std::int64_t largest,
                    const FilePath& path) {
+  const Index count = numbers.of_file().size();
   std::int64_t smallest = 1;
-  std::vector<std::pair<std::int64_t, Index>> given;  // number and position in the mesh
-  for (Index k = 0; k < numbers.of_file().size(); ++k) {
+  std::vector<std::int64_t> ids;
+  ids.reserve(static_cast<std::size_t>(count));
+  for (Index k = 0; k < count; ++k) {
     smallest = std::min(smallest, numbers.of_file().id(k));
     largest = std::max(largest, numbers.of_file().id(k));
-    given.emplace_back(numbers.at(numbers.place(k)), numbers.place(k));
+    ids.push_back(numbers.at(numbers.place(k)));
   }
-  if (given.empty()) return;
+  if (ids.empty() || can_be_numbers(ids, largest, smallest)) return;
+  std::vector<std::pair<std::int64_t, Index>> given;  // number and position in the mesh
+  given.reserve(ids.size());
+  for (Index k = 0; k < count; ++k) given.emplace_back(ids[k], numbers.place(k));
   std::sort(given.begin(), given.end());
   const std::string remedy = fmt::format("ids are {} to {} and differ from each other", smallest, largest);
   for (const auto& [number, place] : {given.front(), given.back()}) {
@@ -118,7 +137,6 @@ void require_valid(const FileNumbers& numbers, std::string_view item, std::int64
   }
   const auto same = std::adjacent_find(given.begin(), given.end(),
                                        [](const auto& a, const auto& b) { return a.first == b.first; });
-  if (same == given.end()) return;
   throw InputError(path.string(),
                    fmt::format("the id {} is that of {} {} and of {} {}", same->first, item, same->second,
                                item, (same + 1)->second),

@@ -22,8 +22,8 @@ namespace meshorder {
 bool move_places(std::vector<Index>& places, std::span<const Index> moves);
 
 /// Returns whether ids are valid numbers of nodes or elements: from `smallest` to `largest`, each only once.
-/// False if there are no ids. O(n log n).
-bool can_be_numbers(std::vector<std::int64_t> ids, std::int64_t largest, std::int64_t smallest = 1);
+/// False if there are no ids. O(n), O(n log n) if they are far apart.
+bool can_be_numbers(std::span<const std::int64_t> ids, std::int64_t largest, std::int64_t smallest = 1);
 
 /// Returns the positions in the file of the items numbered from, from + step, … ≤ to, ascending by number.
 /// `step` is at least 1. O(numbers) if they are fewer than the items, else O(items log items).
@@ -91,7 +91,8 @@ void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t larg
                     std::int64_t smallest = 1);
 
 /// Throws InputError unless the numbers in the mesh are valid: from 1, or the least in the file, to
-/// `largest`, or the greatest in the file, each only once. `item` is "vertex" or "cell". O(n log n).
+/// `largest`, or the greatest in the file, each only once. `item` is "vertex" or "cell". Time as
+/// `can_be_numbers`.
 void require_valid(const FileNumbers& numbers, std::string_view item, std::int64_t largest,
                    const FilePath& path);
 

@@ -320,11 +320,11 @@ Index components_of_view(const DataArray& array, Notes& notes) {
 
 }  // namespace
 
-void refit_views(Metadata& layout, const Mesh& mesh, Notes& notes) {
+void refit_views(Metadata& layout, const NamedParts& parts, Notes& notes) {
   for (Section& section : layout.sections) {
     if (section.kind != SectionKind::view) continue;
     View& view = layout.views[section.view];
-    const DataArray* const array = view.array ? find_array(mesh, *view.array, view.association) : nullptr;
+    const DataArray* const array = view.array ? parts.array(*view.array, view.association) : nullptr;
     if (array == nullptr || (array->components == view.width && !are_texts(array->values))) continue;
     if (!has_place(*array)) {
       view.array.reset();

@@ -319,9 +319,9 @@ void classify(Metadata& layout, WriteContext& output, Notes& notes);
 /// Adds a view for an array that has none yet; returns false, with a note, if Gmsh has no place for it.
 bool add_view(Metadata& layout, const DataArray& array, Notes& notes);
 
-/// Fits the views of arrays that were replaced to the components that these have now. Views without a place
-/// for their array lose it. Notes what changes.
-void refit_views(Metadata& layout, const Mesh& mesh, Notes& notes);
+/// Fits the views of arrays of a mesh that were replaced to the components that these have now. Views without
+/// a place for their array lose it. Notes what changes.
+void refit_views(Metadata& layout, const NamedParts& parts, Notes& notes);
 
 /// Returns a name that fits between double quotes in one line.
 std::string name_in_quotes(std::string_view name);

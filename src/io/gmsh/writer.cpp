@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/all_formats.hpp"
+#include "io/deck/numbers.hpp"
 #include "io/gmsh/gmsh.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -42,11 +44,7 @@ std::vector<const ElementType*> types_of_cells(const Mesh& mesh) {
 /// Returns ids if they are valid in Gmsh (at least `smallest`, distinct); else none, with a note.
 std::vector<std::int64_t> usable_ids(const std::vector<std::int64_t>& ids, std::string_view what,
                                      std::int64_t smallest, Notes& notes) {
-  std::vector<std::int64_t> sorted = ids;
-  std::sort(sorted.begin(), sorted.end());
-  const bool usable = sorted.empty() || (sorted.front() >= smallest &&
-                                         std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end());
-  if (usable) return ids;
+  if (ids.empty() || can_be_numbers(ids, std::numeric_limits<std::int64_t>::max(), smallest)) return ids;
   notes.push_back(fmt::format("the {} are renumbered: Gmsh's numbers are positive and distinct", what));
   return {};
 }
@@ -187,7 +185,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   WriteContext output{mesh, layout, types_of_cells(mesh), {}, {}, {}, {}, {}, {}, NamedParts(mesh)};
   output.placed.push_back(find_array(mesh, kCellType, Association::cells));
   if (keeps_layout) {
-    refit_views(layout, mesh, notes);
+    refit_views(layout, output.parts, notes);
     take_layout(layout, output, notes);
     note_sets(mesh, layout, notes);
   } else {
