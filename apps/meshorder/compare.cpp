@@ -166,10 +166,8 @@ void run(const CompareArguments& arguments) {
   if (arguments.gpu) {
     throw CommandError(
         "--gpu is in the command of the Python package only, which pip installs from the sources of "
-        "meshorder, "
-        "in a virtual environment: venv/bin/pip install . 'cupy-cuda12x[ctk]'; then venv/bin/meshorder "
-        "compare "
-        "--gpu",
+        "meshorder, in a virtual environment: venv/bin/pip install . 'cupy-cuda12x[ctk]'; then "
+        "venv/bin/meshorder compare --gpu",
         2);
   }
   Console console(arguments);

@@ -30,4 +30,13 @@ void* LoadedLibrary::address_of(const char* symbol) const {
   return address;
 }
 
+void* LoadedSymbol::address() const {
+  void* address = address_.load(std::memory_order_acquire);
+  if (address == nullptr) {
+    address = library_.address_of(symbol_);
+    address_.store(address, std::memory_order_release);
+  }
+  return address;
+}
+
 }  // namespace meshorder

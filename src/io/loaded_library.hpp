@@ -30,51 +30,48 @@ class LoadedLibrary {
 };
 
 /// Something in a library, found when it is first needed.
-template <class Thing, const LoadedLibrary& library>
-class Loaded {
+class LoadedSymbol {
  public:
   /// @param symbol  its name in the library
-  constexpr explicit Loaded(const char* symbol) noexcept : symbol_(symbol) {}
+  constexpr LoadedSymbol(const LoadedLibrary& library, const char* symbol) noexcept
+      : library_(library), symbol_(symbol) {}
 
  protected:
-  [[nodiscard]] Thing* address() const {
-    void* found = address_.load(std::memory_order_acquire);
-    if (found == nullptr) {
-      found = library.address_of(symbol_);
-      address_.store(found, std::memory_order_release);
-    }
-    return reinterpret_cast<Thing*>(found);
-  }
+  /// Returns its address. Throws Unavailable as `LoadedLibrary::address_of` does.
+  [[nodiscard]] void* address() const;
 
  private:
+  const LoadedLibrary& library_;
   const char* symbol_;
   mutable std::atomic<void*> address_{nullptr};
 };
 
 /// A function of a library, to be called and passed on like it.
-template <class Function, const LoadedLibrary& library>
-class LoadedFunction : public Loaded<Function, library> {
+template <class Function>
+class LoadedFunction : public LoadedSymbol {
  public:
-  using Loaded<Function, library>::Loaded;
+  using LoadedSymbol::LoadedSymbol;
   // NOLINTNEXTLINE(google-explicit-constructor): stands for the function
-  operator Function*() const { return this->address(); }
+  operator Function*() const { return reinterpret_cast<Function*>(address()); }
 };
 
 /// A variable of a library, to be read like it.
-template <class Value, const LoadedLibrary& library>
-class LoadedVariable : public Loaded<Value, library> {
+template <class Value>
+class LoadedVariable : public LoadedSymbol {
  public:
-  using Loaded<Value, library>::Loaded;
+  using LoadedSymbol::LoadedSymbol;
   // NOLINTNEXTLINE(google-explicit-constructor): stands for the variable
-  operator Value() const { return *this->address(); }
+  operator Value() const { return *static_cast<const Value*>(address()); }
 };
 
 }  // namespace meshorder
 
 // Declares a function or a variable of the C library `library` in the enclosing namespace, where it hides the
 // library's own. Headers that turn the name into another by a macro are obeyed.
+// NOLINTBEGIN(bugprone-macro-parentheses): names are declared
 #define MESHORDER_LOADED_FUNCTION(library, name) MESHORDER_LOADED_FUNCTION_AS(library, name)
 #define MESHORDER_LOADED_FUNCTION_AS(library, name) \
-  inline constinit const LoadedFunction<decltype(::name), library> name { #name }
+  inline constinit const LoadedFunction<decltype(::name)> name { library, #name }
 #define MESHORDER_LOADED_VARIABLE(library, name) \
-  inline constinit const LoadedVariable<decltype(::name), library> name { #name }
+  inline constinit const LoadedVariable<decltype(::name)> name { library, #name }
+// NOLINTEND(bugprone-macro-parentheses)

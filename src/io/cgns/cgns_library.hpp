@@ -10,9 +10,9 @@
 
 namespace meshorder {
 
-inline constinit const LoadedLibrary cgns_library{"the CGNS library", MESHORDER_CGNS_FILE};
+inline constinit const LoadedLibrary kCgns{"the CGNS library", MESHORDER_CGNS_FILE};
 
-#define MESHORDER_CGNS_FUNCTION(name) MESHORDER_LOADED_FUNCTION(cgns_library, name)
+#define MESHORDER_CGNS_FUNCTION(name) MESHORDER_LOADED_FUNCTION(kCgns, name)
 
 MESHORDER_CGNS_FUNCTION(cgio_check_file);
 MESHORDER_CGNS_FUNCTION(cgio_children_ids);
@@ -39,7 +39,7 @@ namespace meshorder::cgns {
 /// is not found.
 inline void load_library() {
 #ifdef MESHORDER_CGNS_FILE
-  cgns_library.load();
+  kCgns.load();
 #endif
   hdf5::load_library();
 }

@@ -50,7 +50,7 @@ void start_library() {
 
 void load_library() {
 #ifdef MESHORDER_NETCDF_FILE
-  netcdf_library.load();
+  kNetcdf.load();
 #endif
 #ifdef MESHORDER_HAS_HDF5
   hdf5::load_library();

@@ -9,9 +9,9 @@
 
 namespace meshorder {
 
-inline constinit const LoadedLibrary netcdf_library{"netCDF", MESHORDER_NETCDF_FILE};
+inline constinit const LoadedLibrary kNetcdf{"netCDF", MESHORDER_NETCDF_FILE};
 
-#define MESHORDER_NETCDF_FUNCTION(name) MESHORDER_LOADED_FUNCTION(netcdf_library, name)
+#define MESHORDER_NETCDF_FUNCTION(name) MESHORDER_LOADED_FUNCTION(kNetcdf, name)
 
 MESHORDER_NETCDF_FUNCTION(nc__create);
 MESHORDER_NETCDF_FUNCTION(nc__open);

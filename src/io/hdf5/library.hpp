@@ -12,10 +12,10 @@
 
 namespace meshorder {
 
-inline constinit const LoadedLibrary hdf5_library{"HDF5", MESHORDER_HDF5_FILE};
+inline constinit const LoadedLibrary kHdf5{"HDF5", MESHORDER_HDF5_FILE};
 
-#define MESHORDER_HDF5_FUNCTION(name) MESHORDER_LOADED_FUNCTION(hdf5_library, name)
-#define MESHORDER_HDF5_VARIABLE(name) MESHORDER_LOADED_VARIABLE(hdf5_library, name)
+#define MESHORDER_HDF5_FUNCTION(name) MESHORDER_LOADED_FUNCTION(kHdf5, name)
+#define MESHORDER_HDF5_VARIABLE(name) MESHORDER_LOADED_VARIABLE(kHdf5, name)
 
 MESHORDER_HDF5_FUNCTION(H5Aclose);
 MESHORDER_HDF5_FUNCTION(H5Acreate2);
@@ -161,7 +161,7 @@ namespace meshorder::hdf5 {
 /// Loads HDF5, where this is put off until a file needs it. Throws Unavailable if it is not found.
 inline void load_library() {
 #ifdef MESHORDER_HDF5_FILE
-  hdf5_library.load();
+  kHdf5.load();
 #endif
 }
 
