@@ -67,7 +67,7 @@ class GpuOrder:
         name: "original", or the order's name: "rcm" for "rcm/lexmax", "hilbert/original", "rcm+corners".
         vertices: method of the vertices; never "auto".
         elements: method of the elements; never "auto".
-        by_auto: whether `auto` chose them for a GPU.
+        by_auto: whether ``auto`` chose them for a GPU.
         sorts_corners: whether the corners of tetrahedra were sorted by `sort_corners`.
         seconds: time to make the order, on the host.
         times: of each kernel.
@@ -97,7 +97,7 @@ class GpuComparison:
         kernels: for each kernel its group and what tells it from the others of its group.
         orders: the file's order first.
         best: the order to take: the fastest one without sorted corners if its interval begins above 1.02, else the
-            file's; that of `auto` if it is less than 2 % slower.
+            file's; that of ``auto`` if it is less than 2 % slower.
         file: name of the mesh's file; None if it was not read from one.
         notes: on what was left out when the mesh was read.
     """

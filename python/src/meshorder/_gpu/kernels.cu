@@ -121,6 +121,14 @@ static __device__ Vector spring_force(Vector d, float length) {
   return (now > 0 ? 1 - length / now : 0) * d;
 }
 
+// Adds the force of a spring to both ends.
+template <class Points, class Sums>
+static __device__ void add_spring(Points points, Sums sums, int2 ends, float length) {
+  const Vector f = spring_force(points.at(ends.y) - points.at(ends.x), length);
+  sums.add(ends.x, f);
+  sums.add(ends.y, -1 * f);
+}
+
 static __device__ int thread_number() { return blockIdx.x * blockDim.x + threadIdx.x; }
 
 // Product of a sparse matrix with a vector, a thread for each row.
@@ -232,22 +240,14 @@ extern "C" __global__ void springs_packed(int n, const int2* __restrict__ ends,
                                           const float* __restrict__ lengths, const float* __restrict__ points,
                                           float* sums) {
   const int s = thread_number();
-  if (s >= n) return;
-  const Packed<const float> at{points};
-  const Vector f = spring_force(at.at(ends[s].y) - at.at(ends[s].x), lengths[s]);
-  Packed<float>{sums}.add(ends[s].x, f);
-  Packed<float>{sums}.add(ends[s].y, -1 * f);
+  if (s < n) add_spring(Packed<const float>{points}, Packed<float>{sums}, ends[s], lengths[s]);
 }
 
 extern "C" __global__ void springs_padded(int n, const int2* __restrict__ ends,
                                           const float* __restrict__ lengths,
                                           const float4* __restrict__ points, float4* sums) {
   const int s = thread_number();
-  if (s >= n) return;
-  const Padded<const float4> at{points};
-  const Vector f = spring_force(at.at(ends[s].y) - at.at(ends[s].x), lengths[s]);
-  Padded<float4>{sums}.add(ends[s].x, f);
-  Padded<float4>{sums}.add(ends[s].y, -1 * f);
+  if (s < n) add_spring(Padded<const float4>{points}, Padded<float4>{sums}, ends[s], lengths[s]);
 }
 
 // Without atomic additions: each of n vertices sums over its neighbours, `lengths` away from it at rest.

@@ -61,7 +61,6 @@ class Problem:
         moved = number[cells.new_to_old]
         return moved[moved >= 0]
 
-
     @cached_property
     def gradients(self) -> Gradients:
         """Those of the tetrahedra at rest."""
