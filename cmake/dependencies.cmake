@@ -117,6 +117,11 @@ if("payoff" IN_LIST components)
     HWY_DISABLED_TARGETS=\(HWY_SSSE3|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV\))
   target_include_directories(meshorder_highway SYSTEM
                              INTERFACE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
+  if(sanitizers)
+    target_link_libraries(meshorder_highway INTERFACE hwy::hwy)  # reports what its headers check
+  else()
+    target_compile_definitions(meshorder_highway INTERFACE HWY_IS_DEBUG_BUILD=0)  # they check nothing
+  endif()
 endif()
 if("payoff" IN_LIST components OR MESHORDER_CLI OR MESHORDER_FUZZ OR build_lab)
   meshorder_require(nlohmann_json nlohmann-json3-dev)  # results, calibrations
