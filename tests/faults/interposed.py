@@ -33,10 +33,13 @@ ERRORS = {
 }
 
 # libraries that end the process themselves when there is no memory; what they do is counted apart
-FOREIGN = ("libhdf5", "libcgns", "libnetcdf", "libtbb")
+FOREIGN = ("libhdf5", "libcgns", "libnetcdf", "libtbb", "libgnutls")
 
-# what the C library says when it finds its heap damaged
-DAMAGED_HEAP = re.compile(r"corrupted|double free|invalid (pointer|size|next size|chunk)")
+# what libraries print then
+PRINTED = {"a library has ended the process": "libhdf5", "HDF5-DIAG": "libhdf5", "Error in GnuTLS": "libgnutls"}
+
+# what the C library says when it finds its heap damaged, and when it has no memory for a library's variables
+C_LIBRARY = re.compile(r"corrupted|double free|invalid (pointer|size|next size|chunk)|thread-local data: ABORT")
 
 
 def program_of(arguments):
@@ -69,11 +72,12 @@ class Ending:
 
     def culprit(self):
         """The library that could not do without memory: it ended the process, raised a signal, by the stack that the
-        interposer wrote, or prints what happened. The C library finds a damaged heap wherever it takes or gives back
-        memory next: then it is the library that got none."""
-        if "a library has ended the process" in self.stderr or "HDF5-DIAG" in self.stderr:
-            return "libhdf5"
-        stack = self.log.partition("failed " if DAMAGED_HEAP.search(self.stderr) else "signal ")[2]
+        interposer wrote, or prints what happened. Where the C library ends the process, it is the library that got no
+        memory."""
+        for text, library in PRINTED.items():
+            if text in self.stderr:
+                return library
+        stack = self.log.partition("failed " if C_LIBRARY.search(self.stderr) else "signal ")[2]
         frames = re.findall(r"^(/\S+?)\(", stack, re.M)
         names = (pathlib.Path(frame).name for frame in frames)
         return next((library for name in names for library in FOREIGN if name.startswith(library)), None)
