@@ -152,6 +152,18 @@ TEST(Xdmf, LeavesOutWhatTheMeshHasNoLonger) {
   test::expect_same(read_files(files), mesh);
 }
 
+TEST(Xdmf, NamesTheTypeOfAnArrayThatGotOtherComponents) {
+  Mesh mesh = read_xdmf(kMixed);
+  for (const auto& [components, type] :
+       {std::pair{3, "Vector"}, std::pair{1, "Scalar"}, std::pair{4, "Matrix"}}) {
+    mesh.data[0].components = components;
+    mesh.data[0].values = std::vector<double>(static_cast<std::size_t>(4 * components), 0.5);
+    const Files files = files_of(mesh);
+    EXPECT_THAT(files.at("m.xdmf"), HasSubstr(std::string("Name=\"t\" AttributeType=\"") + type + '"'));
+    test::expect_same(read_files(files), mesh);
+  }
+}
+
 TEST(Xdmf, MovesEverythingOfAMixedMesh) {
   const Mesh before = read_xdmf(kMixed);
   Mesh mesh = before;

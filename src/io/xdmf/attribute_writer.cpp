@@ -15,8 +15,9 @@ namespace {
 
 constexpr std::string_view kSetName = "set:";
 
-/// Returns the name of an AttributeType for values of so many components.
-std::string_view attribute_type(Index components) {
+}  // namespace
+
+std::string attribute_type(Index components) {
   switch (components) {
     case 1:
       return "Scalar";
@@ -31,8 +32,6 @@ std::string_view attribute_type(Index components) {
       return "Matrix";
   }
 }
-
-}  // namespace
 
 std::optional<DataArray> Writer::marks_named(const std::string& name, Association association) const {
   if (!name.starts_with(kSetName)) return {};
@@ -131,7 +130,7 @@ bool Writer::has_rows(const DataArray& array, const std::vector<Index>& cells) c
 void Writer::add_attribute(int part, const DataArray& array, const std::string& name, const Values& values) {
   pugi::xml_node element = grid_of(part).append_child("Attribute");
   set_attribute(element, "Name", name);
-  set_attribute(element, "AttributeType", std::string(attribute_type(array.components)));
+  set_attribute(element, "AttributeType", attribute_type(array.components));
   set_attribute(element, "Center", array.association == Association::vertices ? "Node" : "Cell");
   pugi::xml_node item = element.append_child("DataItem");
   const auto components = static_cast<std::size_t>(array.components);

@@ -135,7 +135,29 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
   DataPlace place;
   place.item = document_.number(item);
   place.named_by = named_by;
+  place.shape = shape_of(item);
+  const std::string format = attribute(item, "Format");
+  if (same_but_for_case(format, "HDF") || same_but_for_case(format, "HDF5") ||
+      same_but_for_case(format, "H5")) {
+    place.format = DataPlace::Format::hdf;
+    find_dataset(item, place);
+    return place;
+  }
+  const bool is_binary = same_but_for_case(format, "Binary");
+  if (!is_binary && !format.empty() && !same_but_for_case(format, "XML")) {
+    throw document_.error(item, fmt::format("the Format is '{}'", format.substr(0, 40)),
+                          "HDF, XML and Binary are understood");
+  }
+  place.alternative = alternative_of(item);
+  if (is_binary) {
+    place.format = DataPlace::Format::binary;
+    find_bytes(item, place);
+  }
+  return place;
+}
 
+std::vector<std::uint64_t> DataReader::shape_of(pugi::xml_node item) const {
+  std::vector<std::uint64_t> shape;
   const std::string dimensions = attribute(item, "Dimensions");
   std::string_view rest = dimensions;
   for (std::string_view word = next_word(rest, kBlanksOfXml); !word.empty();
@@ -146,43 +168,37 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
       throw document_.error(item, fmt::format("Dimensions is '{}'", dimensions.substr(0, 40)),
                             "whole numbers, such as 100 3, are needed");
     }
-    place.shape.push_back(size);
+    shape.push_back(size);
   }
-  if (place.shape.empty()) {
+  if (shape.empty()) {
     throw document_.error(item, "the DataItem has no Dimensions", "Dimensions=\"100 3\" is needed");
   }
+  return shape;
+}
 
-  const std::string format = attribute(item, "Format");
-  if (same_but_for_case(format, "HDF") || same_but_for_case(format, "HDF5") ||
-      same_but_for_case(format, "H5")) {
-    place.format = Format::hdf;
-    const ElementText whole_text(item);
-    const std::string_view text = whole_text.view();
-    if (text.find('|') != std::string_view::npos) {
-      throw document_.error(item, "the DataItem selects a part of a dataset",
-                            "only whole arrays can be reordered: write the values as an array of their own");
-    }
-    std::tie(place.file, place.dataset) = split_hdf5_name(text);
-    if (place.file.empty()) {
-      throw document_.error(item, fmt::format("'{}' names no dataset", text.substr(0, 100)),
-                            "file.h5:/path is needed");
-    }
-    const hdf5::DatasetInfo info = file(item, place.file).info(place.dataset);
-    if (info.size() != product(place.shape)) {
-      throw document_.error(item,
-                            fmt::format("Dimensions is '{}', but '{}' in {} has {} values", dimensions,
-                                        place.dataset, place.file, info.size()),
-                            "the XML and the HDF5 file may be of different runs");
-    }
-    place.alternative = info.alternative;
-    return place;
+void DataReader::find_dataset(pugi::xml_node item, DataPlace& place) {
+  const ElementText whole_text(item);
+  const std::string_view text = whole_text.view();
+  if (text.find('|') != std::string_view::npos) {
+    throw document_.error(item, "the DataItem selects a part of a dataset",
+                          "only whole arrays can be reordered: write the values as an array of their own");
   }
-  if (same_but_for_case(format, "Binary")) {
-    place.format = Format::binary;
-  } else if (!format.empty() && !same_but_for_case(format, "XML")) {
-    throw document_.error(item, fmt::format("the Format is '{}'", format.substr(0, 40)),
-                          "HDF, XML and Binary are understood");
+  std::tie(place.file, place.dataset) = split_hdf5_name(text);
+  if (place.file.empty()) {
+    throw document_.error(item, fmt::format("'{}' names no dataset", text.substr(0, 100)),
+                          "file.h5:/path is needed");
   }
+  const hdf5::DatasetInfo info = file(item, place.file).info(place.dataset);
+  if (info.size() != product(place.shape)) {
+    throw document_.error(item,
+                          fmt::format("Dimensions is '{}', but '{}' in {} has {} values",
+                                      attribute(item, "Dimensions"), place.dataset, place.file, info.size()),
+                          "the XML and the HDF5 file may be of different runs");
+  }
+  place.alternative = info.alternative;
+}
+
+std::size_t DataReader::alternative_of(pugi::xml_node item) const {
   const std::string type = attribute(item, "NumberType", "DataType");
   const std::string precision = attribute(item, "Precision");
   const auto found = std::find_if(kNumberTypes.begin(), kNumberTypes.end(), [&](const NumberType& known) {
@@ -194,9 +210,10 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
     throw document_.error(item, fmt::format("the numbers are '{}' of {} bytes", type, precision),
                           "Float, Int, UInt, Char and UChar are understood");
   }
-  place.alternative = found->alternative;
-  if (place.format == Format::xml) return place;
+  return found->alternative;
+}
 
+void DataReader::find_bytes(pugi::xml_node item, DataPlace& place) const {
   place.file = trimmed_blanks(ElementText(item).view());
   const std::string order = attribute(item, "Endian");
   if (same_but_for_case(order, "Big")) place.order = std::endian::big;
@@ -207,7 +224,6 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
                           "write it without Compression");
   }
   place.seek = item.attribute("Seek").as_ullong(0);
-  return place;
 }
 
 FilePath DataReader::path_of(pugi::xml_node item, const std::string& name) const {

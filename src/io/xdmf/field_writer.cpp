@@ -192,8 +192,15 @@ void Writer::write_array(const Field& field) {
     array = made ? &*made : nullptr;
   }
   if (array == nullptr || are_texts(array->values)) return remove_element(field);
-  const std::optional<Values> values = values_of(*array, field.association, field.part);
-  put(field.place, values ? *values : array->values, static_cast<std::size_t>(array->components));
+  const std::optional<Values> own = values_of(*array, field.association, field.part);
+  const Values& values = own ? *own : array->values;
+  if (size_of(values) != hdf5::DatasetInfo{field.place.shape, 0}.size()) {
+    const std::string type = attribute_type(array->components);
+    set_either(element_of(field), "AttributeType", "Type", type);
+    for (const DataPlace::Repeat& repeat : field.place.repeats)
+      set_either(items_[repeat.named_by].parent(), "AttributeType", "Type", type);
+  }
+  put(field.place, values, static_cast<std::size_t>(array->components));
 }
 
 void Writer::write_set(const Field& field) {

@@ -161,4 +161,7 @@ class Writer {
 /// Sets `other` if the element has it but not `name`; else sets or adds `name`.
 void set_either(pugi::xml_node element, const char* name, const char* other, const std::string& value);
 
+/// Returns the AttributeType of values with so many components.
+std::string attribute_type(Index components);
+
 }  // namespace meshorder::xdmf
