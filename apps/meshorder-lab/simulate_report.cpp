@@ -341,9 +341,57 @@ void print_summary(Console& console, const Simulation& simulation, const MotionR
   }
 }
 
+namespace {
+
+/// Returns the time of all steps, stage by stage.
+nlohmann::ordered_json seconds_json(const Scenario& scenario, const StepReport::Seconds& sum) {
+  nlohmann::ordered_json seconds{{"total", sum.total}};
+  if (!scenario.is_projective()) {
+    seconds["assembly"] = sum.assembly;
+    seconds["solve"] = sum.solve;
+    if (scenario.is_fluid()) {
+      seconds["triangulation"] = sum.triangulation;
+      seconds["order"] = sum.order;
+      seconds["motion"] = sum.motion;
+    }
+  } else {
+    seconds["local"] = sum.local;
+    seconds["global"] = sum.global;
+    seconds["collision"] = sum.collision;
+  }
+  seconds["other"] = other(sum);
+  return seconds;
+}
+
+/// Adds what the steps of a simulator count, such as iterations.
+void add_counts(nlohmann::ordered_json& json, const Simulation& simulation, const MotionRecord& record) {
+  const Scenario& scenario = simulation.scenario;
+  if (scenario.is_fluid()) {
+    json["time_steps"] = each(record, &StepReport::time_step);
+    json["cg_iterations"] = each(record, &StepReport::cg_iterations);
+    const auto& fluid = dynamic_cast<const Fluid&>(*simulation.body);
+    json["volume"] = fluid.volume();
+    json["volume_at_start"] = fluid.volume_at_start();
+    json["fresh_orders"] = fluid.order().fresh_orders();
+    json["alone"] = std::ranges::count(fluid.mesh().alone, 1);
+  } else if (scenario.is_implicit()) {
+    json["cg_iterations"] = each(record, &StepReport::cg_iterations);
+    json["newton_iterations"] = each(record, &StepReport::newton_iterations);
+  } else {
+    json["admm_iterations"] = each(record, &StepReport::admm_iterations);
+    if (touches(scenario.projective())) {
+      json["contact_iterations"] = each(record, &StepReport::contact_iterations);
+      json["contacts"] = each(record, &StepReport::contacts);
+      json["penetration"] = each(record, &StepReport::penetration);
+      json["vertices_in_itself"] = each(record, &StepReport::vertices_in_itself);
+    }
+  }
+}
+
+}  // namespace
+
 nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord& record) {
   const Scenario& scenario = simulation.scenario;
-  const StepReport::Seconds sum = sums(record).seconds;
   const auto half = [](const MethodChoice& method, double seconds) {
     nlohmann::ordered_json json = to_json(method);
     json["seconds"] = seconds;
@@ -379,21 +427,7 @@ nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord&
         json["solver"] = solver_json(options);
       },
       scenario.integrator);
-  auto& seconds = json["seconds"] = {{"total", sum.total}};
-  if (!scenario.is_projective()) {
-    seconds["assembly"] = sum.assembly;
-    seconds["solve"] = sum.solve;
-    if (scenario.is_fluid()) {
-      seconds["triangulation"] = sum.triangulation;
-      seconds["order"] = sum.order;
-      seconds["motion"] = sum.motion;
-    }
-  } else {
-    seconds["local"] = sum.local;
-    seconds["global"] = sum.global;
-    seconds["collision"] = sum.collision;
-  }
-  seconds["other"] = other(sum);
+  json["seconds"] = seconds_json(scenario, sums(record).seconds);
   json["setup_seconds"] = {{"order", simulation.order_seconds}, {"body", simulation.setup_seconds}};
   auto step_seconds = nlohmann::ordered_json::array();
   auto shape_distance = nlohmann::ordered_json::array();
@@ -402,26 +436,7 @@ nlohmann::ordered_json to_json(const Simulation& simulation, const MotionRecord&
     shape_distance.push_back(step.shape_distance);
   }
   json["step_seconds"] = step_seconds;
-  if (scenario.is_fluid()) {
-    json["time_steps"] = each(record, &StepReport::time_step);
-    json["cg_iterations"] = each(record, &StepReport::cg_iterations);
-    const auto& fluid = dynamic_cast<const Fluid&>(*simulation.body);
-    json["volume"] = fluid.volume();
-    json["volume_at_start"] = fluid.volume_at_start();
-    json["fresh_orders"] = fluid.order().fresh_orders();
-    json["alone"] = std::ranges::count(fluid.mesh().alone, 1);
-  } else if (scenario.is_implicit()) {
-    json["cg_iterations"] = each(record, &StepReport::cg_iterations);
-    json["newton_iterations"] = each(record, &StepReport::newton_iterations);
-  } else {
-    json["admm_iterations"] = each(record, &StepReport::admm_iterations);
-    if (touches(scenario.projective())) {
-      json["contact_iterations"] = each(record, &StepReport::contact_iterations);
-      json["contacts"] = each(record, &StepReport::contacts);
-      json["penetration"] = each(record, &StepReport::penetration);
-      json["vertices_in_itself"] = each(record, &StepReport::vertices_in_itself);
-    }
-  }
+  add_counts(json, simulation, record);
   json["energy"] = energy;
   json["momentum"] = momentum;
   json["angular_momentum"] = angular_momentum;

@@ -174,6 +174,43 @@ int share_of_cores(const Communicator& communicator) {
       1, static_cast<int>(std::thread::hardware_concurrency()) / communicator.ranks_on_this_machine());
 }
 
+/// Adds how many parts there are, what makes them, and their orders.
+void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
+  subcommand
+      .add_option("--vertices", arguments.vertices,
+                  "Method for the vertices of a part, see `meshorder methods`; `auto` is spectral; fiedler "
+                  "is that of\n"
+                  "the whole mesh unless --partition names what makes the parts")
+      ->capture_default_str();
+  subcommand.add_option("--parts", arguments.parts, "Number of parts; 0: as many as ranks")
+      ->check(whole_from(0))
+      ->capture_default_str();
+  subcommand
+      .add_option(
+          "--partition", arguments.partition,
+          "What makes the parts: `ptscotch` has few edges between them, `hilbert` cuts Hilbert's\n"
+          "curve and gives the same parts on any number of ranks, `rsb` halves the mesh and its parts by\n"
+          "their Fiedler vectors, `order` cuts one order of the whole mesh, by fiedler only, into equal\n"
+          "ranges; `auto` is order for fiedler, else ptscotch")
+      ->check(CLI::IsMember({"auto", "ptscotch", "hilbert", "rsb", "order"}))
+      ->capture_default_str();
+  subcommand
+      .add_option(
+          "--balance", arguments.balance,
+          "Give all parts the same number of `vertices`, or of `cells`: elements, each shared out among its\n"
+          "vertices")
+      ->check(CLI::IsMember({"vertices", "cells"}))
+      ->capture_default_str();
+  subcommand
+      .add_option(
+          "--interface", arguments.interface_place,
+          "Where a part has the vertices that share an element with those of other parts: `mixed` with\n"
+          "the others, in the method's order, or `last`, after them, so that a program can work on\n"
+          "the others while it waits for these")
+      ->check(CLI::IsMember({"mixed", "last"}))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_distributed_order(CLI::App& subcommand, const Communicator& communicator) {
@@ -216,39 +253,7 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
           ->check(in_range(0, 1))
           ->needs(pieces)
           ->capture_default_str();
-  subcommand
-      .add_option("--vertices", arguments->vertices,
-                  "Method for the vertices of a part, see `meshorder methods`; `auto` is spectral; fiedler "
-                  "is that of\n"
-                  "the whole mesh unless --partition names what makes the parts")
-      ->capture_default_str();
-  subcommand.add_option("--parts", arguments->parts, "Number of parts; 0: as many as ranks")
-      ->check(whole_from(0))
-      ->capture_default_str();
-  subcommand
-      .add_option(
-          "--partition", arguments->partition,
-          "What makes the parts: `ptscotch` has few edges between them, `hilbert` cuts Hilbert's\n"
-          "curve and gives the same parts on any number of ranks, `rsb` halves the mesh and its parts by\n"
-          "their Fiedler vectors, `order` cuts one order of the whole mesh, by fiedler only, into equal\n"
-          "ranges; `auto` is order for fiedler, else ptscotch")
-      ->check(CLI::IsMember({"auto", "ptscotch", "hilbert", "rsb", "order"}))
-      ->capture_default_str();
-  subcommand
-      .add_option(
-          "--balance", arguments->balance,
-          "Give all parts the same number of `vertices`, or of `cells`: elements, each shared out among its\n"
-          "vertices")
-      ->check(CLI::IsMember({"vertices", "cells"}))
-      ->capture_default_str();
-  subcommand
-      .add_option(
-          "--interface", arguments->interface_place,
-          "Where a part has the vertices that share an element with those of other parts: `mixed` with\n"
-          "the others, in the method's order, or `last`, after them, so that a program can work on\n"
-          "the others while it waits for these")
-      ->check(CLI::IsMember({"mixed", "last"}))
-      ->capture_default_str();
+  add_partition_options(subcommand, *arguments);
   add_moving_options(subcommand, *arguments, arguments->ids,
                      "; and the part of each vertex and\n"
                      "cell of the output, PREFIX.vertices.parts.npy and PREFIX.cells.parts.npy");

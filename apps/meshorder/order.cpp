@@ -72,27 +72,6 @@ std::string in_words(const Race& race) {
   return join(words) + " times as fast as the file's order";
 }
 
-/// @param stored  null if the mesh is not a matrix
-void print_result(const Console& console, const MeshOrder& order, const std::optional<Grouping>& groups,
-                  const EdgeSpan& before, const EdgeSpan& after, const StoredMatrix* stored) {
-  const bool is_matrix = stored != nullptr && !stored->is_graph;
-  const auto print_method = [&](const char* of, const MethodChoice& method, double seconds) {
-    console.print("{:<10} {:<14} {}", of, method_in_words(method), duration(seconds));
-    if (!method.reason.empty()) console.print("{:<10} {}", "", method.reason);
-  };
-  print_method(is_matrix ? "rows" : "vertices", order.vertices.method, order.vertices.seconds);
-  // entries stay unless a method is named for them; a graph's file lists edges in the order of its vertices
-  const bool entries_stay = stored != nullptr && !order.cells.method.reason.empty();
-  if (!entries_stay)
-    print_method(stored != nullptr ? "entries" : "elements", order.cells.method, order.cells.seconds);
-  else if (is_matrix)
-    console.print("{:<10} keep their places in the file", "entries");
-  if (groups) console.print("{:<10} {}", "groups", groups_in_words(*groups));
-  console.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}",
-                stored != nullptr ? "distance" : "edge span", before.mean, after.mean,
-                with_commas(before.max), with_commas(after.max), before.mean_log2, after.mean_log2);
-}
-
 /// Notes a method that was requested by name and does not improve the order of the vertices.
 void note_no_better(GraphRef graph, const ReorderOptions& options, const Permutation& vertices,
                     Notes& notes) {
@@ -138,111 +117,185 @@ nlohmann::ordered_json half_json(Index count, const Order& order) {
   return result;
 }
 
-void run(const OrderArguments& arguments) {
-  Console console(arguments);
-  ReorderOptions options = arguments.reordering;
-  options.ids = parse<Ids>(arguments.ids);
-  (void)output_format_of(arguments.output);  // fail before the work
-  const bool in_race = arguments.measure || arguments.predict;
-  if (in_race) check_race(arguments);
-  if (!in_race && (!arguments.machine.empty() || arguments.all_threads)) {
+bool is_race(const OrderArguments& arguments) { return arguments.measure || arguments.predict; }
+
+/// Throws, before the work, for arguments that do not fit together and for an output that cannot be written.
+void check(const OrderArguments& arguments) {
+  (void)output_format_of(arguments.output);
+  if (is_race(arguments)) {
+    check_race(arguments);
+  } else if (!arguments.machine.empty() || arguments.all_threads) {
     throw InvalidArgument(fmt::format("{} is for --predict and --measure, which choose by predicted times",
                                       arguments.machine.empty() ? "--all-threads" : "--machine"));
   }
-  std::optional<MachineChoice> machine;
-  if (in_race) machine = choose_machine(arguments.machine, arguments.all_threads);
-  check_can_write(arguments);  // fail before the work
-  confine({.meshes = {arguments.input},
-           .others = named_files(arguments.points),
-           .outputs = {arguments.output},
-           .maps_written = arguments.maps});
+}
 
-  Progress progress(!console.quiet());
-  progress.stage("reading " + arguments.input, 0, 0.4);
-  StageTimes times;
-  Notes notes;
-  const std::uint64_t bytes_of_race = arguments.measure ? 3 * kBytesToMeasure : kBytesToPredict;
-  MeshToOrder job = read_to_order(arguments, notes, in_race ? bytes_of_race : kBytesToOrder);
-  Mesh& mesh = job.mesh;
-  options.format = output_format_of(arguments.output, mesh.format).key();
-  require_points(mesh, arguments.input, options.methods.vertices, options.methods.elements);
-  times.end("read");
-  times.set_bytes("read", bytes_on_disk(arguments.input));
+/// A call of the command: its parts are called in turn.
+class Ordering {
+ public:
+  explicit Ordering(const OrderArguments& arguments)
+      : arguments_(arguments), console_(arguments), progress_(!console_.quiet()) {
+    options_.ids = parse<Ids>(arguments.ids);
+    if (is_race(arguments)) machine_ = choose_machine(arguments.machine, arguments.all_threads);
+    check_can_write(arguments);
+    confine({.meshes = {arguments.input},
+             .others = named_files(arguments.points),
+             .outputs = {arguments.output},
+             .maps_written = arguments.maps});
+  }
 
-  // on all threads, a race needs the costs of a calibration to choose by
-  if (arguments.predict || (arguments.measure && arguments.all_threads)) {
-    machine = calibrated(*std::move(machine), arguments.all_threads, progress, console.quiet(), notes);
+  void read() {
+    progress_.stage("reading " + arguments_.input, 0, 0.4);
+    const std::uint64_t bytes_of_race = arguments_.measure ? 3 * kBytesToMeasure : kBytesToPredict;
+    job_ = read_to_order(arguments_, notes_, is_race(arguments_) ? bytes_of_race : kBytesToOrder);
+    options_.format = output_format_of(arguments_.output, job_.mesh.format).key();
+    require_points(job_.mesh, arguments_.input, options_.methods.vertices, options_.methods.elements);
+    times_.end("read");
+    times_.set_bytes("read", bytes_on_disk(arguments_.input));
   }
-  progress.stage("ordering", 0.4, 0.7);
-  if (in_race) times.end("calibrate");
-  std::optional<Grouping> groups;
-  if (!options.group_by.empty()) groups = grouping_by(mesh, options.group_by);
-  std::optional<CsrGraph> graph = vertex_graph(mesh);
-  times.end("graph");
-  std::optional<Race> raced;
-  if (in_race) {
-    raced = race(mesh, *graph,
-                 {.ordering = options.order,
-                  .graph_seconds = times.seconds("graph"),
-                  .machine = *std::move(machine),
-                  .timer = arguments.measure ? time_orders : OrderTimer{}});
-    options.methods = raced->methods();
-    if (!raced->advice.doubt.empty()) notes.push_back(raced->advice.doubt);
-    times.end("race");
-  }
-  MeshOrder order = reorder(mesh, options, graph);
-  if (raced) give_reasons(*raced, order);
-  times.end("move");
-  times.split_last("order", order.vertices.seconds + order.cells.seconds);
-  job.maps.vertices = order.vertices.permutation;
-  job.maps.cells = order.cells.permutation;
-  const EdgeSpan before = quick_edge_span(*graph, Permutation::identity(mesh.vertex_count()));
-  const EdgeSpan after = quick_edge_span(*graph, job.maps.vertices);
-  if (!raced) {
-    note_no_better(*graph, options, job.maps.vertices, notes);
-    note_no_better(mesh, options, job.maps.cells, notes);
-  }
-  note_convergence(order.vertices.fiedler, "the vertices", notes);
-  note_convergence(order.cells.fiedler, "the elements", notes);
-  times.end("spans");
 
-  progress.stage("writing " + arguments.output, 0.7, 1);
-  OutputSet outputs;
-  const std::vector<std::string> map_files = write_ordered(job, arguments, outputs, notes);
-  times.end("write");
-  outputs.commit();
-  notes.insert(notes.end(), outputs.notes().begin(), outputs.notes().end());
-  times.end("sync");
-  for (const char* const stage : {"write", "sync"}) times.set_bytes(stage, bytes_on_disk(arguments.output));
-
-  progress.finish();
-  console.warn_of(notes);
-  if (raced) console.print("{:<10} {}", "race", in_words(*raced));
-  print_result(console, order, groups, before, after, stored_matrix(mesh));
-  if (has_new_numbers(mesh, order, options)) {
-    console.print("{:<10} {}", "numbers", "of vertices and cells are new; --ids keep keeps the old ones");
+  /// Moves the mesh into its order.
+  void order() {
+    if (is_race(arguments_)) calibrate();
+    progress_.stage("ordering", 0.4, 0.7);
+    Mesh& mesh = job_.mesh;
+    if (!options_.group_by.empty()) groups_ = grouping_by(mesh, options_.group_by);
+    std::optional<CsrGraph> graph = vertex_graph(mesh);
+    times_.end("graph");
+    if (is_race(arguments_)) run_race(*graph);
+    order_ = reorder(mesh, options_, graph);
+    if (raced_) give_reasons(*raced_, order_);
+    times_.end("move");
+    times_.split_last("order", order_.vertices.seconds + order_.cells.seconds);
+    job_.maps.vertices = order_.vertices.permutation;
+    job_.maps.cells = order_.cells.permutation;
+    judge(*graph);
+    times_.end("spans");
   }
-  console.print("{:<10} {}", "wrote", arguments.output);
-  for (const std::string& file : map_files) console.print("{:<10} {}", "", file);
-  if (arguments.timings) times.print(console);
-  nlohmann::ordered_json result{{"input", arguments.input},
-                                {"output", arguments.output},
-                                {"vertices", half_json(mesh.vertex_count(), order.vertices)},
-                                {"cells", half_json(mesh.cell_count(), order.cells)},
-                                {"for", to_string(options.order.workload)},
-                                {"race", raced ? to_json(raced->advice) : nullptr},
-                                {"group_by", groups ? to_json(*groups) : nullptr},
-                                {"edge_span", {{"before", to_json(before)}, {"after", to_json(after)}}},
-                                {"fiedler", to_json(order.vertices.fiedler)},
-                                {"element_fiedler", to_json(order.cells.fiedler)},
-                                {"maps", map_files},
-                                {"seconds",
-                                 {{"read", times.seconds("read")},
-                                  {"order", times.seconds("graph") + times.seconds("race") +
-                                                times.seconds("order") + times.seconds("move")},
-                                  {"write", times.seconds("write") + times.seconds("sync")}}},
-                                {"timings", times.to_json()}};
-  console.print_json(result);
+
+  void write() {
+    progress_.stage("writing " + arguments_.output, 0.7, 1);
+    OutputSet outputs;
+    map_files_ = write_ordered(job_, arguments_, outputs, notes_);
+    times_.end("write");
+    outputs.commit();
+    notes_.insert(notes_.end(), outputs.notes().begin(), outputs.notes().end());
+    times_.end("sync");
+    for (const char* const stage : {"write", "sync"})
+      times_.set_bytes(stage, bytes_on_disk(arguments_.output));
+  }
+
+  void print() {
+    progress_.finish();
+    console_.warn_of(notes_);
+    if (raced_) console_.print("{:<10} {}", "race", in_words(*raced_));
+    print_methods();
+    console_.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}",
+                   stored_matrix(job_.mesh) != nullptr ? "distance" : "edge span", before_.mean, after_.mean,
+                   with_commas(before_.max), with_commas(after_.max), before_.mean_log2, after_.mean_log2);
+    if (has_new_numbers(job_.mesh, order_, options_)) {
+      console_.print("{:<10} {}", "numbers", "of vertices and cells are new; --ids keep keeps the old ones");
+    }
+    console_.print("{:<10} {}", "wrote", arguments_.output);
+    for (const std::string& file : map_files_) console_.print("{:<10} {}", "", file);
+    if (arguments_.timings) times_.print(console_);
+    console_.print_json(to_json());
+  }
+
+ private:
+  /// On all threads a race needs the costs of a calibration to choose by.
+  void calibrate() {
+    if (arguments_.predict || arguments_.all_threads) {
+      machine_ =
+          calibrated(*std::move(machine_), arguments_.all_threads, progress_, console_.quiet(), notes_);
+    }
+    times_.end("calibrate");
+  }
+
+  /// Lets a race choose the methods.
+  void run_race(const CsrGraph& graph) {
+    raced_ = race(job_.mesh, graph,
+                  {.ordering = options_.order,
+                   .graph_seconds = times_.seconds("graph"),
+                   .machine = *std::move(machine_),
+                   .timer = arguments_.measure ? time_orders : OrderTimer{}});
+    options_.methods = raced_->methods();
+    if (!raced_->advice.doubt.empty()) notes_.push_back(raced_->advice.doubt);
+    times_.end("race");
+  }
+
+  /// Compares the order with the file's own. `graph`: before it moved.
+  void judge(const CsrGraph& graph) {
+    before_ = quick_edge_span(graph, Permutation::identity(job_.mesh.vertex_count()));
+    after_ = quick_edge_span(graph, job_.maps.vertices);
+    if (!raced_) {
+      note_no_better(graph, options_, job_.maps.vertices, notes_);
+      note_no_better(job_.mesh, options_, job_.maps.cells, notes_);
+    }
+    note_convergence(order_.vertices.fiedler, "the vertices", notes_);
+    note_convergence(order_.cells.fiedler, "the elements", notes_);
+  }
+
+  void print_methods() const {
+    const StoredMatrix* const stored = stored_matrix(job_.mesh);
+    const bool is_matrix = stored != nullptr && !stored->is_graph;
+    const auto print_method = [&](const char* of, const MethodChoice& method, double seconds) {
+      console_.print("{:<10} {:<14} {}", of, method_in_words(method), duration(seconds));
+      if (!method.reason.empty()) console_.print("{:<10} {}", "", method.reason);
+    };
+    print_method(is_matrix ? "rows" : "vertices", order_.vertices.method, order_.vertices.seconds);
+    // entries stay unless a method is named for them; a graph's file lists edges in the order of its vertices
+    const bool entries_stay = stored != nullptr && !order_.cells.method.reason.empty();
+    if (!entries_stay)
+      print_method(stored != nullptr ? "entries" : "elements", order_.cells.method, order_.cells.seconds);
+    else if (is_matrix)
+      console_.print("{:<10} keep their places in the file", "entries");
+    if (groups_) console_.print("{:<10} {}", "groups", groups_in_words(*groups_));
+  }
+
+  [[nodiscard]] nlohmann::ordered_json to_json() const {
+    return {{"input", arguments_.input},
+            {"output", arguments_.output},
+            {"vertices", half_json(job_.mesh.vertex_count(), order_.vertices)},
+            {"cells", half_json(job_.mesh.cell_count(), order_.cells)},
+            {"for", to_string(options_.order.workload)},
+            {"race", raced_ ? command::to_json(raced_->advice) : nullptr},
+            {"group_by", groups_ ? command::to_json(*groups_) : nullptr},
+            {"edge_span", {{"before", command::to_json(before_)}, {"after", command::to_json(after_)}}},
+            {"fiedler", command::to_json(order_.vertices.fiedler)},
+            {"element_fiedler", command::to_json(order_.cells.fiedler)},
+            {"maps", map_files_},
+            {"seconds",
+             {{"read", times_.seconds("read")},
+              {"order", times_.seconds("graph") + times_.seconds("race") + times_.seconds("order") +
+                            times_.seconds("move")},
+              {"write", times_.seconds("write") + times_.seconds("sync")}}},
+            {"timings", times_.to_json()}};
+  }
+
+  const OrderArguments& arguments_;
+  ReorderOptions options_ = arguments_.reordering;
+  Console console_;
+  Progress progress_;
+  StageTimes times_;
+  Notes notes_;
+  std::optional<MachineChoice> machine_;
+  MeshToOrder job_;
+  std::optional<Grouping> groups_;
+  std::optional<Race> raced_;
+  MeshOrder order_;
+  EdgeSpan before_;
+  EdgeSpan after_;
+  std::vector<std::string> map_files_;
+};
+
+void run(const OrderArguments& arguments) {
+  check(arguments);
+  Ordering ordering(arguments);
+  ordering.read();
+  ordering.order();
+  ordering.write();
+  ordering.print();
 }
 
 }  // namespace

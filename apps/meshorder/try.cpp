@@ -106,6 +106,61 @@ std::vector<std::string>& program_to_try() {
   return words;
 }
 
+/// Adds what is tried, how often, and what counts.
+void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
+  subcommand
+      .add_option("--methods", arguments.methods,
+                  "Orders to try, VERTICES or VERTICES/ELEMENTS, separated by commas (default:\n"
+                  "auto,hilbert,rcm,spectral-fronts,hilbert-fronts; for an OpenFOAM case\n"
+                  "auto,renumberMesh,bfs,fiedler,hilbert)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  subcommand
+      .add_option("--budget", arguments.budget_seconds,
+                  "Seconds for all runs of the program; orders for which they do not suffice are left out")
+      ->check(positive())
+      ->capture_default_str();
+  subcommand.add_option("--timeout", arguments.timeout_seconds, "Seconds after which a run counts as failed")
+      ->check(positive())
+      ->capture_default_str();
+  subcommand
+      .add_option(
+          "--time", arguments.time,
+          "What counts: `cpu`, the processor time of the program and all that it starts; `wall`, the\n"
+          "time by the clock; or a regular expression with a group: the last number that the group\n"
+          "captures in the program's output")
+      ->type_name("TIME")
+      ->capture_default_str();
+  subcommand
+      .add_option("--count", arguments.count,
+                  "Regular expression for a number that is shown for each order, such as iterations")
+      ->type_name("REGEX");
+  subcommand
+      .add_option("--same", arguments.same,
+                  "Regular expression for numbers that the program prints: an order is left out\n"
+                  "if they differ from those of the first run")
+      ->type_name("REGEX");
+  subcommand
+      .add_option(
+          "--same-file", arguments.same_file,
+          "The same for a file that the program writes, compared word by word: {out} or a path in its\n"
+          "folder. Only for files that do not depend on the order of the mesh")
+      ->type_name("FILE");
+  subcommand
+      .add_option("--tolerance", arguments.tolerance,
+                  "Relative difference up to which numbers count as the same")
+      ->check(positive())
+      ->capture_default_str();
+  subcommand
+      .add_option(
+          "--with", arguments.with,
+          "Names of the files and folders beside the mesh that the program needs, separated by commas\n"
+          "(default: all that are not hidden)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAMES");
+}
+
 }  // namespace
 
 void take_program_to_try(std::vector<std::string>& arguments) {
@@ -132,58 +187,7 @@ void add_try(CLI::App& subcommand) {
   subcommand
       .add_option("MESH", arguments->input, "Mesh file of a format that can be written, or OpenFOAM case")
       ->required();
-  subcommand
-      .add_option("--methods", arguments->methods,
-                  "Orders to try, VERTICES or VERTICES/ELEMENTS, separated by commas (default:\n"
-                  "auto,hilbert,rcm,spectral-fronts,hilbert-fronts; for an OpenFOAM case\n"
-                  "auto,renumberMesh,bfs,fiedler,hilbert)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  subcommand
-      .add_option("--budget", arguments->budget_seconds,
-                  "Seconds for all runs of the program; orders for which they do not suffice are left out")
-      ->check(positive())
-      ->capture_default_str();
-  subcommand
-      .add_option("--timeout", arguments->timeout_seconds, "Seconds after which a run counts as failed")
-      ->check(positive())
-      ->capture_default_str();
-  subcommand
-      .add_option(
-          "--time", arguments->time,
-          "What counts: `cpu`, the processor time of the program and all that it starts; `wall`, the\n"
-          "time by the clock; or a regular expression with a group: the last number that the group\n"
-          "captures in the program's output")
-      ->type_name("TIME")
-      ->capture_default_str();
-  subcommand
-      .add_option("--count", arguments->count,
-                  "Regular expression for a number that is shown for each order, such as iterations")
-      ->type_name("REGEX");
-  subcommand
-      .add_option("--same", arguments->same,
-                  "Regular expression for numbers that the program prints: an order is left out\n"
-                  "if they differ from those of the first run")
-      ->type_name("REGEX");
-  subcommand
-      .add_option(
-          "--same-file", arguments->same_file,
-          "The same for a file that the program writes, compared word by word: {out} or a path in its\n"
-          "folder. Only for files that do not depend on the order of the mesh")
-      ->type_name("FILE");
-  subcommand
-      .add_option("--tolerance", arguments->tolerance,
-                  "Relative difference up to which numbers count as the same")
-      ->check(positive())
-      ->capture_default_str();
-  subcommand
-      .add_option(
-          "--with", arguments->with,
-          "Names of the files and folders beside the mesh that the program needs, separated by commas\n"
-          "(default: all that are not hidden)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("NAMES");
+  add_trial_options(subcommand, *arguments);
   subcommand
       .add_option("--keep", arguments->keep,
                   "New folder for the mesh and the outputs of the first run in each order")

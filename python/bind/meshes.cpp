@@ -192,11 +192,11 @@ EntitySet set_of(const std::string& name, bool of_vertices, const Array& members
   return set;
 }
 
-void add_mesh_class(nb::module_& module) {
+/// Adds what a mesh has: arrays that refer to its own memory.
+void add_properties(nb::class_<Mesh>& mesh) {
   using Self = nb::handle_t<Mesh>;
   const auto of = [](Self self) -> const Mesh& { return nb::cast<const Mesh&>(self); };
-  nb::class_<Mesh>(module, "Mesh")
-      .def_prop_ro("points",
+  mesh.def_prop_ro("points",
                    [of](Self self) {
                      const std::vector<Point>& points = of(self).points;
                      return nb::ndarray<nb::numpy, const double, nb::shape<-1, 3>>(
@@ -234,12 +234,14 @@ void add_mesh_class(nb::module_& module) {
                      return list;
                    })
       .def_prop_ro("block_starts", [of](Self self) { return viewed(self, of(self).cell_blocks); })
-      .def_prop_ro("format_contents",
-                   [](const Mesh& self) {
-                     return texts(self.format_metadata ? self.format_metadata->contents()
-                                                       : std::vector<std::string>());
-                   })
-      .def("add_data", [](Mesh& self, const std::string& name, bool of_vertices,
+      .def_prop_ro("format_contents", [](const Mesh& self) {
+        return texts(self.format_metadata ? self.format_metadata->contents() : std::vector<std::string>());
+      });
+}
+
+/// Adds what can be done with a mesh.
+void add_methods(nb::class_<Mesh>& mesh) {
+  mesh.def("add_data", [](Mesh& self, const std::string& name, bool of_vertices,
                           const Array& values) { self.data.push_back(array_of(name, of_vertices, values)); })
       .def("add_set", [](Mesh& self, const std::string& name, bool of_vertices,
                          const Array& members) { self.sets.push_back(set_of(name, of_vertices, members)); })
@@ -297,7 +299,9 @@ void add_meshes(nb::module_& module) {
   module.def("calibrate", &calibrated);
   module.attr("shapes") = nb::tuple(shapes);
   module.attr("dimensions") = nb::tuple(dimensions);
-  add_mesh_class(module);
+  nb::class_<Mesh> mesh(module, "Mesh");
+  add_properties(mesh);
+  add_methods(mesh);
   module.def(
       "order_mesh",
       [](const GivenPoints& points, const GivenCells& cells, std::size_t vertex_count,

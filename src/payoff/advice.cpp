@@ -43,9 +43,18 @@ struct Ordered {
   std::unique_ptr<const Moved> moved = {};  ///< owns what the pointers refer to; null: the mesh as it is
 };
 
-Ordered ordered(std::unique_ptr<const Moved> moved, bool is_matrix) {
-  return {&moved->mesh, &moved->graph, &moved->simplices, is_matrix ? &moved->pattern : nullptr,
-          std::move(moved)};
+/// The orders of all candidates, each once.
+struct Orders {
+  std::vector<Ordered> all;                ///< the first one is the mesh as it is
+  std::vector<std::size_t> of_candidates;  ///< the place in `all` of each candidate's order
+};
+
+/// Calls `call(candidate, place of its order)` for the mesh as it is and for each candidate.
+template <class Call>
+void for_candidates(Advice& advice, const Orders& orders, const Call& call) {
+  call(advice.as_is, std::size_t{0});
+  for (std::size_t i = 0; i < advice.candidates.size(); ++i)
+    call(advice.candidates[i], orders.of_candidates[i]);
 }
 
 RunReuse reuse_in(const Ordered& order, Kernel kernel, int halvings) {
@@ -142,9 +151,7 @@ double cost_for(Workload workload, const Advice& advice, const OrderCosts& costs
 }
 
 /// Keeps the first candidate and the best others, `most` in all, without changing their sequence.
-/// `order_of[i]` is the place in `orders` of the order of candidate i.
-void keep_best(Advice& advice, std::vector<Ordered>& orders, std::vector<std::size_t>& order_of,
-               Workload workload, std::size_t most) {
+void keep_best(Advice& advice, Orders& orders, Workload workload, std::size_t most) {
   std::vector<std::size_t> places(advice.candidates.size());
   std::iota(places.begin(), places.end(), 0);
   if (places.size() <= most) return;
@@ -154,6 +161,7 @@ void keep_best(Advice& advice, std::vector<Ordered>& orders, std::vector<std::si
   });
   places.resize(most);
   std::sort(places.begin(), places.end());
+  std::vector<std::size_t>& order_of = orders.of_candidates;
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (places[i] == i) continue;
     advice.candidates[i] = std::move(advice.candidates[places[i]]);
@@ -162,13 +170,116 @@ void keep_best(Advice& advice, std::vector<Ordered>& orders, std::vector<std::si
   advice.candidates.resize(most);
   order_of.resize(most);
   std::vector<Ordered> kept;
-  kept.push_back(std::move(orders.front()));
+  kept.push_back(std::move(orders.all.front()));
   for (std::size_t& place : order_of) {
     if (place == 0) continue;
-    kept.push_back(std::move(orders[place]));
+    kept.push_back(std::move(orders.all[place]));
     place = kept.size() - 1;
   }
-  orders = std::move(kept);
+  orders.all = std::move(kept);
+}
+
+/// Throws InvalidArgument for options that contradict each other.
+void check(const AdviceOptions& options) {
+  if (!options.predict && !options.measure_within) {
+    throw InvalidArgument("advice: neither predicted nor measured");
+  }
+  if (options.predict && options.machine.model.threads != options.threads) {
+    throw InvalidArgument(fmt::format("advice: the costs are of {} threads, not of {}",
+                                      options.machine.model.threads, options.threads));
+  }
+  if (options.predict && options.kernels != KernelSet::plain) {
+    throw InvalidArgument("advice: tuned kernels are measured, not predicted");
+  }
+  if (options.race_of > 0 && !options.predict) throw InvalidArgument("advice: a race without predictions");
+}
+
+bool is_race(const AdviceOptions& options) { return options.race_of > 0 && options.race_timer; }
+
+bool measures(const AdviceOptions& options) { return is_race(options) || options.measure_within; }
+
+/// Returns a mesh in an order, without its graph and pattern. `as_is`: the mesh in its own order.
+std::unique_ptr<Moved> moved_by(const MeshOrder& order, const Ordered& as_is, const AdviceOptions& options) {
+  auto moved = std::make_unique<Moved>();
+  if (measures(options)) {
+    moved->mesh.points = as_is.mesh->points;
+    moved->mesh.cells = as_is.mesh->cells;
+    moved->mesh.format_metadata = as_is.mesh->format_metadata;
+    apply_reordering(moved->mesh, order);
+    moved->simplices = CellSimplices(moved->mesh);
+  } else {
+    moved->simplices = as_is.simplices->moved(order.vertices.permutation, order.cells.permutation);
+  }
+  return moved;
+}
+
+/// Adds its graph, and the pattern of a matrix whose times are to be predicted.
+Ordered completed(std::unique_ptr<Moved> moved, const Permutation& vertices, const Ordered& as_is,
+                  const AdviceOptions& options) {
+  moved->graph = renumbered(*as_is.graph, vertices.old_to_new());
+  const bool is_matrix = as_is.pattern != nullptr;
+  if (is_matrix && options.predict) moved->pattern = meshorder::moved(vertices, *as_is.pattern);
+  const Moved& in_order = *moved;
+  return {&in_order.mesh, &in_order.graph, &in_order.simplices, is_matrix ? &in_order.pattern : nullptr,
+          std::move(moved)};
+}
+
+/// Computes the orders that are asked for, and adds a candidate for each that differs from the others.
+void add_candidates(Advice& advice, Orders& orders, const AdviceOptions& options) {
+  const Mesh& mesh = *orders.all.front().mesh;
+  const CsrGraph& graph = *orders.all.front().graph;
+  for (const ReorderOptions& reordering : asked_for(mesh, graph, options)) {
+    const Stopwatch stopwatch;
+    const MeshOrder order = compute_reordering(mesh, graph, reordering);
+    Candidate candidate{.vertices = order.vertices.method,
+                        .elements = order.cells.method,
+                        .workload = reordering.order.workload};
+    const bool is_known = std::any_of(advice.candidates.begin(), advice.candidates.end(),
+                                      [&](const Candidate& other) { return are_one(other, candidate); });
+    if (is_known && (options.methods.empty() || options.race_of > 0)) continue;
+    if (are_one(candidate, advice.as_is)) {
+      orders.of_candidates.push_back(0);
+    } else {
+      orders.of_candidates.push_back(orders.all.size());
+      std::unique_ptr<Moved> moved = moved_by(order, orders.all.front(), options);
+      candidate.order_seconds = options.graph_seconds + stopwatch.seconds();
+      orders.all.push_back(
+          completed(std::move(moved), order.vertices.permutation, orders.all.front(), options));
+    }
+    advice.candidates.push_back(std::move(candidate));
+  }
+}
+
+/// Adds spans and pictures of all orders.
+void describe(Advice& advice, const Orders& orders) {
+  std::vector<Candidate> described(orders.all.size());
+  take_turns(index_size(orders.all), [&](Index i) {
+    const Permutation as_ordered = Permutation::identity(orders.all[i].graph->size());
+    described[i].spans = quality_of(*orders.all[i].graph, as_ordered);
+    described[i].pattern = pattern_of(*orders.all[i].graph, as_ordered, kPatternSide);
+  });
+  for_candidates(advice, orders, [&](Candidate& candidate, std::size_t order) {
+    candidate.spans = described[order].spans;
+    candidate.pattern = described[order].pattern;
+  });
+}
+
+/// Adds the times of all orders.
+void measure(Advice& advice, const Orders& orders, const AdviceOptions& options,
+             const Stopwatch& since_call) {
+  report("measure");
+  const bool in_race = is_race(options);
+  const Timings timings = in_race ? raced(orders.all, options) : measured(orders.all, options, since_call);
+  advice.doubt = reason_to_doubt(timings.steadiness);
+  if (!in_race) {
+    for (double& share : advice.floor) share = std::max(share, timings.steadiness.repeat);
+  }
+  for_candidates(advice, orders, [&](Candidate& candidate, std::size_t order) {
+    KernelMilliseconds& milliseconds = candidate.costs.measured.emplace();
+    for (std::size_t k = 0; k < kKernels.size(); ++k) {
+      milliseconds[k] = timings.orders[order][kKernels[k]].best_ms;
+    }
+  });
 }
 
 }  // namespace
@@ -199,17 +310,7 @@ std::optional<std::size_t> winner_for(Workload workload, const Advice& advice) {
 }
 
 Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options) {
-  if (!options.predict && !options.measure_within) {
-    throw InvalidArgument("advice: neither predicted nor measured");
-  }
-  if (options.predict && options.machine.model.threads != options.threads) {
-    throw InvalidArgument(fmt::format("advice: the costs are of {} threads, not of {}",
-                                      options.machine.model.threads, options.threads));
-  }
-  if (options.predict && options.kernels != KernelSet::plain) {
-    throw InvalidArgument("advice: tuned kernels are measured, not predicted");
-  }
-  if (options.race_of > 0 && !options.predict) throw InvalidArgument("advice: a race without predictions");
+  check(options);
   const Stopwatch since_call;
   Advice advice;
   advice.threads = options.threads;
@@ -217,82 +318,21 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   advice.is_matrix = stored_matrix(mesh) != nullptr;
   advice.as_is.vertices.name = advice.as_is.elements.name = "original";
   const CellSimplices simplices(mesh);
-  std::vector<Ordered> orders(1);
   const EntryPattern pattern = advice.is_matrix && options.predict ? entry_pattern(mesh) : EntryPattern{};
-  orders.front() = {&mesh, &graph, &simplices, advice.is_matrix ? &pattern : nullptr};
-  const bool in_race = options.race_of > 0 && options.race_timer;
-  const bool measures = in_race || options.measure_within;
-  // the place in `orders` of each candidate's order; 0, the mesh as it is, if it moves nothing
-  std::vector<std::size_t> order_of;
-  for (const ReorderOptions& reordering : asked_for(mesh, graph, options)) {
-    const Stopwatch stopwatch;
-    const MeshOrder order = compute_reordering(mesh, graph, reordering);
-    Candidate candidate{.vertices = order.vertices.method,
-                        .elements = order.cells.method,
-                        .workload = reordering.order.workload};
-    const bool moves_nothing = are_one(candidate, advice.as_is);
-    const bool is_known = std::any_of(advice.candidates.begin(), advice.candidates.end(),
-                                      [&](const Candidate& other) { return are_one(other, candidate); });
-    if (is_known && (options.methods.empty() || options.race_of > 0)) continue;
-    order_of.push_back(moves_nothing ? 0 : orders.size());
-    if (!moves_nothing) {
-      auto moved = std::make_unique<Moved>();
-      if (measures) {
-        moved->mesh.points = mesh.points;
-        moved->mesh.cells = mesh.cells;
-        moved->mesh.format_metadata = mesh.format_metadata;
-        apply_reordering(moved->mesh, order);
-        moved->simplices = CellSimplices(moved->mesh);
-      } else {
-        moved->simplices = simplices.moved(order.vertices.permutation, order.cells.permutation);
-      }
-      candidate.order_seconds = options.graph_seconds + stopwatch.seconds();
-      moved->graph = renumbered(graph, order.vertices.permutation.old_to_new());
-      if (advice.is_matrix && options.predict)
-        moved->pattern = meshorder::moved(order.vertices.permutation, pattern);
-      orders.push_back(ordered(std::move(moved), advice.is_matrix));
-    }
-    advice.candidates.push_back(std::move(candidate));
-  }
-  // calls `call(candidate, place of its order)` for the mesh as it is and for each candidate
-  const auto for_candidates = [&](auto call) {
-    call(advice.as_is, std::size_t{0});
-    for (std::size_t i = 0; i < order_of.size(); ++i) call(advice.candidates[i], order_of[i]);
-  };
-  if (options.describe) {
-    std::vector<Candidate> described(orders.size());
-    take_turns(index_size(orders), [&](Index i) {
-      const Permutation as_ordered = Permutation::identity(orders[i].graph->size());
-      described[i].spans = quality_of(*orders[i].graph, as_ordered);
-      described[i].pattern = pattern_of(*orders[i].graph, as_ordered, kPatternSide);
-    });
-    for_candidates([&](Candidate& candidate, std::size_t order) {
-      candidate.spans = described[order].spans;
-      candidate.pattern = described[order].pattern;
-    });
-  }
+  Orders orders;
+  orders.all.push_back({&mesh, &graph, &simplices, advice.is_matrix ? &pattern : nullptr});
+  add_candidates(advice, orders, options);
+  if (options.describe) describe(advice, orders);
   if (options.predict) {
     advice.machine = options.machine.in_words();
-    const std::vector<KernelMilliseconds> predicted = predictions(orders, options);
-    for_candidates(
-        [&](Candidate& candidate, std::size_t order) { candidate.costs.predicted = predicted[order]; });
-  }
-  if (options.race_of > 0) keep_best(advice, orders, order_of, options.ordering.workload, options.race_of);
-  advice.floor = options.machine.floor;
-  if (measures) {
-    report("measure");
-    const Timings timings = in_race ? raced(orders, options) : measured(orders, options, since_call);
-    advice.doubt = reason_to_doubt(timings.steadiness);
-    if (!in_race) {
-      for (double& share : advice.floor) share = std::max(share, timings.steadiness.repeat);
-    }
-    for_candidates([&](Candidate& candidate, std::size_t order) {
-      KernelMilliseconds& milliseconds = candidate.costs.measured.emplace();
-      for (std::size_t k = 0; k < kKernels.size(); ++k) {
-        milliseconds[k] = timings.orders[order][kKernels[k]].best_ms;
-      }
+    const std::vector<KernelMilliseconds> predicted = predictions(orders.all, options);
+    for_candidates(advice, orders, [&](Candidate& candidate, std::size_t order) {
+      candidate.costs.predicted = predicted[order];
     });
   }
+  if (options.race_of > 0) keep_best(advice, orders, options.ordering.workload, options.race_of);
+  advice.floor = options.machine.floor;
+  if (measures(options)) measure(advice, orders, options, since_call);
   advice.kernels = kernel_advice(advice);
   return advice;
 }
