@@ -119,7 +119,7 @@ nlohmann::ordered_json half_json(Index count, const Order& order) {
 
 bool is_race(const OrderArguments& arguments) { return arguments.measure || arguments.predict; }
 
-/// Throws, before the work, for arguments that do not fit together and for an output that cannot be written.
+/// Throws for arguments that do not fit together.
 void check(const OrderArguments& arguments) {
   (void)output_format_of(arguments.output);
   if (is_race(arguments)) {
@@ -133,15 +133,13 @@ void check(const OrderArguments& arguments) {
 /// A call of the command: its parts are called in turn.
 class Ordering {
  public:
-  explicit Ordering(const OrderArguments& arguments)
-      : arguments_(arguments), console_(arguments), progress_(!console_.quiet()) {
+  /// @param machine  for a race
+  Ordering(const OrderArguments& arguments, std::optional<MachineChoice> machine)
+      : arguments_(arguments),
+        console_(arguments),
+        progress_(!console_.quiet()),
+        machine_(std::move(machine)) {
     options_.ids = parse<Ids>(arguments.ids);
-    if (is_race(arguments)) machine_ = choose_machine(arguments.machine, arguments.all_threads);
-    check_can_write(arguments);
-    confine({.meshes = {arguments.input},
-             .others = named_files(arguments.points),
-             .outputs = {arguments.output},
-             .maps_written = arguments.maps});
   }
 
   void read() {
@@ -290,8 +288,16 @@ class Ordering {
 };
 
 void run(const OrderArguments& arguments) {
+  // what must fail fails before the work
   check(arguments);
-  Ordering ordering(arguments);
+  std::optional<MachineChoice> machine;
+  if (is_race(arguments)) machine = choose_machine(arguments.machine, arguments.all_threads);
+  check_can_write(arguments);
+  confine({.meshes = {arguments.input},
+           .others = named_files(arguments.points),
+           .outputs = {arguments.output},
+           .maps_written = arguments.maps});
+  Ordering ordering(arguments, std::move(machine));
   ordering.read();
   ordering.order();
   ordering.write();
