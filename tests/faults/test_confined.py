@@ -196,6 +196,18 @@ def test_a_killed_command_leaves_no_process(med):
     assert not child.exists() or "State:\tZ" in (child / "status").read_text()
 
 
+@pytest.mark.parametrize("arguments", [["order", "-o", "out.med"], ["info"], ["compare"]], ids=lambda words: words[0])
+def test_progress_is_drawn_while_a_child_works(med, arguments):
+    environment = {**os.environ, "LD_PRELOAD": str(HOSTILE), "HOSTILE": "wait"}
+    control, terminal = pty.openpty()
+    with subprocess.Popen([interposed.MESHORDER, *arguments, "mesh.med"], cwd=med, env=environment,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=terminal) as process:
+        os.close(terminal)
+        assert os.read(control, 1000).startswith(b"\rreading mesh.med, ")
+        process.kill()
+    os.close(control)
+
+
 def test_companions_and_maps_are_reached(tmp_path):
     """XDMF's values beside it, maps of another folder, a report, links that the user typed."""
     cases.solid("xdmf")(tmp_path)
