@@ -224,8 +224,8 @@ class Ordering {
 
   /// Compares the order with the file's own. `graph`: before it moved.
   void judge(const CsrGraph& graph) {
-    before_ = quick_edge_span(graph, Permutation::identity(job_.mesh.vertex_count()));
-    after_ = quick_edge_span(graph, job_.maps.vertices);
+    before_ = quick_edge_span(graph, {});
+    after_ = quick_edge_span(graph, job_.maps.vertices.old_to_new());
     if (!raced_) {
       note_no_better(graph, options_, job_.maps.vertices, notes_);
       note_no_better(job_.mesh, options_, job_.maps.cells, notes_);

@@ -15,11 +15,14 @@ namespace meshorder {
 namespace {
 
 /// Calls `visit(span)` for every edge from one of the vertices begin … end−1 to a smaller vertex.
-template <class Visit>
-void for_each_span(GraphRef graph, const Permutation& order, Index begin, Index end, Visit visit) {
+///
+/// @param place_of  `place_of(v)` returns the new number of a vertex
+template <class PlaceOf, class Visit>
+void for_each_span(GraphRef graph, PlaceOf place_of, Index begin, Index end, Visit visit) {
   for (Index v = begin; v < end; ++v) {
+    const Index place = place_of(v);
     for (const Index u : graph[v]) {
-      if (u < v) visit(std::abs(order.old_to_new()[u] - order.old_to_new()[v]));
+      if (u < v) visit(std::abs(place_of(u) - place));
     }
   }
 }
@@ -27,7 +30,8 @@ void for_each_span(GraphRef graph, const Permutation& order, Index begin, Index 
 /// Calls `visit(span)` for every edge once.
 template <class Visit>
 void for_each_span(GraphRef graph, const Permutation& order, Visit visit) {
-  for_each_span(graph, order, 0, graph.size(), visit);
+  for_each_span(
+      graph, [&](Index v) { return order.old_to_new()[v]; }, 0, graph.size(), visit);
 }
 
 /// Returns the number of edges in each bin, up to the last bin that has any.
@@ -115,22 +119,26 @@ SpanSize& SpanSize::operator+=(const SpanSize& other) {
   return *this;
 }
 
-SpanSize span_size(GraphRef graph, const Permutation& order) {
+SpanSize span_size(GraphRef graph, std::span<const Index> place_of) {
   constexpr Index kChunk = 4096;
-  return sum_over_chunks<SpanSize>(graph.size(), kChunk, [&](Index begin, Index end) {
-    SpanSize size;
-    for_each_span(graph, order, begin, end, [&](Index span) { size += {span, span}; });
-    return size;
-  });
+  const auto size_by = [&](auto place) {
+    return sum_over_chunks<SpanSize>(graph.size(), kChunk, [&](Index begin, Index end) {
+      SpanSize size;
+      for_each_span(graph, place, begin, end, [&](Index span) { size += {span, span}; });
+      return size;
+    });
+  };
+  if (place_of.empty()) return size_by([](Index v) { return v; });
+  return size_by([place_of](Index v) { return place_of[v]; });
 }
 
-EdgeSpan quick_edge_span(GraphRef graph, const Permutation& order) {
-  const bool is_sampled = VertexSample(graph.size()).size() < graph.size();
-  if (!is_sampled || graph.neighbours.empty()) return edge_span(graph, order);
-  const SpanSize size = span_size(graph, order);
+EdgeSpan quick_edge_span(GraphRef graph, std::span<const Index> place_of) {
+  const EdgeSpan sampled = sampled_edge_span(graph, place_of);
+  if (graph.neighbours.empty()) return sampled;
+  const SpanSize size = span_size(graph, place_of);
   return {.mean = static_cast<double>(size.sum) / static_cast<double>(graph.edge_count()),
           .max = size.max,
-          .mean_log2 = sampled_edge_span(graph, order.old_to_new()).mean_log2};
+          .mean_log2 = sampled.mean_log2};
 }
 
 Offset profile(GraphRef graph, const Permutation& order) {

@@ -57,12 +57,13 @@ struct SpanSize {
   SpanSize& operator+=(const SpanSize& other);
 };
 
-/// Adds up the spans of all edges, on all threads; polls. O(n + edges).
-SpanSize span_size(GraphRef graph, const Permutation& order);
+/// Adds up the spans of all edges, on all threads; polls. `place_of` is that of `sampled_edge_span`.
+/// O(n + edges).
+SpanSize span_size(GraphRef graph, std::span<const Index> place_of);
 
-/// Like `edge_span`. From 262,144 vertices on it uses all threads, and `mean_log2` comes from
-/// `sampled_edge_span`. Does not depend on the number of threads. O(n + edges).
-EdgeSpan quick_edge_span(GraphRef graph, const Permutation& order);
+/// Like `edge_span`, on all threads; `mean_log2` is that of `sampled_edge_span`. Does not depend on the
+/// number of threads. O(n + edges).
+EdgeSpan quick_edge_span(GraphRef graph, std::span<const Index> place_of);
 
 /// Returns the size of the envelope of a matrix with this pattern, without the diagonal: the sum, over all
 /// vertices, of the distance to their first neighbour, if that comes before them in the order. O(n + edges).

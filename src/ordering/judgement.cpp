@@ -64,8 +64,8 @@ std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string
                     std::to_string(after));
   }
   if (workload == Workload::bandwidth) {
-    const Index before = span_size(graph, as_is).max;
-    const Index after = span_size(graph, order).max;
+    const Index before = span_size(graph, {}).max;
+    const Index after = span_size(graph, order.old_to_new()).max;
     if (after < before) return {};
     return sentence("the bandwidth", std::to_string(before), method, std::to_string(after));
   }
