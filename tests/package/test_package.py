@@ -272,6 +272,7 @@ def test_subproject():
     rules = (USER_BUILD / "build.ninja").read_text()
     assert "-Werror" not in rules and "gtest" not in rules and "march" not in rules
     assert " -O3 -DNDEBUG" in rules, "optimised where nobody says how"
+    assert "ordering/metis.cpp" not in rules, "what needs METIS's header is left out"
     run("cmake", "--build", USER_BUILD)
     run_tests(USER_BUILD, 1)
     assert not list(USER_BUILD.rglob("cmake_install.cmake")) or not list(USER_BUILD.rglob("meshorder-config.cmake"))
