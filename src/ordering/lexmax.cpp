@@ -42,7 +42,7 @@ Entry entry_of(Index element, std::span<const Index> vertices, std::span<const I
 /// Returns the ranks of every element's vertices, falling within each element; empty if Entry has them all.
 std::vector<Index> falling_ranks(IncidenceRef elements, std::span<const Index> rank_of) {
   Offset most = 0;
-  for (Index e = 0; e < elements.size(); ++e) most = std::max(most, std::ssize(elements[e]));
+  for (Index e = 0; e < elements.size(); ++e) most = std::max<Offset>(most, std::ssize(elements[e]));
   if (most <= kInEntry) return {};
   std::vector<Index> ranks(elements.vertices.size());
   for_each_chunk(elements.size(), kPart, [&](Index /*chunk*/, Index begin, Index end) {

@@ -190,10 +190,10 @@ void VtuDocument::copy(const VtuElement& array, const Stored& stored, char* targ
   const std::vector<std::uint64_t> to = sums_before(stored.uncompressed);
   std::vector<std::uint8_t> is_sound(from.size(), 0);
   parallel_loop(from.size(), [&](std::size_t b) {
-    is_sound[b] = compressor.uncompress({stored.bytes.data() + from[b], stored.compressed[b]},
-                                        {target + to[b], stored.uncompressed[b]})
-                      ? 1
-                      : 0;
+    const auto size = static_cast<std::size_t>(stored.compressed[b]);
+    const auto whole_size = static_cast<std::size_t>(stored.uncompressed[b]);
+    is_sound[b] =
+        compressor.uncompress({stored.bytes.data() + from[b], size}, {target + to[b], whole_size}) ? 1 : 0;
   });
   const auto damaged = std::find(is_sound.begin(), is_sound.end(), 0) - is_sound.begin();
   if (std::cmp_less(damaged, is_sound.size()))
