@@ -13,7 +13,7 @@
 #include "mesh/stored_matrix.hpp"
 #include "mesh_files.hpp"
 #include "metrics/edge_span.hpp"
-#include "ordering/judgement.hpp"
+#include "order_report.hpp"
 #include "payoff/race.hpp"
 #include "progress.hpp"
 #include "stage_times.hpp"
@@ -70,42 +70,6 @@ std::string in_words(const Race& race) {
         fmt::format("{}/{} {:.2f}", candidate.vertices.name, candidate.elements.name, race.factors[i]));
   }
   return join(words) + " times as fast as the file's order";
-}
-
-/// Notes a method that was requested by name and does not improve the order of the vertices.
-void note_no_better(GraphRef graph, const ReorderOptions& options, const Permutation& vertices,
-                    Notes& notes) {
-  const std::string& method = options.methods.vertices;
-  if (method == "auto" || method == "original" || method == "scrambled" || !options.group_by.empty()) return;
-  const std::string reason = reason_to_keep(graph, vertices, method, made_for(method));
-  if (!reason.empty()) notes.push_back(reason + "; --vertices original keeps the order");
-}
-
-/// Notes a method that was requested by name and does not improve the order of the elements. `mesh` has been
-/// reordered by `cells`.
-void note_no_better(const Mesh& mesh, const ReorderOptions& options, const Permutation& cells, Notes& notes) {
-  const std::string& method = options.methods.elements;
-  if (method == "auto" || method == "original" || method == "scrambled" || !options.group_by.empty()) return;
-  const CellSelection elements = CellSelection::elements(cell_arrays(mesh));
-  const Permutation as_written = Permutation::identity(elements.size());
-  std::vector<Index> element_of(static_cast<std::size_t>(cells.size()), -1);  // of each cell
-  for (Index e = 0; e < elements.size(); ++e) element_of[elements.cell(e)] = e;
-  std::vector<Index> as_it_was;
-  as_it_was.reserve(static_cast<std::size_t>(elements.size()));
-  for (const Index cell : cells.old_to_new()) {
-    if (element_of[cell] >= 0) as_it_was.push_back(element_of[cell]);
-  }
-  const std::string reason =
-      reason_to_keep_elements(elements.incidence(), as_it_was, as_written.new_to_old(), method);
-  if (!reason.empty()) notes.push_back(reason + "; --elements original keeps the order");
-}
-
-/// Returns whether the file's numbers of vertices or cells differ from those before they moved. `mesh`
-/// has been reordered.
-bool has_new_numbers(const Mesh& mesh, const MeshOrder& order, const ReorderOptions& options) {
-  const bool are_moved = !order.vertices.permutation.is_identity() || !order.cells.permutation.is_identity();
-  const bool are_bound = mesh.format_metadata != nullptr && mesh.format_metadata->binds_ids();
-  return are_moved && !are_bound && options.ids != Ids::keep && has_numbers(format_named(options.format));
 }
 
 /// Returns {"count", "method", "chosen_by", "because", "kept", "seconds"}.
@@ -187,10 +151,8 @@ class Ordering {
     progress_.finish();
     console_.warn_of(notes_);
     if (raced_) console_.print("{:<10} {}", "race", in_words(*raced_));
-    print_methods();
-    console_.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}",
-                   stored_matrix(job_.mesh) != nullptr ? "distance" : "edge span", before_.mean, after_.mean,
-                   with_commas(before_.max), with_commas(after_.max), before_.mean_log2, after_.mean_log2);
+    for (const std::string& line : lines_of_order(order_, groups_, spans_, stored_matrix(job_.mesh)))
+      console_.print("{}", line);
     if (has_new_numbers(job_.mesh, order_, options_)) {
       console_.print("{:<10} {}", "numbers", "of vertices and cells are new; --ids keep keeps the old ones");
     }
@@ -224,31 +186,13 @@ class Ordering {
 
   /// Compares the order with the file's own. `graph`: before it moved.
   void judge(const CsrGraph& graph) {
-    before_ = quick_edge_span(graph, {});
-    after_ = quick_edge_span(graph, job_.maps.vertices.old_to_new());
+    spans_ = {quick_edge_span(graph, {}), quick_edge_span(graph, job_.maps.vertices.old_to_new())};
     if (!raced_) {
       note_no_better(graph, options_, job_.maps.vertices, notes_);
       note_no_better(job_.mesh, options_, job_.maps.cells, notes_);
     }
     note_convergence(order_.vertices.fiedler, "the vertices", notes_);
     note_convergence(order_.cells.fiedler, "the elements", notes_);
-  }
-
-  void print_methods() const {
-    const StoredMatrix* const stored = stored_matrix(job_.mesh);
-    const bool is_matrix = stored != nullptr && !stored->is_graph;
-    const auto print_method = [&](const char* of, const MethodChoice& method, double seconds) {
-      console_.print("{:<10} {:<14} {}", of, method_in_words(method), duration(seconds));
-      if (!method.reason.empty()) console_.print("{:<10} {}", "", method.reason);
-    };
-    print_method(is_matrix ? "rows" : "vertices", order_.vertices.method, order_.vertices.seconds);
-    // entries stay unless a method is named for them; a graph's file lists edges in the order of its vertices
-    const bool entries_stay = stored != nullptr && !order_.cells.method.reason.empty();
-    if (!entries_stay)
-      print_method(stored != nullptr ? "entries" : "elements", order_.cells.method, order_.cells.seconds);
-    else if (is_matrix)
-      console_.print("{:<10} keep their places in the file", "entries");
-    if (groups_) console_.print("{:<10} {}", "groups", groups_in_words(*groups_));
   }
 
   [[nodiscard]] nlohmann::ordered_json to_json() const {
@@ -259,7 +203,8 @@ class Ordering {
             {"for", to_string(options_.order.workload)},
             {"race", raced_ ? command::to_json(raced_->advice) : nullptr},
             {"group_by", groups_ ? command::to_json(*groups_) : nullptr},
-            {"edge_span", {{"before", command::to_json(before_)}, {"after", command::to_json(after_)}}},
+            {"edge_span",
+             {{"before", command::to_json(spans_.before)}, {"after", command::to_json(spans_.after)}}},
             {"fiedler", command::to_json(order_.vertices.fiedler)},
             {"element_fiedler", command::to_json(order_.cells.fiedler)},
             {"maps", map_files_},
@@ -282,8 +227,7 @@ class Ordering {
   std::optional<Grouping> groups_;
   std::optional<Race> raced_;
   MeshOrder order_;
-  EdgeSpan before_;
-  EdgeSpan after_;
+  SpanChange spans_;
   std::vector<std::string> map_files_;
 };
 

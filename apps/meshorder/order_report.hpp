@@ -1,0 +1,43 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "graph/csr_graph.hpp"
+#include "mesh/groups.hpp"
+#include "mesh/stored_matrix.hpp"
+#include "metrics/edge_span.hpp"
+#include <meshorder/io.hpp>
+#include <meshorder/mesh.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshorder::command {
+
+// What `order` says of an order that it made; the page in browser/ says the same.
+
+/// The edge spans of the vertices before and after reordering.
+struct SpanChange {
+  EdgeSpan before;
+  EdgeSpan after;
+};
+
+/// Returns the lines of the result: the methods with their reasons, the groups, the spans.
+///
+/// @param stored  null if the mesh is not a matrix
+std::vector<std::string> lines_of_order(const MeshOrder& order, const std::optional<Grouping>& groups,
+                                        const SpanChange& spans, const StoredMatrix* stored);
+
+/// Notes a method that was requested by name and does not improve the order of the vertices. `graph` is that
+/// before reordering.
+void note_no_better(GraphRef graph, const ReorderOptions& options, const Permutation& vertices, Notes& notes);
+
+/// Notes a method that was requested by name and does not improve the order of the elements. `mesh` has been
+/// reordered by `cells`.
+void note_no_better(const Mesh& mesh, const ReorderOptions& options, const Permutation& cells, Notes& notes);
+
+/// Returns whether the file's numbers of vertices or cells differ from those before they moved. `mesh`
+/// has been reordered.
+bool has_new_numbers(const Mesh& mesh, const MeshOrder& order, const ReorderOptions& options);
+
+}  // namespace meshorder::command
