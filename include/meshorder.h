@@ -4,8 +4,9 @@
 
 /**
  * @file
- * The C interface of meshorder (C99): orders graphs and meshes, computes Fiedler vectors, adds a user's own
- * methods. Its binary interface is stable: structures only grow at their end, functions and numbers stay.
+ * The C interface of meshorder (C99): orders graphs and meshes, computes Fiedler vectors, makes layouts for
+ * graphics processors, adds a user's own methods. Its binary interface is stable: structures only grow at
+ * their end, functions and numbers stay.
  *
  * Every function returns MO_OK or the status of its failure, unless stated otherwise. After a failure
  * `mo_last_error` returns a sentence, and outputs are unspecified. Several threads may call all functions
@@ -250,6 +251,127 @@ MO_API mo_status mo_fiedler(const mo_in* offsets, const mo_in* neighbours, const
  */
 MO_API mo_status mo_move(const mo_in* new_to_old, int32_t base, const void* from, void* to,
                          int64_t row_bytes);
+
+/*
+ * Layouts for graphics processors, where many threads work on cells at once. Order the mesh first: layouts
+ * keep the order of cells and vertices.
+ *
+ * All functions take cells as `mo_order_mesh` does, `vertex_count` >= 0, and options or null, of which they
+ * use `base`, `threads`, `progress` and `user`. Edges are cells with two vertices. Numbers of cells and
+ * vertices and offsets count from the base on; `local` and `corners` count from 0. The library makes the
+ * structures and their arrays, which are valid until the call that destroys them; do not write to them.
+ */
+
+/** Cells in patches of `size`, one patch for each block of threads. The block loads the patch's vertices into
+ * shared memory, uses their local numbers, and adds its sums to global memory once for each vertex. */
+typedef struct mo_patches {
+  int64_t count;             /**< patches */
+  int32_t size;              /**< cells of a patch; the last may have fewer */
+  int32_t vertices_per_cell; /**< k */
+  const int32_t* cells;      /**< old number of each cell: those of patch p from place p * size on */
+  const int64_t* offsets;    /**< count + 1: where the vertices of each patch begin */
+  const int32_t* vertices;   /**< vertices of each patch, ascending */
+  const uint16_t* local;     /**< corner a of cells[i] is vertex local[i * k + a] of its patch */
+} mo_patches;
+
+/**
+ * Cuts cells into patches, in their order. Within a patch, neighbouring cells are spread over the warps of 32
+ * threads.
+ *
+ * @param size  cells of a patch, 2 ... 65535 / k; usual: 256
+ * @param made  written; null after a failure
+ */
+MO_API mo_status mo_patches_create(const mo_in* cell_offsets, const mo_in* cell_vertices,
+                                   const mo_in* vtk_types, int64_t vertex_count, int32_t size,
+                                   const mo_options* options, const mo_patches** made);
+
+/** Destroys patches; does nothing for a null pointer. */
+MO_API void mo_patches_destroy(const mo_patches* made);
+
+/** The cells at each vertex, whose contributions it sums without atomic additions. */
+typedef struct mo_gather_lists {
+  const int64_t* offsets; /**< vertex_count + 1: where the entries of each vertex begin */
+  const int32_t* cells;   /**< the cells of each vertex, ascending */
+  const uint8_t* corners; /**< position of the vertex in that cell */
+} mo_gather_lists;
+
+/**
+ * Makes the gather lists of cells with at most 256 vertices each.
+ *
+ * @param made  written; null after a failure
+ */
+MO_API mo_status mo_gather_lists_create(const mo_in* cell_offsets, const mo_in* cell_vertices,
+                                        const mo_in* vtk_types, int64_t vertex_count,
+                                        const mo_options* options, const mo_gather_lists** made);
+
+/** Destroys gather lists; does nothing for a null pointer. */
+MO_API void mo_gather_lists_destroy(const mo_gather_lists* made);
+
+/** Cells by colour: no two cells of a colour share a vertex. */
+typedef struct mo_colours {
+  int64_t count;         /**< colours */
+  const int32_t* starts; /**< count + 1: where the cells of each colour begin */
+  const int32_t* cells;  /**< all cells, colour after colour, in their old order within a colour */
+} mo_colours;
+
+/**
+ * Colours cells.
+ *
+ * @param made  written; null after a failure
+ */
+MO_API mo_status mo_colours_create(const mo_in* cell_offsets, const mo_in* cell_vertices,
+                                   const mo_in* vtk_types, int64_t vertex_count, const mo_options* options,
+                                   const mo_colours** made);
+
+/** Destroys colours; does nothing for a null pointer. */
+MO_API void mo_colours_destroy(const mo_colours* made);
+
+/**
+ * Sorts the vertices of each linear triangle or tetrahedron as far as its orientation allows. It needs
+ * `vtk_types`.
+ *
+ * @param sorted  integers, as many as `cell_vertices`
+ */
+MO_API mo_status mo_sort_corners(const mo_in* cell_offsets, const mo_in* cell_vertices,
+                                 const mo_in* vtk_types, int64_t vertex_count, const mo_options* options,
+                                 const mo_out* sorted);
+
+/** Cost of a kernel on a graphics processor. Set `struct_size` to sizeof(mo_gpu_counts) before the call. */
+typedef struct mo_gpu_counts {
+  size_t struct_size;
+  int64_t requests;   /**< additions, or loads and stores, each of a warp of 32 threads at once */
+  int64_t sectors;    /**< sectors of 32 bytes that they touch; where t threads add to a number, t times */
+  int64_t floor;      /**< `sectors` if the numbers of each warp were all different and side by side */
+  int64_t dram_bytes; /**< bytes read from memory, if the cache is filled again and again */
+  int64_t dram_floor; /**< `dram_bytes` if each number were read once */
+} mo_gpu_counts;
+
+/**
+ * Counts what adding to the vertices of cells costs on a graphics processor. Of two orders of the same cells,
+ * the one with fewer sectors is faster there.
+ *
+ * @param layout       "packed": three numbers of a vertex side by side; "apart": in three arrays; "padded":
+ * four, added at once; "patches": `packed` by patches of 256 cells; "gathered": two passes by gather lists
+ * @param cache_bytes  size of the last cache; 0: 50 MiB
+ * @param counts       written
+ */
+MO_API mo_status mo_gpu_cost(const mo_in* cell_offsets, const mo_in* cell_vertices, const mo_in* vtk_types,
+                             int64_t vertex_count, const char* layout, int64_t cache_bytes,
+                             const mo_options* options, mo_gpu_counts* counts);
+
+/**
+ * Counts what the product of a sparse matrix with a vector costs on a graphics processor. The matrix has an
+ * entry for each neighbour, and a diagonal.
+ *
+ * @param offsets      n + 1, ascending, the first is the base
+ * @param neighbours   offsets[n] - base numbers from the base on; symmetric
+ * @param lanes        threads of a row: 1, 2, 4, 8, 16 or 32
+ * @param cache_bytes  size of the last cache; 0: 50 MiB
+ * @param options      or null
+ * @param counts       written
+ */
+MO_API mo_status mo_gpu_product_cost(const mo_in* offsets, const mo_in* neighbours, int32_t lanes,
+                                     int64_t cache_bytes, const mo_options* options, mo_gpu_counts* counts);
 
 /** Returns the number of vertex methods, including registered ones. Never fails. */
 MO_API int32_t mo_method_count(void);

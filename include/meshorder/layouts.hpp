@@ -115,6 +115,9 @@ inline constexpr std::array kGpuLayouts{GpuLayout::packed, GpuLayout::apart, Gpu
 /// Returns "packed", "apart", "padded", "patches" or "gathered". Valid for the life of the program.
 MESHORDER_API std::string_view to_string(GpuLayout layout);
 
+/// Returns the layout of that name; throws InvalidArgument for an unknown one.
+MESHORDER_API GpuLayout parse_gpu_layout(std::string_view name);
+
 /// Size of the last cache of an NVIDIA H100, bytes.
 inline constexpr std::size_t kGpuCacheBytes = std::size_t{50} << 20;
 

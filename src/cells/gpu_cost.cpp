@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/arena.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "cells/cache_windows.hpp"
 #include "cells/cell_arrays.hpp"
 #include "cells/warp_sectors.hpp"
@@ -15,9 +16,21 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
+
+template <>
+struct EnumNames<GpuLayout> {
+  static constexpr std::string_view kind = "layout";
+  static constexpr std::array names{
+      std::pair{GpuLayout::packed, "packed"},     std::pair{GpuLayout::apart, "apart"},
+      std::pair{GpuLayout::padded, "padded"},     std::pair{GpuLayout::patches, "patches"},
+      std::pair{GpuLayout::gathered, "gathered"},
+  };
+};
+
 inline namespace v0_3 {
 namespace {
 
@@ -148,11 +161,8 @@ GpuCost cost_of(const GatherLists& lists, const CellArrays& cells, int width, Of
 
 }  // namespace
 
-std::string_view to_string(GpuLayout layout) {
-  constexpr std::array<std::string_view, kGpuLayouts.size()> kNames{"packed", "apart", "padded", "patches",
-                                                                    "gathered"};
-  return kNames[static_cast<std::size_t>(layout)];
-}
+std::string_view to_string(GpuLayout layout) { return to_string<GpuLayout>(layout); }
+GpuLayout parse_gpu_layout(std::string_view name) { return parse<GpuLayout>(name); }
 
 GpuCost gpu_cost(const CellsView& cells, std::size_t vertex_count, GpuLayout layout, std::size_t cache_bytes,
                  const Run& run) {

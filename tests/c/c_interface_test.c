@@ -509,6 +509,121 @@ static void test_progress(void) {
   CHECK(strlen(mo_last_error()) > 0);
 }
 
+/* Two tetrahedra with a common facet, numbered from 1. */
+static const int32_t pair_offsets[3] = {1, 5, 9};
+static const int32_t pair_vertices[8] = {4, 2, 3, 1, 2, 3, 4, 5};
+static const int32_t pair_types[2] = {10, 10};
+
+static mo_options from_one(void) {
+  mo_options options = options_of(NULL);
+  options.base = 1;
+  return options;
+}
+
+static void test_patches(void) {
+  const mo_in offsets = in32(pair_offsets, 3);
+  const mo_in vertices = in32(pair_vertices, 8);
+  const mo_options options = from_one();
+  const mo_patches* made = NULL;
+  int k;
+  CHECK(mo_patches_create(&offsets, &vertices, NULL, 5, 2, &options, &made) == MO_OK);
+  if (made == NULL) return;
+  CHECK(made->count == 1 && made->size == 2 && made->vertices_per_cell == 4);
+  CHECK(made->offsets[0] == 1 && made->offsets[1] == 6);
+  for (k = 0; k < 5; ++k) CHECK(made->vertices[k] == k + 1);
+  CHECK(made->cells[0] + made->cells[1] == 3);
+  for (k = 0; k < 8; ++k) {
+    const int32_t cell = made->cells[k / 4] - 1;
+    CHECK(made->vertices[made->local[k]] == pair_vertices[4 * cell + k % 4]);
+  }
+  mo_patches_destroy(made);
+  mo_patches_destroy(NULL);
+  CHECK(mo_patches_create(&offsets, &vertices, NULL, 5, 1, &options, &made) == MO_INVALID_ARGUMENT);
+  CHECK(made == NULL);
+  CHECK(mo_patches_create(&offsets, &vertices, NULL, 4, 2, &options, &made) == MO_INVALID_ARGUMENT);
+  CHECK(mo_patches_create(&offsets, &vertices, NULL, -1, 2, &options, &made) == MO_INVALID_ARGUMENT);
+  CHECK(strstr(mo_last_error(), "vertex_count") != NULL);
+  CHECK(mo_patches_create(&offsets, &vertices, NULL, 5, 2, &options, NULL) == MO_INVALID_ARGUMENT);
+}
+
+static void test_gather_lists_and_colours(void) {
+  static const int32_t entries[6] = {1, 2, 4, 6, 8, 9};
+  const mo_in offsets = in32(pair_offsets, 3);
+  const mo_in vertices = in32(pair_vertices, 8);
+  const mo_options options = from_one();
+  const mo_gather_lists* lists = NULL;
+  const mo_colours* colours = NULL;
+  int v;
+  CHECK(mo_gather_lists_create(&offsets, &vertices, NULL, 5, &options, &lists) == MO_OK);
+  CHECK(mo_colours_create(&offsets, &vertices, NULL, 5, &options, &colours) == MO_OK);
+  if (lists == NULL || colours == NULL) return;
+  for (v = 0; v < 5; ++v) {
+    int64_t entry;
+    CHECK(lists->offsets[v] == entries[v] && lists->offsets[v + 1] == entries[v + 1]);
+    for (entry = lists->offsets[v] - 1; entry < lists->offsets[v + 1] - 1; ++entry) {
+      CHECK(pair_vertices[4 * (lists->cells[entry] - 1) + lists->corners[entry]] == v + 1);
+    }
+  }
+  CHECK(colours->count == 2);
+  CHECK(colours->starts[0] == 1 && colours->starts[1] == 2 && colours->starts[2] == 3);
+  CHECK(colours->cells[0] == 1 && colours->cells[1] == 2);
+  mo_gather_lists_destroy(lists);
+  mo_gather_lists_destroy(NULL);
+  mo_colours_destroy(colours);
+  mo_colours_destroy(NULL);
+  CHECK(mo_gather_lists_create(&offsets, NULL, NULL, 5, &options, &lists) == MO_INVALID_ARGUMENT);
+  CHECK(mo_colours_create(NULL, &vertices, NULL, 5, &options, &colours) == MO_INVALID_ARGUMENT);
+  CHECK(lists == NULL && colours == NULL);
+}
+
+static void test_sorted_corners(void) {
+  static const int32_t expected[8] = {1, 2, 4, 3, 2, 3, 4, 5}; /* 4 2 3 1 is an odd permutation of 1 2 3 4 */
+  const mo_in offsets = in32(pair_offsets, 3);
+  const mo_in vertices = in32(pair_vertices, 8);
+  const mo_in types = in32(pair_types, 2);
+  const mo_options options = from_one();
+  int32_t corners[8];
+  mo_out sorted = out32(corners, 8);
+  CHECK(mo_sort_corners(&offsets, &vertices, &types, 5, &options, &sorted) == MO_OK);
+  CHECK(memcmp(corners, expected, sizeof corners) == 0);
+  CHECK(mo_sort_corners(&offsets, &vertices, NULL, 5, &options, &sorted) == MO_INVALID_ARGUMENT);
+  sorted.size = 7;
+  CHECK(mo_sort_corners(&offsets, &vertices, &types, 5, &options, &sorted) == MO_INVALID_ARGUMENT);
+}
+
+/* 32 edges without a common vertex: both ends of a warp's edges are side by side. The matrix is of the path.
+ */
+static void test_gpu_costs(void) {
+  int32_t edge_offsets[33];
+  int32_t edge_ends[64];
+  mo_in offsets = in32(edge_offsets, 33);
+  mo_in ends = in32(edge_ends, 64);
+  mo_gpu_counts counts;
+  int k;
+  for (k = 0; k <= 32; ++k) edge_offsets[k] = 2 * k;
+  for (k = 0; k < 64; ++k) edge_ends[k] = k / 2 + 32 * (k % 2);
+  memset(&counts, 0, sizeof counts);
+  counts.struct_size = sizeof counts;
+  CHECK(mo_gpu_cost(&offsets, &ends, NULL, 64, "padded", 0, NULL, &counts) == MO_OK);
+  CHECK(counts.requests == 2 && counts.sectors == 32 && counts.floor == 32);
+  CHECK(counts.dram_bytes == 64 * 4 + 2 * 64 * 16 && counts.dram_floor == counts.dram_bytes);
+  CHECK(mo_gpu_cost(&offsets, &ends, NULL, 64, "paded", 0, NULL, &counts) == MO_INVALID_ARGUMENT);
+  CHECK(strstr(mo_last_error(), "padded") != NULL);
+  CHECK(mo_gpu_cost(&offsets, &ends, NULL, 64, NULL, 0, NULL, &counts) == MO_INVALID_ARGUMENT);
+  CHECK(mo_gpu_cost(&offsets, &ends, NULL, 64, "padded", -1, NULL, &counts) == MO_INVALID_ARGUMENT);
+  CHECK(mo_gpu_cost(&offsets, &ends, NULL, 64, "padded", 0, NULL, NULL) == MO_INVALID_ARGUMENT);
+
+  counts.dram_floor = -1;
+  counts.struct_size = offsetof(mo_gpu_counts, dram_floor);
+  offsets = in32(offsets32, N + 1);
+  ends = in32(neighbours32, 8);
+  CHECK(mo_gpu_product_cost(&offsets, &ends, 1, 0, NULL, &counts) == MO_OK);
+  CHECK(counts.dram_bytes == 13 * 8 + 6 * 4 + 32 && counts.dram_floor == -1);
+  CHECK(mo_gpu_product_cost(&offsets, &ends, 3, 0, NULL, &counts) == MO_INVALID_ARGUMENT);
+  counts.struct_size = 0;
+  CHECK(mo_gpu_product_cost(&offsets, &ends, 1, 0, NULL, &counts) == MO_INVALID_ARGUMENT);
+}
+
 int main(void) {
   CHECK(mo_version() > 0);
   CHECK(strcmp(mo_last_error(), "") == 0);
@@ -523,5 +638,9 @@ int main(void) {
   test_smaller_structures();
   test_own_methods();
   test_progress();
+  test_patches();
+  test_gather_lists_and_colours();
+  test_sorted_corners();
+  test_gpu_costs();
   return failures == 0 ? 0 : 1;
 }

@@ -32,8 +32,8 @@ def describe(folder, include=ROOT / "include"):
     test_package.run(test_package.cache_value("CMAKE_CXX_COMPILER"), "-std=c++20", "-g", "-O0", "-fPIC", "-shared",
                      "-fvisibility=hidden", f"-fdebug-prefix-map={ROOT}=.", "-DMESHORDER_BUILDING", "-I", include,
                      f"-I{ROOT}/src", f"-I{test_package.BUILD}/src/include", "-isystem", "/usr/include/eigen3",
-                     ROOT / "src/c/c_interface.cpp", f"-Wl,--version-script={ROOT}/src/c/exports.map",
-                     "-Wl,-soname,libmeshorder_c.so.1", "-o", library)
+                     *(ROOT / f"src/c/{name}.cpp" for name in ("arguments", "c_interface", "layouts")),
+                     f"-Wl,--version-script={ROOT}/src/c/exports.map", "-Wl,-soname,libmeshorder_c.so.1", "-o", library)
     test_package.run("abidw", "--exported-interfaces-only", "--headers-dir", include, "--drop-private-types",
                      "--drop-undefined-syms", "--no-corpus-path", "--no-comp-dir-path", "--no-show-locs",
                      "--no-elf-needed", "--type-id-style", "hash", "--out-file", folder / "now.abi", library)

@@ -1,0 +1,93 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/status.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/order.hpp>
+#include <meshorder/view.hpp>
+
+#include <meshorder.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// Arrays and structures of callers in C. All functions throw InvalidArgument, with the name of the argument,
+// for what they do not accept.
+
+namespace meshorder::c {
+
+/// Returns the message of this thread's last failure.
+std::string& last_error();
+
+/// Calls `work()` and returns its status; if it fails, `mo_last_error` returns the reason.
+template <class Work>
+mo_status guarded(const Work& work) noexcept {
+  return status_of(work, last_error());
+}
+
+[[noreturn]] void fail(const std::string& name, const std::string& fault);
+
+// Input arrays.
+
+/// Returns a view of integers; an empty one of no array.
+IndexView integers(const mo_in* array, const char* name);
+/// Returns a view of real numbers; an empty one of no array.
+RealView reals(const mo_in* array, const char* name);
+PointsView points_of(const mo_in* array, int dimension);
+/// Returns offsets; throws if there are none.
+IndexView offsets_of(const mo_in* array, const char* name);
+/// Returns the VTK cell types, each in a byte; throws for a number that does not fit.
+std::vector<std::uint8_t> types_of(const mo_in* array);
+GraphView graph_of(const mo_in* offsets, const mo_in* neighbours, const mo_in* weights, int base);
+
+// Output arrays.
+
+/// Throws unless the array is null (not wanted), or of integers with room for exactly `count` numbers.
+void check_integers(const mo_out* array, std::size_t count, const char* name);
+/// The same for real numbers.
+void check_reals(const mo_out* array, std::size_t count, const char* name);
+
+/// Writes numbers, each plus `base`, into an array that `check_integers` accepted; does nothing if the array
+/// is null.
+///
+/// @param count  more than each of the numbers
+/// @throws TooLarge if the type of the array cannot hold count − 1 + base
+void write(std::span<const Index> numbers, std::size_t count, int base, const mo_out* array,
+           const char* name);
+/// Writes a permutation of 0 … size − 1 likewise.
+inline void write(std::span<const Index> map, int base, const mo_out* array, const char* name) {
+  write(map, map.size(), base, array, name);
+}
+/// Writes numbers into an array that `check_reals` accepted; does nothing if the array is null.
+void write(std::span<const double> values, const mo_out* array);
+
+// Structures that grow from version to version.
+
+void check_struct_size(std::size_t size, const char* name);
+
+/// Copies those of the fields that are entirely within the first `size` bytes of the structure.
+template <class Struct, class... Fields>
+void copy_fields(const Struct& from, Struct& to, std::size_t size, Fields Struct::*... fields) {
+  const auto copy = [&](auto field) {
+    const auto* const begin = reinterpret_cast<const char*>(&from);
+    const auto* const end = reinterpret_cast<const char*>(&(from.*field)) + sizeof(from.*field);
+    if (static_cast<std::size_t>(end - begin) > size) return;
+    std::memcpy(&(to.*field), &(from.*field), sizeof(from.*field));
+  };
+  (copy(fields), ...);
+}
+
+// Options.
+
+/// Returns the caller's options, with defaults for the fields that a caller of an older header lacks.
+mo_options complete_options(const mo_options* given);
+int base_of(std::int32_t base);
+OrderOptions order_options(const mo_options& given);
+inline std::string_view name_or_auto(const char* method) { return method != nullptr ? method : "auto"; }
+
+}  // namespace meshorder::c
