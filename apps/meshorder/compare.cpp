@@ -4,6 +4,7 @@
 #include "compare_report.hpp"
 #include "confinement.hpp"
 #include "console.hpp"
+#include "gpu_counts.hpp"
 #include "io/format.hpp"
 #include "machines.hpp"
 #include "matrix_points.hpp"
@@ -28,6 +29,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,6 +48,7 @@ struct CompareArguments : Common {
   KernelSet kernels = KernelSet::plain;
   bool details = false;
   bool gpu = false;
+  std::vector<std::string> gpu_layouts;
 };
 
 std::vector<std::string> default_methods() {
@@ -133,6 +136,23 @@ KernelTable timed(const Mesh& mesh, const EntryPattern& entries, const CsrGraph&
   return table;
 }
 
+/// Counts additions on a graphics processor in an order.
+void count_for_gpu(ComparedOrder& order, const Mesh& mesh, const std::vector<GpuLayout>& layouts) {
+  if (layouts.empty()) return;
+  const Incidence elements =
+      elements_in(mesh, order.order.vertices.permutation, order.order.cells.permutation);
+  for (const GpuLayout layout : layouts) {
+    const std::optional<GpuCost> cost = cost_of_additions(elements, layout);
+    if (!cost) {
+      throw CommandError(
+          "--gpu-layout: additions are counted for elements with the same number of vertices, at most 255; "
+          "this mesh has others or none, leave the option out",
+          2);
+    }
+    order.gpu.push_back(*cost);
+  }
+}
+
 /// Orders the mesh in all ways, and predicts the cache misses of each if `predicts`. If the user named no
 /// orders, an order that equals that of `auto` is left out.
 void compute_orders(Comparison& comparison, const Mesh& mesh, const CsrGraph& graph, double graph_seconds,
@@ -156,6 +176,7 @@ void compute_orders(Comparison& comparison, const Mesh& mesh, const CsrGraph& gr
       c.reuse = reuse_of_kernels(mesh, graph, c.order.vertices.permutation, c.order.cells.permutation);
       if (arguments.details) c.iterations = iterations_in(graph, c.order.vertices.permutation);
     }
+    count_for_gpu(c, mesh, comparison.gpu_layouts);
     note_convergence(c.order.vertices.fiedler, "the vertices by " + c.vertices, notes);
     computed.push_back(std::move(c));
   }
@@ -172,6 +193,8 @@ void run(const CompareArguments& arguments) {
   }
   Console console(arguments);
   Comparison comparison;
+  for (const std::string& name : arguments.gpu_layouts)
+    comparison.gpu_layouts.push_back(parse_gpu_layout(name));
   comparison.file = arguments.input;
   comparison.workload = arguments.ordering.workload;
   comparison.caches = arguments.caches.empty() ? choose_machine(arguments.machine).model.caches
@@ -185,6 +208,10 @@ void run(const CompareArguments& arguments) {
   Mesh mesh = read_to_work_on(arguments.input, notes, kBytesToMeasure * (comparison.orders.size() + 2));
   take_points(mesh, arguments.input, arguments.points);
   const StoredMatrix* const stored = stored_matrix(mesh);
+  if (stored != nullptr && !comparison.gpu_layouts.empty()) {
+    throw CommandError(
+        "--gpu-layout: a matrix or graph has no elements; `meshorder info --gpu` counts its products", 2);
+  }
   if (stored != nullptr) comparison.orders = orders_of_matrix(mesh, arguments);
   const EntryPattern entries = stored != nullptr ? entry_pattern(mesh) : EntryPattern{};
   comparison.kernels_run = kernels_of(mesh);
@@ -254,6 +281,12 @@ void add_compare(CLI::App& subcommand) {
       "--gpu", arguments->gpu,
       "Run kernels on this machine's GPU instead; in the command of the Python package, with\n"
       "CuPy. Other options are then --methods, --threads, --json and --quiet");
+  subcommand
+      .add_option("--gpu-layout", arguments->gpu_layouts,
+                  "Also count what atomic additions cost on a graphics processor: packed, apart, padded,\n"
+                  "patches or gathered, separated by commas")
+      ->delimiter(',')
+      ->type_name("LAYOUT");
   subcommand.add_option("--budget", arguments->budget_seconds, "Seconds to spend on running the kernels")
       ->check(positive())
       ->capture_default_str();

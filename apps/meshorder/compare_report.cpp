@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "compare_report.hpp"
 
+#include "gpu_counts.hpp"
 #include "payoff/advice.hpp"
 #include "payoff/kernel_bench.hpp"
 #include "payoff/machine_choice.hpp"
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
@@ -66,7 +68,8 @@ std::string label(const ComparedOrder& order, bool is_matrix) {
 
 constexpr int kBarWidth = 12;
 
-/// A column of the table: for each order, and last for the band, the speedup over the file's own order.
+/// A column of the table: for each order the speedup over the file's own order, and last that of the band if
+/// it is known.
 struct Column {
   std::string title;
   std::vector<double> factors;
@@ -100,10 +103,24 @@ std::vector<Column> columns_of(const Comparison& comparison, const KernelTable& 
   return columns;
 }
 
+/// Returns a column for each layout: how many times fewer sectors additions touch on a graphics processor.
+std::vector<Column> counted_columns(const Comparison& comparison) {
+  std::vector<Column> columns;
+  for (std::size_t k = 0; k < comparison.gpu_layouts.size(); ++k) {
+    Column column{"gpu " + std::string(to_string(comparison.gpu_layouts[k])), {}};
+    for (const ComparedOrder& c : comparison.orders)
+      column.factors.push_back(sector_ratio(comparison.orders.front().gpu[k], c.gpu[k]));
+    column.best = std::ranges::max(column.factors);
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
 /// Prints the speedups of the kernels over the file's own order, with bars for the workload `told`.
 void print_speedups(const Console& console, const Comparison& comparison, const KernelTable& table,
                     Workload told) {
-  const std::vector<Column> columns = columns_of(comparison, table);
+  std::vector<Column> columns = columns_of(comparison, table);
+  std::ranges::move(counted_columns(comparison), std::back_inserter(columns));
   // a matrix has one column, a mesh one for all kernels before the others
   const std::size_t judged = comparison.is_matrix() || told == Workload::all ? 0 : kernel_of(told) + 1;
   const auto width = [](const Column& c) { return std::max<std::size_t>(7, c.title.size() + 1); };
@@ -117,9 +134,10 @@ void print_speedups(const Console& console, const Comparison& comparison, const 
     std::string row =
         fmt::format("{:<26} {:>8}", is_band ? kBand : label(comparison.orders[i], comparison.is_matrix()),
                     is_band || i == 0 ? "-" : duration(comparison.orders[i].seconds));
-    for (const Column& c : columns)
-      row +=
-          fmt::format("{:>{}.2f}{}", c.factors[i], width(c), !is_band && c.factors[i] == c.best ? '*' : ' ');
+    for (const Column& c : columns) {
+      const std::string factor = i < c.factors.size() ? fmt::format("{:.2f}", c.factors[i]) : "-";
+      row += fmt::format("{:>{}}{}", factor, width(c), !is_band && c.factors[i] == c.best ? '*' : ' ');
+    }
     console.print("{} {}", row, bar(columns[judged].factors[i] / longest, kBarWidth));
   }
 }
@@ -277,6 +295,11 @@ void print_comparison(const Console& console, const Comparison& comparison) {
     if (!taken.reason.empty()) console.print("auto takes {}: {}", taken.name, taken.reason);
   }
   for (const KernelTable& table : comparison.kernels) print_speedups(console, comparison, table, told);
+  if (!comparison.gpu_layouts.empty()) {
+    console.print(
+        "gpu: how many times fewer sectors of memory atomic additions touch on a graphics processor, "
+        "counted");
+  }
   console.print("{} is no order of your {}: it is a synthetic one of its size that streams, for reference.",
                 kBand, comparison.is_matrix() ? "matrix" : "mesh");
 }
@@ -307,6 +330,8 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
       method["iterations"] = {{"incomplete_cholesky", c.iterations->incomplete_cholesky},
                               {"gauss_seidel", c.iterations->gauss_seidel}};
     }
+    for (std::size_t k = 0; k < c.gpu.size(); ++k)
+      method["gpu"][std::string(to_string(comparison.gpu_layouts[k]))] = to_json(c.gpu[k]);
     if (c.reuse) method["reuse"] = to_json(*c.reuse, comparison.caches, comparison.kernels_run);
     add_kernels(method, comparison,
                 [&](const KernelTable& table) -> const OrderTimes& { return table.orders[i]; });

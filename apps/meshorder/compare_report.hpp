@@ -8,6 +8,7 @@
 #include "metrics/edge_span.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/kernel_timing.hpp"
+#include <meshorder/layouts.hpp>
 #include <meshorder/payoff.hpp>
 
 #include <nlohmann/json_fwd.hpp>
@@ -28,6 +29,7 @@ struct ComparedOrder {
   EdgeSpan span;
   std::optional<KernelReuse> reuse;      ///< of repeated runs; none if not wanted or if the mesh is large
   std::optional<Iterations> iterations;  ///< likewise, only with --details
+  std::vector<GpuCost> gpu;              ///< of additions in each of `Comparison::gpu_layouts`
 };
 
 /// Kernels measured with a number of threads.
@@ -46,7 +48,8 @@ struct Comparison {
   std::string size;  ///< in words
   Caches caches;     ///< caches for which misses are predicted
   KernelSet kernel_set = KernelSet::plain;
-  Workload workload = Workload::all;  ///< what the orders optimise
+  Workload workload = Workload::all;   ///< what the orders optimise
+  std::vector<GpuLayout> gpu_layouts;  ///< for which additions on a graphics processor are counted
   std::vector<ComparedOrder> orders;
   EdgeSpan band_span;
   std::vector<KernelTable> kernels;

@@ -5,6 +5,7 @@
 #include "command.hpp"
 #include "confinement.hpp"
 #include "console.hpp"
+#include "gpu_counts.hpp"
 #include "graph/traversal.hpp"
 #include "io/format.hpp"
 #include "machines.hpp"
@@ -52,6 +53,8 @@ struct InfoArguments : Common {
   bool measure = false;
   bool predict = false;
   bool details = false;
+  bool gpu = false;
+  std::string card;  ///< empty: no times
   KernelSet kernels = KernelSet::plain;
 };
 
@@ -84,10 +87,12 @@ bool fits_in_first_cache(const CsrGraph& graph) {
 }
 
 /// How the gain is determined.
-enum class By : std::uint8_t { prediction, quick_measurement, measurement };
+enum class By : std::uint8_t { prediction, quick_measurement, measurement, counts };
 
-/// Returns how the gain is determined: by kernels that run at most two seconds, unless times are requested.
+/// Returns how the gain is determined: by kernels that run at most two seconds, unless times or counts are
+/// requested.
 By judged_by(const InfoArguments& arguments, SimplicesRef simplices, const MachineChoice& machine) {
+  if (arguments.gpu) return By::counts;
   if (arguments.measure) return By::measurement;
   const bool asks_for_times = arguments.predict || !arguments.machine.empty() || !arguments.caches.empty() ||
                               (machine.name != "this" && !machine.stands_in);
@@ -228,6 +233,7 @@ struct Findings {
   int halvings = 0;  ///< halvings of the cache lines from which `reuse` is estimated
   Caches caches;
   std::optional<Advice> advice;
+  std::optional<GpuReport> gpu;  ///< in place of advice
 };
 
 /// Counts the contents of a mesh, and its cache misses if they are shown or needed for a prediction.
@@ -244,6 +250,7 @@ Findings counted(const InfoArguments& arguments, const Mesh& mesh, SimplicesRef 
   const Permutation order = Permutation::identity(mesh.vertex_count());
   const std::array<std::function<void()>, 5> looks{
       [&] {
+        if (by == By::counts) return;
         if (by == By::quick_measurement && !arguments.details && !arguments.json) return;
         found.reuse = reuse_of(arguments, found.graph, simplices,
                                found.stored != nullptr ? &found.matrix.pattern : nullptr);
@@ -286,10 +293,14 @@ void print_details(const Console& console, const Mesh& mesh, const Findings& fou
   }
 }
 
-/// Prints the verdict, and then the contents of the mesh.
-void print_findings(const Console& console, const InfoArguments& arguments, const Mesh& mesh,
-                    const Findings& found) {
+/// Prints what another order is worth, and the line that makes it.
+void print_verdict(const Console& console, const InfoArguments& arguments, const Findings& found) {
   const std::optional<Advice>& advice = found.advice;
+  if (found.gpu) {
+    console.print("{}: {}", arguments.input, to_string(*found.gpu));
+    print_next(console, *found.gpu, arguments.input);
+    return;
+  }
   const char* const without_advice =
       !found.has_elements ? "nothing to compute on: it has no elements"
       : fits_in_first_cache(found.graph)
@@ -298,13 +309,20 @@ void print_findings(const Console& console, const InfoArguments& arguments, cons
             "--cache this predicts cache misses and times";
   console.print("{}: {}", arguments.input, advice ? to_string(*advice) : without_advice);
   if (advice) print_next(console, *advice, arguments.input);
+}
+
+/// Prints the verdict, and then the contents of the mesh.
+void print_findings(const Console& console, const InfoArguments& arguments, const Mesh& mesh,
+                    const Findings& found) {
+  print_verdict(console, arguments, found);
   console.print("\n{:<12} {}", "format", found.format);
   if (found.stored != nullptr) {
     print_matrix(console, mesh, found.matrix);
   } else {
     print_mesh_facts(console, mesh, found.graph.edge_count(), found.facts, found.degenerate);
   }
-  if (advice) print_times(console, *advice);
+  if (found.advice) print_times(console, *found.advice);
+  if (found.gpu) print_counts(console, *found.gpu);
   if (arguments.details) print_details(console, mesh, found);
 }
 
@@ -330,6 +348,7 @@ nlohmann::ordered_json info_json(const InfoArguments& arguments, const Mesh& mes
     result["reuse"] = to_json(*found.reuse, found.caches, kernels_of(mesh));
   }
   result["verdict"] = found.advice ? to_json(*found.advice) : nullptr;
+  if (found.gpu) result["gpu"] = to_json(*found.gpu);
   result.update(attachments(mesh));
   return result;
 }
@@ -363,9 +382,17 @@ void run(const InfoArguments& arguments) {
   progress.stage("measuring", 0.3, 0.6);
   Findings found = counted(arguments, mesh, simplices, by);
   found.caches = arguments.caches.empty() ? machine.model.caches : parse_caches(arguments.caches);
-  progress.stage(by == By::prediction ? "predicting" : "running kernels", 0.6, 1);
-  found.advice = advice_on(arguments, mesh, found.graph, found.graph_seconds, simplices, found.reuse, machine,
-                           by, since_start);
+  progress.stage(by == By::counts       ? "counting"
+                 : by == By::prediction ? "predicting"
+                                        : "running kernels",
+                 0.6, 1);
+  if (by == By::counts) {
+    found.gpu = gpu_report(mesh, found.graph, gpu_card(arguments.card));
+    notes.insert(notes.end(), found.gpu->notes.begin(), found.gpu->notes.end());
+  } else {
+    found.advice = advice_on(arguments, mesh, found.graph, found.graph_seconds, simplices, found.reuse,
+                             machine, by, since_start);
+  }
   progress.finish();
   if (found.advice && !found.advice->doubt.empty()) notes.push_back(found.advice->doubt);
   console.warn_of(notes);
@@ -382,10 +409,18 @@ void add_info(CLI::App& subcommand) {
   subcommand.footer(
       "Examples:\n"
       "  meshorder info dragon.veg\n"
-      "  meshorder info dragon.veg --details");
+      "  meshorder info dragon.veg --details\n"
+      "  meshorder info dragon.veg --gpu");
   const auto arguments = std::make_shared<InfoArguments>();
   subcommand.add_option("MESH", arguments->input, "Mesh, matrix or graph file")->required();
   add_points_option(subcommand, arguments->points);
+  CLI::Option* const gpu = subcommand.add_flag(
+      "--gpu", arguments->gpu,
+      "Judge the order for a graphics processor instead: count the sectors of memory that kernels\n"
+      "touch in it and in that of `order --for gpu`");
+  subcommand.add_option("--card", arguments->card, "Also compute times of element forces on this card, h100")
+      ->check(CLI::IsMember(gpu_card_names()))
+      ->needs(gpu);
   add_cache_option(subcommand, arguments->caches);
   add_machine_option(subcommand, arguments->machine);
   add_all_threads_option(subcommand, arguments->all_threads);
@@ -399,6 +434,10 @@ void add_info(CLI::App& subcommand) {
                 "Predict the gain, however small the mesh is; calibrates this machine the first time")
       ->excludes(measure);
   add_kernels_option(subcommand, arguments->kernels);
+  for (const char* const on_processors :
+       {"--cache", "--machine", "--all-threads", "--measure", "--predict", "--kernels"}) {
+    gpu->excludes(subcommand.get_option(on_processors));
+  }
   add_reading_options(subcommand);
   add_common(subcommand, *arguments, std::string(kQuiet) + ": status 0 says that the file can be read");
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });

@@ -63,6 +63,12 @@ mo_status create(const Made** place, const char* name, const Make& make) {
   });
 }
 
+template <class Owned, class Made>
+void destroy(const Made* made) {
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-static-cast-downcast): `create` made it as one
+  const std::unique_ptr<const Owned> ends_here(static_cast<const Owned*>(made));
+}
+
 std::size_t cache_of(std::int64_t bytes) {
   if (bytes < 0) fail("cache_bytes", "must not be negative");
   return bytes == 0 ? kGpuCacheBytes : static_cast<std::size_t>(bytes);
@@ -113,9 +119,7 @@ mo_status mo_patches_create(const mo_in* cell_offsets, const mo_in* cell_vertice
   });
 }
 
-void mo_patches_destroy(const mo_patches* made) {
-  const std::unique_ptr<const OwnedPatches> ends_here(static_cast<const OwnedPatches*>(made));
-}
+void mo_patches_destroy(const mo_patches* made) { destroy<OwnedPatches>(made); }
 
 mo_status mo_gather_lists_create(const mo_in* cell_offsets, const mo_in* cell_vertices,
                                  const mo_in* vtk_types, int64_t vertex_count, const mo_options* options,
@@ -134,9 +138,7 @@ mo_status mo_gather_lists_create(const mo_in* cell_offsets, const mo_in* cell_ve
   });
 }
 
-void mo_gather_lists_destroy(const mo_gather_lists* made) {
-  const std::unique_ptr<const OwnedGatherLists> ends_here(static_cast<const OwnedGatherLists*>(made));
-}
+void mo_gather_lists_destroy(const mo_gather_lists* made) { destroy<OwnedGatherLists>(made); }
 
 mo_status mo_colours_create(const mo_in* cell_offsets, const mo_in* cell_vertices, const mo_in* vtk_types,
                             int64_t vertex_count, const mo_options* options, const mo_colours** made) {
@@ -154,9 +156,7 @@ mo_status mo_colours_create(const mo_in* cell_offsets, const mo_in* cell_vertice
   });
 }
 
-void mo_colours_destroy(const mo_colours* made) {
-  const std::unique_ptr<const OwnedColours> ends_here(static_cast<const OwnedColours*>(made));
-}
+void mo_colours_destroy(const mo_colours* made) { destroy<OwnedColours>(made); }
 
 mo_status mo_sort_corners(const mo_in* cell_offsets, const mo_in* cell_vertices, const mo_in* vtk_types,
                           int64_t vertex_count, const mo_options* options, const mo_out* sorted) {

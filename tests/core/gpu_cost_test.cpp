@@ -240,6 +240,11 @@ TEST(GpuCost, FetchesASectorOnceInEachFillingOfTheCache) {
   }
 }
 
+TEST(GpuCost, LayoutsAreKnownByName) {
+  for (const GpuLayout layout : kGpuLayouts) EXPECT_EQ(parse_gpu_layout(to_string(layout)), layout);
+  EXPECT_THAT(refusal([] { (void)parse_gpu_layout("paded"); }), HasSubstr("padded"));
+}
+
 TEST(GpuCost, OfNothingIsNothing) {
   for (const GpuLayout layout : kGpuLayouts) EXPECT_EQ(gpu_cost({}, 0, layout), GpuCost{});
   EXPECT_EQ(gpu_product_cost({}), GpuCost{});

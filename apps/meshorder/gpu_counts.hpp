@@ -1,0 +1,90 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "console.hpp"
+#include "graph/csr_graph.hpp"
+#include "graph/incidence.hpp"
+#include <meshorder/layouts.hpp>
+#include <meshorder/mesh.hpp>
+#include <meshorder/permutation.hpp>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// What kernels on a graphics processor cost with a mesh in its order and in others, counted.
+
+namespace meshorder::command {
+
+/// Returns the elements of a mesh, the cells of the highest dimension, with both in the order given.
+/// O(cells).
+Incidence elements_in(const Mesh& mesh, const Permutation& vertices, const Permutation& cells);
+
+/// Counts additions to the vertices of elements. Returns nothing if there are no elements, if their numbers
+/// of vertices differ, or if these are more than patches can have.
+std::optional<GpuCost> cost_of_additions(const Incidence& elements, GpuLayout layout);
+
+/// Returns how many times fewer sectors a kernel touches in another order.
+double sector_ratio(const GpuCost& as_is, const GpuCost& ordered);
+
+/// A graphics processor whose times are known: of element forces of tetrahedra in single precision, in the
+/// layouts packed, apart and padded. They are a constant and the same time for each sector
+/// (benchmarks/gpu_card.py).
+struct GpuCard {
+  std::string_view name;   ///< of --card
+  std::string_view title;  ///< in a sentence
+  double launch_us;
+  double us_per_sector;
+};
+
+/// Returns the names of all cards.
+std::vector<std::string> gpu_card_names();
+
+/// Returns a card by its name; null for an empty or unknown one.
+const GpuCard* gpu_card(std::string_view name);
+
+/// A kernel in the file's order and in that for graphics processors.
+struct CountedKernel {
+  std::string_view key;    ///< in JSON
+  std::string_view title;  ///< in a table
+  GpuCost as_is;
+  GpuCost ordered;
+  std::optional<double> as_is_us = {};  ///< time on a card; only if that is known
+  std::optional<double> ordered_us = {};
+};
+
+/// What `order --for gpu` makes of a mesh.
+struct GpuReport {
+  MeshOrder order;
+  std::vector<CountedKernel> additions;  ///< one for each layout; none if `cost_of_additions` has none
+  std::vector<CountedKernel> products;   ///< by one and by eight threads a row; none without edges
+  const GpuCard* card = nullptr;
+  std::vector<std::string> notes = {};  ///< what was not counted, and why
+
+  /// Returns whether `order --for gpu` leaves the mesh as it is.
+  [[nodiscard]] bool keeps() const;
+};
+
+/// Orders a mesh for graphics processors, and counts kernels in its own order and in the new one.
+///
+/// @param graph  of its vertices
+/// @param card   whose times are computed for 100,000 linear tetrahedra or more; or null
+GpuReport gpu_report(const Mesh& mesh, const CsrGraph& graph, const GpuCard* card);
+
+/// Returns in a sentence whether the mesh is in a good order for a graphics processor.
+std::string to_string(const GpuReport& report);
+
+/// Prints the line that makes the new order, or why the old one is kept.
+void print_next(const Console& console, const GpuReport& report, const std::string& mesh);
+
+/// Prints a table with a row for each kernel.
+void print_counts(const Console& console, const GpuReport& report);
+
+/// Returns the keys that docs/json.md lists.
+nlohmann::ordered_json to_json(const GpuCost& cost);
+nlohmann::ordered_json to_json(const GpuReport& report);
+
+}  // namespace meshorder::command
