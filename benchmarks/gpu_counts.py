@@ -26,10 +26,11 @@ LENGTH = 4  # likewise for each spring
 
 
 class Ordered:
-    """Tetrahedra in an order, and what is counted for each kernel: sectors, and the counter to which they are compared; bytes."""
+    """Tetrahedra in an order, and what is counted for each kernel: sectors, and the counter to which they are compared; bytes.
+    `stored` has the number of each vertex in the order in which the mesh was stored where it was measured."""
 
-    def __init__(self, cells, vertices):
-        self.cells, self.vertices = cells, vertices
+    def __init__(self, cells, vertices, stored):
+        self.cells, self.vertices, self.stored = cells, vertices, stored
 
     @functools.cached_property
     def graph(self):
@@ -41,7 +42,9 @@ class Ordered:
     def springs(self):
         offsets, columns = self.graph
         rows = np.repeat(np.arange(self.vertices, dtype=columns.dtype), np.diff(offsets))
-        return np.column_stack((rows, columns))[columns < rows]  # by the larger end, as lexmax has them
+        springs = np.column_stack((rows, columns))[columns < rows]  # by the larger end, as lexmax has them
+        # which end is the first was settled before the order was made
+        return np.where((self.stored[springs[:, 0]] > self.stored[springs[:, 1]])[:, None], springs[:, ::-1], springs)
 
     def of_cells(self, layout):
         cost = meshorder.gpu_cost(self.cells, layout)
@@ -92,11 +95,13 @@ def main():
     mesh = meshorder.read(sys.argv[1])
     folder = pathlib.Path(sys.argv[2])
     given = mesh.connectivity.reshape(len(mesh.shapes), -1)
+    stored = meshorder.order_mesh(mesh.points, given, vertices="hilbert", elements="original").vertices.permutation.old_to_new
 
     @functools.lru_cache(maxsize=1)
     def ordered(order):
         found = meshorder.order_mesh(mesh.points, given, **dict(zip(("vertices", "elements"), order.split("/"))))
-        return Ordered(found.cells.permutation.move(found.vertices.permutation.renumber(given)), len(mesh.points))
+        vertices = found.vertices.permutation
+        return Ordered(found.cells.permutation.move(vertices.renumber(given)), len(mesh.points), vertices.move(stored))
 
     sectors, read = [], []
     print("| order | kernel | sectors | counted | deviation | MB read | counted | deviation |")
