@@ -1,0 +1,5 @@
+include(${CMAKE_CURRENT_LIST_DIR}/headers.cmake)
+meshorder_headers(fmt core.h)
+if(fmt_FOUND)
+  target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY)
+endif()

@@ -1,0 +1,20 @@
+# meshorder_headers(<library> <header>): a target of a library's headers alone, <library>::<library>, by a link to their
+# folder: the folder around it, /usr/include, is that of another system.
+function(meshorder_headers library header)
+  set(name ${library})
+  if(ARGC GREATER 2)
+    set(name ${ARGV2})
+  endif()
+  find_path(${library}_HEADERS ${header} PATHS /usr/include /usr/local/include PATH_SUFFIXES ${name}
+            NO_CMAKE_FIND_ROOT_PATH)
+  mark_as_advanced(${library}_HEADERS)
+  set(${library}_FOUND OFF PARENT_SCOPE)
+  if(${library}_HEADERS)
+    set(folder ${CMAKE_BINARY_DIR}/headers)
+    file(MAKE_DIRECTORY ${folder})
+    file(CREATE_LINK ${${library}_HEADERS} ${folder}/${name} SYMBOLIC)
+    add_library(${library}::${library} INTERFACE IMPORTED)
+    target_include_directories(${library}::${library} INTERFACE ${folder})
+    set(${library}_FOUND ON PARENT_SCOPE)
+  endif()
+endfunction()

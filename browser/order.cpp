@@ -1,0 +1,220 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+//
+// What the page's worker calls: files in memory, one ordered as by `meshorder order`, and all that the page
+// shows of it. The module has no other way to the world than `tell`.
+#include "base/memory.hpp"
+#include "base/text.hpp"
+#include "grouped_notes.hpp"
+#include "io/format.hpp"
+#include "io/format_choice.hpp"
+#include "mesh/boundary.hpp"
+#include "mesh/graphs.hpp"
+#include "mesh/stored_matrix.hpp"
+#include "metrics/edge_span.hpp"
+#include "order_report.hpp"
+#include "wording.hpp"
+#include <meshorder/error.hpp>
+#include <meshorder/io.hpp>
+
+#include <emscripten.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <new>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+// NOLINTNEXTLINE: JavaScript
+EM_JS(void, tell, (const char* stage, double share), {
+  if (Module["tell"]) Module["tell"](UTF8ToString(stage), share);
+});
+
+namespace meshorder {
+namespace {
+
+constexpr std::uint64_t kMostMemory = std::uint64_t{4} << 30;  // of a page: 32-bit addresses
+const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+
+/// The files that the page gave, and those that were written.
+class GivenFiles : public FileStore {
+ public:
+  [[nodiscard]] bool has(const std::filesystem::path& path) const override {
+    return files_.find(path.string()) != files_.end();
+  }
+  [[nodiscard]] std::string read(const std::filesystem::path& path) const override {
+    const auto found = files_.find(path.string());
+    return found == files_.end() ? std::string() : found->second;
+  }
+  void write(const std::filesystem::path& path, std::string bytes) override {
+    files_[path.string()] = std::move(bytes);
+  }
+
+  /// Returns room for a file of that size.
+  char* make(const char* name, std::size_t size) {
+    std::string& bytes = files_[name];
+    bytes.assign(size, '\0');
+    return bytes.data();
+  }
+  [[nodiscard]] std::map<std::string, std::string> take() { return std::exchange(files_, {}); }
+
+ private:
+  std::map<std::string, std::string> files_;
+};
+
+/// A named part of the result: a text, or numbers as bytes.
+struct Part {
+  std::string name;
+  std::variant<std::string, std::vector<float>, std::vector<std::uint32_t>, std::vector<double>> values;
+};
+
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables): between calls of the page
+GivenFiles files;
+std::vector<Part> parts;
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
+
+/// Adds the surface: the places of its vertices, its triangles, and the vertices' ranks as they are.
+/// Returns the vertices; none where a mesh has no surface. `mesh` is as it was read.
+std::vector<Index> add_surface(const Mesh& mesh) {
+  std::vector<std::array<Index, 3>> triangles;
+  try {
+    triangles = boundary_triangles(mesh);
+  } catch (const InputError&) {
+    return {};
+  }
+  constexpr Index kUnseen = -1;
+  std::vector<Index> place_of(mesh.points.size(), kUnseen);
+  std::vector<Index> vertices;
+  std::vector<std::uint32_t> corners;
+  corners.reserve(3 * triangles.size());
+  for (const auto& triangle : triangles) {
+    for (const Index v : triangle) {
+      if (place_of[v] == kUnseen) {
+        place_of[v] = static_cast<Index>(vertices.size());
+        vertices.push_back(v);
+      }
+      corners.push_back(static_cast<std::uint32_t>(place_of[v]));
+    }
+  }
+  std::vector<float> places;
+  places.reserve(3 * vertices.size());
+  for (const Index v : vertices) {
+    for (const double x : mesh.points[v]) places.push_back(static_cast<float>(x));
+  }
+  parts.push_back({"places", std::move(places)});
+  parts.push_back({"triangles", std::move(corners)});
+  return vertices;
+}
+
+void add_ranks(const char* name, const std::vector<Index>& vertices, const Permutation& order) {
+  std::vector<std::uint32_t> ranks;
+  ranks.reserve(vertices.size());
+  for (const Index v : vertices) ranks.push_back(static_cast<std::uint32_t>(order.old_to_new()[v]));
+  parts.push_back({name, std::move(ranks)});
+}
+
+/// Orders a file into `output`. The steps are those of `run` in apps/meshorder/order.cpp.
+void order(const std::string& input, const std::string& output, const MeshMethods& methods) {
+  Notes notes;
+  (void)output_format_of(output);  // fail before the work
+  tell("reading", 0);
+  Mesh mesh = read_mesh_from({input, files}, {.notes = &notes});
+  (void)files.take();
+  const Format& format = output_format_of(output, mesh.format);
+  keep_cells(mesh, {.format = format.key(), .notes = &notes});
+  tell("graph", 0.3);
+  std::optional<CsrGraph> graph = vertex_graph(mesh);
+  const std::vector<Index> vertices = add_surface(mesh);
+  const std::string cells = command::cells_in_words(mesh);
+
+  ReorderOptions options{.methods = methods, .format = format.key()};
+  options.order.run.progress = [](const Progress& now) {
+    tell(std::string(now.stage).c_str(), 0.4 + 0.3 * std::max(now.fraction, 0.0));
+    return true;
+  };
+  const MeshOrder made = reorder(mesh, options, graph);
+  const Permutation& of_vertices = made.vertices.permutation;
+  const Permutation as_is = Permutation::identity(mesh.vertex_count());
+  const command::SpanChange spans{quick_edge_span(*graph, as_is), quick_edge_span(*graph, of_vertices)};
+  command::note_no_better(*graph, options, of_vertices, notes);
+  command::note_no_better(mesh, options, made.cells.permutation, notes);
+  command::note_convergence(made.vertices.fiedler, "the vertices", notes);
+  command::note_convergence(made.cells.fiedler, "the elements", notes);
+  add_ranks("before", vertices, as_is);
+  add_ranks("after", vertices, of_vertices);
+
+  tell("writing", 0.7);
+  (void)write_mesh_to(mesh, {output, files}, {.notes = &notes});
+  for (auto& [name, bytes] : files.take()) parts.push_back({"file:" + name, std::move(bytes)});
+
+  std::vector<std::string> lines = command::lines_of_order(made, {}, spans, stored_matrix(mesh));
+  if (command::has_new_numbers(mesh, made, options))
+    lines.push_back(fmt::format("{:<10} {}", "numbers", "of vertices and cells are new"));
+  parts.push_back({"lines", join(
+                                lines, [](const std::string& line) { return visible(line); }, "\n")});
+  parts.push_back({"notes", join(
+                                command::grouped_by_name(notes),
+                                [](const std::string& note) { return visible(note); }, "\n")});
+  parts.push_back({"cells", cells});
+  parts.push_back({"spans", std::vector<double>{spans.before.mean, spans.after.mean}});
+  parts.push_back({"counts", std::vector<double>{double(mesh.vertex_count()), double(mesh.cell_count())}});
+}
+
+}  // namespace
+}  // namespace meshorder
+
+using namespace meshorder;  // NOLINT(google-build-using-namespace): of the functions below
+
+extern "C" {
+
+/// Makes a file of that size and returns the place of its bytes, for the page to fill; null without memory.
+EMSCRIPTEN_KEEPALIVE char* give_file(const char* name, std::size_t size) {
+  try {
+    return files.make(name, size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+
+/// Orders the file `input` and keeps the result as parts, of which the part "error" is the only one if that
+/// fails. The names of methods are those of the command.
+EMSCRIPTEN_KEEPALIVE void order_file(const char* input, const char* output, const char* vertices,
+                                     const char* elements) {
+  parts.clear();
+  set_memory_limit(kMostMemory / 4 * 3);
+  std::string error;
+  try {
+    order(input, output, {.vertices = vertices, .elements = elements});
+  } catch (const std::bad_alloc&) {
+    error =
+        "this mesh needs more than the 4 GiB of memory that a page may have; the command meshorder orders it";
+  } catch (const std::exception& failure) {
+    error = failure.what();
+  }
+  (void)files.take();
+  if (!error.empty()) {
+    parts.clear();
+    parts.push_back({"error", visible(error)});
+  }
+}
+
+EMSCRIPTEN_KEEPALIVE int part_count() { return static_cast<int>(parts.size()); }
+EMSCRIPTEN_KEEPALIVE const char* part_name(int part) {
+  return parts[static_cast<std::size_t>(part)].name.c_str();
+}
+EMSCRIPTEN_KEEPALIVE const void* part_data(int part) {
+  return std::visit([](const auto& values) -> const void* { return values.data(); },
+                    parts[static_cast<std::size_t>(part)].values);
+}
+/// Returns the size of a part in bytes.
+EMSCRIPTEN_KEEPALIVE std::size_t part_size(int part) {
+  return std::visit([](const auto& values) { return values.size() * sizeof(values[0]); },
+                    parts[static_cast<std::size_t>(part)].values);
+}
+}
