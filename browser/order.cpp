@@ -7,6 +7,7 @@
 #include "grouped_notes.hpp"
 #include "io/format.hpp"
 #include "io/format_choice.hpp"
+#include "matrix_points.hpp"
 #include "mesh/boundary.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/stored_matrix.hpp"
@@ -104,8 +105,9 @@ std::vector<Index> add_surface(const Mesh& mesh) {
   }
   std::vector<float> places;
   places.reserve(3 * vertices.size());
+  const auto origin = mesh.points[vertices.empty() ? 0 : vertices.front()];  // small numbers for 32 bits
   for (const Index v : vertices) {
-    for (const double x : mesh.points[v]) places.push_back(static_cast<float>(x));
+    for (std::size_t k = 0; k < 3; ++k) places.push_back(static_cast<float>(mesh.points[v][k] - origin[k]));
   }
   parts.push_back({"places", std::move(places)});
   parts.push_back({"triangles", std::move(corners)});
@@ -128,6 +130,7 @@ void order(const std::string& input, const std::string& output, const MeshMethod
   (void)files.take();
   const Format& format = output_format_of(output, mesh.format);
   keep_cells(mesh, {.format = format.key(), .notes = &notes});
+  command::require_points(mesh, input, methods.vertices, methods.elements);
   tell("graph", 0.3);
   std::optional<CsrGraph> graph = vertex_graph(mesh);
   const std::vector<Index> vertices = add_surface(mesh);

@@ -45,7 +45,7 @@ function orderInWorker(wasm, request, onStage) {
   const source = URL.createObjectURL(new Blob([element("worker").textContent], { type: "text/javascript" }));
   const worker = page.worker = new Worker(source);
   URL.revokeObjectURL(source);
-  return new Promise((resolve, reject) => {
+  return new Promise((resolve) => {
     worker.onmessage = ({ data }) => {
       if (!data.result) onStage(data);
       else {
@@ -53,15 +53,13 @@ function orderInWorker(wasm, request, onStage) {
         resolve(data.result);
       }
     };
-    worker.onerror = (event) => {
-      event.preventDefault();
-      reject(new Error(`the ordering ended: ${event.message}`));
-    };
     worker.postMessage({ wasm, request });
   });
 }
 
 function showError(message) {
+  if (page.worker) page.worker.terminate();
+  element("result").hidden = true;
   element("state").textContent = "";
   element("progress").hidden = true;
   element("error").textContent = message;

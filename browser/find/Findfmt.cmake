@@ -1,5 +1,5 @@
 include(${CMAKE_CURRENT_LIST_DIR}/headers.cmake)
-meshorder_headers(fmt core.h)
+meshorder_headers(fmt core.h fmt)
 if(fmt_FOUND)
   target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY)
 endif()

@@ -1,10 +1,6 @@
-# meshorder_headers(<library> <header>): a target of a library's headers alone, <library>::<library>, by a link to their
-# folder: the folder around it, /usr/include, is that of another system.
-function(meshorder_headers library header)
-  set(name ${library})
-  if(ARGC GREATER 2)
-    set(name ${ARGV2})
-  endif()
+# meshorder_headers(<library> <header> <folder>): a target of a library's headers alone, <library>::<library>, by a link
+# to their folder: the folder around it, /usr/include, is that of another system.
+function(meshorder_headers library header name)
   find_path(${library}_HEADERS ${header} PATHS /usr/include /usr/local/include PATH_SUFFIXES ${name}
             NO_CMAKE_FIND_ROOT_PATH)
   mark_as_advanced(${library}_HEADERS)

@@ -31,6 +31,7 @@ ROOT_PAGES = {"README.md": "start.md", "CONTRIBUTING.md": "contributing.md", "CH
 #: sections of the root's files that have another place here
 ROOT_SECTIONS = {"README.md#formats": "formats.md", "README.md#from-c": "install.md"}
 DOWNLOADS = "files"
+BROWSER_PAGE = ROOT / "build-browser" / "meshorder.html"
 LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(([^)\s]+)\)")
 IMAGE = re.compile(r"(!\[[^\]]*\]\()([^)\s]+)\)")
 
@@ -104,6 +105,13 @@ def assemble(sources: pathlib.Path, command: str) -> None:
         place = sources / DOWNLOADS / path
         place.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(ROOT / path, place)
+
+    if BROWSER_PAGE.is_file():  # browser/build has made it
+        (sources / DOWNLOADS).mkdir(exist_ok=True)
+        shutil.copyfile(BROWSER_PAGE, sources / DOWNLOADS / BROWSER_PAGE.name)
+        link = f"**[Open the page]({DOWNLOADS}/{BROWSER_PAGE.name})**, which is a part of this manual."
+        page = sources / "browser.md"
+        page.write_text(page.read_text().replace("<!-- the page -->", link))
 
     reference = sources / "reference"
     (reference / "command.md").write_text(command_reference.command_reference(command))

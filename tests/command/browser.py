@@ -113,8 +113,8 @@ class Browser:
         return [entry["message"] for entry in self.driver.get_log("browser") if "GPU stall" not in entry["message"]]
 
     def requests(self):
-        """Addresses that the page asked for since the last time; neither data: ones nor those of the browser's own pages."""
+        """Addresses that the page asked for since the last time; neither those of data in the page nor of the browser's own."""
         messages = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
         asked = [message["params"]["request"]["url"] for message in messages
                  if message["method"] == "Network.requestWillBeSent"]
-        return [url for url in asked if not url.startswith(("data:", "about:", "chrome:", "chrome-untrusted:"))]
+        return [url for url in asked if not url.startswith(("data:", "blob:", "about:", "chrome:", "chrome-untrusted:"))]
