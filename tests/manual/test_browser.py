@@ -72,6 +72,7 @@ def browser(tmp_path_factory):
         pytest.skip(f"no page {PAGE}; browser/build makes it")
     driver = open_chromium(tmp_path_factory.mktemp("profile"))
     opened = Browser(driver)
+    opened.is_as_new = False
     opened.downloads = tmp_path_factory.mktemp("downloads")
     driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(opened.downloads)})
     PICTURES.mkdir(exist_ok=True)
@@ -84,11 +85,18 @@ def browser(tmp_path_factory):
 
 @pytest.fixture
 def page(browser):
-    browser.open(PAGE)
-    settled(browser)
+    """The page; opened again only if a test has set more than its files."""
+    if not browser.is_as_new:
+        open_page(browser)
+    browser.is_as_new = True
     yield browser
     assert browser.complaints() == []
     assert [url for url in browser.requests() if not url.startswith("file://")] == []
+
+
+def open_page(browser):
+    browser.open(PAGE)
+    settled(browser)
 
 
 def settled(browser, state="done"):
@@ -118,12 +126,14 @@ def saved(browser, *names):
 
 
 def choose(browser, method):
+    browser.is_as_new = False
     browser.run(
         "document.body.dataset.state = ''; document.querySelector(`input[value='${arguments[0]}']`).click()", method
     )
 
 
 def test_shows_a_ball_at_once(page):
+    open_page(page)
     assert text(page, "name") == "ball.off"
     assert "times nearer in memory" in text(page, "gains")
     as_it_is, ordered = (page.pixels(f".orders figure:nth-child({k}) canvas") for k in (1, 2))
@@ -237,6 +247,17 @@ def test_refuses_files_beyond_its_memory(page):
     assert "huge.msh: has 4,768 MiB, more than the" in text(page, "error")
 
 
+def test_says_that_a_module_fails(page):
+    page.is_as_new = False
+    page.run(
+        """document.body.dataset.state = '';
+        page.wasm = WebAssembly.compile(new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0]));
+        orderNow().catch((failure) => showError(failure.message));"""
+    )
+    settled(page, "failed")
+    assert text(page, "error").startswith("the ordering ended: ")
+
+
 def test_has_no_way_to_the_network(page):
     """What is tried here complains; this is what the test is for."""
     refused = page.driver.execute_async_script(
@@ -253,8 +274,8 @@ def test_has_no_way_to_the_network(page):
 def test_fits(browser, device, dark):
     browser.resize(*WIDTHS[device], phone=device == "phone")
     browser.dark(dark)
-    browser.open(PAGE)
-    settled(browser)
+    browser.is_as_new = False
+    open_page(browser)
     too_wide = browser.run("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
     browser.picture(PICTURES / f"{device}{'-dark' if dark else ''}.png", whole=True)
     browser.dark(False)
