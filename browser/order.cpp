@@ -144,7 +144,8 @@ void order(const std::string& input, const std::string& output, const MeshMethod
   const MeshOrder made = reorder(mesh, options, graph);
   const Permutation& of_vertices = made.vertices.permutation;
   const Permutation as_is = Permutation::identity(mesh.vertex_count());
-  const command::SpanChange spans{quick_edge_span(*graph, as_is), quick_edge_span(*graph, of_vertices)};
+  const command::SpanChange spans{quick_edge_span(*graph, {}),
+                                  quick_edge_span(*graph, of_vertices.old_to_new())};
   command::note_no_better(*graph, options, of_vertices, notes);
   command::note_no_better(mesh, options, made.cells.permutation, notes);
   command::note_convergence(made.vertices.fiedler, "the vertices", notes);
