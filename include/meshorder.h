@@ -278,8 +278,13 @@ typedef struct mo_patches {
  * Cuts cells into patches, in their order. Within a patch, neighbouring cells are spread over the warps of 32
  * threads.
  *
- * @param size  cells of a patch, 2 ... 65535 / k; usual: 256
- * @param made  written; null after a failure
+ * @param cell_offsets   cells + 1, ascending, the first is `base`
+ * @param cell_vertices  vertices of the cells, from `base` on
+ * @param vtk_types      VTK's type of each cell, or null: all cells of one dimension
+ * @param vertex_count   n
+ * @param options        or null
+ * @param size           cells of a patch, 2 ... 65535 / k; usual: 256
+ * @param made           written; null after a failure
  */
 MO_API mo_status mo_patches_create(const mo_in* cell_offsets, const mo_in* cell_vertices,
                                    const mo_in* vtk_types, int64_t vertex_count, int32_t size,
@@ -298,7 +303,12 @@ typedef struct mo_gather_lists {
 /**
  * Makes the gather lists of cells with at most 256 vertices each.
  *
- * @param made  written; null after a failure
+ * @param cell_offsets   cells + 1, ascending, the first is `base`
+ * @param cell_vertices  vertices of the cells, from `base` on
+ * @param vtk_types      VTK's type of each cell, or null: all cells of one dimension
+ * @param vertex_count   n
+ * @param options        or null
+ * @param made           written; null after a failure
  */
 MO_API mo_status mo_gather_lists_create(const mo_in* cell_offsets, const mo_in* cell_vertices,
                                         const mo_in* vtk_types, int64_t vertex_count,
@@ -317,7 +327,12 @@ typedef struct mo_colours {
 /**
  * Colours cells.
  *
- * @param made  written; null after a failure
+ * @param cell_offsets   cells + 1, ascending, the first is `base`
+ * @param cell_vertices  vertices of the cells, from `base` on
+ * @param vtk_types      VTK's type of each cell, or null: all cells of one dimension
+ * @param vertex_count   n
+ * @param options        or null
+ * @param made           written; null after a failure
  */
 MO_API mo_status mo_colours_create(const mo_in* cell_offsets, const mo_in* cell_vertices,
                                    const mo_in* vtk_types, int64_t vertex_count, const mo_options* options,
@@ -330,7 +345,12 @@ MO_API void mo_colours_destroy(const mo_colours* made);
  * Sorts the vertices of each linear triangle or tetrahedron as far as its orientation allows. It needs
  * `vtk_types`.
  *
- * @param sorted  integers, as many as `cell_vertices`
+ * @param cell_offsets   cells + 1, ascending, the first is `base`
+ * @param cell_vertices  vertices of the cells, from `base` on
+ * @param vtk_types      VTK's type of each cell
+ * @param vertex_count   n
+ * @param options        or null
+ * @param sorted         integers, as many as `cell_vertices`
  */
 MO_API mo_status mo_sort_corners(const mo_in* cell_offsets, const mo_in* cell_vertices,
                                  const mo_in* vtk_types, int64_t vertex_count, const mo_options* options,
@@ -350,10 +370,15 @@ typedef struct mo_gpu_counts {
  * Counts what adding to the vertices of cells costs on a graphics processor. Of two orders of the same cells,
  * the one with fewer sectors is faster there.
  *
- * @param layout       "packed": three numbers of a vertex side by side; "apart": in three arrays; "padded":
+ * @param cell_offsets   cells + 1, ascending, the first is `base`
+ * @param cell_vertices  vertices of the cells, from `base` on
+ * @param vtk_types      VTK's type of each cell, or null: all cells of one dimension
+ * @param vertex_count   n
+ * @param options        or null
+ * @param layout         "packed": three numbers of a vertex side by side; "apart": in three arrays; "padded":
  * four, added at once; "patches": `packed` by patches of 256 cells; "gathered": two passes by gather lists
- * @param cache_bytes  size of the last cache; 0: 50 MiB
- * @param counts       written
+ * @param cache_bytes    size of the last cache; 0: 50 MiB
+ * @param counts         written
  */
 MO_API mo_status mo_gpu_cost(const mo_in* cell_offsets, const mo_in* cell_vertices, const mo_in* vtk_types,
                              int64_t vertex_count, const char* layout, int64_t cache_bytes,

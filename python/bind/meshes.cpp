@@ -299,9 +299,9 @@ void add_meshes(nb::module_& module) {
   module.def("calibrate", &calibrated);
   module.attr("shapes") = nb::tuple(shapes);
   module.attr("dimensions") = nb::tuple(dimensions);
-  nb::class_<Mesh> mesh(module, "Mesh");
-  add_properties(mesh);
-  add_methods(mesh);
+  nb::class_<Mesh> class_of_meshes(module, "Mesh");
+  add_properties(class_of_meshes);
+  add_methods(class_of_meshes);
   module.def(
       "order_mesh",
       [](const GivenPoints& points, const GivenCells& cells, std::size_t vertex_count,

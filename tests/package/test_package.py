@@ -69,7 +69,7 @@ def environment(prefix):
 
 CHOICES = [
     *(["--preset", preset["name"]] for preset in json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]
-      if not preset.get("hidden")),
+      if not preset.get("hidden") and preset["name"] != "browser"),  # which takes emscripten
     ["-DMESHORDER_CLI=OFF", "-DMESHORDER_TESTS=OFF"],
     ["-DMESHORDER_CLI=OFF", "-DMESHORDER_TESTS=OFF", "-DMESHORDER_COMPONENTS=core;c"],
     ["-DMESHORDER_LAB=OFF", "-DMESHORDER_TESTS=OFF"],
