@@ -28,17 +28,28 @@ void for_each_span(GraphRef graph, PlaceOf place_of, Index begin, Index end, Vis
 }
 
 /// Calls `visit(span)` for every edge once.
-template <class Visit>
-void for_each_span(GraphRef graph, const Permutation& order, Visit visit) {
-  for_each_span(
-      graph, [&](Index v) { return order.old_to_new()[v]; }, 0, graph.size(), visit);
+template <class PlaceOf, class Visit>
+void for_each_span(GraphRef graph, PlaceOf place_of, Visit visit) {
+  for_each_span(graph, place_of, 0, graph.size(), visit);
+}
+
+/// Returns a function that returns the new number of a vertex.
+auto places_in(const Permutation& order) {
+  return [new_numbers = order.old_to_new()](Index v) { return new_numbers[v]; };
+}
+
+/// Calls `call(place)` with a function of this kind. `place_of` is that of `sampled_edge_span`.
+template <class Call>
+auto with_places(std::span<const Index> place_of, Call call) {
+  if (place_of.empty()) return call([](Index v) { return v; });
+  return call([place_of](Index v) { return place_of[v]; });
 }
 
 /// Returns the number of edges in each bin, up to the last bin that has any.
 template <class BinOf>
 std::vector<Offset> histogram(GraphRef graph, const Permutation& order, BinOf bin_of) {
   std::vector<Offset> bins;
-  for_each_span(graph, order, [&](Index span) {
+  for_each_span(graph, places_in(order), [&](Index span) {
     const auto bin = static_cast<std::size_t>(bin_of(span));
     if (bins.size() <= bin) bins.resize(bin + 1, 0);
     ++bins[bin];
@@ -46,14 +57,13 @@ std::vector<Offset> histogram(GraphRef graph, const Permutation& order, BinOf bi
   return bins;
 }
 
-}  // namespace
-
-EdgeSpan edge_span(GraphRef graph, const Permutation& order) {
+template <class PlaceOf>
+EdgeSpan exact_span(GraphRef graph, PlaceOf place_of) {
   EdgeSpan result;
   if (graph.neighbours.empty()) return result;
   // sums by span, not by edge, do not depend on how the vertices are numbered
   std::vector<Offset> edges_of_span(graph.size(), 0);
-  for_each_span(graph, order, [&](Index span) { ++edges_of_span[span]; });
+  for_each_span(graph, place_of, [&](Index span) { ++edges_of_span[span]; });
   double sum = 0;
   double log_sum = 0;
   for (Index span = 1; span < graph.size(); ++span) {
@@ -68,8 +78,6 @@ EdgeSpan edge_span(GraphRef graph, const Permutation& order) {
   result.mean_log2 = log_sum / edges;
   return result;
 }
-
-namespace {
 
 /// @param place_of  `place_of(v)` returns the new number of a vertex
 template <class PlaceOf>
@@ -108,9 +116,10 @@ EdgeSpan span_of_sample(GraphRef graph, PlaceOf place_of) {
 
 }  // namespace
 
+EdgeSpan edge_span(GraphRef graph, const Permutation& order) { return exact_span(graph, places_in(order)); }
+
 EdgeSpan sampled_edge_span(GraphRef graph, std::span<const Index> place_of) {
-  if (place_of.empty()) return span_of_sample(graph, [](Index v) { return v; });
-  return span_of_sample(graph, [place_of](Index v) { return place_of[v]; });
+  return with_places(place_of, [&](auto place) { return span_of_sample(graph, place); });
 }
 
 SpanSize& SpanSize::operator+=(const SpanSize& other) {
@@ -121,24 +130,22 @@ SpanSize& SpanSize::operator+=(const SpanSize& other) {
 
 SpanSize span_size(GraphRef graph, std::span<const Index> place_of) {
   constexpr Index kChunk = 4096;
-  const auto size_by = [&](auto place) {
+  return with_places(place_of, [&](auto place) {
     return sum_over_chunks<SpanSize>(graph.size(), kChunk, [&](Index begin, Index end) {
       SpanSize size;
       for_each_span(graph, place, begin, end, [&](Index span) { size += {span, span}; });
       return size;
     });
-  };
-  if (place_of.empty()) return size_by([](Index v) { return v; });
-  return size_by([place_of](Index v) { return place_of[v]; });
+  });
 }
 
 EdgeSpan quick_edge_span(GraphRef graph, std::span<const Index> place_of) {
-  const EdgeSpan sampled = sampled_edge_span(graph, place_of);
-  if (graph.neighbours.empty()) return sampled;
+  if (VertexSample(graph.size()).is_all() || graph.neighbours.empty())
+    return with_places(place_of, [&](auto place) { return exact_span(graph, place); });
   const SpanSize size = span_size(graph, place_of);
   return {.mean = static_cast<double>(size.sum) / static_cast<double>(graph.edge_count()),
           .max = size.max,
-          .mean_log2 = sampled.mean_log2};
+          .mean_log2 = sampled_edge_span(graph, place_of).mean_log2};
 }
 
 Offset profile(GraphRef graph, const Permutation& order) {

@@ -74,6 +74,13 @@ TEST(SampledEdgeSpan, OfAFewVerticesIsExact) {
   EXPECT_EQ(sampled_edge_span(CsrGraph{}, {}), EdgeSpan{});
 }
 
+TEST(QuickEdgeSpan, OfAFewVerticesIsExact) {
+  const CsrGraph graph = test::grid(40, 30, 20);
+  const Permutation order = test::shuffled(graph.size(), 1);
+  EXPECT_EQ(quick_edge_span(graph, order.old_to_new()), edge_span(graph, order));
+  EXPECT_EQ(quick_edge_span(graph, {}), edge_span(graph, Permutation::identity(graph.size())));
+}
+
 TEST(QuickEdgeSpan, HasTheExactMeanAndMaximumAndALogarithmNearby) {
   const CsrGraph graph = test::grid(81, 81, 81);
   for (const Permutation& order : {Permutation::identity(graph.size()), test::shuffled(graph.size(), 1)}) {
