@@ -121,7 +121,7 @@ void add_ranks(const char* name, const std::vector<Index>& vertices, const Permu
   parts.push_back({name, std::move(ranks)});
 }
 
-/// Orders a file into `output`. The steps are those of `run` in apps/meshorder/order.cpp.
+/// Orders a file into `output`. The steps are those of `Ordering` in apps/meshorder/order.cpp.
 void order(const std::string& input, const std::string& output, const MeshMethods& methods) {
   Notes notes;
   (void)output_format_of(output);  // fail before the work

@@ -139,10 +139,9 @@ KernelTable timed(const Mesh& mesh, const EntryPattern& entries, const CsrGraph&
 /// Counts additions on a graphics processor in an order.
 void count_for_gpu(ComparedOrder& order, const Mesh& mesh, const std::vector<GpuLayout>& layouts) {
   if (layouts.empty()) return;
-  const Incidence elements =
-      elements_in(mesh, order.order.vertices.permutation, order.order.cells.permutation);
+  const Mesh ordered = in_order(mesh, order.order);
   for (const GpuLayout layout : layouts) {
-    const std::optional<GpuCost> cost = cost_of_additions(elements, layout);
+    const std::optional<GpuCost> cost = cost_of_additions(ordered, layout);
     if (!cost) {
       throw CommandError(
           "--gpu-layout: additions are counted for elements with the same number of vertices, at most 255; "

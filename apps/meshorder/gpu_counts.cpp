@@ -1,6 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "gpu_counts.hpp"
 
+#include "cells/cell_arrays.hpp"
+#include "graph/incidence.hpp"
+#include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "wording.hpp"
@@ -42,22 +45,23 @@ double time_on(const GpuCard& card, const GpuCost& cost) {
   return card.launch_us + card.us_per_sector * static_cast<double>(cost.sectors);
 }
 
-bool are_linear_tetrahedra(const Mesh& mesh, const Incidence& elements) {
-  return common_size(elements) == 4 && mesh.cells.highest_dimension() == 3 &&
-         std::ranges::all_of(mesh.cells.shapes,
-                             [](Shape shape) { return dimension(shape) < 3 || shape == Shape::tetrahedron; });
+/// Returns whether times are known for the elements of a mesh.
+bool are_timed(const Mesh& mesh) {
+  const CellSelection elements = CellSelection::elements(cell_arrays(mesh));
+  return elements.size() >= kFewestTimed && common_size(elements.incidence()) == 4 &&
+         mesh.cells.highest_dimension() == 3 && std::ranges::all_of(mesh.cells.shapes, [](Shape shape) {
+           return dimension(shape) < 3 || shape == Shape::tetrahedron;
+         });
 }
 
 std::vector<CountedKernel> counted_additions(const Mesh& mesh, const MeshOrder& order, const GpuCard* card) {
   if (stored_matrix(mesh) != nullptr || mesh.cells.highest_dimension() < 1) return {};
-  const auto identity = [](Index size) { return Permutation::identity(size); };
-  const Incidence as_is = elements_in(mesh, identity(mesh.vertex_count()), identity(mesh.cell_count()));
-  const Incidence ordered = elements_in(mesh, order.vertices.permutation, order.cells.permutation);
-  const bool has_card = card != nullptr && as_is.size() >= kFewestTimed && are_linear_tetrahedra(mesh, as_is);
+  const Mesh ordered = in_order(mesh, order);
+  const bool has_card = card != nullptr && are_timed(mesh);
   std::vector<CountedKernel> kernels;
   for (std::size_t k = 0; k < kGpuLayouts.size(); ++k) {
     const GpuLayout layout = kGpuLayouts[k];
-    const std::optional<GpuCost> before = cost_of_additions(as_is, layout);
+    const std::optional<GpuCost> before = cost_of_additions(mesh, layout);
     const std::optional<GpuCost> after = cost_of_additions(ordered, layout);
     if (!before || !after) return {};
     CountedKernel kernel{
@@ -107,28 +111,21 @@ std::string megabytes(Offset bytes) { return fmt::format("{:>9.1f}", 1e-6 * stat
 
 }  // namespace
 
-Incidence elements_in(const Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
-  const int highest = mesh.cells.highest_dimension();
-  const std::span<const Index> new_number = vertices.old_to_new();
-  Incidence elements;
-  elements.vertex_count = mesh.vertex_count();
-  elements.offsets.reserve(mesh.cells.shapes.size() + 1);
-  elements.vertices.reserve(mesh.cells.vertices.size());
-  for (const Index c : cells.new_to_old()) {
-    if (dimension(mesh.cells.shapes[c]) != highest) continue;
-    for (Offset at = mesh.cells.offsets[c]; at < mesh.cells.offsets[c + 1]; ++at)
-      elements.vertices.push_back(new_number[mesh.cells.vertices[at]]);
-    elements.offsets.push_back(std::ssize(elements.vertices));
-  }
-  return elements;
+Mesh in_order(const Mesh& mesh, const MeshOrder& order) {
+  Mesh moved;
+  moved.points = mesh.points;
+  moved.cells = mesh.cells;
+  apply_reordering(moved, order);
+  return moved;
 }
 
-std::optional<GpuCost> cost_of_additions(const Incidence& elements, GpuLayout layout) {
+std::optional<GpuCost> cost_of_additions(const Mesh& mesh, GpuLayout layout) {
   constexpr Offset kMostVertices = 255;  // of a cell in a patch of 256
+  const CellSelection selected = CellSelection::elements(cell_arrays(mesh));
+  const IncidenceRef elements = selected.incidence();
   const Offset width = common_size(elements);
   if (elements.size() == 0 || width == 0 || width > kMostVertices) return std::nullopt;
-  return gpu_cost(CellsView::mixed(elements.offsets, elements.vertices),
-                  static_cast<std::size_t>(elements.vertex_count), layout);
+  return gpu_cost(CellsView::mixed(elements.offsets, elements.vertices), mesh.points.size(), layout);
 }
 
 double sector_ratio(const GpuCost& as_is, const GpuCost& ordered) {

@@ -3,10 +3,8 @@
 
 #include "console.hpp"
 #include "graph/csr_graph.hpp"
-#include "graph/incidence.hpp"
 #include <meshorder/layouts.hpp>
 #include <meshorder/mesh.hpp>
-#include <meshorder/permutation.hpp>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -19,13 +17,12 @@
 
 namespace meshorder::command {
 
-/// Returns the elements of a mesh, the cells of the highest dimension, with both in the order given.
-/// O(cells).
-Incidence elements_in(const Mesh& mesh, const Permutation& vertices, const Permutation& cells);
+/// Returns the points and cells of a mesh, moved into an order. O(cells).
+Mesh in_order(const Mesh& mesh, const MeshOrder& order);
 
-/// Counts additions to the vertices of elements. Returns nothing if there are no elements, if their numbers
-/// of vertices differ, or if these are more than patches can have.
-std::optional<GpuCost> cost_of_additions(const Incidence& elements, GpuLayout layout);
+/// Counts additions to the vertices of a mesh's elements, in its order. Returns nothing if there are no
+/// elements, if their numbers of vertices differ, or if these are more than patches can have.
+std::optional<GpuCost> cost_of_additions(const Mesh& mesh, GpuLayout layout);
 
 /// Returns how many times fewer sectors a kernel touches in another order.
 double sector_ratio(const GpuCost& as_is, const GpuCost& ordered);

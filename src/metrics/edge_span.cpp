@@ -27,29 +27,25 @@ void for_each_span(GraphRef graph, PlaceOf place_of, Index begin, Index end, Vis
   }
 }
 
-/// Calls `visit(span)` for every edge once.
-template <class PlaceOf, class Visit>
-void for_each_span(GraphRef graph, PlaceOf place_of, Visit visit) {
-  for_each_span(graph, place_of, 0, graph.size(), visit);
-}
-
-/// Returns a function that returns the new number of a vertex.
-auto places_in(const Permutation& order) {
-  return [new_numbers = order.old_to_new()](Index v) { return new_numbers[v]; };
-}
-
-/// Calls `call(place)` with a function of this kind. `place_of` is that of `sampled_edge_span`.
+/// Calls `call(place)` with a function that returns the new number of a vertex. `place_of` is that of
+/// `sampled_edge_span`.
 template <class Call>
 auto with_places(std::span<const Index> place_of, Call call) {
   if (place_of.empty()) return call([](Index v) { return v; });
   return call([place_of](Index v) { return place_of[v]; });
 }
 
+/// Calls `visit(span)` for every edge once.
+template <class Visit>
+void for_each_span(GraphRef graph, std::span<const Index> place_of, Visit visit) {
+  with_places(place_of, [&](auto place) { for_each_span(graph, place, 0, graph.size(), visit); });
+}
+
 /// Returns the number of edges in each bin, up to the last bin that has any.
 template <class BinOf>
 std::vector<Offset> histogram(GraphRef graph, const Permutation& order, BinOf bin_of) {
   std::vector<Offset> bins;
-  for_each_span(graph, places_in(order), [&](Index span) {
+  for_each_span(graph, order.old_to_new(), [&](Index span) {
     const auto bin = static_cast<std::size_t>(bin_of(span));
     if (bins.size() <= bin) bins.resize(bin + 1, 0);
     ++bins[bin];
@@ -57,8 +53,8 @@ std::vector<Offset> histogram(GraphRef graph, const Permutation& order, BinOf bi
   return bins;
 }
 
-template <class PlaceOf>
-EdgeSpan exact_span(GraphRef graph, PlaceOf place_of) {
+/// Returns the spans of all edges. `place_of` is that of `sampled_edge_span`.
+EdgeSpan exact_span(GraphRef graph, std::span<const Index> place_of) {
   EdgeSpan result;
   if (graph.neighbours.empty()) return result;
   // sums by span, not by edge, do not depend on how the vertices are numbered
@@ -116,7 +112,7 @@ EdgeSpan span_of_sample(GraphRef graph, PlaceOf place_of) {
 
 }  // namespace
 
-EdgeSpan edge_span(GraphRef graph, const Permutation& order) { return exact_span(graph, places_in(order)); }
+EdgeSpan edge_span(GraphRef graph, const Permutation& order) { return exact_span(graph, order.old_to_new()); }
 
 EdgeSpan sampled_edge_span(GraphRef graph, std::span<const Index> place_of) {
   return with_places(place_of, [&](auto place) { return span_of_sample(graph, place); });
@@ -140,8 +136,7 @@ SpanSize span_size(GraphRef graph, std::span<const Index> place_of) {
 }
 
 EdgeSpan quick_edge_span(GraphRef graph, std::span<const Index> place_of) {
-  if (VertexSample(graph.size()).is_all() || graph.neighbours.empty())
-    return with_places(place_of, [&](auto place) { return exact_span(graph, place); });
+  if (VertexSample(graph.size()).is_all() || graph.neighbours.empty()) return exact_span(graph, place_of);
   const SpanSize size = span_size(graph, place_of);
   return {.mean = static_cast<double>(size.sum) / static_cast<double>(graph.edge_count()),
           .max = size.max,

@@ -61,8 +61,8 @@ struct SpanSize {
 /// O(n + edges).
 SpanSize span_size(GraphRef graph, std::span<const Index> place_of);
 
-/// Like `edge_span`, on all threads; `mean_log2` is that of `sampled_edge_span`. Does not depend on the
-/// number of threads. O(n + edges).
+/// Like `edge_span`. From 262,144 vertices on it uses all threads, and `mean_log2` is that of
+/// `sampled_edge_span`. Does not depend on the number of threads. O(n + edges).
 EdgeSpan quick_edge_span(GraphRef graph, std::span<const Index> place_of);
 
 /// Returns the size of the envelope of a matrix with this pattern, without the diagonal: the sum, over all

@@ -50,8 +50,6 @@ std::string_view trimmed_blanks(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanksOfXml) - first + 1);
 }
 
-std::uint64_t product(const std::vector<std::uint64_t>& shape) { return hdf5::DatasetInfo{shape, 0}.size(); }
-
 /// All text of an element; it is copied only if it is in several pieces.
 class ElementText {
  public:
@@ -105,6 +103,8 @@ std::pair<std::string, int> number_type_of(std::size_t alternative) {
                                   [&](const NumberType& type) { return type.alternative == alternative; });
   return {std::string(found->name), found->precision};
 }
+
+std::uint64_t DataPlace::count() const { return hdf5::DatasetInfo{shape, 0}.size(); }
 
 void DataPlace::repeat(const DataPlace& other) {
   if (other.named_by != named_by) repeats.push_back({other.item, other.named_by});
@@ -189,7 +189,7 @@ void DataReader::find_dataset(pugi::xml_node item, DataPlace& place) {
                           "file.h5:/path is needed");
   }
   const hdf5::DatasetInfo info = file(item, place.file).info(place.dataset);
-  if (info.size() != product(place.shape)) {
+  if (info.size() != place.count()) {
     throw document_.error(item,
                           fmt::format("Dimensions is '{}', but '{}' in {} has {} values",
                                       attribute(item, "Dimensions"), place.dataset, place.file, info.size()),
@@ -292,7 +292,7 @@ void DataReader::claim(pugi::xml_node item, std::uint64_t bytes) const {
 Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const {
   const ElementText whole_text(item);
   const std::string_view text = whole_text.view();
-  const std::uint64_t count = product(place.shape);
+  const std::uint64_t count = place.count();
   return values_as(place.alternative, [&](auto& numbers) {
     using Number = typename std::decay_t<decltype(numbers)>::value_type;
     if constexpr (std::is_arithmetic_v<Number>) {
@@ -346,7 +346,7 @@ Values DataReader::read_binary(const DataPlace& place, pugi::xml_node item) {
     known = binaries_.emplace(place.file, path_of(item, place.file).read()).first;
   }
   const std::string& bytes = known->second;
-  const std::uint64_t count = product(place.shape);
+  const std::uint64_t count = place.count();
   const std::size_t size = bytes_of_number(place.alternative);
   if (place.seek > bytes.size() || count > (bytes.size() - place.seek) / size) {
     throw document_.error(

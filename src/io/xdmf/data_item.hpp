@@ -41,6 +41,8 @@ struct DataPlace {
   };
   std::vector<Repeat> repeats = {};
 
+  /// Returns the number of values.
+  [[nodiscard]] std::uint64_t count() const;
   /// Adds a later place in the file that names the same values.
   void repeat(const DataPlace& other);
 };

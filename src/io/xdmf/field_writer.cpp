@@ -135,7 +135,7 @@ void Writer::announce_cells_of(const Field& field) const {
   const pugi::xml_node topology = element_of(field);
   const auto nodes =
       static_cast<std::uint64_t>(topology_type(attribute(topology, "TopologyType", "Type"))->nodes);
-  announce_cells(topology, hdf5::DatasetInfo{field.place.shape, 0}.size() / nodes);
+  announce_cells(topology, field.place.count() / nodes);
 }
 
 void Writer::announce_cells(pugi::xml_node topology, std::uint64_t cells) const {
@@ -194,7 +194,7 @@ void Writer::write_array(const Field& field) {
   if (array == nullptr || are_texts(array->values)) return remove_element(field);
   const std::optional<Values> own = values_of(*array, field.association, field.part);
   const Values& values = own ? *own : array->values;
-  if (size_of(values) != hdf5::DatasetInfo{field.place.shape, 0}.size()) {
+  if (size_of(values) != field.place.count()) {
     const std::string type = attribute_type(array->components);
     set_either(element_of(field), "AttributeType", "Type", type);
     for (const DataPlace::Repeat& repeat : field.place.repeats)

@@ -224,7 +224,7 @@ class XdmfReader {
     constexpr std::size_t kInt32 = 6;
     DataPlace place = reading_.data.place_of(item);
     if (place.format != DataPlace::Format::hdf) return false;
-    const auto count = static_cast<std::int64_t>(hdf5::DatasetInfo{place.shape, 0}.size());
+    const auto count = static_cast<std::int64_t>(place.count());
     if (components == 0) {
       const std::int64_t rows = raw_.datasets[association == Association::vertices ? 0 : 1].rows;
       if (count % rows != 0 || count / rows > kMaxIndex) return false;

@@ -43,9 +43,8 @@ void Writer::set_number_type(pugi::xml_node item, std::size_t alternative) {
 
 std::vector<std::uint64_t> Writer::shape_at(const DataPlace& place, std::size_t count,
                                             std::size_t components) {
-  std::vector<std::uint64_t> shape = place.shape;
-  if (hdf5::DatasetInfo{shape, 0}.size() == count && !layout_.is_made) return shape;
-  shape = shape_of(count, components);
+  if (place.count() == count && !layout_.is_made) return place.shape;
+  std::vector<std::uint64_t> shape = shape_of(count, components);
   set_shape(items_[place.item], shape);
   if (place.format == DataPlace::Format::hdf)
     shapes_[files_.at(place.file).name + ":" + place.dataset] = shape;
