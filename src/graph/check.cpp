@@ -18,7 +18,7 @@ void refuse_asymmetry_of(const GraphView& view, const GraphArrays& graph, const 
   if (findings.is_clean()) {
     refuse_asymmetry(graph.offsets, graph.neighbours, graph.weights, view.base);
   } else {
-    const OwnedGraph clean = cleaned_copy(graph);
+    const OwnedGraph clean = cleaned_copy(graph, findings);
     refuse_asymmetry(clean.offsets, clean.neighbours, clean.weights, view.base);
   }
 }
@@ -41,7 +41,7 @@ Graph cleaned(const GraphView& graph, Symmetry symmetry, const Run& run) {
     const GraphFindings findings = examine(arrays, true);
     refuse_faults(graph, arrays, findings);
     const bool mirror = symmetry == Symmetry::mirror && findings.asymmetry != 0;
-    OwnedGraph clean = mirror ? mirrored_copy(arrays) : cleaned_copy(arrays);
+    OwnedGraph clean = mirror ? mirrored_copy(arrays) : cleaned_copy(arrays, findings);
     if (!mirror && findings.asymmetry != 0) {
       refuse_asymmetry(clean.offsets, clean.neighbours, clean.weights, graph.base);
     }

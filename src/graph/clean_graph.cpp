@@ -1,8 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/clean_graph.hpp"
 
+#include "base/large_pages.hpp"
 #include "base/parallel.hpp"
-#include "graph/examine.hpp"
+#include "graph/csr_graph.hpp"
+#include "graph/row_access.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -68,6 +70,37 @@ OwnedGraph cleaned_rows(OwnedGraph rows) {
   return rows;
 }
 
+/// Returns a copy without loops of a graph whose rows ascend and have no repeats.
+OwnedGraph without_loops(const GraphArrays& graph) {
+  constexpr Index kRows = 4096;  // copied by a thread at a time
+  OwnedGraph copy;
+  resize_large(copy.offsets, graph.offsets.size());
+  const GraphRef rows(graph.offsets, graph.neighbours);
+  for_each_chunk(graph.size(), kRows, [&](Index /*chunk*/, Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) {
+      const bool has_loop = entries_below(rows[v], v) < entries_below(rows[v], v + 1);
+      copy.offsets[v + 1] = rows.degree(v) - (has_loop ? 1 : 0);
+    }
+  });
+  std::partial_sum(copy.offsets.begin(), copy.offsets.end(), copy.offsets.begin());
+  const auto copy_kept = [&](auto from, auto& to) {
+    if (from.empty()) return;
+    resize_large(to, static_cast<std::size_t>(copy.offsets.back()));
+    for_each_chunk(graph.size(), kRows, [&](Index /*chunk*/, Index begin, Index end) {
+      for (Index v = begin; v < end; ++v) {
+        const auto row = from.begin() + graph.offsets[v];
+        const Index below = entries_below(rows[v], v);
+        const Offset after = copy.offsets[v + 1] - copy.offsets[v] - below;
+        const auto kept = std::copy_n(row, below, to.begin() + copy.offsets[v]);
+        std::copy_n(from.begin() + graph.offsets[v + 1] - after, after, kept);
+      }
+    });
+  };
+  copy_kept(graph.neighbours, copy.neighbours);
+  copy_kept(graph.weights, copy.weights);
+  return copy;
+}
+
 /// Puts a clean copy in the place of the caller's arrays.
 void adopt(GraphArrays& arrays, OwnedGraph clean) {
   arrays.own_offsets = std::move(clean.offsets);
@@ -84,7 +117,8 @@ std::string counted(Offset count, const std::string& one, const std::string& man
 
 }  // namespace
 
-OwnedGraph cleaned_copy(const GraphArrays& graph) {
+OwnedGraph cleaned_copy(const GraphArrays& graph, const GraphFindings& findings) {
+  if (findings.unordered == 0) return without_loops(graph);
   return cleaned_rows({{graph.offsets.begin(), graph.offsets.end()},
                        {graph.neighbours.begin(), graph.neighbours.end()},
                        {graph.weights.begin(), graph.weights.end()}});
@@ -126,7 +160,7 @@ GraphArrays clean_graph(const GraphView& graph, Check check, Symmetry symmetry) 
     return arrays;
   }
   const auto before = static_cast<Offset>(arrays.neighbours.size());
-  OwnedGraph clean = mirror ? mirrored_copy(arrays) : cleaned_copy(arrays);
+  OwnedGraph clean = mirror ? mirrored_copy(arrays) : cleaned_copy(arrays, found);
   if (!mirror && found.asymmetry != 0) {
     refuse_asymmetry(clean.offsets, clean.neighbours, clean.weights, graph.base);
   }

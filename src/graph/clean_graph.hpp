@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "graph/examine.hpp"
 #include "graph/graph_arrays.hpp"
 #include <meshorder/options.hpp>
 
@@ -29,8 +30,10 @@ GraphArrays clean_graph(const GraphView& graph, Check check, Symmetry symmetry);
 
 /// Returns a clean copy; the argument may have loops, repeats and unsorted rows, its numbers are in range.
 /// Weights of repeats are added in ascending order, so that both rows of an edge get the same bits. O(n +
-/// entries · log degree).
-OwnedGraph cleaned_copy(const GraphArrays& graph);
+/// entries · log degree); O(n · log degree + entries) where rows ascend.
+///
+/// @param findings  of the graph
+OwnedGraph cleaned_copy(const GraphArrays& graph, const GraphFindings& findings);
 
 /// Returns the clean graph of A + Aᵀ, with weights of (A + Aᵀ) / 2. O(n + entries · log degree).
 OwnedGraph mirrored_copy(const GraphArrays& graph);

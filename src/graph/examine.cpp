@@ -23,6 +23,12 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31U);
 }
 
+/// Returns an odd number that looks random: a product of two is not zero modulo 2⁶⁴.
+std::uint64_t odd_number_of(std::uint32_t v) {
+  const std::uint64_t x = (std::uint64_t{v} + 1) * 0x9e3779b97f4a7c15U;
+  return (x ^ (x >> 32U)) | 1U;
+}
+
 /// Returns the shortest decimal number that reads back as `value`, so that different numbers look different.
 std::string text_of(double value) {
   std::array<char, 32> text{};
@@ -37,6 +43,7 @@ GraphFindings examine_rows(const GraphArrays& graph, Index begin, Index end) {
   const auto n = static_cast<std::uint32_t>(graph.size());
   for (Index row = begin; row < end; ++row) {
     const auto v = static_cast<std::uint32_t>(row);
+    std::uint64_t of_row = 0;
     Index last = -1;
     for (Offset k = graph.offsets[row]; k < graph.offsets[row + 1]; ++k) {
       const auto u = static_cast<std::uint32_t>(graph.neighbours[k]);
@@ -46,13 +53,15 @@ GraphFindings examine_rows(const GraphArrays& graph, Index begin, Index end) {
       last = graph.neighbours[k];
       if constexpr (Weighted) found.bad_weights += !is_valid_weight(graph.weights[k]);
       if constexpr (Symmetry) {
-        std::uint64_t hash = mixed(std::uint64_t{std::min(u, v)} << 32U | std::max(u, v));
-        if constexpr (Weighted) hash = mixed(hash ^ std::bit_cast<std::uint64_t>(graph.weights[k]));
+        std::uint64_t hash = odd_number_of(u);
+        if constexpr (Weighted)
+          hash = mixed(hash * odd_number_of(v) ^ std::bit_cast<std::uint64_t>(graph.weights[k]));
         // without a branch: which end is larger is unpredictable in shuffled graphs
         const std::uint64_t sign = std::uint64_t{v < u} - std::uint64_t{v > u};
-        found.asymmetry += sign * hash;
+        of_row += sign * hash;
       }
     }
+    found.asymmetry += Weighted ? of_row : of_row * odd_number_of(v);
   }
   return found;
 }

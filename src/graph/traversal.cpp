@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/traversal.hpp"
 
+#include "base/large_pages.hpp"
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
 #include "graph/row_access.hpp"
@@ -83,11 +84,13 @@ namespace {
 BreadthFirstCopy copy_in_one_pass(GraphRef graph) {
   const Index n = graph.size();
   BreadthFirstCopy copy;
-  copy.offsets.reserve(std::size_t(n) + 1);
+  reserve_large(copy.offsets, std::size_t(n) + 1);
   copy.offsets.push_back(0);
-  copy.neighbours.resize(graph.neighbours.size());
-  copy.old_numbers.resize(std::size_t(n) + 1);
-  std::vector<Index> number(n, -1);
+  resize_large(copy.neighbours, graph.neighbours.size());
+  resize_large(copy.old_numbers, std::size_t(n) + 1);
+  std::vector<Index> number;
+  reserve_large(number, std::size_t(n));
+  number.resize(n, -1);
   Index found = 0;
   Offset written = 0;
   for (Index v = 0; v < n; ++v) {
@@ -125,7 +128,7 @@ BreadthFirstCopy copy_in_one_pass(GraphRef graph) {
 BreadthFirstCopy copy_on_threads(GraphRef graph) {
   const auto n = static_cast<std::size_t>(graph.size());
   BreadthFirstCopy copy;
-  copy.old_numbers.resize(n + 1);
+  resize_large(copy.old_numbers, n + 1);
   LevelSearch search(graph);
   Index found = 0;
   for (Index v = 0; v < graph.size(); ++v) {
@@ -139,8 +142,9 @@ BreadthFirstCopy copy_on_threads(GraphRef graph) {
     found = end;
   }
   copy.old_numbers.resize(n);
-  std::vector<Index> number(n);
-  copy.offsets.resize(n + 1);
+  std::vector<Index> number;
+  resize_large(number, n);
+  resize_large(copy.offsets, n + 1);
   constexpr Index kRowsAtOnce = 4096;
   for_each_chunk(graph.size(), kRowsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
@@ -149,7 +153,7 @@ BreadthFirstCopy copy_on_threads(GraphRef graph) {
     }
   });
   std::partial_sum(copy.offsets.begin(), copy.offsets.end(), copy.offsets.begin());
-  copy.neighbours.resize(graph.neighbours.size());
+  resize_large(copy.neighbours, graph.neighbours.size());
   for_each_chunk(graph.size(), kRowsAtOnce, [&](Index /*chunk*/, Index begin, Index end) {
     for (Index k = begin; k < end; ++k) {
       prefetch_row(graph, copy.old_numbers, k);

@@ -104,6 +104,25 @@ TEST(Cleaned, UndoesWhatWasDoneToACleanGraph) {
   EXPECT_TRUE(std::ranges::equal(graph.neighbours(), clean.neighbours));
 }
 
+TEST(Cleaned, DropsTheDiagonalOfAMatrix) {
+  const Arrays clean = path(9000);
+  Arrays matrix{{0}, {}, {}};
+  std::vector<double> weights;
+  for (Index v = 0; v < 9000; ++v) {
+    for (Index u = std::max(v - 1, 0); u <= std::min(v + 1, 8999); ++u) {
+      if (u == v && v % 3 == 1) continue;  // no entry on the diagonal
+      matrix.neighbours.push_back(u);
+      matrix.weights.push_back(u + v + 1.0);
+      if (u != v) weights.push_back(u + v + 1.0);
+    }
+    matrix.offsets.push_back(static_cast<Offset>(matrix.neighbours.size()));
+  }
+  const Graph graph = cleaned(matrix.view(), Symmetry::require, {.threads = 2});
+  EXPECT_TRUE(std::ranges::equal(graph.offsets(), clean.offsets));
+  EXPECT_TRUE(std::ranges::equal(graph.neighbours(), clean.neighbours));
+  EXPECT_TRUE(std::ranges::equal(graph.weights(), weights));
+}
+
 TEST(CleanGraph, CopiesOnlyWhatItMust) {
   const Arrays clean = path(10);
   const GraphArrays same = clean_graph(clean.view(), Check::full, Symmetry::mirror);
