@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -23,10 +24,18 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31U);
 }
 
+/// A number that differs from run to run. Nobody can then make a file whose asymmetric entries add up to
+/// zero.
+std::uint64_t secret() {
+  static const auto number =
+      static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
+  return number;
+}
+
 /// Returns an odd number that looks random: a product of two is not zero modulo 2⁶⁴.
-std::uint64_t odd_number_of(std::uint32_t v) {
-  const std::uint64_t x = (std::uint64_t{v} + 1) * 0x9e3779b97f4a7c15U;
-  return (x ^ (x >> 32U)) | 1U;
+std::uint64_t odd_number_of(std::uint32_t v, std::uint64_t seed) {
+  const std::uint64_t x = (v + seed) * 0x9e3779b97f4a7c15U;
+  return (x ^ (x >> 32U)) * 0xbf58476d1ce4e5b9U | 1U;
 }
 
 /// Returns the shortest decimal number that reads back as `value`, so that different numbers look different.
@@ -40,6 +49,7 @@ bool is_valid_weight(double weight) { return weight > 0 && std::isfinite(weight)
 template <bool Symmetry, bool Weighted>
 GraphFindings examine_rows(const GraphArrays& graph, Index begin, Index end) {
   GraphFindings found;
+  const std::uint64_t seed = secret();
   const auto n = static_cast<std::uint32_t>(graph.size());
   for (Index row = begin; row < end; ++row) {
     const auto v = static_cast<std::uint32_t>(row);
@@ -53,15 +63,15 @@ GraphFindings examine_rows(const GraphArrays& graph, Index begin, Index end) {
       last = graph.neighbours[k];
       if constexpr (Weighted) found.bad_weights += !is_valid_weight(graph.weights[k]);
       if constexpr (Symmetry) {
-        std::uint64_t hash = odd_number_of(u);
+        std::uint64_t hash = odd_number_of(u, seed);
         if constexpr (Weighted)
-          hash = mixed(hash * odd_number_of(v) ^ std::bit_cast<std::uint64_t>(graph.weights[k]));
+          hash = mixed(hash * odd_number_of(v, seed) ^ std::bit_cast<std::uint64_t>(graph.weights[k]));
         // without a branch: which end is larger is unpredictable in shuffled graphs
         const std::uint64_t sign = std::uint64_t{v < u} - std::uint64_t{v > u};
         of_row += sign * hash;
       }
     }
-    found.asymmetry += Weighted ? of_row : of_row * odd_number_of(v);
+    found.asymmetry += Weighted ? of_row : of_row * odd_number_of(v, seed);
   }
   return found;
 }

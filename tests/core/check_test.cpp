@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/clean_graph.hpp"
+#include "graph/examine.hpp"
 #include "support/refusal.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/order.hpp>
@@ -75,6 +76,25 @@ TEST(Check, FindsEveryMissingEntry) {
   }
   EXPECT_EQ(fault(Arrays{{0, 1, 2}, {1, 0}, {2, 3}}.view()),
             "graph: the weight from 0 to 1 is 2, that back is 3");
+}
+
+TEST(Examine, GivesEveryTwoEdgesAnotherAsymmetry) {
+  constexpr Index kVertices = 24;
+  std::vector<std::uint64_t> of_edges;
+  for (Index v = 0; v < kVertices; ++v) {
+    for (Index u = v + 1; u < kVertices; ++u) {
+      Arrays edge{std::vector<Offset>(kVertices + 1, 0), {u}};
+      for (Index row = v + 1; row <= kVertices; ++row) edge.offsets[static_cast<std::size_t>(row)] = 1;
+      of_edges.push_back(examine(graph_arrays(edge.view()), true).asymmetry);
+    }
+  }
+  std::vector<std::uint64_t> of_pairs = of_edges;
+  for (std::size_t a = 0; a < of_edges.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) of_pairs.push_back(of_edges[a] + of_edges[b]);
+  }
+  std::ranges::sort(of_pairs);
+  EXPECT_TRUE(std::ranges::adjacent_find(of_pairs) == of_pairs.end());
+  EXPECT_NE(of_pairs.front(), 0U);
 }
 
 TEST(Cleaned, SortsMergesAndMirrors) {
