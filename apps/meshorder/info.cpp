@@ -60,9 +60,11 @@ struct InfoArguments : Common {
 
 /// Seconds from the start of the command to the end of --measure, for up to about 300 thousand vertices.
 constexpr double kMeasureWithin = 3.8;
-/// The same without --measure; then the largest number of simplices for which kernels run within that time.
+/// The same without --measure; then the largest number of simplices, or of a matrix's entries, for which
+/// kernels run within that time.
 constexpr double kMeasureQuicklyWithin = 0.7;
 constexpr Offset kMaxQuick = 250'000;
+constexpr Offset kMaxQuickEntries = 1'000'000;
 /// The smallest first-level cache of today's processors, bytes.
 constexpr Offset kFirstCache = 32 * 1024;
 /// Largest number of simplices for which times are predicted by default, in seconds a million vertices.
@@ -91,12 +93,14 @@ enum class By : std::uint8_t { prediction, quick_measurement, measurement, count
 
 /// Returns how the gain is determined: by kernels that run at most two seconds, unless times or counts are
 /// requested.
-By judged_by(const InfoArguments& arguments, SimplicesRef simplices, const MachineChoice& machine) {
+By judged_by(const InfoArguments& arguments, const Mesh& mesh, SimplicesRef simplices,
+             const MachineChoice& machine) {
   if (arguments.gpu) return By::counts;
   if (arguments.measure) return By::measurement;
   const bool asks_for_times = arguments.predict || !arguments.machine.empty() || !arguments.caches.empty() ||
                               (machine.name != "this" && !machine.stands_in);
-  return asks_for_times || simplices.size() > kMaxQuick ? By::prediction : By::quick_measurement;
+  const Offset most = stored_matrix(mesh) != nullptr ? kMaxQuickEntries : kMaxQuick;
+  return asks_for_times || simplices.size() > most ? By::prediction : By::quick_measurement;
 }
 
 /// Returns the `halvings` of `reuse_of_kernels`: 0, for all cache lines, if --cache is given.
@@ -371,7 +375,7 @@ void run(const InfoArguments& arguments) {
   take_points(mesh, arguments.input, arguments.points);
 
   const CellSimplices simplices(mesh);
-  const By by = judged_by(arguments, simplices, machine);
+  const By by = judged_by(arguments, mesh, simplices, machine);
   // calibrate only if the user requested times of this machine
   const bool calibrates = arguments.predict || arguments.machine == "this" || arguments.all_threads;
   if (by == By::prediction && calibrates && is_predicted(arguments, simplices)) {

@@ -41,20 +41,24 @@ struct SparsityPattern {
 
 /// Measures the present order of a graph's vertices.
 ///
-/// @param graph  n vertices; weights are not used
-/// @param run    threads, progress
+/// @param graph     n vertices; weights are not used
+/// @param run       threads, progress
+/// @param symmetry  mirror: an asymmetric pattern counts as that of A + Aᵀ
 /// @throws InvalidArgument if `check` refuses the graph
 /// @note O(n + edges). The result does not depend on the number of threads. Cache lines, prefetching and the
 ///       traversal of elements are not modelled; see payoff.hpp.
-MESHORDER_API Quality quality(const GraphView& graph, const Run& run = {});
+MESHORDER_API Quality quality(const GraphView& graph, const Run& run = {},
+                              Symmetry symmetry = Symmetry::require);
 
 /// Measures another order of a graph's vertices, without moving them.
 ///
-/// @param graph  n vertices
-/// @param order  n places
-/// @param run    threads, progress
+/// @param graph     n vertices
+/// @param order     n places
+/// @param run       threads, progress
+/// @param symmetry  as above
 /// @throws InvalidArgument as above, and if the sizes differ
-MESHORDER_API Quality quality(const GraphView& graph, const Permutation& order, const Run& run = {});
+MESHORDER_API Quality quality(const GraphView& graph, const Permutation& order, const Run& run = {},
+                              Symmetry symmetry = Symmetry::require);
 
 /// Counts the edges by their spans in bins of equal width.
 ///
@@ -70,14 +74,15 @@ MESHORDER_API std::vector<Offset> span_histogram(const GraphView& graph, const P
 
 /// Counts the entries of the matrix with the pattern of a graph, diagonal included, in square tiles.
 ///
-/// @param graph  n vertices
-/// @param order  n places
-/// @param side   tiles along each side, ≥ 1; n if that is less
-/// @param run    threads, progress
+/// @param graph     n vertices
+/// @param order     n places
+/// @param side      tiles along each side, ≥ 1; n if that is less
+/// @param run       threads, progress
+/// @param symmetry  as `quality`
 /// @throws InvalidArgument as `quality`, and if side < 1
 /// @note O(n + edges).
 MESHORDER_API SparsityPattern sparsity_pattern(const GraphView& graph, const Permutation& order, int side,
-                                               const Run& run = {});
+                                               const Run& run = {}, Symmetry symmetry = Symmetry::require);
 
 }  // namespace v0_3
 }  // namespace meshorder

@@ -54,15 +54,15 @@ nb::dict quality_of_graph(const Array& offsets, const Array& neighbours, const P
   const Options given_options(options);
   const GraphView graph = graph_view(offsets, neighbours, {});
   return described(unlocked([&] {
-    return order == nullptr ? quality(graph, given_options.run())
-                            : quality(graph, *order, given_options.run());
+    return order == nullptr ? quality(graph, given_options.run(), Symmetry::mirror)
+                            : quality(graph, *order, given_options.run(), Symmetry::mirror);
   }));
 }
 
 nb::object pattern_of_graph(const Array& offsets, const Array& neighbours, const Permutation& order,
                             int side) {
   const GraphView graph = graph_view(offsets, neighbours, {});
-  return described(unlocked([&] { return sparsity_pattern(graph, order, side); }));
+  return described(unlocked([&] { return sparsity_pattern(graph, order, side, {}, Symmetry::mirror); }));
 }
 
 }  // namespace

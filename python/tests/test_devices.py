@@ -132,7 +132,7 @@ def test_faulty_arrays_are_refused(library, permutation):
             permutation.renumber(library.made(np.array(wrong, np.int32)))
     with pytest.raises(InvalidArgument, match="expected integers"):
         permutation.renumber(library.made(np.zeros(3, np.float32)))
-    with pytest.raises(InvalidArgument, match="axis 0 of the shape"):
+    with pytest.raises(InvalidArgument, match="along axis 0, not the shape"):
         permutation.move(library.made(np.zeros(N + 1, np.float32)))
     with pytest.raises(InvalidArgument, match="out; it is for arrays of NumPy"):
         permutation.move(library.made(np.zeros(N, np.float32)), out=np.zeros(N, np.float32))

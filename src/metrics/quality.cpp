@@ -27,10 +27,11 @@ namespace {
 
 /// Calls `measure(graph, order)` with a clean graph and a permutation that fits it.
 template <class Measure>
-auto measured(const GraphView& graph, const Permutation* order, const Run& run, Measure measure) {
+auto measured(const GraphView& graph, const Permutation* order, const Run& run, Symmetry symmetry,
+              Measure measure) {
   return in_call(run, [&] {
     report("check");
-    const GraphArrays clean = clean_graph(graph, Check::full, Symmetry::require);
+    const GraphArrays clean = clean_graph(graph, Check::full, symmetry);
     if (order != nullptr && order->size() != clean.size()) {
       throw InvalidArgument("quality: an order of " + std::to_string(order->size()) + " places for " +
                             std::to_string(clean.size()) + " vertices");
@@ -42,22 +43,25 @@ auto measured(const GraphView& graph, const Permutation* order, const Run& run, 
 
 }  // namespace
 
-Quality quality(const GraphView& graph, const Run& run) { return measured(graph, nullptr, run, quality_of); }
+Quality quality(const GraphView& graph, const Run& run, Symmetry symmetry) {
+  return measured(graph, nullptr, run, symmetry, quality_of);
+}
 
-Quality quality(const GraphView& graph, const Permutation& order, const Run& run) {
-  return measured(graph, &order, run, quality_of);
+Quality quality(const GraphView& graph, const Permutation& order, const Run& run, Symmetry symmetry) {
+  return measured(graph, &order, run, symmetry, quality_of);
 }
 
 std::vector<Offset> span_histogram(const GraphView& graph, const Permutation& order, Index width,
                                    const Run& run) {
-  return measured(graph, &order, run, [width](GraphRef clean, const Permutation& places) {
+  return measured(graph, &order, run, Symmetry::require, [width](GraphRef clean, const Permutation& places) {
     return meshorder::span_histogram(clean, places, width);
   });
 }
 
-SparsityPattern sparsity_pattern(const GraphView& graph, const Permutation& order, int side, const Run& run) {
+SparsityPattern sparsity_pattern(const GraphView& graph, const Permutation& order, int side, const Run& run,
+                                 Symmetry symmetry) {
   if (side < 1) throw InvalidArgument("sparsity_pattern: a side of " + std::to_string(side) + " tiles");
-  return measured(graph, &order, run, [side](GraphRef clean, const Permutation& places) {
+  return measured(graph, &order, run, symmetry, [side](GraphRef clean, const Permutation& places) {
     return pattern_of(clean, places, side);
   });
 }

@@ -1,5 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "ordering/all_methods.hpp"
+#include "ordering/space_filling.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/options.hpp>
 #include <meshorder/registry.hpp>
@@ -112,11 +113,7 @@ Method with_points(const MethodInfo& info, Method method, Vertices vertices) {
   if (!info.needs_points || !method) return method;
   return [name = info.name, method = std::move(method), vertices](const Problem& problem,
                                                                   const OrderOptions& options) {
-    if (problem.points.size() != vertices(problem)) {
-      throw InvalidArgument("order '" + name + "' needs the coordinates of all " +
-                            std::to_string(vertices(problem)) + " vertices, got " +
-                            std::to_string(problem.points.size()));
-    }
+    check_points(problem.points, vertices(problem), name);
     return method(problem, options);
   };
 }

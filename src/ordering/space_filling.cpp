@@ -18,10 +18,10 @@
 namespace meshorder {
 
 void check_points(const PointsView& points, std::size_t count, std::string_view method) {
-  if (points.size() != count) {
-    throw InvalidArgument("order '" + std::string(method) + "' needs the coordinates of all " +
-                          std::to_string(count) + " vertices, got " + std::to_string(points.size()));
-  }
+  if (points.size() == count) return;
+  throw InvalidArgument("order '" + std::string(method) + "' needs the coordinates of all " +
+                        std::to_string(count) + " vertices (points), got " +
+                        (points.empty() ? "none" : std::to_string(points.size())));
 }
 
 Lattice::Lattice(const Point& low, const Point& high) : low_(low) {

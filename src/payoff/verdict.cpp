@@ -91,7 +91,7 @@ std::string runs_of(const Advice& advice, Workload workload) {
 std::string in_doubt(const std::string& runs, const char* how, const std::string& on,
                      const std::string& command) {
   return fmt::format(
-      "as it is, {} {}{} than it could (measured here while the machine was busy: by how much is in doubt); "
+      "as it is, {} {}{} than need be (measured here while the machine was busy: by how much is in doubt); "
       "`{}` mends it",
       runs, how, on, command);
 }

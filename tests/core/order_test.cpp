@@ -251,7 +251,7 @@ TEST(OrderVertices, RefusesUnknownMethodsAndListsTheKnownOnes) {
   EXPECT_THAT(sentence, HasSubstr("'best'"));
   for (const std::string& name : names_of(vertex_methods())) EXPECT_THAT(sentence, HasSubstr(name));
   EXPECT_THAT(refusal([&] { (void)order_vertices(problem.view(), "hilbert"); }),
-              HasSubstr("needs the coordinates of all 3 vertices, got 0"));
+              HasSubstr("needs the coordinates of all 3 vertices (points), got none"));
 }
 
 TEST(OrderVertices, LeavesTheArgumentsAsTheyAre) {

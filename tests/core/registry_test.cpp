@@ -186,7 +186,7 @@ TEST_F(Registry, AsksForThePointsThatAMethodNeeds) {
   const Registration elements =
       register_element_method({.name = "pointed", .needs_points = true}, reversed_elements);
   EXPECT_EQ(refusal([&] { (void)order_vertices(view_, "pointed"); }),
-            "order 'pointed' needs the coordinates of all 20 vertices, got 0");
+            "order 'pointed' needs the coordinates of all 20 vertices (points), got none");
   const std::vector<Point> points(20);
   EXPECT_EQ(order_vertices(view_, "pointed", {}, points).permutation, reversed(20));
   const std::vector<int> cell{0, 1, 2};

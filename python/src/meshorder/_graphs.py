@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import itertools
+import os
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,6 +80,14 @@ class Order:
         """The old place of the vertex or cell at each new place, as in ``a[order.new_to_old]``."""
         return self.permutation.new_to_old
 
+    def __getattr__(self, name: str) -> NoReturn:
+        if not name.startswith("_") and hasattr(Permutation, name):
+            raise AttributeError(f"an Order has no {name!r}, its permutation has: .permutation.{name}")
+        raise AttributeError(f"'Order' object has no attribute {name!r}")
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NoReturn:
+        self.permutation.__array__()
+
     def __repr__(self) -> str:
         n = len(self.permutation)
         return f"<Order of {n:,} by {self.method} in {self.seconds:.3g} s{'' if self.complete else ', incomplete'}>"
@@ -90,8 +99,8 @@ class Order:
         """Draws the sparsity pattern of a matrix before and after the order, with matplotlib. O(entries).
 
         Args:
-            graph: the graph or matrix that was ordered, in a form that `meshorder.order` takes, but not a mesh. Its pattern
-                must be symmetric.
+            graph: the graph or matrix that was ordered, in a form that `meshorder.order` takes, but not a mesh. An
+                asymmetric pattern is drawn as that of A + Aᵀ.
             side: the entries are counted in side × side tiles, n × n if the matrix has fewer rows; ≥ 1.
             axes: two matplotlib Axes to draw on; None: those of a new figure.
 
@@ -99,7 +108,7 @@ class Order:
             The two Axes.
 
         Raises:
-            InvalidArgument: an asymmetric pattern, a graph of another size, ``side`` below 1.
+            InvalidArgument: a graph of another size, ``side`` below 1.
             ImportError: matplotlib is not installed; the extra ``plot`` brings it.
         """
         offsets, neighbours, _ = graph_arrays(graph, mirror=True)
@@ -212,7 +221,7 @@ def graph_arrays(graph: Any, mirror: bool = False) -> tuple[NDArray[Any], NDArra
 
     Args:
         graph: the graph.
-        mirror: True: directed edges of PyTorch are taken in both directions.
+        mirror: True: the directed edges of an edge_index are taken in both directions.
 
     Returns:
         The two arrays, and for each entry the place of its weight among those given: an array of places, or all in order.
@@ -227,6 +236,11 @@ def graph_arrays(graph: Any, mirror: bool = False) -> tuple[NDArray[Any], NDArra
         return integers(matrix.indptr, "indptr"), integers(matrix.indices, "indices"), slice(None)
     if _is_of_networkx(graph):
         return *networkx_arrays(graph), slice(None)
+    if isinstance(graph, np.ndarray) and graph.ndim == 2 and len(graph) == 2:
+        ends = integers(graph, "edge_index", rank=2).astype(np.int64)
+        if ends.min(initial=0) < 0:
+            raise InvalidArgument(f"edge_index: there is no node {ends.min()}")
+        return compressed(ends, int(ends.max(initial=-1)) + 1, mirror)
     if isinstance(graph, (tuple, list)) and len(graph) == 2:
         return integers(graph[0], "indptr"), integers(graph[1], "indices"), slice(None)
     from .hosts import find_host  # which imports this module
@@ -235,16 +249,46 @@ def graph_arrays(graph: Any, mirror: bool = False) -> tuple[NDArray[Any], NDArra
     found = None if host is None else host.graph(mirror)
     if found is None:
         raise InvalidArgument(
-            "graph: expected a SciPy matrix, (indptr, indices), a networkx graph, or an edge_index, sparse matrix or Data "
-            f"of PyTorch, not {type(graph).__name__}"
+            "graph: expected a SciPy matrix, (indptr, indices), a networkx graph, an edge_index of shape (2, E), or a sparse "
+            f"matrix or Data of PyTorch, not {type(graph).__name__}{_remedy(graph)}"
         )
     return found
+
+
+def _remedy(given: Any) -> str:
+    """Returns what to do with an object that is no graph, or nothing."""
+    if isinstance(given, (str, os.PathLike)):
+        return "; scipy.io.mmread(path).tocsr() reads a matrix"
+    if not isinstance(given, np.ndarray) or given.ndim != 2:
+        return ""
+    if given.shape[1] == 2:
+        return f" of shape {given.shape}; pass the transpose of an array of edges, .T"
+    return f" of shape {given.shape}; scipy.sparse.csr_array makes a sparse matrix of a dense one"
+
+
+def compressed(
+    ends: NDArray[np.int64], count: int, mirror: bool
+) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """Returns the offsets and neighbours of a graph, and the place of each entry in ``ends``.
+
+    Args:
+        ends: the rows and columns of the entries.
+        count: number of vertices.
+        mirror: True: entries are taken in both directions.
+    """
+    rows, columns = np.concatenate([ends, ends[::-1]], axis=1) if mirror else ends
+    places = np.argsort(rows * count + columns, kind="stable")
+    offsets = np.zeros(count + 1, dtype=np.int64)
+    np.cumsum(np.bincount(rows, minlength=count), out=offsets[1:])
+    return offsets, columns[places].astype(np.int32), places
 
 
 def _weights(weights: Any, places: Any) -> NDArray[Any] | None:
     """Returns weights in the order of the entries of `graph_arrays`."""
     if weights is None:
         return None
+    if _is_of_scipy(weights):
+        raise InvalidArgument("weights: expected a number for each entry, not a matrix; pass its .data")
     given = reals(weights, "weights")
     if not isinstance(places, slice) and len(given) != len(places):
         raise InvalidArgument(f"weights: expected {len(places)}, one for each entry, not {len(given)}")
@@ -266,6 +310,8 @@ def order_graph(graph: Any, method: str, points: Any, weights: Any, options: dic
     """Orders a graph or matrix; see `meshorder.order`."""
     offsets, neighbours, places = graph_arrays(graph)
     given_weights = _weights(weights, places)
+    if not isinstance(method, str):
+        raise InvalidArgument(f"method: expected the name of one of meshorder.methods(), not {method!r}")
     coordinates = None if points is None else as_points(points)
     with prepared(options) as given:
         return Order._of(_core.order(offsets, neighbours, given_weights, coordinates, method, given))
@@ -311,15 +357,15 @@ def quality(graph: Any, order: Order | Permutation | None = None) -> Quality:
     """Measures how near the ends of edges are in the present order of a graph's vertices, or in another one. O(entries).
 
     Args:
-        graph: a graph or matrix in a form that `order` takes, but not a mesh. Its pattern must be symmetric; edges of an
-            edge_index or Data count in both directions.
+        graph: a graph or matrix in a form that `order` takes, but not a mesh. An asymmetric pattern counts as that of
+            A + Aᵀ, so that edges of an edge_index or Data count in both directions.
         order: the order to measure, which is not carried out; None: the present order.
 
     Returns:
         Spans, bandwidth and profile.
 
     Raises:
-        InvalidArgument: a faulty graph, an asymmetric pattern, an order of another size.
+        InvalidArgument: a faulty graph, an order of another size, an order that is neither `Order` nor `Permutation`.
 
     Example:
         >>> star = [0, 1, 2, 3, 6], [3, 3, 3, 0, 1, 2]
@@ -330,5 +376,9 @@ def quality(graph: Any, order: Order | Permutation | None = None) -> Quality:
     """
     offsets, neighbours, _ = graph_arrays(graph, mirror=True)
     permutation = order.permutation if isinstance(order, Order) else order
+    if permutation is not None and not isinstance(permutation, Permutation):
+        raise InvalidArgument(
+            f"order: expected an Order or Permutation, not {type(order).__name__}; Permutation(new_to_old=array) makes one"
+        )
     made = _core.quality(offsets, neighbours, None if permutation is None else permutation._handle, {})
     return Quality(**made)

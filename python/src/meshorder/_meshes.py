@@ -7,7 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +18,22 @@ from ._arrays import points as as_points
 from ._errors import InvalidArgument
 from ._graphs import Order
 from ._options import prepared, whole
+from ._permutation import Permutation
 
 #: names of shapes, by the library's number
 SHAPES: tuple[str, ...] = _core.shapes
 _SHAPE_OF = {name: name for name in SHAPES} | {"tetra": "tetrahedron", "hexa": "hexahedron", "prism": "wedge"}
+_ORDERS = range(1, 11)
+#: numbers of vertices of the cells that a name without a number can mean: complete ones, and usual others
+_WIDTHS = {
+    "line": {p + 1 for p in _ORDERS},
+    "triangle": {(p + 1) * (p + 2) // 2 for p in _ORDERS} | {7},
+    "quad": {(p + 1) ** 2 for p in _ORDERS} | {8},
+    "tetrahedron": {(p + 1) * (p + 2) * (p + 3) // 6 for p in _ORDERS} | {11, 14, 15},
+    "hexahedron": {(p + 1) ** 3 for p in _ORDERS} | {20, 24},
+    "wedge": {(p + 1) ** 2 * (p + 2) // 2 for p in _ORDERS} | {12, 15, 20, 21},
+    "pyramid": {(p + 1) * (p + 2) * (2 * p + 3) // 6 for p in _ORDERS} | {13, 18, 19},
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +46,11 @@ class MeshOrder:
     @classmethod
     def _of(cls, made: tuple[dict[str, Any], dict[str, Any]]) -> MeshOrder:
         return cls(Order._of(made[0]), Order._of(made[1]))
+
+    def __getattr__(self, name: str) -> NoReturn:
+        if not name.startswith("_") and (name in Order.__annotations__ or hasattr(Permutation, name)):
+            raise AttributeError(f"a MeshOrder has no {name!r}: take that of its .vertices or .cells")
+        raise AttributeError(f"'MeshOrder' object has no attribute {name!r}")
 
     def __repr__(self) -> str:
         return f"<MeshOrder: vertices {self.vertices!r}, cells {self.cells!r}>"
@@ -50,7 +67,18 @@ def _shape(type_name: Any) -> str:
 
 
 def _block(type_name: Any, vertices: Any) -> tuple[str, NDArray[Any]]:
-    return _shape(type_name), integers(vertices, f"cells of type {type_name}", rank=2)
+    shape = _shape(type_name)
+    rows = integers(vertices, f"cells of type {type_name}", rank=2)
+    width = rows.shape[1]
+    number = re.search(r"\d+$", str(type_name))
+    wanted = {int(number[0])} if number else _WIDTHS.get(shape, {width})
+    if len(rows) and width not in wanted:
+        transposed = ", or the array is transposed" if len(rows) in wanted else ""
+        raise InvalidArgument(
+            f"cells of type {type_name}: each row has {width} vertices, expected {min(wanted)}; "
+            f"cells of another kind need its name, as in 'triangle6'{transposed}"
+        )
+    return shape, rows
 
 
 def _vtk_types(values: Any) -> NDArray[np.uint8]:
@@ -84,7 +112,10 @@ def cell_arrays(cells: Any, dimension: int) -> Any:
     width = vertices.shape[1]
     name = _SIMPLEX.get(width) if width != 4 else "tetrahedron" if dimension == 3 else "quad"
     if name is None or (dimension < 3 and width > 4):
-        raise InvalidArgument(f"cells: {width} vertices each may be several types; name it, as in {{'triangle6': cells}}")
+        remedy = f"they may be of several types; name it, as in {{'triangle6': cells}}"
+        if len(vertices) in {4, *_SIMPLEX}:
+            remedy = "is the array transposed? A row for each cell is expected"
+        raise InvalidArgument(f"cells: {width} vertices each: {remedy}")
     return [(name, vertices)]
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import difflib
 import operator
 from collections.abc import Callable, Iterator
 from typing import Any, TypedDict, Union
@@ -71,7 +72,9 @@ def prepared(options: Options | dict[str, Any]) -> Iterator[dict[str, Any]]:
     """
     unknown = options.keys() - Options.__annotations__.keys()
     if unknown:
-        raise TypeError(f"unexpected keyword argument {sorted(unknown)[0]!r}")
+        name = sorted(unknown)[0]
+        near = difflib.get_close_matches(name, Options.__annotations__, 1)
+        raise TypeError(f"unexpected keyword argument {name!r}{f'; did you mean {near[0]!r}?' if near else ''}")
     given: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
     given["mirror"] = not given.pop("symmetric", False)
     if "start" in given:

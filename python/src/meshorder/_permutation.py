@@ -46,7 +46,9 @@ class Permutation:
     __slots__ = ("_handle",)
     _handle: _core.Permutation
 
-    def __init__(self, *, old_to_new: Any = None, new_to_old: Any = None) -> None:
+    def __init__(self, *unnamed: Any, old_to_new: Any = None, new_to_old: Any = None) -> None:
+        if unnamed:
+            raise InvalidArgument("Permutation: which direction? Permutation(new_to_old=p) is for a[p], else old_to_new=p")
         if (old_to_new is None) == (new_to_old is None):
             given = "none" if old_to_new is None else "both"
             raise InvalidArgument(f"Permutation: expected exactly one of old_to_new and new_to_old, not {given}")
@@ -141,6 +143,8 @@ class Permutation:
             if len(a) != len(self):
                 raise InvalidArgument(f"move: expected {len(self)} entries, not {len(a)}")
             return type(a)([a[k] for k in self.new_to_old])
+        if hasattr(a, "adjacency"):
+            raise InvalidArgument("move: a networkx graph has no rows; [list(graph)[k] for k in new_to_old] orders its nodes")
         library = _devices.library_of(a)
         if library is not None:
             _refuse(0, out, "an array of another library")
@@ -160,8 +164,12 @@ class Permutation:
         return out
 
     def _check_shape(self, shape: tuple[int, ...], axis: int) -> None:
-        if axis not in range(-len(shape), len(shape)) or shape[axis] != len(self):
-            raise InvalidArgument(f"move: axis {axis!r} of the shape {shape} for a permutation of {len(self)}")
+        if axis in range(-len(shape), len(shape)) and shape[axis] == len(self):
+            return
+        fitting = [f"; axis={place} has as many" for place, size in enumerate(shape) if size == len(self)]
+        raise InvalidArgument(
+            f"move: expected {len(self)} entries along axis {axis!r}, not the shape {shape}{(fitting or [''])[0]}"
+        )
 
     def _move_tensor(self, a: Any, axis: int, out: Any) -> Any:
         from .hosts import torch  # which imports this module

@@ -50,6 +50,13 @@ def host_of(mesh: Any) -> Host:
     if found is None:
         raise InvalidArgument(
             "mesh: expected (points, cells), a mesh of meshorder, meshio, PyVista, VTK, scikit-fem, trimesh or Gmsh, or a graph "
-            f"of PyTorch, not {type(mesh).__name__}{'; meshorder.read makes a mesh of a file' if isinstance(mesh, str) else ''}"
+            f"of PyTorch, not {type(mesh).__name__}{_remedy(mesh)}"
         )
     return found
+
+
+def _remedy(given: Any) -> str:
+    """Returns what to do with an object that is no mesh, or nothing."""
+    if isinstance(given, str):
+        return "; meshorder.read makes a mesh of a file, meshorder.write(mesh, path) writes one"
+    return "; meshorder.order(matrix).permutation.move(matrix) orders a matrix" if hasattr(given, "tocsr") else ""

@@ -14,7 +14,7 @@ from .._arrays import points as as_points
 from .._errors import InvalidArgument
 from .._meshes import MeshOrder
 from .._permutation import Permutation
-from .host import Host, moved_rows, parts
+from .host import Host, moved_data, moved_rows, parts
 
 
 class ArrayMesh(Host):
@@ -50,7 +50,7 @@ class ArrayMesh(Host):
         vertices, cells = order.vertices.permutation, order.cells.permutation
         moved = [vertices.move(np.asarray(self.given[0])), self._moved_cells(vertices, cells)]
         if self._data:
-            moved.append({name: _rows(vertices, values, name) for name, values in self._data[0].items()})
+            moved.append({name: moved_data(vertices, values, name) for name, values in self._data[0].items()})
         if len(self._data) > 1:
             moved.append({name: self._cell_rows(cells, values, name) for name, values in self._data[1].items()})
         if inplace:
@@ -77,7 +77,7 @@ class ArrayMesh(Host):
 
     def _cell_rows(self, cells: Permutation, values: Any, name: str) -> Any:
         if not self._sizes:
-            return _rows(cells, values, name)
+            return moved_data(cells, values, name)
         blocks = self._values_of_blocks(values, name)
         new = [part.move(block) for block, part in zip(blocks, parts(cells, self._sizes))]
         if isinstance(values, Mapping):
@@ -97,13 +97,6 @@ class ArrayMesh(Host):
         if not fits or [array.shape[:1] for array in arrays] != [(size,) for size in self._sizes]:
             raise InvalidArgument(f"cell_data '{name}': expected blocks of {self._sizes} rows, one for each cell")
         return arrays
-
-
-def _rows(permutation: Permutation, values: Any, name: str) -> Any:
-    array = np.asarray(values)
-    if array.ndim == 0 or len(array) != len(permutation):
-        raise InvalidArgument(f"data '{name}': expected {len(permutation)} rows, not the shape {array.shape}")
-    return permutation.move(array)
 
 
 def _check_writeable(part: Any, name: str) -> None:

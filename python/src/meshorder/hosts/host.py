@@ -139,6 +139,18 @@ def parts(cells: Permutation, sizes: Sequence[int]) -> list[Permutation]:
     ]
 
 
+def moved_data(permutation: Permutation, values: Any, name: str) -> Any:
+    """Returns the moved rows of an array of data.
+
+    Raises:
+        InvalidArgument: the array has another number of rows.
+    """
+    array = np.asanyarray(values)
+    if array.ndim == 0 or len(array) != len(permutation):
+        raise InvalidArgument(f"data '{name}': expected {len(permutation)} rows, not the shape {array.shape}")
+    return permutation.move(array)
+
+
 def moved_rows(
     offsets: NDArray[Any], entries: NDArray[Any], rows: Permutation
 ) -> tuple[NDArray[Any], NDArray[Any]]:

@@ -16,7 +16,7 @@ from .._arrays import integers
 from .._errors import InputError, InvalidArgument
 from .._meshes import SHAPES, Mesh, MeshOrder
 from .._permutation import Permutation
-from .host import Host, parts
+from .host import Host, moved_data, parts
 
 
 #: name under which meshio's reader of Gmsh 4.1 stores, among the sets of cells, the tags of the entities that bound each
@@ -99,11 +99,11 @@ class MeshioMesh(Host):
         by_cell = parts(order.cells.permutation, np.diff(self._starts).tolist())
         new = {
             "points": by_vertex.move(self.points),
-            "point_data": {name: by_vertex.move(np.asanyarray(values)) for name, values in mesh.point_data.items()},
+            "point_data": {name: moved_data(by_vertex, values, name) for name, values in mesh.point_data.items()},
             "point_sets": {name: _renumbered(by_vertex.old_to_new, s, name) for name, s in mesh.point_sets.items()},
             "cells": [_moved_block(block, by_vertex, part) for block, part in zip(mesh.cells, by_cell)],
             "cell_data": {
-                name: [part.move(np.asanyarray(values)) for values, part in zip(blocks, by_cell)]
+                name: [moved_data(part, values, name) for values, part in zip(blocks, by_cell)]
                 for name, blocks in mesh.cell_data.items()
             },
             "cell_sets": self._moved_cell_sets(by_cell),

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._errors import InvalidArgument, TooLarge
-from .._graphs import Order, order_graph
+from .._graphs import Order, compressed, order_graph
 from .._meshes import Mesh, MeshOrder
 from .._permutation import Permutation
 from .host import Host
@@ -111,23 +111,6 @@ def entries(matrix: Any) -> Any:
     if form not in ("coo", "csr") or (matrix.sparse_dim() != 2 if form == "coo" else matrix.ndim != 2):
         raise InvalidArgument(f"graph: a {matrix.ndim}-D tensor in {form.upper()} form; expected a matrix in COO or CSR form")
     return (matrix if form == "coo" else matrix.to_sparse()).coalesce()
-
-
-def compressed(
-    ends: NDArray[np.int64], count: int, mirror: bool
-) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """Returns the offsets and neighbours of a graph, and the place of each entry in ``ends``.
-
-    Args:
-        ends: the rows and columns of the entries.
-        count: number of vertices.
-        mirror: True: entries are taken in both directions.
-    """
-    rows, columns = np.concatenate([ends, ends[::-1]], axis=1) if mirror else ends
-    places = np.argsort(rows * count + columns, kind="stable")
-    offsets = np.zeros(count + 1, dtype=np.int64)
-    np.cumsum(np.bincount(rows, minlength=count), out=offsets[1:])
-    return offsets, columns[places].astype(np.int32), places
 
 
 def order_of_edges(
