@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from .._arrays import integers
 from .._errors import InvalidArgument
-from .._graphs import Order, order_graph
+from .._graphs import Order, compressed, order_graph
 from .._meshes import Mesh, MeshOrder
 from .._permutation import Permutation
 from . import torch as tensors
@@ -86,7 +86,7 @@ class PygGraph(Host):
         return np.concatenate([np.zeros((2, 0), dtype=np.int64), *pairs], axis=1)
 
     def graph(self, mirror: bool) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-        return tensors.compressed(self._pairs(), sum(self._sizes), mirror)
+        return compressed(self._pairs(), sum(self._sizes), mirror)
 
     def mesh(self) -> Mesh:
         if self.points is None:
