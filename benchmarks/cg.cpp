@@ -20,7 +20,7 @@
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
 #include "payoff/band.hpp"
-#include "payoff/bandwidth.hpp"
+#include "payoff/memory_probe.hpp"
 #include "payoff/steadiness.hpp"
 
 #include <fmt/core.h>

@@ -4,8 +4,8 @@
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
-#include "payoff/bandwidth.hpp"
 #include "payoff/kernel_timing.hpp"
+#include "payoff/memory_probe.hpp"
 
 #include <fmt/core.h>
 

@@ -3,7 +3,7 @@
 
 // Shared by the benchmarks of time steps.
 #include "lab/scenario/scenario.hpp"
-#include "payoff/bandwidth.hpp"
+#include "payoff/memory_probe.hpp"
 
 #include <fmt/format.h>
 

@@ -16,7 +16,7 @@
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
-#include "metrics/first_touches.hpp"
+#include "metrics/measures.hpp"
 #include <meshorder/io.hpp>
 #include <meshorder/order.hpp>
 

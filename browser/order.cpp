@@ -6,7 +6,6 @@
 #include "base/text.hpp"
 #include "grouped_notes.hpp"
 #include "io/format.hpp"
-#include "io/format_choice.hpp"
 #include "matrix_points.hpp"
 #include "mesh/boundary.hpp"
 #include "mesh/graphs.hpp"

@@ -6,7 +6,7 @@
 #include "lab.hpp"
 #include "lab/fluid/triangulation.hpp"
 #include "lab/report/page/study_page.hpp"
-#include "lab/report/tables/paper_tables.hpp"
+#include "lab/report/tables/each_table.hpp"
 #include "lab/study/results_json.hpp"
 #include "lab/study/study_run.hpp"
 #include "progress.hpp"

@@ -2,11 +2,11 @@
 #include "sliced_maps.hpp"
 
 #include "base/checksum.hpp"
+#include "distributed/comm/communicator.hpp"
 #include "distributed/comm/halo.hpp"
-#include "distributed/comm/rank_order.hpp"
 #include "distributed/files/shared_file.hpp"
 #include "distributed/order/parts.hpp"
-#include "io/npy_header.hpp"
+#include "io/npy.hpp"
 #include "io/stream/byte_order.hpp"
 #include "shared_output.hpp"
 

@@ -3,7 +3,6 @@
 
 #include "distributed/order/parts.hpp"
 #include "io/format.hpp"
-#include "io/format_choice.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
 #include "ordering/order_cells.hpp"

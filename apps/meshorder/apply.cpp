@@ -5,7 +5,6 @@
 #include "confinement.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
-#include "io/format_choice.hpp"
 #include "io/stream/output_file.hpp"
 #include "maps.hpp"
 #include "mesh/reorder.hpp"

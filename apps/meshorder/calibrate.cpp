@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/arena.hpp"
-#include "base/processor.hpp"
+#include "base/host.hpp"
+#include "base/parallel.hpp"
 #include "command.hpp"
 #include "console.hpp"
 #include "machines.hpp"

@@ -14,7 +14,7 @@
 #include "mesh/stored_matrix.hpp"
 #include "mesh_files.hpp"
 #include "metrics/edge_span.hpp"
-#include "ordering/method_named.hpp"
+#include "ordering/method.hpp"
 #include "payoff/band.hpp"
 #include "payoff/kernel_timing.hpp"
 #include "payoff/machine.hpp"

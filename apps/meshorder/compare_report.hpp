@@ -4,8 +4,8 @@
 #include "console.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/cache.hpp"
-#include "metrics/convergence.hpp"
 #include "metrics/edge_span.hpp"
+#include "metrics/measures.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/kernel_timing.hpp"
 #include <meshorder/layouts.hpp>

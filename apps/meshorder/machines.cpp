@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "machines.hpp"
 
-#include "base/arena.hpp"
+#include "base/parallel.hpp"
 #include "payoff/calibration_store.hpp"
 #include "standard_streams.hpp"
 #include <meshorder/error.hpp>

@@ -4,7 +4,7 @@
 #include "base/text.hpp"
 #include "io/matrix/points.hpp"
 #include "mesh/stored_matrix.hpp"
-#include "ordering/method_named.hpp"
+#include "ordering/method.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -3,7 +3,6 @@
 
 #include "confinement.hpp"
 #include "io/format.hpp"
-#include "io/format_choice.hpp"
 #include "io/kept_cells.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/output_set.hpp"

@@ -9,7 +9,7 @@
 #include "io/stream/scratch.hpp"
 #include "metrics/edge_span.hpp"
 #include "ordering/judgement.hpp"
-#include "ordering/method_named.hpp"
+#include "ordering/method.hpp"
 #include "payoff/advice.hpp"
 #include "progress.hpp"
 #include "wording.hpp"

@@ -3,7 +3,6 @@
 #include "confinement.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
-#include "io/format_choice.hpp"
 #include "io/stream/output_set.hpp"
 #include "machines.hpp"
 #include "matrix_points.hpp"

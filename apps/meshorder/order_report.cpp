@@ -2,7 +2,6 @@
 #include "order_report.hpp"
 
 #include "io/format.hpp"
-#include "io/format_choice.hpp"
 #include "mesh/graphs.hpp"
 #include "ordering/judgement.hpp"
 #include "payoff/quantities.hpp"

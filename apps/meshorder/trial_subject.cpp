@@ -4,7 +4,7 @@
 #include "base/text.hpp"
 #include "io/format.hpp"
 #include "io/stream/file_path.hpp"
-#include "ordering/method_named.hpp"
+#include "ordering/method.hpp"
 #include "trial_program.hpp"
 #include "wording.hpp"
 #include <meshorder/error.hpp>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "usage.hpp"
 
-#include "base/suggestion.hpp"
+#include "base/text.hpp"
 #include "wording.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/fluid/fluid_order.hpp"
 
-#include "ordering/method_named.hpp"
+#include "ordering/method.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

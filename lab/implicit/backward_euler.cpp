@@ -3,10 +3,10 @@
 
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
+#include "kernels/half_block_csr.hpp"
 #include "kernels/positions.hpp"
 #include "kernels/spmv.hpp"
 #include "lab/linear/cg/solve.hpp"
-#include "payoff/half_storage.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

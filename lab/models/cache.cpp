@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/models/cache.hpp"
 
+#include "base/host.hpp"
 #include "base/input_file.hpp"
-#include "base/user_folder.hpp"
 #include <meshorder/error.hpp>
 
 #include <fcntl.h>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/motion_file.hpp"
 
-#include "io/npy_header.hpp"
+#include "io/npy.hpp"
 #include "io/stream/scanner.hpp"
 #include <meshorder/error.hpp>
 

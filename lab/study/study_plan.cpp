@@ -2,7 +2,7 @@
 #include "lab/study/study_plan.hpp"
 
 #include "base/text.hpp"
-#include "ordering/method_named.hpp"
+#include "ordering/method.hpp"
 #include <meshorder/error.hpp>
 
 #include <cmath>

@@ -1,14 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/support/machine.hpp"
 
+#include "base/host.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
-#include "base/processor.hpp"
 #include "base/text.hpp"
 #include "kernels/simd_dispatch.hpp"
 #include "lab/support/revision.hpp"
-#include "payoff/bandwidth.hpp"
 #include "payoff/machine.hpp"
+#include "payoff/memory_probe.hpp"
 
 #include <sys/utsname.h>
 #include <unistd.h>

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/parallel.hpp"
 
-#include "base/arena.hpp"
 #include <meshorder/error.hpp>
 
 #include <tbb/blocked_range.h>

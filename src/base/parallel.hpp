@@ -4,10 +4,14 @@
 #include "base/index.hpp"
 #include "base/run_scope.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/options.hpp>
 
 #include <algorithm>
 #include <atomic>
 #include <functional>
+#include <optional>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
@@ -109,6 +113,46 @@ void for_each_range(Offset n, Offset size, const Work& work) {
   }
   parallel_loop((n + size - 1) / size,
                 [&](Offset range) { work(range * size, std::min(n, (range + 1) * size)); });
+}
+
+/// Returns whether `holds(begin, end)` for all parts of 0 … n−1, which all threads share.
+template <class Holds>
+bool holds_for_all(Offset n, const Holds& holds) {
+  constexpr Offset kAtOnce = 65536;
+  std::atomic<bool> all = true;
+  for_each_range(n, kAtOnce, [&](Offset begin, Offset end) {
+    if (all.load(std::memory_order_relaxed) && !holds(begin, end))
+      all.store(false, std::memory_order_relaxed);
+  });
+  return all;
+}
+
+/// Calls `work()` in a TBB arena of its own with as many threads as `run` allows.
+///
+/// @throws InvalidArgument if run.threads is negative, and what `work` throws
+void enter_arena(const Run& run, const std::function<void()>& work);
+
+/// Like `enter_arena`, and returns what `work()` returns.
+template <class Work>
+auto in_arena(const Run& run, const Work& work) {
+  using Result = std::invoke_result_t<const Work&>;
+  if constexpr (std::is_void_v<Result>) {
+    enter_arena(run, std::cref(work));
+  } else {
+    std::optional<Result> result;
+    enter_arena(run, [&] { result.emplace(work()); });
+    return *std::move(result);
+  }
+}
+
+/// Runs the body of a public function with the threads, progress function and time limit of `run`. Returns
+/// what `work()` returns.
+///
+/// @throws InvalidArgument for a negative number of threads or time limit, Stopped, and what `work` throws
+template <class Work>
+auto in_call(const Run& run, const Work& work) {
+  const RunScope scope(run);
+  return in_arena(run, work);
 }
 
 }  // namespace meshorder

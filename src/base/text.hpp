@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "base/suggestion.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
@@ -17,6 +16,14 @@
 #include <vector>
 
 namespace meshorder {
+
+/// Returns "; did you mean 'order'?" if one of the names is spelt or begins almost like `word`; else "".
+std::string suggestion(const std::string& word, const std::vector<std::string>& names);
+
+/// Returns "unknown use 'spring'; did you mean 'springs'?", or "unknown use 'a'; known are …" if no name is
+/// near.
+std::string unknown_in_words(std::string_view kind, const std::string& word,
+                             const std::vector<std::string>& names);
 
 /// Returns the items as one text, separated by `separator`. `text_of(item)` gives the text of an item.
 template <class Items, class TextOf>

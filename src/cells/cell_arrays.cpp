@@ -1,10 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "cells/cell_arrays.hpp"
 
-#include "base/arena.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
-#include "base/typed.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/arena.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "cells/cache_windows.hpp"

@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/arena.hpp"
 #include "base/parallel.hpp"
 #include "cells/cell_arrays.hpp"
 #include "cells/warp_sectors.hpp"

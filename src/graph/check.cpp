@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/arena.hpp"
+#include "base/parallel.hpp"
 #include "graph/clean_graph.hpp"
 #include "graph/examine.hpp"
 #include "graph/graph_arrays.hpp"

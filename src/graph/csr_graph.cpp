@@ -3,7 +3,6 @@
 
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
-#include "graph/tidy_rows.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>

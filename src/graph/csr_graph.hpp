@@ -60,4 +60,10 @@ CsrGraph renumbered(GraphRef graph, std::span<const Index> old_to_new);
 /// that leave the list are dropped. O(n of `graph` + entries of the listed rows · log degree).
 CsrGraph induced_subgraph(GraphRef graph, std::span<const Index> vertices);
 
+/// Sorts every row of compressed sparse rows, drops repeats and, unless `keeps_loops`, loops, and closes the
+/// gaps. O(entries · log row length).
+///
+/// @param starts  rows + 1
+void tidy_rows(std::vector<Offset>& starts, std::vector<Index>& columns, bool keeps_loops);
+
 }  // namespace meshorder

@@ -1,9 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/graph_arrays.hpp"
 
-#include "base/arena.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "base/typed.hpp"
 #include <meshorder/error.hpp>
 
 #include <cstdint>

@@ -2,8 +2,6 @@
 #include "graph/incidence.hpp"
 
 #include "base/buckets.hpp"
-#include "base/checks.hpp"
-#include "base/large_pages.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/append_cells.hpp"
 
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 
 #include <cstddef>
 

@@ -1,12 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
 
-#include "base/suggestion.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
-#include "io/format_choice.hpp"
 #include "io/openfoam/cell_order.hpp"
-#include "io/other_formats.hpp"
 #include "io/stream/gzip.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/ucd/ucd.hpp"

@@ -3,6 +3,7 @@
 
 #include "graph/csr_graph.hpp"
 #include "io/stream/file_path.hpp"
+#include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
 
 #include <cstdint>
@@ -101,5 +102,35 @@ Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOpt
 /// As the public function, for a valid mesh; `graph` is the vertex graph before reordering and receives it if
 /// it is empty.
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph>& graph);
+
+// Chooses between the two formats of the extension .inp, Abaqus decks and AVS UCD; says which formats have
+// numbers.
+
+/// As `format_of`, for a file to be read: .inp is AVS UCD if its first bytes look so, else Abaqus. Throws
+/// InputError for an .inp file that cannot be read.
+const Format& format_of_file(const FilePath& path);
+
+/// As `output_format_of`, for a mesh of the format `of_mesh` (`Mesh::format`): .inp means AVS UCD if the mesh
+/// came from it, else Abaqus.
+const Format& output_format_of(const std::filesystem::path& path, std::string_view of_mesh);
+
+/// Returns whether files of a format give vertices and cells numbers, by which other files may name them.
+bool has_numbers(const Format& format);
+
+/// A format of other programs that meshorder does not read.
+struct OtherFormat {
+  std::string_view extension;  ///< with dot, lower case
+  std::string_view what;       ///< "holds VTK's PolyData"
+  std::string_view advice;     ///< how to make a mesh of it that meshorder reads
+};
+
+/// Returns the format of files with this extension in lower case, null if it is not known.
+const OtherFormat* other_format(std::string_view extension);
+
+/// Thrown if the marks of a mesh's files show that they were not written together.
+struct NotTogether : InputError {
+  using InputError::InputError;
+  explicit NotTogether(const InputError& error) : InputError(error) {}
+};
 
 }  // namespace meshorder

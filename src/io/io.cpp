@@ -1,10 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // The public functions that read and write meshes, on disk and in memory.
-#include "base/arena.hpp"
-#include "io/format_choice.hpp"
+#include "base/parallel.hpp"
+#include "io/format.hpp"
 #include "io/kept_cells.hpp"
-#include "io/not_together.hpp"
 #include "io/stream/gzip.hpp"
 #include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"

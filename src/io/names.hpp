@@ -2,14 +2,59 @@
 #pragma once
 
 #include "io/format.hpp"
+#include <meshorder/mesh.hpp>
 
 #include <cstddef>
 #include <map>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace meshorder {
+
+/// Finds free names by numbering taken ones.
+class NameNumbers {
+ public:
+  /// Takes and returns the first of `wanted`, `numbered(2)`, `numbered(3)` … that is free.
+  ///
+  /// @param take  returns whether a name was free, and takes it
+  /// @note O(log names), besides `take`, also where all want the same name.
+  template <class Numbered, class Take>
+  std::string free_name(const std::string& wanted, Numbered numbered, Take take) {
+    if (take(wanted)) return wanted;
+    int& last = last_.try_emplace(wanted, 1).first->second;
+    for (;;) {
+      std::string name = numbered(++last);
+      if (take(name)) return name;
+    }
+  }
+
+ private:
+  std::map<std::string, int> last_;  // last number given, by wanted name
+};
+
+/// Gives arrays or sets names that are unique among those of vertices or those of cells.
+class UniqueNames {
+ public:
+  /// Returns the wanted name, or "NAME (2)", "NAME (3)" and so on where it is taken. O(log names), also where
+  /// all want the same name.
+  std::string take(Association association, const std::string& wanted);
+
+  [[nodiscard]] bool has(Association association, const std::string& name) const {
+    return names_.contains({association, name});
+  }
+
+ private:
+  using Name = std::pair<Association, std::string>;
+  std::set<Name> names_;
+  std::map<Association, NameNumbers> numbers_;
+};
+
+/// Adds an array to a mesh under a name that no other has; returns that name.
+std::string add_named(Mesh& mesh, DataArray array, UniqueNames& names);
+/// Adds a set to a mesh under a name that no other has; returns that name.
+std::string add_named(Mesh& mesh, EntitySet set, UniqueNames& names);
 
 // Names of arrays and sets as a format can hold them.
 

@@ -2,7 +2,6 @@
 // The format: NumPy Enhancement Proposal 1, "A Simple File Format for NumPy Arrays".
 #include "io/npy.hpp"
 
-#include "io/npy_header.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
 #include <meshorder/error.hpp>

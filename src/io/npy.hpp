@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshorder {
@@ -23,5 +24,20 @@ std::vector<std::int64_t> read_npy(const FilePath& path);
 /// Reads the new position of each of `count` vertices or cells; `what` names them in the plural. Throws Error
 /// if the file has another number of entries or is not a permutation.
 Permutation read_permutation(const FilePath& path, Index count, const std::string& what);
+
+class Scanner;
+
+/// The header of a NumPy file.
+struct NpyHeader {
+  std::string type;  ///< as NumPy writes it: "<f4" is little-endian single precision
+  bool columns_first = false;
+  std::vector<std::int64_t> shape;
+};
+
+/// Returns the bytes before the numbers of an array in C order; their count is a multiple of 64.
+std::string npy_header(std::string_view type, std::span<const std::int64_t> shape);
+
+/// Reads the bytes before the first number. Throws Error, with the byte, if the file is not a NumPy file.
+NpyHeader read_npy_header(Scanner& file);
 
 }  // namespace meshorder

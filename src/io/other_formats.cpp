@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/other_formats.hpp"
+#include "io/format.hpp"
 
 #include <algorithm>
 #include <array>

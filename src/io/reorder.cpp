@@ -3,7 +3,7 @@
 // Reordering a mesh for the format that it will be written in.
 #include "mesh/reorder.hpp"
 
-#include "base/arena.hpp"
+#include "base/parallel.hpp"
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"
 #include <meshorder/error.hpp>

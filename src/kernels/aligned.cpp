@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "kernels/apart.hpp"
 
 #include <algorithm>

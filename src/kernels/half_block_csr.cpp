@@ -312,5 +312,15 @@ template double multiply_slab_dot(const HalfBlockCsrOf<float>&, std::span<const 
 template void multiply(const HalfBlockCsr&, std::span<const double>, std::span<double>);
 template void multiply(const HalfBlockCsrOf<float>&, std::span<const double>, std::span<double>);
 
+bool half_storage_pays(const BlockCsr& matrix) {
+  // larger than most second-level caches; for a smaller matrix the copy does not pay
+  constexpr Offset kMinBytes = Offset{4} << 20;
+  // stored blocks are read at some 0.8 of the full matrix's rate, and (1 + share) / 2 of all are stored: the
+  // break-even share is 0.6
+  constexpr double kMaxShare = 0.5;
+  constexpr Offset kBlockBytes = 9 * sizeof(double) + sizeof(Index);
+  return kBlockBytes * matrix.block_count() >= kMinBytes && share_between_slabs(matrix) < kMaxShare;
+}
+
 }  // namespace meshorder
 #endif

@@ -74,7 +74,7 @@ double product_of_floats(const BlockCsrOf<float>& matrix, const double* x, doubl
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include "base/processor.hpp"
+#include "base/host.hpp"
 #include "kernels/simd_dispatch.hpp"
 
 namespace meshorder {

@@ -1,8 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/arena.hpp"
-#include "base/checks.hpp"
 #include "base/index.hpp"
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
 #include "base/point.hpp"
 #include "cells/cell_arrays.hpp"
 #include "mesh/values.hpp"

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/reorder.hpp"
 
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "graph/incidence.hpp"

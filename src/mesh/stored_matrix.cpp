@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/stored_matrix.hpp"
 
+#include "graph/csr_graph.hpp"
 #include "graph/examine.hpp"
-#include "graph/tidy_rows.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "metrics/factor_entries.hpp"
-
 #include "base/run_scope.hpp"
+#include "metrics/measures.hpp"
 
 #include <span>
 #include <vector>

@@ -1,9 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "metrics/first_touches.hpp"
-
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
 #include "graph/row_access.hpp"
+#include "metrics/measures.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/arena.hpp"
+#include "base/parallel.hpp"
 #include "graph/clean_graph.hpp"
 #include "metrics/edge_span.hpp"
-#include "metrics/first_touches.hpp"
-#include "metrics/sparsity_pattern.hpp"
+#include "metrics/measures.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/quality.hpp>
 
+#include <algorithm>
 #include <string>
 
 namespace meshorder {
@@ -67,4 +67,19 @@ SparsityPattern sparsity_pattern(const GraphView& graph, const Permutation& orde
 }
 
 }  // namespace v0_3
+
+SparsityPattern pattern_of(GraphRef graph, const Permutation& order, int side) {
+  SparsityPattern pattern;
+  pattern.side = std::min(side, graph.size());
+  const auto tile = [&](Index place) { return Offset{place} * pattern.side / graph.size(); };
+  pattern.counts.resize(static_cast<std::size_t>(pattern.side) * pattern.side);
+  for (Index v = 0; v < graph.size(); ++v) {
+    const Index row = order.old_to_new()[v];
+    const Offset first = tile(row) * pattern.side;
+    ++pattern.counts[first + tile(row)];  // the diagonal entry
+    for (const Index neighbour : graph[v]) ++pattern.counts[first + tile(order.old_to_new()[neighbour])];
+  }
+  return pattern;
+}
+
 }  // namespace meshorder

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "metrics/working_set.hpp"
+#include "metrics/measures.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -3,7 +3,7 @@
 
 #include "base/point.hpp"
 #include "metrics/edge_span.hpp"
-#include "metrics/first_touches.hpp"
+#include "metrics/measures.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/judgement.hpp"
 

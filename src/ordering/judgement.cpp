@@ -3,9 +3,7 @@
 
 #include "cells/warp_sectors.hpp"
 #include "metrics/edge_span.hpp"
-#include "metrics/factor_entries.hpp"
-#include "metrics/first_touches.hpp"
-#include "metrics/working_set.hpp"
+#include "metrics/measures.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 #include "ordering/method.hpp"
 
 #include "base/run_scope.hpp"
-#include "base/suggestion.hpp"
+#include "base/text.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/fronts.hpp"
 #include <meshorder/error.hpp>

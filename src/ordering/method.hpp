@@ -6,9 +6,12 @@
 #include <meshorder/order.hpp>
 #include <meshorder/registry.hpp>
 
+#include <algorithm>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace meshorder {
 
@@ -46,5 +49,19 @@ Order order_incidence(std::string_view method, const ElementInput& input, const 
 /// Returns a registered method of that name, empty if there is none. Thread-safe.
 VertexMethod registered_vertex_method(std::string_view name);
 ElementMethod registered_element_method(std::string_view name);
+
+/// Returns the method of that name in a list, which is `vertex_methods()` or `element_methods()`; nothing if
+/// there is none.
+inline std::optional<MethodInfo> method_named(const std::vector<MethodInfo>& methods, std::string_view name) {
+  const auto found =
+      std::ranges::find_if(methods, [&](const MethodInfo& method) { return method.name == name; });
+  return found == methods.end() ? std::nullopt : std::optional(*found);
+}
+
+/// Returns whether the method of that name in the list needs coordinates.
+inline bool needs_points(const std::vector<MethodInfo>& methods, std::string_view name) {
+  const std::optional<MethodInfo> method = method_named(methods, name);
+  return method && method->needs_points;
+}
 
 }  // namespace meshorder

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include <meshorder/permutation.hpp>
 
 #include <cstddef>

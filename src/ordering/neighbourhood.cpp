@@ -4,7 +4,7 @@
 #include "base/parallel.hpp"
 #include "cells/vertex_joins.hpp"
 #include "graph/row_access.hpp"
-#include "metrics/first_touches.hpp"
+#include "metrics/measures.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/grouped.hpp"
 #include "ordering/space_filling.hpp"

@@ -1,16 +1,15 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // The public functions: they check the caller's input, convert it to the library's types, and call the
 // method.
-#include "base/arena.hpp"
+#include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "cells/facets.hpp"
 #include "cells/vertex_joins.hpp"
 #include "graph/clean_graph.hpp"
 #include "ordering/grouped.hpp"
-#include "ordering/input_checks.hpp"
-#include "ordering/method_named.hpp"
+#include "ordering/method.hpp"
 #include "ordering/order_cells.hpp"
-#include "ordering/points_fit.hpp"
+#include "ordering/point_checks.hpp"
 #include "spectral/fiedler.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/order.hpp>

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/arena.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "base/typed.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/permutation.hpp>
 

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/arena.hpp"
+#include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "ordering/carried.hpp"
-#include "ordering/input_checks.hpp"
-#include "ordering/method_named.hpp"
+#include "ordering/method.hpp"
 #include "ordering/moved.hpp"
 #include "ordering/neighbourhood.hpp"
+#include "ordering/point_checks.hpp"
 #include "ordering/reorderer_state.hpp"
 #include <meshorder/changing.hpp>
 #include <meshorder/error.hpp>

@@ -8,7 +8,7 @@
 #include "mesh/simplices.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "metrics/edge_span.hpp"
-#include "metrics/sparsity_pattern.hpp"
+#include "metrics/measures.hpp"
 #include "ordering/auto.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/cost_model.hpp"

@@ -1,20 +1,20 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/calibration.hpp"
 
+#include "base/host.hpp"
 #include "base/median.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
-#include "base/processor.hpp"
 #include "base/run_scope.hpp"
 #include "base/stopwatch.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/simplices.hpp"
-#include "payoff/bandwidth.hpp"
 #include "payoff/calibration_lattices.hpp"
 #include "payoff/calibration_store.hpp"
 #include "payoff/kernel_timing.hpp"
 #include "payoff/least_squares.hpp"
 #include "payoff/machine.hpp"
+#include "payoff/memory_probe.hpp"
 #include "payoff/shared_work.hpp"
 
 #include <fmt/format.h>

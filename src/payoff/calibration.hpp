@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "payoff/cache_probe.hpp"
 #include "payoff/cost_model.hpp"
+#include "payoff/memory_probe.hpp"
 #include "payoff/steadiness.hpp"
 
 #include <array>

@@ -2,9 +2,8 @@
 #include "payoff/calibration_store.hpp"
 
 #include "base/checksum.hpp"
+#include "base/host.hpp"
 #include "base/input_file.hpp"
-#include "base/processor.hpp"
-#include "base/user_folder.hpp"
 #include "io/stream/output_file.hpp"
 #include "payoff/machine.hpp"
 #include <meshorder/error.hpp>

@@ -6,11 +6,13 @@
 #include "payoff/product_bench.hpp"
 #include "payoff/tuned_bench.hpp"
 #include <meshorder/error.hpp>
+#include <meshorder/payoff.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
 
 namespace meshorder {
 

@@ -2,7 +2,6 @@
 #include "payoff/machine_choice.hpp"
 
 #include "base/parallel.hpp"
-#include "base/suggestion.hpp"
 #include "base/text.hpp"
 #include "payoff/calibration_store.hpp"
 #include "payoff/machine.hpp"

@@ -1,11 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/arena.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "kernels/simplices.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/stored_matrix.hpp"
-#include "ordering/method_named.hpp"
+#include "ordering/method.hpp"
 #include "payoff/advice.hpp"
 #include "payoff/calibration_store.hpp"
 #include "payoff/kernel_bench.hpp"

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/hierarchy.hpp"
 
+#include "graph/laplacian.hpp"
 #include "spectral/coarsening.hpp"
 #include "spectral/dense.hpp"
 #include "spectral/hiding.hpp"
-#include "spectral/relaxation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "ordering/auto.hpp"
 
 #include "metrics/edge_span.hpp"
-#include "metrics/working_set.hpp"
+#include "metrics/measures.hpp"
 #include "ordering/judgement.hpp"
 #include "ordering/moved.hpp"
 #include "support/sample_graphs.hpp"

@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "metrics/convergence.hpp"
-
+#include "metrics/measures.hpp"
 #include "support/sample_graphs.hpp"
 
 #include <gtest/gtest.h>

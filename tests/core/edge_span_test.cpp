@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "metrics/edge_span.hpp"
 
-#include "base/arena.hpp"
+#include "base/parallel.hpp"
 #include "graph/vertex_sample.hpp"
 #include "ordering/method.hpp"
 #include "support/sample_graphs.hpp"

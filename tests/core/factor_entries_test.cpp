@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "metrics/factor_entries.hpp"
-
+#include "metrics/measures.hpp"
 #include "support/graph_orders.hpp"
 #include "support/sample_graphs.hpp"
 

@@ -2,7 +2,7 @@
 #include "ordering/fronts.hpp"
 
 #include "metrics/edge_span.hpp"
-#include "metrics/first_touches.hpp"
+#include "metrics/measures.hpp"
 #include "ordering/method.hpp"
 #include "support/graph_orders.hpp"
 #include "support/sample_graphs.hpp"

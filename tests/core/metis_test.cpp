@@ -2,7 +2,7 @@
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "metrics/edge_span.hpp"
-#include "metrics/factor_entries.hpp"
+#include "metrics/measures.hpp"
 #include "ordering/method.hpp"
 #include "support/graph_orders.hpp"
 #include "support/sample_graphs.hpp"

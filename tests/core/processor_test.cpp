@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/processor.hpp"
+#include "base/host.hpp"
 
 #include <gtest/gtest.h>
 

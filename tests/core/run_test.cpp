@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/arena.hpp"
 #include "base/parallel.hpp"
 #include "support/graph_views.hpp"
 #include "support/sample_graphs.hpp"

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/format.hpp"
 
-#include "io/other_formats.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"
 #include "support/round_trip.hpp"

@@ -2,7 +2,7 @@
 //
 // Every function that takes a mesh with every kind of wrong member: each is refused by an Error, and the mesh
 // stays as it was.
-#include "base/checks.hpp"
+#include "base/index.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/io.hpp>

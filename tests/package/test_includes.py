@@ -135,7 +135,7 @@ def test_nothing_below_includes_what_stands_above(folder, above):
 # file, look at what the same process has just written, or open folders to allow or to clean them
 OPENING = re.compile(r"\b(ifstream|fopen|freopen)\b|(?<!\w)::open(at)?\(")
 MAY_OPEN = {
-    "src/base/input_file.cpp", "src/io/stream/descriptor.cpp", "src/base/memory.cpp", "src/base/processor.cpp",
+    "src/base/input_file.cpp", "src/io/stream/descriptor.cpp", "src/base/memory.cpp", "src/base/host.cpp",
     "src/payoff/machine.cpp", "lab/study/folder_lock.cpp", "lab/study/study_turns.cpp", "lab/models/cache.cpp",
     "apps/meshorder/standard_streams.cpp", "apps/meshorder-models/surface.cpp",
     "apps/meshorder/output_deputy.cpp", "apps/meshorder/restrictions.cpp", "src/io/stream/scratch.cpp",

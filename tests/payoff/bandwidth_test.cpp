@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "payoff/bandwidth.hpp"
+#include "payoff/memory_probe.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "payoff/cache_probe.hpp"
-
 #include "base/random.hpp"
+#include "payoff/memory_probe.hpp"
 #include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>

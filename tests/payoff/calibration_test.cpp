@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/calibration.hpp"
 
+#include "base/host.hpp"
 #include "base/parallel.hpp"
-#include "base/processor.hpp"
 #include "base/random.hpp"
 #include "mesh/graphs.hpp"
 #include "payoff/calibration_lattices.hpp"

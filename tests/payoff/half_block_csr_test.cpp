@@ -4,7 +4,6 @@
 #include "base/random.hpp"
 #include "kernels/spmv.hpp"
 #include "payoff/deformed.hpp"
-#include "payoff/half_storage.hpp"
 #include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/geometry/box_tree.hpp"
 
-#include "lab/contact/geometry/triangle_point.hpp"
+#include "lab/contact/geometry/simplex_point.hpp"
 #include "simulators/surfaces.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include "lab/contact/search/tetrahedron_search.hpp"
 
 #include "lab/contact/geometry/box_tree.hpp"
-#include "lab/contact/geometry/inside_tetrahedron.hpp"
+#include "lab/contact/geometry/simplex_point.hpp"
 #include "mesh/procedural.hpp"
 #include "payoff/deformed.hpp"
 #include "simulators/surfaces.hpp"

@@ -2,7 +2,7 @@
 // Bærentzen, Aanæs: Signed Distance Computation Using the Angle Weighted Pseudonormal (2005).
 #include "base/point.hpp"
 #include "lab/contact/geometry/box_tree.hpp"
-#include "lab/contact/geometry/triangle_point.hpp"
+#include "lab/contact/geometry/simplex_point.hpp"
 #include "lab/contact/obstacles/obstacle.hpp"
 #include <meshorder/error.hpp>
 

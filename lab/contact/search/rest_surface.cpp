@@ -2,7 +2,7 @@
 #include "lab/contact/search/rest_surface.hpp"
 
 #include "base/point.hpp"
-#include "lab/contact/geometry/triangle_point.hpp"
+#include "lab/contact/geometry/simplex_point.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -4,7 +4,7 @@
 #include "base/parallel.hpp"
 #include "kernels/positions.hpp"
 #include "lab/contact/geometry/box_tree.hpp"
-#include "lab/contact/geometry/inside_tetrahedron.hpp"
+#include "lab/contact/geometry/simplex_point.hpp"
 #include "lab/contact/search/branch_motions.hpp"
 #include "lab/contact/search/clearances.hpp"
 #include "lab/contact/search/leaf_planes.hpp"

@@ -3,9 +3,7 @@
 #include "lab/report/findings/lookup.hpp"
 #include "lab/report/findings/numbers_in_words.hpp"
 #include "lab/report/findings/paper.hpp"
-#include "lab/report/tables/detail_tables.hpp"
-#include "lab/report/tables/paper_tables.hpp"
-#include "lab/report/tables/summary_table.hpp"
+#include "lab/report/tables/each_table.hpp"
 
 #include <fmt/format.h>
 

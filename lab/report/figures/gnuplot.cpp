@@ -3,6 +3,7 @@
 
 #include "base/text.hpp"
 #include "io/stream/file_path.hpp"
+#include "io/stream/private_folder.hpp"
 #include "lab/report/figures/figures.hpp"
 #include "lab/support/process.hpp"
 #include <meshorder/error.hpp>
@@ -10,12 +11,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>  // mkdtemp
 #include <filesystem>
 #include <fstream>
 #include <string_view>
-#include <system_error>
 
 namespace meshorder {
 namespace fs = std::filesystem;
@@ -23,31 +21,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kProgram = "gnuplot";
-
-/// A new folder for a run of gnuplot, removed at the end.
-class WorkFolder {
- public:
-  WorkFolder() {
-    std::string pattern = (fs::temp_directory_path() / "meshorder-figure-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) {
-      throw InputError(pattern, std::generic_category().message(errno), "is the disk full?");
-    }
-    path_ = pattern;
-  }
-  ~WorkFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder(WorkFolder&&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  WorkFolder& operator=(WorkFolder&&) = delete;
-
-  [[nodiscard]] const fs::path& path() const noexcept { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// Returns text without control characters, which neither gnuplot's strings nor XML can hold.
 std::string printable(std::string_view text) {
@@ -138,7 +111,7 @@ std::string draw(const Drawing& drawing) {
   if (program.empty()) {
     throw InputError("figure " + drawing.name, "gnuplot is not installed", "apt-get install gnuplot-nox");
   }
-  const WorkFolder folder;
+  const PrivateFolder folder;
   const fs::path script = folder.path() / "script";
   std::ofstream(script, std::ios::binary) << fmt::format(
       "set encoding utf8\n"

@@ -3,7 +3,7 @@
 
 #include "mesh/graphs.hpp"
 #include "mesh/stored_matrix.hpp"
-#include "metrics/sparsity_pattern.hpp"
+#include "metrics/measures.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

@@ -1,9 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "lab/report/tables/paper_tables.hpp"
-
 #include "lab/report/findings/lookup.hpp"
 #include "lab/report/findings/numbers_in_words.hpp"
 #include "lab/report/findings/paper.hpp"
+#include "lab/report/tables/each_table.hpp"
 #include "payoff/quantities.hpp"
 
 #include <fmt/format.h>

@@ -1,9 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/tables/tables.hpp"
 
-#include "lab/report/tables/detail_tables.hpp"
-#include "lab/report/tables/paper_tables.hpp"
-#include "lab/report/tables/summary_table.hpp"
+#include "lab/report/tables/each_table.hpp"
 
 #include <algorithm>
 #include <iterator>

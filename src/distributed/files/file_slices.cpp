@@ -10,7 +10,7 @@
 #include "distributed/files/vtkhdf_head.hpp"
 #include "distributed/files/vtu_head.hpp"
 #include "distributed/files/xdmf_head.hpp"
-#include "distributed/order/cell_places.hpp"
+#include "distributed/order/cell_order.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include <meshorder/error.hpp>

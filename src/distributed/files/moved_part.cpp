@@ -4,7 +4,7 @@
 #include "distributed/comm/halo.hpp"
 #include "distributed/comm/number_types.hpp"
 #include "distributed/files/mold.hpp"
-#include "distributed/order/cell_places.hpp"
+#include "distributed/order/cell_order.hpp"
 #include "distributed/order/number_order.hpp"
 
 #include <algorithm>

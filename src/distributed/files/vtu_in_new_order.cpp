@@ -4,7 +4,7 @@
 #include "distributed/files/file_slices.hpp"
 #include "distributed/files/mold.hpp"
 #include "distributed/files/text_store.hpp"
-#include "distributed/order/cell_places.hpp"
+#include "distributed/order/cell_order.hpp"
 #include "io/stream/base64.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/vtk/vtu_compressor.hpp"

@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/checksum.hpp"
+#include "distributed/comm/communicator.hpp"
 #include "distributed/comm/moved_rows.hpp"
 #include "distributed/comm/number_types.hpp"
-#include "distributed/comm/rank_order.hpp"
 #include "distributed/files/file_rows.hpp"
 #include "distributed/files/file_slices.hpp"
 #include "distributed/files/xdmf_head.hpp"
-#include "distributed/order/cell_places.hpp"
+#include "distributed/order/cell_order.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "distributed/comm/communicator.hpp"
+#include "distributed/comm/halo.hpp"
 #include "distributed/comm/layout.hpp"
 #include "distributed/comm/rows.hpp"
 
@@ -29,5 +30,19 @@ struct GlobalGraph {
 
 /// Returns the neighbours of own vertices that other ranks own, ascending, each once.
 [[nodiscard]] std::vector<GlobalIndex> ghosts(const GlobalGraph& graph, int rank);
+
+/// As `EdgeSpan`, for 64-bit numbers.
+struct GlobalEdgeSpan {
+  double mean = 0;
+  GlobalIndex max = 0;
+  double mean_log2 = 0;
+};
+
+/// Returns the spans of a graph's edges in an order. Every rank has to call it. O(entries).
+///
+/// @param place_of  place of each vertex in the order
+/// @throws as `Communicator::exchange`
+[[nodiscard]] GlobalEdgeSpan edge_span(const Communicator& communicator, const GlobalGraph& graph,
+                                       const HaloValues<GlobalIndex>& place_of);
 
 }  // namespace meshorder::distributed

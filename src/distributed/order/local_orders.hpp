@@ -5,7 +5,7 @@
 #include "distributed/comm/halo.hpp"
 #include "distributed/order/curve.hpp"
 #include "distributed/order/global_graph.hpp"
-#include "distributed/order/interface_place.hpp"
+#include "distributed/order/partition.hpp"
 #include <meshorder/options.hpp>
 
 #include <string_view>
@@ -34,5 +34,21 @@ struct PartOrders {
                                           const Curve& curve, const HaloValues<Index>& place_of, Index parts,
                                           std::string_view method, InterfacePlace interface_place,
                                           const OrderOptions& options);
+
+/// Parts that are ranges of one order of the whole graph.
+struct RangesOfOrder {
+  PartOrders parts;
+  double imbalance = 1;  ///< size of the largest part / mean size
+  GlobalIndex cut = 0;   ///< number of edges between parts
+};
+
+/// Cuts an order into ranges whose sizes differ by at most one. Every rank has to call it. O(entries).
+///
+/// @param halo         of the graph's ghosts
+/// @param new_numbers  of the vertices in the graph's rows
+/// @param parts        ≥ 1
+/// @throws as `Communicator::exchange`
+[[nodiscard]] RangesOfOrder ranges_of(const Communicator& communicator, const GlobalGraph& graph,
+                                      const Halo& halo, std::vector<GlobalIndex> new_numbers, Index parts);
 
 }  // namespace meshorder::distributed

@@ -12,7 +12,6 @@
 #include "distributed/order/global_graph.hpp"
 #include "distributed/order/local_orders.hpp"
 #include "distributed/order/quotient.hpp"
-#include "distributed/order/ranges.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/registry.hpp>
 

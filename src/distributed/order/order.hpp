@@ -3,10 +3,9 @@
 
 #include "distributed/comm/communicator.hpp"
 #include "distributed/order/balance.hpp"
-#include "distributed/order/interface_place.hpp"
+#include "distributed/order/global_graph.hpp"
 #include "distributed/order/mesh_slice.hpp"
 #include "distributed/order/partition.hpp"
-#include "distributed/order/spans.hpp"
 #include <meshorder/fiedler.hpp>
 #include <meshorder/options.hpp>
 

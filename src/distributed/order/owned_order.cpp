@@ -6,7 +6,7 @@
 #include "distributed/order/curve.hpp"
 #include "distributed/order/global_graph.hpp"
 #include "distributed/order/local_orders.hpp"
-#include "ordering/method_named.hpp"
+#include "ordering/method.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>

@@ -22,6 +22,12 @@ enum class Partitioner : std::uint8_t {
   order,     ///< equal ranges of one order of the whole graph; parts are not ordered separately
 };
 
+/// Where a part's interface is in its order: the vertices that share an element with vertices of other parts.
+enum class InterfacePlace : std::uint8_t {
+  mixed,  ///< anywhere, as the method orders them
+  last,   ///< after the other vertices of the part; both keep the order that the method gives them
+};
+
 }  // namespace meshorder::distributed
 
 namespace meshorder {
@@ -33,6 +39,13 @@ struct EnumNames<distributed::Partitioner> {
                                     std::pair{distributed::Partitioner::hilbert, "hilbert"},
                                     std::pair{distributed::Partitioner::rsb, "rsb"},
                                     std::pair{distributed::Partitioner::order, "order"}};
+};
+
+template <>
+struct EnumNames<distributed::InterfacePlace> {
+  static constexpr std::string_view kind = "place of the interface";
+  static constexpr std::array names{std::pair{distributed::InterfacePlace::mixed, "mixed"},
+                                    std::pair{distributed::InterfacePlace::last, "last"}};
 };
 
 }  // namespace meshorder

@@ -2,10 +2,10 @@
 #include "distributed/order/shared_hierarchy.hpp"
 
 #include "distributed/order/shared_problem.hpp"
+#include "graph/laplacian.hpp"
 #include "spectral/aggregation.hpp"
 #include "spectral/coarsening.hpp"
 #include "spectral/lobpcg.hpp"
-#include "spectral/relaxation.hpp"
 #include "spectral/row_chunks.hpp"
 #include <meshorder/error.hpp>
 

@@ -23,6 +23,15 @@
 namespace meshorder::abaqus {
 namespace {
 
+/// Returns whether the cells of a card's elements still have the type of the card.
+bool has_kind(const Mesh& mesh, const Metadata& metadata, const Section& section) {
+  for (Index k = section.first; k < section.first + section.count; ++k) {
+    const Index c = metadata.cell(k);
+    if (ElementKind{mesh.cells.shapes[c], mesh.cells.vertex_count(c)} != section.kind) return false;
+  }
+  return true;
+}
+
 /// Takes the next word of a card and returns it in capitals; a name in quotes may have several words.
 std::string next_word_in_capitals(std::string_view& text) { return capitals(next_word(text, " \t,=\"\r\n")); }
 
@@ -260,6 +269,17 @@ class DeckWriter {
 };
 
 }  // namespace
+
+const Metadata* own_deck(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  if (own == nullptr || !own->whole) return nullptr;
+  const Deck& deck = *own->deck;
+  if (deck.nodes.size() != mesh.vertex_count() || deck.elements.size() != mesh.cell_count()) return nullptr;
+  const bool fits = std::all_of(deck.sections.begin(), deck.sections.end(), [&](const Section& section) {
+    return section.part != Part::elements || has_kind(mesh, *own, section);
+  });
+  return fits ? own : nullptr;
+}
 
 void write_into_deck(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes) {
   DeckWriter(mesh, own, path, notes).write();

@@ -5,7 +5,6 @@
 #include "io/abaqus/cards.hpp"
 #include "io/names.hpp"
 #include "io/stream/text_rows.hpp"
-#include "io/unique_names.hpp"
 #include "io/unsupported.hpp"
 
 #include <fmt/format.h>

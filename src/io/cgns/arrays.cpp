@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/cgns/reading.hpp"
-#include "io/unique_names.hpp"
+#include "io/names.hpp"
 
 #include <fmt/format.h>
 

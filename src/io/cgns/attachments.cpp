@@ -3,8 +3,8 @@
 #include "base/text.hpp"
 #include "io/cgns/reading.hpp"
 #include "io/labels.hpp"
+#include "io/names.hpp"
 #include "io/stream/read_limits.hpp"
-#include "io/unique_names.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,6 @@
 #include "io/cgns/cgns.hpp"
 #include "io/labels.hpp"
 #include "io/names.hpp"
-#include "io/unique_names.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 

@@ -3,7 +3,7 @@
 
 #include "io/exodus/exodus.hpp"
 #include "io/mesh_part.hpp"
-#include "io/unique_names.hpp"
+#include "io/names.hpp"
 
 #include <limits>
 #include <memory>

@@ -2,7 +2,7 @@
 #include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/exodus/writing.hpp"
-#include "io/unique_names.hpp"
+#include "io/names.hpp"
 #include "io/unsupported.hpp"
 
 #include <fmt/format.h>

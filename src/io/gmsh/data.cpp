@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "io/exact_values.hpp"
 #include "io/gmsh/gmsh.hpp"
 #include "io/names.hpp"

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "io/append_cells.hpp"
 #include "io/gmsh/gmsh.hpp"
 #include "io/stream/regular_records.hpp"

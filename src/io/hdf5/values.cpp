@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/large_pages.hpp"
 #include "base/memory.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/parts.hpp"

@@ -5,7 +5,7 @@
 #include "io/matrix/points.hpp"
 
 #include "base/text.hpp"
-#include "io/npy_header.hpp"
+#include "io/npy.hpp"
 #include "io/stream/scanner.hpp"
 #include <meshorder/error.hpp>
 

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "io/med/med.hpp"
 
 #include <fmt/format.h>

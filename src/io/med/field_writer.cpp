@@ -3,7 +3,6 @@
 #include "base/text.hpp"
 #include "io/med/med.hpp"
 #include "io/names.hpp"
-#include "io/unique_names.hpp"
 
 #include <fmt/format.h>
 

@@ -13,7 +13,7 @@
 
 #include "io/format.hpp"
 #include "io/hdf5/hdf5_file.hpp"
-#include "io/unique_names.hpp"
+#include "io/names.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
-#include "io/nastran/lists.hpp"
 #include "io/nastran/nastran.hpp"
 #include "io/nastran/references.hpp"
 #include "io/stream/output_file.hpp"
@@ -15,6 +14,17 @@
 
 namespace meshorder::nastran {
 namespace {
+
+/// Returns whether the cell of each element of the deck has the element's shape and number of nodes.
+bool has_cells_of(const Mesh& mesh, const Metadata& metadata) {
+  const Deck& deck = *metadata.deck;
+  for (Index k = 0; k < mesh.cell_count(); ++k) {
+    const Index c = metadata.cell(k);
+    const ElementCard& card = deck.elements[k];
+    if (mesh.cells.shapes[c] != card.type->shape || mesh.cells.vertex_count(c) != card.nodes) return false;
+  }
+  return true;
+}
 
 constexpr std::size_t kWidestField = 16;
 
@@ -318,6 +328,16 @@ class BulkWriter {
 };
 
 }  // namespace
+
+const Metadata* own_deck(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  if (own == nullptr || !own->whole) return nullptr;
+  const Deck& deck = *own->deck;
+  if (deck.node_numbers.size() != mesh.vertex_count() || deck.element_numbers.size() != mesh.cell_count()) {
+    return nullptr;
+  }
+  return has_cells_of(mesh, *own) ? own : nullptr;
+}
 
 void write_into_deck(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes) {
   BulkWriter(mesh, own, path, notes).write();

@@ -5,7 +5,6 @@
 #include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
 #include "io/nastran/deck_text.hpp"
-#include "io/nastran/lists.hpp"
 #include "io/nastran/nastran.hpp"
 #include "io/nastran/references.hpp"
 #include "io/nastran/systems.hpp"

@@ -1,6 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/stream/id_map.hpp"
+
+#include <cstdint>
+#include <vector>
+
 // Finds the fields in which cards that are neither nodes nor cells name nodes and elements.
 
 #include "io/nastran/card.hpp"
@@ -46,5 +51,10 @@ struct NumberRange {
 
 /// Returns the numbers and ranges of the list of a card; none if the list holds anything else.
 std::optional<std::vector<NumberRange>> ranges_of(const CardFields& card, std::size_t list);
+
+/// Returns those of `others` (ascending) that the list of a card names. `found` receives the positions of the
+/// file's items that the list names, each once.
+std::vector<std::int64_t> numbers_in_list(const std::vector<NumberRange>& ranges, const IdMap& items,
+                                          const std::vector<std::int64_t>& others, std::vector<Index>& found);
 
 }  // namespace meshorder::nastran

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/file_path.hpp"
 
-#include "base/large_pages.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/gzip.hpp"
 
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "io/append_cells.hpp"
+#include "io/format.hpp"
 #include "io/labels.hpp"
-#include "io/not_together.hpp"
 #include "io/stream/id_map.hpp"
 #include "io/stream/regular_records.hpp"
 #include "io/stream/scanner.hpp"

@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "io/labels.hpp"
+#include "io/names.hpp"
 #include "io/stream/id_map.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/ucd/ucd.hpp"
-#include "io/unique_names.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 #include "base/text.hpp"
 #include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
+#include "io/names.hpp"
 #include "io/stream/scanner.hpp"
-#include "io/unique_names.hpp"
 #include "io/unv/results.hpp"
 #include "io/unv/unv.hpp"
 #include <meshorder/error.hpp>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/vtk/legacy_input.hpp"
 
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/stream/byte_order.hpp"
 #include "io/stream/regular_numbers.hpp"

@@ -5,10 +5,10 @@
 //
 // VTK's own reader is not used: it reads past the end of damaged cell lists, trusts the sizes in a header
 // when it allocates, cannot read `nan`, and changes the locale of the whole program.
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "base/text.hpp"
+#include "io/names.hpp"
 #include "io/stream/regular_numbers.hpp"
-#include "io/unique_names.hpp"
 #include "io/vtk/legacy_input.hpp"
 #include "io/vtk/vtk.hpp"
 

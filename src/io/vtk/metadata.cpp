@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "io/labels.hpp"
-#include "io/unique_names.hpp"
+#include "io/names.hpp"
 #include "io/unsupported.hpp"
 #include "io/vtk/vtk.hpp"
 #include <meshorder/error.hpp>

@@ -5,7 +5,6 @@
 //
 // VTK's own reader is not used: it trusts the sizes in a header when it allocates, reads past the end of
 // damaged arrays, cannot read the NaN that VTK writes as text, and reports faults on standard error.
-#include "base/large_pages.hpp"
 #include "base/memory.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/vtk/joined_pieces.hpp"

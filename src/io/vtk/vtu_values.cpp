@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Arrays of .vtu files: text, base64 and raw bytes, plain or in compressed blocks.
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/stream/base64.hpp"

@@ -2,7 +2,7 @@
 //
 // Reader of VTKHDF's unstructured grids. VTK's own reader is not used: it trusts the counts of a damaged
 // file.
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/vtk/joined_pieces.hpp"

@@ -2,7 +2,7 @@
 #include "io/all_formats.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/session.hpp"
-#include "io/unique_names.hpp"
+#include "io/names.hpp"
 #include "io/unsupported.hpp"
 #include "io/vtkhdf/vtkhdf.hpp"
 #include "mesh/values.hpp"

@@ -3,10 +3,9 @@
 
 #include "base/checksum.hpp"
 #include "base/index.hpp"
-#include "base/large_pages.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
-#include "io/not_together.hpp"
+#include "io/format.hpp"
 #include "io/stream/digits.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/xdmf/raw.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/xdmf/raw.hpp"

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "io/unique_names.hpp"
+#include "io/names.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/xdmf/document.hpp"
 #include "io/xdmf/xdmf.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/checksum.hpp"
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "io/xdmf/raw.hpp"
 #include "io/xdmf/writer.hpp"
 #include "mesh/values.hpp"

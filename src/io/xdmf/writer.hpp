@@ -6,9 +6,9 @@
 
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/named_parts.hpp"
+#include "io/names.hpp"
 #include "io/stream/file_path.hpp"
 #include "io/stream/output_file.hpp"
-#include "io/unique_names.hpp"
 #include "io/xdmf/data_item.hpp"
 #include "io/xdmf/document.hpp"
 #include "io/xdmf/xdmf.hpp"

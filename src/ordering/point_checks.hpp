@@ -2,9 +2,15 @@
 #pragma once
 
 #include "graph/csr_graph.hpp"
+#include <meshorder/options.hpp>
 #include <meshorder/view.hpp>
 
+#include <cstddef>
+
 namespace meshorder {
+
+/// Throws InvalidArgument unless there are `count` finite points or none. Polls. O(points).
+void check_finite(const PointsView& points, std::size_t count, Check check);
 
 /// Returns whether neighbours are nearer to each other than any two points are, as they are in a mesh: false
 /// suggests that an array is transposed, or of another mesh. True for graphs of fewer than 256 vertices,

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include <filesystem>
 #include <istream>
 #include <string>
 
@@ -28,5 +29,9 @@ ProcessorFamily family_of_this_machine();
 
 /// Returns whether the family is AMD's Zen 4, as Linux does (init_amd in arch/x86/kernel/cpu/amd.c).
 bool is_zen4(const ProcessorFamily& family);
+
+/// Returns the folder for files that can be remade: `$MESHORDER_CACHE`, `$XDG_CACHE_HOME/meshorder` or
+/// `~/.cache/meshorder`, the first that is set; empty if none of the variables is. It need not exist.
+std::filesystem::path user_cache_folder();
 
 }  // namespace meshorder

@@ -1,16 +1,19 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/processor.hpp"
+#include "base/host.hpp"
 
 #include "base/text.hpp"
 
 #include <sys/utsname.h>
 
 #include <charconv>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <string_view>
 
 namespace meshorder {
+namespace fs = std::filesystem;
+
 namespace {
 
 /// Returns the keys and values of the first processor in Linux's /proc/cpuinfo.
@@ -24,6 +27,14 @@ std::map<std::string, std::string> facts_of_first_processor(std::istream& cpuinf
                     trimmed(std::string_view(line).substr(colon + 1)));
   }
   return facts;
+}
+
+/// Returns the folder in an environment variable; empty if unset or relative, which the XDG standard calls
+/// invalid.
+fs::path folder_in(const char* variable) {
+  const char* const value = std::getenv(variable);
+  fs::path folder = value != nullptr ? value : "";
+  return folder.is_absolute() ? folder : fs::path();
 }
 
 }  // namespace
@@ -64,6 +75,14 @@ ProcessorFamily family_of_this_machine() {
 bool is_zen4(const ProcessorFamily& family) {
   return family.maker == "AuthenticAMD" && family.family == 0x19 &&
          ((family.model >= 0x10 && family.model <= 0x1f) || (family.model >= 0x60 && family.model <= 0xaf));
+}
+
+fs::path user_cache_folder() {
+  const char* const own = std::getenv("MESHORDER_CACHE");
+  if (own != nullptr && *own != '\0') return fs::absolute(own);
+  if (const fs::path folder = folder_in("XDG_CACHE_HOME"); !folder.empty()) return folder / "meshorder";
+  if (const fs::path home = folder_in("HOME"); !home.empty()) return home / ".cache/meshorder";
+  return {};
 }
 
 }  // namespace meshorder

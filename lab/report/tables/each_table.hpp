@@ -4,8 +4,16 @@
 #include "lab/report/tables/tables.hpp"
 
 #include <string>
+#include <vector>
 
 namespace meshorder {
+
+/// Returns what the orders save, a row for each scenario and a column for each order, the paper's figures
+/// beside them where it has some.
+Table summary_table(const StudyResults& results);
+
+/// Returns "+11.9 (+10.2 … +13.5), saves" as a cell.
+TableCell saving_cell(const Speedup& speedup);
 
 // The paper's tables with its numbers next to ours, a row for each mesh or scenario and order. A table
 // without data has no rows. The paper's column is omitted in a study without its scenarios or with another
@@ -24,5 +32,17 @@ Table seconds_table(const StudyResults& results);     ///< Table 2
 Table saved_table(const StudyResults& results);       ///< Table 3
 Table speedup_table(const StudyResults& results);     ///< Table 4
 Table break_even_table(const StudyResults& results);  ///< what the orders cost, and when they pay off
+
+// Tables that explain the paper's. A table without data has no rows.
+
+Table phases_table(const StudyResults& results);
+Table motions_table(const StudyResults& results);
+/// Returns a table for each cache hierarchy, in the sequence of the meshes.
+std::vector<Table> misses_tables(const StudyResults& results);
+/// Returns how far the predicted speedups of the kernels are from the measured ones.
+Table prediction_table(const StudyResults& results);
+Table kernels_table(const StudyResults& results);
+Table machine_table(const StudyResults& results);
+Table protocol_table(const StudyResults& results);
 
 }  // namespace meshorder
