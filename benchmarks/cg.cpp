@@ -108,7 +108,7 @@ std::vector<System> make_systems(const std::string& file, const std::string& ord
   for (std::string name; std::getline(names, name, ',');) {
     mo::Mesh mesh = original;
     if (name == "band") {
-      mo::Band band = mo::ideal_band(mesh, mo::vertex_graph(mesh));
+      mo::Band band = mo::ideal_band(mo::cut_into_simplices(mesh), mo::vertex_graph(mesh));
       scale_to_ten(band.mesh);
       systems.push_back(make_system(name, band.mesh));
       continue;

@@ -85,7 +85,7 @@ Scenario scenario_of(const SimulateArguments& arguments) {
     scenario.mesh_folder.reset();
   }
   if (!arguments.order.empty()) {
-    OrderNames order = order_named(arguments.order);
+    MeshMethods order = order_named(arguments.order);
     scenario.vertex_order = std::move(order.vertices);
     scenario.element_order = std::move(order.elements);
     // the tetrahedra of water are sorted in each step, by the cheapest method

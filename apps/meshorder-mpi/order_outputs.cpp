@@ -4,7 +4,6 @@
 #include "base/text.hpp"
 #include "distributed/files/moved_grid.hpp"
 #include "distributed/files/moved_part.hpp"
-#include "distributed/files/nemesis.hpp"
 #include "io/format.hpp"
 #include "io/kept_cells.hpp"
 #include "io/stream/output_file.hpp"

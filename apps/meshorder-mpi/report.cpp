@@ -9,7 +9,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <numeric>
 #include <string>
 

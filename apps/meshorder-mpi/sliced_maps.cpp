@@ -2,7 +2,6 @@
 #include "sliced_maps.hpp"
 
 #include "base/checksum.hpp"
-#include "distributed/comm/communicator.hpp"
 #include "distributed/comm/halo.hpp"
 #include "distributed/files/shared_file.hpp"
 #include "distributed/order/parts.hpp"
@@ -14,7 +13,6 @@
 #include <array>
 #include <bit>
 #include <cstddef>
-#include <cstdint>
 #include <numeric>
 #include <span>
 

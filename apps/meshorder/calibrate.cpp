@@ -3,9 +3,8 @@
 #include "base/parallel.hpp"
 #include "command.hpp"
 #include "console.hpp"
-#include "machines.hpp"
 #include "payoff/calibration_store.hpp"
-#include "payoff/machine.hpp"
+#include "payoff/machine_choice.hpp"
 #include "progress.hpp"
 #include <meshorder/error.hpp>
 
@@ -13,7 +12,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <filesystem>
 #include <memory>
 #include <string>
 

@@ -11,16 +11,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <map>
 #include <new>
-#include <string>
 #include <string_view>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 namespace meshorder::command {
 namespace {
@@ -80,8 +75,8 @@ CLI::Validator in_range(int lowest, int highest) {
   return whole_number(static_cast<std::uint64_t>(lowest), static_cast<std::uint64_t>(highest), range, range);
 }
 
-OrderNames order_named(const std::string& name) {
-  OrderNames order;
+MeshMethods order_named(const std::string& name) {
+  MeshMethods order;
   const auto slash = name.find('/');
   order.vertices = name.substr(0, slash);
   constexpr std::array<std::string_view, 3> kOfBoth{"auto", "original", "scrambled"};

@@ -32,15 +32,9 @@ struct CommandError : std::runtime_error {
   int status;
 };
 
-/// The methods of an order.
-struct OrderNames {
-  std::string vertices;
-  std::string elements;
-};
-
 /// Splits VERTICES/ELEMENTS. If only VERTICES is given, elements have the same method for `auto`, `original`
 /// and `scrambled`, and lexmax for others.
-OrderNames order_named(const std::string& name);
+MeshMethods order_named(const std::string& name);
 
 // Each function adds the options of a subcommand, which runs once all arguments are parsed.
 void add_order(CLI::App& subcommand);

@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "base/stopwatch.hpp"
 #include "command.hpp"
 #include "compare_report.hpp"
 #include "confinement.hpp"
@@ -9,18 +8,11 @@
 #include "machines.hpp"
 #include "matrix_points.hpp"
 #include "matrix_report.hpp"
-#include "mesh/graphs.hpp"
-#include "mesh/reorder.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "mesh_files.hpp"
-#include "metrics/edge_span.hpp"
 #include "ordering/method.hpp"
-#include "payoff/band.hpp"
-#include "payoff/kernel_timing.hpp"
 #include "payoff/machine.hpp"
-#include "payoff/product_bench.hpp"
 #include "progress.hpp"
-#include "reuse_report.hpp"
 #include "wording.hpp"
 
 #include <CLI/CLI.hpp>
@@ -29,7 +21,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,30 +51,20 @@ std::vector<std::string> default_methods() {
   return names;
 }
 
-ComparedOrder parsed(const std::string& name) {
-  ComparedOrder order;
-  OrderNames names = order_named(name);
-  order.vertices = std::move(names.vertices);
-  order.elements = std::move(names.elements);
-  return order;
+std::vector<std::string> names_of(const CompareArguments& arguments) {
+  return arguments.methods.empty() ? default_methods() : arguments.methods;
 }
 
-/// Returns the orders, the file's own first.
-std::vector<ComparedOrder> orders_of(const std::vector<std::string>& names) {
-  std::vector<ComparedOrder> orders{parsed("original")};
-  for (const std::string& name : names) {
-    const ComparedOrder order = parsed(name);
-    const bool known = std::any_of(orders.begin(), orders.end(), [&](const ComparedOrder& c) {
-      return c.vertices == order.vertices && c.elements == order.elements;
-    });
-    if (!known) orders.push_back(order);
-  }
-  return orders;
+/// Returns the methods of the orders of these names.
+std::vector<MeshMethods> methods_of(const std::vector<std::string>& names) {
+  std::vector<MeshMethods> methods;
+  for (const std::string& name : names) methods.push_back(order_named(name));
+  return methods;
 }
 
-/// Returns the orders of a matrix: of its rows only, as entries keep their places in the file. By default,
+/// Returns the methods of a matrix: of its rows only, as entries keep their places in the file. By default,
 /// those that need points are among them only if it has coordinates.
-std::vector<ComparedOrder> orders_of_matrix(const Mesh& mesh, const CompareArguments& arguments) {
+std::vector<MeshMethods> methods_of_matrix(const Mesh& mesh, const CompareArguments& arguments) {
   std::vector<std::string> names = arguments.methods;
   for (const std::string& name : names) {
     if (name.find('/') != std::string::npos) {
@@ -101,85 +82,45 @@ std::vector<ComparedOrder> orders_of_matrix(const Mesh& mesh, const CompareArgum
         names.push_back(std::move(name));
     }
   }
-  std::vector<ComparedOrder> orders = orders_of(names);
-  for (ComparedOrder& order : orders) order.elements = "original";
-  return orders;
+  std::vector<MeshMethods> methods = methods_of(names);
+  for (MeshMethods& order : methods) order.elements = "original";
+  return methods;
 }
 
-/// Times the kernels in all orders and on the band, in interleaved rounds.
-///
-/// @param entries  pattern of a matrix; empty for a mesh
-KernelTable timed(const Mesh& mesh, const EntryPattern& entries, const CsrGraph& graph,
-                  const std::vector<ComparedOrder>& orders, const Band& band, KernelSet kernels, int threads,
-                  const TimingOptions& options) {
-  KernelTable table;
-  table.threads = threads;
-  const auto prepare = [&](Index i) -> std::unique_ptr<KernelBench> {
-    if (i == index_size(orders) && stored_matrix(mesh) != nullptr) {
-      auto bench = std::make_unique<ProductBench>(ideal_pattern(entries));
-      bench->share(threads);
-      return bench;
-    }
-    if (i == index_size(orders)) return prepare_kernels(kernels, band.mesh, band.graph, threads);
-    Mesh ordered = mesh;
-    apply_reordering(ordered, orders[i].order);
-    auto bench = prepare_kernels(
-        kernels, ordered, renumbered(graph, orders[i].order.vertices.permutation.old_to_new()), threads);
-    table.redundancy.push_back(bench->redundancy());
-    return bench;
-  };
-  Timings timings = time_orders(index_size(orders) + 1, prepare, options);
-  table.orders = std::move(timings.orders);
-  table.steadiness = timings.steadiness;
-  table.band = table.orders.back();
-  table.orders.pop_back();
-  return table;
-}
-
-/// Counts additions on a graphics processor in an order.
-void count_for_gpu(ComparedOrder& order, const Mesh& mesh, const std::vector<GpuLayout>& layouts) {
-  if (layouts.empty()) return;
-  const Mesh ordered = in_order(mesh, order.order);
-  for (const GpuLayout layout : layouts) {
-    const std::optional<GpuCost> cost = cost_of_additions(ordered, layout);
-    if (!cost) {
-      throw CommandError(
-          "--gpu-layout: additions are counted for elements with the same number of vertices, at most 255; "
-          "this mesh has others or none, leave the option out",
-          2);
-    }
-    order.gpu.push_back(*cost);
+/// Counts additions on a graphics processor in each order, for each layout.
+void count_for_gpu(ComparisonReport& report, const Mesh& mesh) {
+  for (const ComparedMeshOrder& c : report.orders) {
+    std::vector<GpuCost>& costs = report.gpu.emplace_back();
+    const Mesh ordered = in_order(mesh, c.order);
+    for (const GpuLayout layout : report.gpu_layouts) costs.push_back(*cost_of_additions(ordered, layout));
   }
 }
 
-/// Orders the mesh in all ways, and predicts the cache misses of each if `predicts`. If the user named no
-/// orders, an order that equals that of `auto` is left out.
-void compute_orders(Comparison& comparison, const Mesh& mesh, const CsrGraph& graph, double graph_seconds,
-                    const CompareArguments& arguments, bool predicts, Progress& progress, Notes& notes) {
-  const double share = 0.35 / static_cast<double>(comparison.orders.size());
-  std::vector<ComparedOrder> computed;
-  for (ComparedOrder& c : comparison.orders) {
-    const bool is_taken = arguments.methods.empty() && computed.size() > 1 &&
-                          computed[1].order.vertices.method.name == c.vertices &&
-                          computed[1].order.cells.method.name == c.elements;
-    if (is_taken) continue;
-    const double from = 0.05 + share * static_cast<double>(computed.size());
-    progress.stage("ordering by " + c.vertices + (comparison.is_matrix() ? "" : "/" + c.elements), from,
-                   from + share);
-    const Stopwatch stopwatch;
-    c.order =
-        compute_reordering(mesh, graph, {.methods = {c.vertices, c.elements}, .order = arguments.ordering});
-    c.seconds = computed.empty() ? 0 : graph_seconds + stopwatch.seconds();
-    c.span = edge_span(graph, c.order.vertices.permutation);
-    if (predicts) {
-      c.reuse = reuse_of_kernels(mesh, graph, c.order.vertices.permutation, c.order.cells.permutation);
-      if (arguments.details) c.iterations = iterations_in(graph, c.order.vertices.permutation);
-    }
-    count_for_gpu(c, mesh, comparison.gpu_layouts);
-    note_convergence(c.order.vertices.fiedler, "the vertices by " + c.vertices, notes);
-    computed.push_back(std::move(c));
-  }
-  comparison.orders = std::move(computed);
+/// Returns the comparison of the orders that the arguments name.
+ComparisonReport compared(const CompareArguments& arguments, const Mesh& mesh, Progress& progress,
+                          std::vector<GpuLayout> layouts) {
+  const StoredMatrix* const stored = stored_matrix(mesh);
+  ComparisonReport report{compare_orders(
+      mesh,
+      {.methods = stored != nullptr ? methods_of_matrix(mesh, arguments) : methods_of(names_of(arguments)),
+       .only_new = arguments.methods.empty(),
+       .ordering = arguments.ordering,
+       .kernels = arguments.kernels,
+       .threads = arguments.threads,
+       .budget_seconds = arguments.budget_seconds,
+       .reuse = arguments.details || arguments.json,
+       .reuse_of_large = !arguments.caches.empty(),
+       .iterations = arguments.details,
+       .begins = [&](const std::string& stage, double from, double to) {
+         progress.stage(stage, from, to);
+       }})};
+  report.file = arguments.input;
+  report.size = stored != nullptr
+                    ? size_in_words(*stored, entry_pattern(mesh))
+                    : fmt::format("{} vertices, {}", with_commas(mesh.vertex_count()), cells_in_words(mesh));
+  report.gpu_layouts = std::move(layouts);
+  if (!report.gpu_layouts.empty()) count_for_gpu(report, mesh);
+  return report;
 }
 
 void run(const CompareArguments& arguments) {
@@ -191,67 +132,46 @@ void run(const CompareArguments& arguments) {
         2);
   }
   Console console(arguments);
-  Comparison comparison;
-  for (const std::string& name : arguments.gpu_layouts)
-    comparison.gpu_layouts.push_back(parse_gpu_layout(name));
-  comparison.file = arguments.input;
-  comparison.workload = arguments.ordering.workload;
-  comparison.caches = arguments.caches.empty() ? choose_machine(arguments.machine).model.caches
-                                               : parse_caches(arguments.caches);
-  comparison.kernel_set = arguments.kernels;
-  comparison.orders = orders_of(arguments.methods.empty() ? default_methods() : arguments.methods);
+  std::vector<GpuLayout> layouts;
+  for (const std::string& name : arguments.gpu_layouts) layouts.push_back(parse_gpu_layout(name));
+  const Caches caches = arguments.caches.empty() ? choose_machine(arguments.machine).model.caches
+                                                 : parse_caches(arguments.caches);
+  const std::size_t orders = names_of(arguments).size();
   confine({.meshes = {arguments.input}, .others = named_files(arguments.points)});
   Progress progress(!console.quiet());
   progress.stage("reading " + arguments.input, 0, 0.05);
   Notes notes;
-  Mesh mesh = read_to_work_on(arguments.input, notes, kBytesToMeasure * (comparison.orders.size() + 2));
+  Mesh mesh = read_to_work_on(arguments.input, notes, kBytesToMeasure * (orders + 3));
   take_points(mesh, arguments.input, arguments.points);
-  const StoredMatrix* const stored = stored_matrix(mesh);
-  if (stored != nullptr && !comparison.gpu_layouts.empty()) {
+  if (!layouts.empty() && stored_matrix(mesh) != nullptr) {
     throw CommandError(
         "--gpu-layout: a matrix or graph has no elements; `meshorder info --gpu` counts its products", 2);
   }
-  if (stored != nullptr) comparison.orders = orders_of_matrix(mesh, arguments);
-  const EntryPattern entries = stored != nullptr ? entry_pattern(mesh) : EntryPattern{};
-  comparison.kernels_run = kernels_of(mesh);
-  comparison.size = stored != nullptr ? size_in_words(*stored, entries)
-                                      : fmt::format("{} vertices, {}", with_commas(mesh.vertex_count()),
-                                                    cells_in_words(mesh));
-  mesh.cell_blocks.clear();  // orders are compared, not the layout of a file
-  const Stopwatch building_graph;
-  const CsrGraph graph = vertex_graph(mesh);
-  const bool predicts =
-      (arguments.details || arguments.json) && (!arguments.caches.empty() || is_quick_to_predict(mesh));
-  compute_orders(comparison, mesh, graph, building_graph.seconds(), arguments, predicts, progress, notes);
-
-  progress.stage("running kernels", 0.4, 1);
-  TimingOptions timing;
-  timing.budget_seconds = arguments.budget_seconds;
-  const Band band = ideal_band(mesh, graph);
-  comparison.band_span = edge_span(band.graph, Permutation::identity(band.graph.size()));
-  std::vector<int> thread_counts{1};
-  if (arguments.threads > 1) thread_counts.push_back(arguments.threads);
-  timing.budget_seconds /= static_cast<double>(thread_counts.size());
-  for (const int threads : thread_counts) {
-    timing.processor_time = threads == 1;
-    comparison.kernels.push_back(
-        timed(mesh, entries, graph, comparison.orders, band, arguments.kernels, threads, timing));
+  if (!layouts.empty() && !cost_of_additions(mesh, layouts.front())) {
+    throw CommandError(
+        "--gpu-layout: additions are counted for elements with the same number of vertices, at most 255; "
+        "this mesh has others or none, leave the option out",
+        2);
   }
-
+  mesh.cell_blocks.clear();  // orders are compared, not the layout of a file
+  ComparisonReport report = compared(arguments, mesh, progress, std::move(layouts));
+  report.caches = caches;
   progress.finish();
-  for (const KernelTable& table : comparison.kernels) {
+  for (const ComparedMeshOrder& c : report.orders)
+    note_convergence(c.order.vertices.fiedler, "the vertices by " + c.asked.vertices, notes);
+  for (const KernelTable& table : report.kernels) {
     if (std::string doubt = reason_to_doubt(table.steadiness); !doubt.empty()) {
       notes.push_back(fmt::format("on {} thread{}: {}", table.threads, table.threads == 1 ? "" : "s", doubt));
     }
   }
   console.warn_of(notes);
-  print_comparison(console, comparison);
-  if (arguments.details) print_comparison_details(console, comparison);
+  print_comparison(console, report);
+  if (arguments.details) print_comparison_details(console, report);
   nlohmann::ordered_json result{{"file", arguments.input},
                                 {"vertices", mesh.vertex_count()},
                                 {"cells", cells_by_type(mesh)},
                                 {"reference", "original"}};
-  result.update(to_json(comparison));
+  result.update(to_json(report));
   console.print_json(result);
 }
 

@@ -19,9 +19,7 @@
 #include <iterator>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace meshorder::command {
 namespace {
@@ -32,38 +30,18 @@ constexpr const char* kBand = "band";
 /// into memory together are timed in groups, and each group contains that order.
 double of_band(const KernelTimes& times, const KernelTimes& band) { return band.speedup / times.speedup; }
 
-/// Returns the times on the largest number of threads as advice on the mesh: the other orders are candidates.
-Advice advice_of(const Comparison& comparison) {
-  const KernelTable& table = comparison.kernels.back();
-  Advice advice;
-  advice.threads = table.threads;
-  advice.kernel_set = comparison.kernel_set;
-  advice.is_matrix = comparison.is_matrix();
-  advice.doubt = reason_to_doubt(table.steadiness);
-  advice.floor.fill(table.steadiness.repeat);
-  const auto candidate_of = [&](std::size_t i) {
-    const ComparedOrder& c = comparison.orders[i];
-    Candidate candidate{.vertices = c.order.vertices.method,
-                        .elements = c.order.cells.method,
-                        .workload = comparison.workload,
-                        .order_seconds = c.seconds};
-    KernelMilliseconds& milliseconds = candidate.costs.measured.emplace();
-    for (const Kernel kernel : comparison.kernels_run) {
-      milliseconds[static_cast<std::size_t>(kernel)] =
-          table.orders.front()[kernel].best_ms / table.orders[i][kernel].speedup;
-    }
-    return candidate;
-  };
-  advice.as_is = candidate_of(0);
-  for (std::size_t i = 1; i < comparison.orders.size(); ++i) advice.candidates.push_back(candidate_of(i));
-  advice.kernels = kernel_advice(advice);
-  return advice;
+/// Returns the name of an order in the table: "hilbert", or "rcm (auto)".
+std::string label(const ComparisonReport& report, std::size_t i) {
+  const ComparedMeshOrder& c = report.orders[i];
+  const Candidate methods{.vertices = c.order.vertices.method, .elements = c.order.cells.method};
+  const bool by_auto = c.asked.vertices == "auto" || (i == 0 && report.auto_keeps);
+  return order_in_words(methods, report.is_matrix()) + (by_auto ? " (auto)" : "");
 }
 
-/// Returns "hilbert", or "rcm (auto)".
-std::string label(const ComparedOrder& order, bool is_matrix) {
-  const Candidate methods{.vertices = order.order.vertices.method, .elements = order.order.cells.method};
-  return order_in_words(methods, is_matrix) + (order.vertices == "auto" ? " (auto)" : "");
+/// Returns the answer in a sentence; an empty text if there is no order but the file's own.
+std::string sentence_on(const ComparisonReport& report, const Advice& advice, Workload told) {
+  if (!advice.candidates.empty()) return comparison_in_words(advice, told);
+  return report.auto_keeps ? "auto keeps the file's own order" : "";
 }
 
 constexpr int kBarWidth = 12;
@@ -86,7 +64,7 @@ Column column(std::string title, const KernelTable& table,
 }
 
 /// Returns a column for each kernel. For a mesh, one for their geometric mean comes first.
-std::vector<Column> columns_of(const Comparison& comparison, const KernelTable& table) {
+std::vector<Column> columns_of(const ComparisonReport& comparison, const KernelTable& table) {
   std::vector<Column> columns;
   if (!comparison.is_matrix()) {
     columns.push_back(column("all", table, [&](const OrderTimes& times) {
@@ -104,12 +82,12 @@ std::vector<Column> columns_of(const Comparison& comparison, const KernelTable& 
 }
 
 /// Returns a column for each layout: how many times fewer sectors additions touch on a graphics processor.
-std::vector<Column> counted_columns(const Comparison& comparison) {
+std::vector<Column> counted_columns(const ComparisonReport& comparison) {
   std::vector<Column> columns;
   for (std::size_t k = 0; k < comparison.gpu_layouts.size(); ++k) {
     Column column{"gpu " + std::string(to_string(comparison.gpu_layouts[k])), {}};
-    for (const ComparedOrder& c : comparison.orders)
-      column.factors.push_back(sector_ratio(comparison.orders.front().gpu[k], c.gpu[k]));
+    for (const std::vector<GpuCost>& costs : comparison.gpu)
+      column.factors.push_back(sector_ratio(comparison.gpu.front()[k], costs[k]));
     column.best = std::ranges::max(column.factors);
     columns.push_back(std::move(column));
   }
@@ -117,7 +95,7 @@ std::vector<Column> counted_columns(const Comparison& comparison) {
 }
 
 /// Prints the speedups of the kernels over the file's own order, with bars for the workload `told`.
-void print_speedups(const Console& console, const Comparison& comparison, const KernelTable& table,
+void print_speedups(const Console& console, const ComparisonReport& comparison, const KernelTable& table,
                     Workload told) {
   std::vector<Column> columns = columns_of(comparison, table);
   std::ranges::move(counted_columns(comparison), std::back_inserter(columns));
@@ -131,9 +109,8 @@ void print_speedups(const Console& console, const Comparison& comparison, const 
   const double longest = std::ranges::max(columns[judged].factors);
   for (std::size_t i = 0; i <= comparison.orders.size(); ++i) {
     const bool is_band = i == comparison.orders.size();
-    std::string row =
-        fmt::format("{:<26} {:>8}", is_band ? kBand : label(comparison.orders[i], comparison.is_matrix()),
-                    is_band || i == 0 ? "-" : duration(comparison.orders[i].seconds));
+    std::string row = fmt::format("{:<26} {:>8}", is_band ? kBand : label(comparison, i),
+                                  is_band || i == 0 ? "-" : duration(comparison.orders[i].seconds));
     for (const Column& c : columns) {
       const std::string factor = i < c.factors.size() ? fmt::format("{:.2f}", c.factors[i]) : "-";
       row += fmt::format("{:>{}}{}", factor, width(c), !is_band && c.factors[i] == c.best ? '*' : ' ');
@@ -143,17 +120,25 @@ void print_speedups(const Console& console, const Comparison& comparison, const 
 }
 
 /// Returns the beginning of a row: both methods or, for a matrix, which has no elements, that of its rows.
-std::string row_head(const Comparison& comparison, const std::string& vertices, const std::string& elements) {
+std::string row_head(const ComparisonReport& comparison, const std::string& vertices,
+                     const std::string& elements) {
   return comparison.is_matrix() ? fmt::format("{:<15}", vertices)
                                 : fmt::format("{:<15} {:<12}", vertices, elements);
 }
 
-std::string title_row(const Comparison& comparison) {
+/// Returns the beginning of the row of an order.
+std::string row_head(const ComparisonReport& comparison, std::size_t i) {
+  const MeshMethods& asked = comparison.orders[i].asked;
+  const bool is_of_auto = i == 0 && comparison.auto_keeps;
+  return row_head(comparison, asked.vertices + (is_of_auto ? " (auto)" : ""), asked.elements);
+}
+
+std::string title_row(const ComparisonReport& comparison) {
   return comparison.is_matrix() ? row_head(comparison, "order", "")
                                 : row_head(comparison, "vertices", "elements");
 }
 
-void print_quality(const Console& console, const Comparison& comparison) {
+void print_quality(const Console& console, const ComparisonReport& comparison) {
   const bool has_iterations = comparison.orders.front().iterations.has_value();
   console.print("{} {:>8} {:>12} {:>10} {:>10}{}", title_row(comparison), "cost",
                 comparison.is_matrix() ? "distance" : "span: mean", "max", "mean log2",
@@ -163,12 +148,13 @@ void print_quality(const Console& console, const Comparison& comparison) {
     console.print("{} {:>8} {:>12.1f} {:>10} {:>10.2f}{}", head, cost, span.mean, with_commas(span.max),
                   span.mean_log2, iterations);
   };
-  for (const ComparedOrder& c : comparison.orders) {
+  for (std::size_t i = 0; i < comparison.orders.size(); ++i) {
+    const ComparedMeshOrder& c = comparison.orders[i];
     const std::string iterations =
         c.iterations
             ? fmt::format("{:>7} {:>7}", c.iterations->incomplete_cholesky, c.iterations->gauss_seidel)
             : "";
-    print_row(row_head(comparison, c.vertices, c.elements), duration(c.seconds), c.span, iterations);
+    print_row(row_head(comparison, i), duration(c.seconds), c.span, iterations);
   }
   print_row(row_head(comparison, kBand, kBand), "-", comparison.band_span, "");
   if (has_iterations) {
@@ -188,7 +174,7 @@ struct KernelColumns {
 };
 
 /// Prints the table, with as many kernels side by side as fit into 100 columns.
-void print_columns(const Console& console, const Comparison& comparison, const KernelColumns& table) {
+void print_columns(const Console& console, const ComparisonReport& comparison, const KernelColumns& table) {
   constexpr std::size_t kColumns = 100;
   const std::size_t kernels = comparison.kernels_run.size();
   const std::size_t left = title_row(comparison).size();
@@ -214,15 +200,14 @@ void print_columns(const Console& console, const Comparison& comparison, const K
   }
 }
 
-std::vector<std::string> row_heads(const Comparison& comparison) {
+std::vector<std::string> row_heads(const ComparisonReport& comparison) {
   std::vector<std::string> rows;
   rows.reserve(comparison.orders.size() + 1);
-  for (const ComparedOrder& c : comparison.orders)
-    rows.push_back(row_head(comparison, c.vertices, c.elements));
+  for (std::size_t i = 0; i < comparison.orders.size(); ++i) rows.push_back(row_head(comparison, i));
   return rows;
 }
 
-void print_reuse(Console& console, const Comparison& comparison) {
+void print_reuse(Console& console, const ComparisonReport& comparison) {
   if (!comparison.orders.front().reuse) {
     console.warn("not shown, to save time on a large mesh: cache misses; --cache this predicts them");
     return;
@@ -235,7 +220,7 @@ void print_reuse(Console& console, const Comparison& comparison) {
   print_columns(console, comparison, {row_heads(comparison), reuse_header(comparison.caches), cells, {}});
 }
 
-void print_kernels(const Console& console, const Comparison& comparison, const KernelTable& table) {
+void print_kernels(const Console& console, const ComparisonReport& comparison, const KernelTable& table) {
   console.print(
       "\n{} on {} thread{}: best milliseconds, speedup, time divided by the band's",
       comparison.is_matrix() ? "Products" : fmt::format("Kernels ({})", to_string(comparison.kernel_set)),
@@ -273,7 +258,7 @@ nlohmann::ordered_json kernels_json(const OrderTimes& times, const OrderTimes& b
 
 /// Adds "kernels" for one thread, and "parallel_kernels" for several.
 template <class TimesOf>
-void add_kernels(nlohmann::ordered_json& to, const Comparison& comparison, TimesOf times_of) {
+void add_kernels(nlohmann::ordered_json& to, const ComparisonReport& comparison, TimesOf times_of) {
   for (const KernelTable& table : comparison.kernels) {
     to[table.threads == 1 ? "kernels" : "parallel_kernels"] =
         kernels_json(times_of(table), table.band, comparison.kernels_run);
@@ -282,15 +267,15 @@ void add_kernels(nlohmann::ordered_json& to, const Comparison& comparison, Times
 
 }  // namespace
 
-void print_comparison(const Console& console, const Comparison& comparison) {
+void print_comparison(const Console& console, const ComparisonReport& comparison) {
   const Advice advice = advice_of(comparison);
   const Workload told = told_by_kernels(advice, comparison.workload);
+  const std::string sentence = sentence_on(comparison, advice, told);
   console.print("{}: {}", comparison.file,
-                advice.candidates.empty() ? "--methods names no order but the file's own"
-                                          : comparison_in_words(advice, told));
+                sentence.empty() ? "--methods names no order but the file's own" : sentence);
   if (const std::optional<std::size_t> best = winner_for(told, advice))
     print_line_for(console, advice.candidates[*best], advice.is_matrix, comparison.file);
-  for (const ComparedOrder& c : comparison.orders) {
+  for (const ComparedMeshOrder& c : comparison.orders) {
     const MethodChoice& taken = c.order.vertices.method;
     if (!taken.reason.empty()) console.print("auto takes {}: {}", taken.name, taken.reason);
   }
@@ -304,7 +289,7 @@ void print_comparison(const Console& console, const Comparison& comparison) {
                 kBand, comparison.is_matrix() ? "matrix" : "mesh");
 }
 
-void print_comparison_details(Console& console, const Comparison& comparison) {
+void print_comparison_details(Console& console, const ComparisonReport& comparison) {
   console.print("\n{}", comparison.size);
   print_quality(console, comparison);
   print_reuse(console, comparison);
@@ -315,13 +300,13 @@ void print_comparison_details(Console& console, const Comparison& comparison) {
   }
 }
 
-nlohmann::ordered_json to_json(const Comparison& comparison) {
+nlohmann::ordered_json to_json(const ComparisonReport& comparison) {
   auto methods = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < comparison.orders.size(); ++i) {
-    const ComparedOrder& c = comparison.orders[i];
+    const ComparedMeshOrder& c = comparison.orders[i];
     nlohmann::ordered_json method{
-        {"vertices", c.vertices},
-        {"elements", c.elements},
+        {"vertices", c.asked.vertices},
+        {"elements", c.asked.elements},
         {"taken", {{"vertices", c.order.vertices.method.name}, {"elements", c.order.cells.method.name}}},
         {"seconds", c.seconds},
         {"edge_span", to_json(c.span)},
@@ -330,8 +315,8 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
       method["iterations"] = {{"incomplete_cholesky", c.iterations->incomplete_cholesky},
                               {"gauss_seidel", c.iterations->gauss_seidel}};
     }
-    for (std::size_t k = 0; k < c.gpu.size(); ++k)
-      method["gpu"][std::string(to_string(comparison.gpu_layouts[k]))] = to_json(c.gpu[k]);
+    for (std::size_t k = 0; k < comparison.gpu_layouts.size(); ++k)
+      method["gpu"][std::string(to_string(comparison.gpu_layouts[k]))] = to_json(comparison.gpu[i][k]);
     if (c.reuse) method["reuse"] = to_json(*c.reuse, comparison.caches, comparison.kernels_run);
     add_kernels(method, comparison,
                 [&](const KernelTable& table) -> const OrderTimes& { return table.orders[i]; });
@@ -339,15 +324,20 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
       if (table.threads > 1) method["redundancy"] = table.redundancy[i];
     }
     methods.push_back(method);
+    if (i > 0 || !comparison.auto_keeps) continue;
+    method["vertices"] = comparison.auto_keeps->vertices;  // an entry for each name of the one order
+    method["elements"] = comparison.auto_keeps->elements;
+    methods.push_back(method);
   }
   nlohmann::ordered_json band{{"vertices", kBand}, {"edge_span", to_json(comparison.band_span)}};
   add_kernels(band, comparison, [&](const KernelTable& table) -> const OrderTimes& { return table.band; });
   const Advice advice = advice_of(comparison);
   const Workload told = told_by_kernels(advice, comparison.workload);
   nlohmann::ordered_json verdict{{"sentence", nullptr}, {"best", nullptr}, {"factor", 1}};
-  if (!advice.candidates.empty()) verdict["sentence"] = comparison_in_words(advice, told);
+  if (std::string sentence = sentence_on(comparison, advice, told); !sentence.empty())
+    verdict["sentence"] = std::move(sentence);
   if (const std::optional<std::size_t> best = winner_for(told, advice)) {
-    verdict["best"] = *best + 1;
+    verdict["best"] = *best + (comparison.auto_keeps ? 2 : 1);
     verdict["factor"] = factor_for(told, advice, *best);
   }
   auto steadiness = nlohmann::ordered_json::array();

@@ -17,7 +17,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <span>
-#include <utility>
 
 namespace meshorder::command {
 namespace {

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "command.hpp"
 #include "console.hpp"
-#include "ordering/method.hpp"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

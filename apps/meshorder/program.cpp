@@ -21,9 +21,7 @@
 #include <exception>
 #include <new>
 #include <sstream>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace meshorder::command {
 namespace {

@@ -20,7 +20,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <new>
-#include <vector>
 #endif
 
 namespace meshorder::command {

@@ -25,11 +25,6 @@ std::string count_cell(Offset count) { return fmt::format("{:>{}}", short_count(
 
 }  // namespace
 
-bool is_quick_to_predict(const Mesh& mesh) {
-  constexpr Offset kMost = 2'000'000;
-  return cut_into_simplices(mesh).size() <= kMost;
-}
-
 nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches,
                                std::span<const Kernel> kernels) {
   nlohmann::ordered_json result;

@@ -12,11 +12,6 @@
 
 namespace meshorder::command {
 
-/// Returns whether the mesh has at most two million simplices. Misses are then predicted without being
-/// requested, from all cache lines: this takes a few seconds, and 13 bytes for each line that a kernel
-/// touches.
-bool is_quick_to_predict(const Mesh& mesh);
-
 /// Returns {"spmv": {"accesses", "misses": […], "jumps": […], "mean_log2"}, …} for these kernels, which are
 /// the first of kKernels; misses and jumps by level.
 nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches,

@@ -11,12 +11,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace meshorder::command {
 namespace {
@@ -226,7 +223,7 @@ class Trial {
     }
   }
 
-  [[nodiscard]] bool is_there(const OrderNames& methods) const {
+  [[nodiscard]] bool is_there(const MeshMethods& methods) const {
     return std::any_of(report_.orders.begin(), report_.orders.end(), [&](const TriedOrder& order) {
       return order.methods.vertices == methods.vertices && order.methods.elements == methods.elements;
     });

@@ -76,7 +76,7 @@ class TriedMesh final : public TrialSubject {
   }
 
   void check_order(const std::string& name) const override {
-    const OrderNames methods = order_named(name);
+    const MeshMethods methods = order_named(name);
     if (name == "auto" || (method_named(vertex_methods(), methods.vertices) &&
                            method_named(element_methods(), methods.elements))) {
       return;

@@ -18,7 +18,7 @@ namespace meshorder::command {
 /// An order in which a program was run. The first one is the mesh's own.
 struct TriedOrder {
   std::string name;             ///< "original", "rcm", "hilbert/hilbert"
-  OrderNames methods;           ///< for the options of `order`
+  MeshMethods methods;          ///< for the options of `order`
   bool by_auto = false;         ///< `auto` chose it
   std::string made_by{};        ///< the command that makes it
   double order_seconds = 0;     ///< seconds of that command, for a mesh with reading and writing

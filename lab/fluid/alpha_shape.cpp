@@ -4,7 +4,6 @@
 #include "base/parallel.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace meshorder {

@@ -5,7 +5,6 @@
 #include "kernels/plain.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace meshorder {

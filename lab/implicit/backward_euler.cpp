@@ -6,7 +6,6 @@
 #include "kernels/half_block_csr.hpp"
 #include "kernels/positions.hpp"
 #include "kernels/spmv.hpp"
-#include "lab/linear/cg/solve.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <optional>
 #include <system_error>
 
 namespace meshorder {

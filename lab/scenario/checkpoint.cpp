@@ -6,7 +6,6 @@
 
 #include "io/stream/output_file.hpp"
 #include "io/stream/scanner.hpp"
-#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 #include <zlib.h>

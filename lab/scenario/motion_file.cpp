@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <string>
 #include <string_view>
 #include <utility>
 

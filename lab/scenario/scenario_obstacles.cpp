@@ -2,7 +2,6 @@
 #include "lab/scenario/scenario_obstacles.hpp"
 
 #include "io/format.hpp"
-#include "kernels/simplices.hpp"
 #include <meshorder/error.hpp>
 
 #include <array>

@@ -8,7 +8,6 @@
 #include "lab/scenario/vertex_choice.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/groups.hpp"
-#include "mesh/reorder.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

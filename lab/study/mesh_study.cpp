@@ -4,7 +4,6 @@
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "mesh/graphs.hpp"
-#include "mesh/reorder.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/cost_model.hpp"
@@ -13,7 +12,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <memory>
 #include <utility>
 
 namespace meshorder {
@@ -41,14 +39,6 @@ double best_seconds(tbb::task_arena& threads, Prepare prepare, Call call) {
   return best;
 }
 
-/// Makes the mesh's kernels in one order.
-std::unique_ptr<KernelBench> bench_of(const Mesh& mesh, const CsrGraph& graph, const MeshOrder& order) {
-  Mesh ordered = mesh;
-  apply_reordering(ordered, order);
-  return prepare_kernels(KernelSet::plain, ordered,
-                         renumbered(graph, order.vertices.permutation.old_to_new()));
-}
-
 Mesh points_and_cells(const Mesh& mesh) {
   Mesh result;
   result.points = mesh.points;
@@ -64,10 +54,11 @@ class MeshStudy {
         mesh_(points_and_cells(mesh)),
         threads_(options.threads > 0 ? options.threads : tbb::task_arena::automatic),
         graph_seconds_(best_seconds(
-            threads_, [] {}, [&] { graph_ = vertex_graph(mesh_); })) {
+            threads_, [] {}, [&] { graph_ = vertex_graph(mesh_); })),
+        input_(mesh_, graph_) {
     MeshRecord& record = result_.record;
     record.vertices = mesh_.vertex_count();
-    record.tetrahedra = cut_into_simplices(mesh_).size();
+    record.tetrahedra = input_.simplices().size();
     record.edges = graph_.edge_count();
     record.span_bin = span_bin_width(record.vertices);
     record.hierarchies = options.hierarchies.empty() ? hierarchies_of_studies() : options.hierarchies;
@@ -88,7 +79,8 @@ class MeshStudy {
 
   void time_kernels() {
     const Timings timings = time_orders(
-        index_size(result_.orders), [&](Index i) { return bench_of(mesh_, graph_, result_.orders[i]); },
+        index_size(result_.orders),
+        [&](Index i) { return prepare_kernels(KernelSet::plain, input_.moved(result_.orders[i])); },
         options_.timing);
     result_.steadiness = timings.steadiness;
     for (std::size_t i = 0; i < timings.orders.size(); ++i) {
@@ -118,8 +110,7 @@ class MeshStudy {
   void simulate_caches(const MeshOrder& order, MeshOrderRecord& record) const {
     const std::vector<NamedCaches>& hierarchies = result_.record.hierarchies;
     const int halvings = result_.record.tetrahedra > kMostExact ? halvings_for(result_.record.tetrahedra) : 0;
-    const KernelReuse reuse =
-        reuse_of_kernels(mesh_, graph_, order.vertices.permutation, order.cells.permutation, halvings);
+    const KernelReuse reuse = reuse_of_kernels(input_.moved(order), halvings);
     const KernelMilliseconds predicted = predicted_ms(reuse, hierarchies.front().caches);
     for (std::size_t k = 0; k < kernels_of(mesh_).size(); ++k) {
       KernelRecord& kernel = record.kernels[k];
@@ -135,6 +126,7 @@ class MeshStudy {
   CsrGraph graph_;
   tbb::task_arena threads_;
   double graph_seconds_;
+  KernelInput input_;
   OrderedMesh result_;
 };
 

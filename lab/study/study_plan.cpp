@@ -2,7 +2,6 @@
 #include "lab/study/study_plan.hpp"
 
 #include "base/text.hpp"
-#include "ordering/method.hpp"
 #include <meshorder/error.hpp>
 
 #include <cmath>

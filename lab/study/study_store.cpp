@@ -5,7 +5,6 @@
 #include "io/npy.hpp"
 #include "io/stream/output_place.hpp"
 #include "io/stream/output_set.hpp"
-#include "lab/study/folder.hpp"
 #include "lab/study/results_json.hpp"
 #include "lab/study/statistics.hpp"
 #include "lab/support/machine.hpp"

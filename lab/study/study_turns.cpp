@@ -1,10 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/study/study_turns.hpp"
 
-#include "lab/study/folder.hpp"
 #include <meshorder/error.hpp>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>

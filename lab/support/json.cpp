@@ -4,7 +4,6 @@
 #include "io/stream/output_file.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,15 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/parallel.hpp"
 
-#include <meshorder/error.hpp>
-
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <cstddef>
-#include <utility>
 
 namespace meshorder {
 namespace {

@@ -1,13 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 
-#include <algorithm>
-#include <cctype>
-#include <cstddef>
 #include <cstdint>
 #include <numeric>
-#include <string>
-#include <string_view>
 
 namespace meshorder {
 namespace {

@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <numeric>
-#include <string>
 #include <utility>
 
 namespace meshorder {

@@ -11,7 +11,6 @@
 #include <numeric>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace meshorder {
 namespace {

@@ -9,7 +9,6 @@
 #include <array>
 #include <cstddef>
 #include <numeric>
-#include <span>
 #include <string>
 
 namespace meshorder {

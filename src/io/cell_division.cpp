@@ -5,7 +5,6 @@
 #include "io/labels.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <tuple>

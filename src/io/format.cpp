@@ -7,16 +7,13 @@
 #include "io/stream/gzip.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/ucd/ucd.hpp"
-#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <string>
 #include <system_error>
-#include <vector>
 
 namespace meshorder {
 namespace {

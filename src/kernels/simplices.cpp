@@ -48,7 +48,7 @@ Matrix inverse_of_upper_triangular(int dimension, const Matrix& m) {
 
 }  // namespace
 
-RestShapes rest_shapes(const Simplices& simplices, std::span<const Point> points) {
+RestShapes rest_shapes(SimplicesRef simplices, std::span<const Point> points) {
   // heights below this fraction of the longest edge are rounding errors
   constexpr double kFlat = 1e-12;
   constexpr std::array<double, 4> kFactorial{1, 1, 2, 6};

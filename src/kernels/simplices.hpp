@@ -43,6 +43,6 @@ struct RestShapes {
 };
 
 /// Returns the rest shapes of the simplices at the given points. O(simplices).
-RestShapes rest_shapes(const Simplices& simplices, std::span<const Point> points);
+RestShapes rest_shapes(SimplicesRef simplices, std::span<const Point> points);
 
 }  // namespace meshorder

@@ -14,11 +14,9 @@
 #include <meshorder/error.hpp>
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <span>
 #include <string>
-#include <utility>
 
 namespace meshorder {
 namespace {

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/stored_matrix.hpp"
 
-#include "graph/csr_graph.hpp"
 #include "graph/examine.hpp"
 #include <meshorder/error.hpp>
 
@@ -12,8 +11,6 @@
 #include <cstdlib>
 #include <memory>
 #include <numeric>
-#include <span>
-#include <string>
 #include <utility>
 
 namespace meshorder {

@@ -5,7 +5,6 @@
 #include "graph/vertex_sample.hpp"
 #include <meshorder/error.hpp>
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "metrics/reuse_sample.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

@@ -7,12 +7,9 @@
 #include "ordering/fronts.hpp"
 #include <meshorder/error.hpp>
 
-#include <algorithm>
 #include <array>
-#include <functional>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace meshorder {
 namespace {

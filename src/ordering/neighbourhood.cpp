@@ -8,14 +8,12 @@
 #include "ordering/all_methods.hpp"
 #include "ordering/grouped.hpp"
 #include "ordering/space_filling.hpp"
-#include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -14,7 +14,6 @@
 #include <meshorder/error.hpp>
 #include <meshorder/order.hpp>
 
-#include <limits>
 #include <string>
 #include <utility>
 

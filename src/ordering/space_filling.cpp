@@ -4,12 +4,10 @@
 #include "ordering/space_filling.hpp"
 
 #include "base/parallel.hpp"
-#include "base/point.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/sorted.hpp"
 #include <meshorder/error.hpp>
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <string>

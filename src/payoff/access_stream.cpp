@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace meshorder {
 
@@ -145,10 +144,6 @@ struct PolledSample {
   }
 };
 
-}  // namespace
-
-namespace {
-
 Reuse followed(const AccessStream& stream, Kernel kernel, int halvings) {
   // a product gathers from few lines and is fast to simulate: two halvings fewer
   constexpr int kOfProduct = 2;
@@ -191,13 +186,6 @@ KernelReuse reuse_of_kernels(const EntryPattern& pattern, int halvings) {
   KernelReuse result;
   result[static_cast<std::size_t>(Kernel::spmv)] = reuse_of_product(pattern, halvings);
   return result;
-}
-
-KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
-                             const Permutation& cells, int halvings) {
-  if (stored_matrix(mesh) != nullptr) return reuse_of_kernels(moved(vertices, entry_pattern(mesh)), halvings);
-  return reuse_of_kernels(renumbered(graph, vertices.old_to_new()),
-                          CellSimplices(mesh).moved(vertices, cells), halvings);
 }
 
 }  // namespace meshorder

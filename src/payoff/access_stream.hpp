@@ -7,7 +7,6 @@
 #include "metrics/cache.hpp"
 #include "payoff/kernel_bench.hpp"
 #include <meshorder/mesh.hpp>
-#include <meshorder/permutation.hpp>
 
 #include <algorithm>
 #include <array>
@@ -311,9 +310,10 @@ KernelReuse reuse_of_kernels(const CsrGraph& graph, SimplicesRef simplices, int 
 /// Returns the reuse of the product with a matrix; the entries of other kernels are empty.
 KernelReuse reuse_of_kernels(const EntryPattern& pattern, int halvings = 0);
 
-/// Returns the reuse of all kernels of a mesh (see kernels_of) after its vertices and cells have been moved
-/// by these permutations. `graph` is the vertex graph of `mesh` before that.
-KernelReuse reuse_of_kernels(const Mesh& mesh, const CsrGraph& graph, const Permutation& vertices,
-                             const Permutation& cells, int halvings = 0);
+/// Returns the reuse of all kernels of a mesh or matrix (see kernels_of).
+inline KernelReuse reuse_of_kernels(const KernelInput& input, int halvings = 0) {
+  return input.is_matrix() ? reuse_of_kernels(input.pattern(), halvings)
+                           : reuse_of_kernels(input.graph(), input.simplices(), halvings);
+}
 
 }  // namespace meshorder

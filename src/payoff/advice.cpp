@@ -10,7 +10,6 @@
 #include "metrics/edge_span.hpp"
 #include "metrics/measures.hpp"
 #include "ordering/auto.hpp"
-#include "payoff/access_stream.hpp"
 #include "payoff/cost_model.hpp"
 #include "payoff/shared_work.hpp"
 #include <meshorder/error.hpp>
@@ -26,26 +25,9 @@
 namespace meshorder {
 namespace {
 
-/// A mesh in the order of a candidate.
-struct Moved {
-  Mesh mesh;  ///< points and cells, for kernels to be timed; none where times are only predicted
-  CsrGraph graph;
-  CellSimplices simplices;
-  EntryPattern pattern;  ///< of a matrix, where times are predicted
-};
-
-/// A mesh in one of the orders.
-struct Ordered {
-  const Mesh* mesh = nullptr;
-  const CsrGraph* graph = nullptr;
-  const CellSimplices* simplices = nullptr;
-  const EntryPattern* pattern = nullptr;    ///< null if the mesh is no matrix
-  std::unique_ptr<const Moved> moved = {};  ///< owns what the pointers refer to; null: the mesh as it is
-};
-
 /// The orders of all candidates, each once.
 struct Orders {
-  std::vector<Ordered> all;                ///< the first one is the mesh as it is
+  std::vector<KernelInput> all;            ///< the first one is the mesh as it is
   std::vector<std::size_t> of_candidates;  ///< the place in `all` of each candidate's order
 };
 
@@ -57,18 +39,18 @@ void for_candidates(Advice& advice, const Orders& orders, const Call& call) {
     call(advice.candidates[i], orders.of_candidates[i]);
 }
 
-RunReuse reuse_in(const Ordered& order, Kernel kernel, int halvings) {
-  return order.pattern != nullptr ? reuse_of_product(*order.pattern, halvings)
-                                  : reuse_of(kernel, *order.graph, *order.simplices, halvings);
+RunReuse reuse_in(const KernelInput& order, Kernel kernel, int halvings) {
+  return order.is_matrix() ? reuse_of_product(order.pattern(), halvings)
+                           : reuse_of(kernel, order.graph(), order.simplices(), halvings);
 }
 
 /// Returns the predictions for all orders. Threads take the pairs of a kernel and an order in turns.
-std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
+std::vector<KernelMilliseconds> predictions(const std::vector<KernelInput>& orders,
                                             const AdviceOptions& options) {
   report("predict");
   const Caches& caches = options.caches.level_bytes.empty() ? options.machine.model.caches : options.caches;
-  const int halvings = options.halvings.value_or(halvings_for(orders.front().simplices->size()));
-  const bool is_matrix = orders.front().pattern != nullptr;
+  const int halvings = options.halvings.value_or(halvings_for(orders.front().simplices().size()));
+  const bool is_matrix = orders.front().is_matrix();
   std::vector<KernelMilliseconds> result(orders.size());
   take_turns((is_matrix ? 1 : index_size(kKernels)) * index_size(orders), [&](Index turn) {
     const Index i = turn % index_size(orders);
@@ -76,7 +58,7 @@ std::vector<KernelMilliseconds> predictions(const std::vector<Ordered>& orders,
     const RunReuse reuse = i == 0 && options.reuse_as_is ? (*options.reuse_as_is)[k]
                                                          : reuse_in(orders[i], kKernels[k], halvings);
     result[i][k] = predicted_ms(reuse, caches, options.machine.model) *
-                   times_computed(kKernels[k], *orders[i].graph, *orders[i].simplices, options.threads);
+                   times_computed(kKernels[k], orders[i].graph(), orders[i].simplices(), options.threads);
   });
   return result;
 }
@@ -86,11 +68,11 @@ TimingOptions for_seconds(double seconds) {
 }
 
 /// Times all orders together, in rounds that end within `options.measure_within` seconds on the stopwatch.
-Timings measured(const std::vector<Ordered>& orders, const AdviceOptions& options,
+Timings measured(const std::vector<KernelInput>& orders, const AdviceOptions& options,
                  const Stopwatch& stopwatch) {
   std::vector<std::unique_ptr<KernelBench>> benches(orders.size());
   for_each_chunk(index_size(orders), 1, [&](Index i, Index /*begin*/, Index /*end*/) {
-    benches[i] = prepare_kernels(options.kernels, *orders[i].mesh, *orders[i].graph, options.threads);
+    benches[i] = prepare_kernels(options.kernels, orders[i], options.threads);
   });
   std::vector<KernelBench*> pointers;
   pointers.reserve(benches.size());
@@ -99,11 +81,9 @@ Timings measured(const std::vector<Ordered>& orders, const AdviceOptions& option
 }
 
 /// Times the orders with the race's timer, for half a second each.
-Timings raced(const std::vector<Ordered>& orders, const AdviceOptions& options) {
+Timings raced(const std::vector<KernelInput>& orders, const AdviceOptions& options) {
   constexpr double kSeconds = 0.5;
-  const auto prepare = [&](Index i) {
-    return prepare_kernels(options.kernels, *orders[i].mesh, *orders[i].graph, options.threads);
-  };
+  const auto prepare = [&](Index i) { return prepare_kernels(options.kernels, orders[i], options.threads); };
   return options.race_timer(index_size(orders), prepare,
                             for_seconds(kSeconds * static_cast<double>(orders.size())));
 }
@@ -169,7 +149,7 @@ void keep_best(Advice& advice, Orders& orders, Workload workload, std::size_t mo
   }
   advice.candidates.resize(most);
   order_of.resize(most);
-  std::vector<Ordered> kept;
+  std::vector<KernelInput> kept;
   kept.push_back(std::move(orders.all.front()));
   for (std::size_t& place : order_of) {
     if (place == 0) continue;
@@ -198,36 +178,9 @@ bool is_race(const AdviceOptions& options) { return options.race_of > 0 && optio
 
 bool measures(const AdviceOptions& options) { return is_race(options) || options.measure_within; }
 
-/// Returns a mesh in an order, without its graph and pattern. `as_is`: the mesh in its own order.
-std::unique_ptr<Moved> moved_by(const MeshOrder& order, const Ordered& as_is, const AdviceOptions& options) {
-  auto moved = std::make_unique<Moved>();
-  if (measures(options)) {
-    moved->mesh.points = as_is.mesh->points;
-    moved->mesh.cells = as_is.mesh->cells;
-    moved->mesh.format_metadata = as_is.mesh->format_metadata;
-    apply_reordering(moved->mesh, order);
-    moved->simplices = CellSimplices(moved->mesh);
-  } else {
-    moved->simplices = as_is.simplices->moved(order.vertices.permutation, order.cells.permutation);
-  }
-  return moved;
-}
-
-/// Adds its graph, and the pattern of a matrix whose times are to be predicted.
-Ordered completed(std::unique_ptr<Moved> moved, const Permutation& vertices, const Ordered& as_is,
-                  const AdviceOptions& options) {
-  moved->graph = renumbered(*as_is.graph, vertices.old_to_new());
-  const bool is_matrix = as_is.pattern != nullptr;
-  if (is_matrix && options.predict) moved->pattern = meshorder::moved(vertices, *as_is.pattern);
-  const Moved& in_order = *moved;
-  return {&in_order.mesh, &in_order.graph, &in_order.simplices, is_matrix ? &in_order.pattern : nullptr,
-          std::move(moved)};
-}
-
 /// Computes the orders that are asked for, and adds a candidate for each that differs from the others.
-void add_candidates(Advice& advice, Orders& orders, const AdviceOptions& options) {
-  const Mesh& mesh = *orders.all.front().mesh;
-  const CsrGraph& graph = *orders.all.front().graph;
+void add_candidates(Advice& advice, Orders& orders, const Mesh& mesh, const AdviceOptions& options) {
+  const CsrGraph& graph = orders.all.front().graph();
   for (const ReorderOptions& reordering : asked_for(mesh, graph, options)) {
     const Stopwatch stopwatch;
     const MeshOrder order = compute_reordering(mesh, graph, reordering);
@@ -241,10 +194,9 @@ void add_candidates(Advice& advice, Orders& orders, const AdviceOptions& options
       orders.of_candidates.push_back(0);
     } else {
       orders.of_candidates.push_back(orders.all.size());
-      std::unique_ptr<Moved> moved = moved_by(order, orders.all.front(), options);
-      candidate.order_seconds = options.graph_seconds + stopwatch.seconds();
-      orders.all.push_back(
-          completed(std::move(moved), order.vertices.permutation, orders.all.front(), options));
+      const double seconds = options.graph_seconds + stopwatch.seconds();
+      orders.all.push_back(orders.all.front().moved(order));
+      candidate.order_seconds = seconds + orders.all.back().seconds_to_move();
     }
     advice.candidates.push_back(std::move(candidate));
   }
@@ -254,9 +206,10 @@ void add_candidates(Advice& advice, Orders& orders, const AdviceOptions& options
 void describe(Advice& advice, const Orders& orders) {
   std::vector<Candidate> described(orders.all.size());
   take_turns(index_size(orders.all), [&](Index i) {
-    const Permutation as_ordered = Permutation::identity(orders.all[i].graph->size());
-    described[i].spans = quality_of(*orders.all[i].graph, as_ordered);
-    described[i].pattern = pattern_of(*orders.all[i].graph, as_ordered, kPatternSide);
+    const CsrGraph& graph = orders.all[i].graph();
+    const Permutation as_ordered = Permutation::identity(graph.size());
+    described[i].spans = quality_of(graph, as_ordered);
+    described[i].pattern = pattern_of(graph, as_ordered, kPatternSide);
   });
   for_candidates(advice, orders, [&](Candidate& candidate, std::size_t order) {
     candidate.spans = described[order].spans;
@@ -315,13 +268,11 @@ Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& opti
   Advice advice;
   advice.threads = options.threads;
   advice.kernel_set = options.kernels;
-  advice.is_matrix = stored_matrix(mesh) != nullptr;
   advice.as_is.vertices.name = advice.as_is.elements.name = "original";
-  const CellSimplices simplices(mesh);
-  const EntryPattern pattern = advice.is_matrix && options.predict ? entry_pattern(mesh) : EntryPattern{};
   Orders orders;
-  orders.all.push_back({&mesh, &graph, &simplices, advice.is_matrix ? &pattern : nullptr});
-  add_candidates(advice, orders, options);
+  orders.all.emplace_back(mesh, graph);
+  advice.is_matrix = orders.all.front().is_matrix();
+  add_candidates(advice, orders, mesh, options);
   if (options.describe) describe(advice, orders);
   if (options.predict) {
     advice.machine = options.machine.in_words();

@@ -1,13 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/band.hpp"
 
-#include "kernels/simplices.hpp"
-#include <meshorder/error.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 #include <vector>
 
 namespace meshorder {
@@ -23,7 +19,7 @@ Index joined_vertices(const CsrGraph& graph) {
 }
 
 /// Returns the number of different vertices that are corners of simplices.
-Index corner_vertices(const Simplices& simplices, Index vertices) {
+Index corner_vertices(SimplicesRef simplices, Index vertices) {
   std::vector<bool> seen(static_cast<std::size_t>(vertices), false);
   for (const Index v : simplices.vertices) seen[v] = true;
   return static_cast<Index>(std::count(seen.begin(), seen.end(), true));
@@ -117,13 +113,8 @@ std::vector<Point> helix(Index n) {
 
 }  // namespace
 
-Band ideal_band(const Mesh& mesh, const CsrGraph& graph) {
-  const Index n = mesh.vertex_count();
-  if (graph.size() != n) {
-    throw InvalidArgument("ideal_band: a graph of " + std::to_string(graph.size()) +
-                          " vertices for a mesh of " + std::to_string(n));
-  }
-  const Simplices simplices = cut_into_simplices(mesh);
+Band ideal_band(SimplicesRef simplices, const CsrGraph& graph) {
+  const Index n = graph.size();
   const int d = simplices.dimension;
   const Index corners = corner_vertices(simplices, n);
   Band band;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "graph/csr_graph.hpp"
+#include "mesh/simplices.hpp"
 #include "mesh/stored_matrix.hpp"
 #include <meshorder/mesh.hpp>
 
@@ -10,20 +11,22 @@ namespace meshorder {
 /// A synthetic mesh of the same size whose natural order streams: its kernel times are a reference.
 struct Band {
   Mesh mesh;
-  CsrGraph graph;  ///< to be passed to KernelBench as the mesh's vertex graph
+  CsrGraph graph;  ///< to be passed to KernelInput as the mesh's vertex graph
 };
 
-/// Returns the ideal streaming problem of a mesh's size, with as many vertices, edges and simplices as
-/// `mesh`. Vertex i is joined to i ± 1 … i ± k. Each simplex has its vertices among i … i + k, ascending; all
+/// Returns the ideal streaming problem of a mesh's size, with as many vertices, edges and simplices as the
+/// mesh. Vertex i is joined to i ± 1 … i ± k. Each simplex has its vertices among i … i + k, ascending; all
 /// combinations occur, so that simplices use every edge as those of a mesh do. Every kernel reads and writes
-/// memory front to back and finds reused data in the first cache. It is a reference for the orders of `mesh`,
-/// which cannot be that good for a body of two or three dimensions.
+/// memory front to back and finds reused data in the first cache. It is a reference for the orders of the
+/// mesh, which cannot be that good for a body of two or three dimensions.
 ///
-/// `graph` is the vertex graph of `mesh`. The counts are exact, except that a degenerate mesh gets the edges
-/// that its simplices need. As many vertices as in `mesh` have no neighbours; they come last. The points lie
-/// on a helix, so that no simplex is flat. O(n + edges + cells). Throws InvalidArgument if the graph has
-/// another number of vertices than the mesh.
-Band ideal_band(const Mesh& mesh, const CsrGraph& graph);
+/// The counts are exact, except that a degenerate mesh gets the edges that its simplices need. As many
+/// vertices as in the mesh have no neighbours; they come last. The points lie on a helix, so that no simplex
+/// is flat. O(n + edges + cells).
+///
+/// @param simplices  that the mesh is cut into
+/// @param graph      its vertex graph
+Band ideal_band(SimplicesRef simplices, const CsrGraph& graph);
 
 /// Returns a pattern with as many rows and entries as `pattern`. The entries are spread evenly over the rows
 /// and are consecutive columns around the diagonal: a reference for products. O(entries).

@@ -10,11 +10,9 @@
 #include "mesh/graphs.hpp"
 #include "mesh/simplices.hpp"
 #include "payoff/calibration_lattices.hpp"
-#include "payoff/calibration_store.hpp"
 #include "payoff/kernel_timing.hpp"
 #include "payoff/least_squares.hpp"
 #include "payoff/machine.hpp"
-#include "payoff/memory_probe.hpp"
 #include "payoff/shared_work.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +25,6 @@
 #include <map>
 #include <memory>
 #include <numeric>
-#include <span>
 #include <utility>
 
 namespace meshorder {

@@ -1,18 +1,14 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "payoff/kernel_bench.hpp"
 
-#include "mesh/stored_matrix.hpp"
 #include "payoff/plain_bench.hpp"
 #include "payoff/product_bench.hpp"
 #include "payoff/tuned_bench.hpp"
 #include <meshorder/error.hpp>
-#include <meshorder/payoff.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
-#include <string_view>
 
 namespace meshorder {
 
@@ -21,22 +17,17 @@ std::span<const Kernel> kernels_of(const Mesh& mesh) {
   return kKernels;
 }
 
-std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mesh& mesh, const CsrGraph& graph,
-                                             int threads) {
-  if (graph.size() != mesh.vertex_count()) {
-    throw InvalidArgument("kernels: a graph of " + std::to_string(graph.size()) + " vertices for a mesh of " +
-                          std::to_string(mesh.vertex_count()));
-  }
+std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const KernelInput& input, int threads) {
   std::unique_ptr<KernelBench> bench;
-  if (stored_matrix(mesh) != nullptr) {
+  if (input.is_matrix()) {
     if (kernels == KernelSet::tuned) {
       throw InvalidArgument("kernels: the tuned ones are of meshes; of a matrix there is the plain product");
     }
-    bench = std::make_unique<ProductBench>(entry_pattern(mesh));
+    bench = std::make_unique<ProductBench>(input.pattern());
   } else if (kernels == KernelSet::plain) {
-    bench = std::make_unique<PlainBench>(mesh, graph);
+    bench = std::make_unique<PlainBench>(input);
   } else {
-    bench = std::make_unique<TunedBench>(mesh, graph);
+    bench = std::make_unique<TunedBench>(input);
   }
   bench->share(threads);
   return bench;

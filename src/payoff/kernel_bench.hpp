@@ -4,7 +4,7 @@
 #include "base/point.hpp"
 #include "base/polymorphic.hpp"
 #include "base/text.hpp"
-#include "graph/csr_graph.hpp"
+#include "payoff/kernel_input.hpp"
 #include <meshorder/mesh.hpp>
 #include <meshorder/payoff.hpp>
 
@@ -77,11 +77,16 @@ class KernelBench : public Polymorphic {
   [[nodiscard]] virtual double redundancy() const = 0;
 };
 
-/// Prepares the kernels of a mesh (see kernels_of): of a matrix the product with exactly its entries. `graph`
-/// is the mesh's vertex graph. O(size of the mesh · log degree). Throws InvalidArgument if the graph is of
-/// another mesh, and for tuned kernels of a matrix, which has no 3×3 blocks or elements that they work on.
-std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mesh& mesh, const CsrGraph& graph,
-                                             int threads = 1);
+/// Prepares the kernels of a mesh (see kernels_of): of a matrix the product with exactly its entries. Keeps
+/// no reference to the input. O(size of the mesh · log degree). Throws InvalidArgument for tuned kernels of a
+/// matrix, which has no 3×3 blocks or elements that they work on.
+std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const KernelInput& input, int threads = 1);
+
+/// The same for a mesh in its own order; throws as `KernelInput`, too.
+inline std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mesh& mesh,
+                                                    const CsrGraph& graph, int threads = 1) {
+  return prepare_kernels(kernels, KernelInput(mesh, graph), threads);
+}
 
 /// Returns the points, moved along every axis by waves of 2 % of the mesh's size and stretched by 3 %:
 /// strains of up to about 0.2 for any mesh. O(n).

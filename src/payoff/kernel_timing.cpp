@@ -5,7 +5,6 @@
 #include "base/memory.hpp"
 #include "base/run_scope.hpp"
 #include "base/stopwatch.hpp"
-#include "payoff/machine.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,6 @@
 #include <fstream>
 #include <map>
 #include <set>
-#include <string>
 
 namespace meshorder {
 namespace {

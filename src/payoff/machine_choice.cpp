@@ -7,9 +7,7 @@
 #include "payoff/machine.hpp"
 #include <meshorder/error.hpp>
 
-#include <algorithm>
 #include <cstdlib>
-#include <utility>
 #include <vector>
 
 namespace meshorder {

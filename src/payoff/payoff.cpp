@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
-#include "kernels/simplices.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "ordering/method.hpp"
@@ -10,8 +9,6 @@
 #include "payoff/kernel_bench.hpp"
 #include <meshorder/error.hpp>
 
-#include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>

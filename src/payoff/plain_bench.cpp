@@ -8,7 +8,6 @@
 #include <cmath>
 #include <span>
 #include <type_traits>
-#include <utility>
 
 namespace meshorder {
 namespace {
@@ -41,16 +40,18 @@ std::vector<double> coordinates(std::span<const Point> points) {
 
 }  // namespace
 
-PlainBench::PlainBench(const Mesh& mesh, const CsrGraph& graph) : positions_(coordinates(mesh.points)) {
-  Simplices simplices = cut_into_simplices(mesh);
-  corners_ = simplices.dimension + 1;
+PlainBench::PlainBench(const KernelInput& input)
+    : corners_(input.simplices().dimension + 1), positions_(coordinates(input.points())) {
+  const CsrGraph& graph = input.graph();
+  const std::span<const Point> points = input.points();
+  const std::span<const Index> simplices = input.simplices().vertices;
   all_.owned = {0, graph.size()};
-  if (corners_ > 1) all_.simplices = std::move(simplices.vertices);
+  if (corners_ > 1) all_.simplices.assign(simplices.begin(), simplices.end());
   starts_.reserve(static_cast<std::size_t>(graph.size()) + 1);
   columns_.reserve(graph.neighbours.size() + static_cast<std::size_t>(graph.size()));
   all_.ends.reserve(graph.neighbours.size());
   all_.lengths.reserve(graph.neighbours.size() / 2);
-  x_.reserve(mesh.points.size());
+  x_.reserve(points.size());
   starts_.push_back(0);
   for (Index v = 0; v < graph.size(); ++v) {
     const std::span<const Index> row = graph[v];
@@ -65,9 +66,9 @@ PlainBench::PlainBench(const Mesh& mesh, const CsrGraph& graph) : positions_(coo
     }
   }
   values_.resize(columns_.size());
-  positions_ = coordinates(displaced(mesh.points));
+  positions_ = coordinates(displaced(points));
   forces_.resize(positions_.size());
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) x_.push_back(positions_[3 * v] - mesh.points[v][0]);
+  for (std::size_t v = 0; v < points.size(); ++v) x_.push_back(positions_[3 * v] - points[v][0]);
   y_.resize(x_.size());
   // computes the matrix for spmv
   run(Kernel::assembly);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "kernels/plain.hpp"
-#include "mesh/simplices.hpp"
 #include "payoff/kernel_bench.hpp"
 
 #include <vector>
@@ -14,8 +13,7 @@ namespace meshorder {
 /// forces, 1 an entry for assembly.
 class PlainBench final : public KernelBench {
  public:
-  /// `graph` is the mesh's vertex graph.
-  PlainBench(const Mesh& mesh, const CsrGraph& graph);
+  explicit PlainBench(const KernelInput& input);
 
   void share(int threads) override;
   void run(Kernel kernel) override;

@@ -6,13 +6,8 @@
 #include "kernels/elasticity.hpp"
 #include "kernels/positions.hpp"
 #include "kernels/spmv.hpp"
-#include "mesh/graphs.hpp"
-#include <meshorder/error.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <string>
 #include <utility>
 
 namespace meshorder {
@@ -24,18 +19,18 @@ constexpr double kStiffness = 1e3;
 
 }  // namespace
 
-TunedBench::TunedBench(const Mesh& mesh, const CsrGraph& graph)
-    : matrix_(zero_block_csr(graph)),
-      rest_(rest_shapes(cut_into_simplices(mesh), mesh.points)),
+TunedBench::TunedBench(const KernelInput& input)
+    : matrix_(zero_block_csr(input.graph())),
+      rest_(rest_shapes(input.simplices(), input.points())),
       map_(assembly_map(rest_, matrix_)),
-      springs_(springs_on_edges(graph, mesh.points)),
-      forces_(padded_zeros(mesh.vertex_count())),
-      x_(3 * mesh.points.size(), 0.0),
-      y_(3 * mesh.points.size(), 0.0) {
-  const std::vector<Point> moved = displaced(mesh.points);
+      springs_(springs_on_edges(input.graph(), input.points())),
+      forces_(padded_zeros(index_size(input.points()))),
+      x_(3 * input.points().size(), 0.0),
+      y_(3 * input.points().size(), 0.0) {
+  const std::vector<Point> moved = displaced(input.points());
   positions_ = padded_positions(moved);
   for (std::size_t v = 0; v < moved.size(); ++v) {
-    for (std::size_t c = 0; c < 3; ++c) x_[3 * v + c] = moved[v][c] - mesh.points[v][c];
+    for (std::size_t c = 0; c < 3; ++c) x_[3 * v + c] = moved[v][c] - input.points()[v][c];
   }
   // computes the matrix for spmv
   run(Kernel::assembly);

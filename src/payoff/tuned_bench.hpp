@@ -13,8 +13,7 @@ namespace meshorder {
 /// 3 doubles a vertex for spmv, 4 for forces (see padded_positions), 9 a block for assembly.
 class TunedBench final : public KernelBench {
  public:
-  /// `graph` is the mesh's vertex graph.
-  TunedBench(const Mesh& mesh, const CsrGraph& graph);
+  explicit TunedBench(const KernelInput& input);
 
   void share(int threads) override;
   void run(Kernel kernel) override;

@@ -1,8 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/hierarchy.hpp"
 
-#include "graph/laplacian.hpp"
-#include "spectral/coarsening.hpp"
 #include "spectral/dense.hpp"
 #include "spectral/hiding.hpp"
 

@@ -2,7 +2,6 @@
 #include "spectral/lobpcg.hpp"
 
 #include "base/memory.hpp"
-#include "base/run_scope.hpp"
 #include "spectral/dense.hpp"
 
 #include <cmath>

@@ -182,9 +182,9 @@ def test_compare_for_people(command):
                       "0.1").stdout
     assert text.startswith(f"{made}: ") and "auto takes " in text
     rows = rows_of_compare(text)
-    named, [auto] = [name for name in rows if "auto" not in name], [name for name in rows if "auto" in name]
-    assert named == ["original", "rcm/original", "scrambled", "band"] and auto.endswith(" (auto)")
-    assert rows["original"] == [(1.0, mark) for _, mark in rows["original"]] and len(rows["original"]) == 5
+    assert list(rows) == ["original (auto)", "rcm/original", "scrambled", "band"]
+    own = rows["original (auto)"]
+    assert own == [(1.0, mark) for _, mark in own] and len(own) == 5
     for column in range(5):
         cells = [rows[name][column] for name in rows if name != "band"]
         assert max(number for number, _ in cells) == max(number for number, marked in cells if marked)
@@ -226,6 +226,20 @@ def test_the_auto_of_compare_is_what_order_makes(command):
         order = command.json("order", mesh, "-o", "again.node")
         [_, auto] = command.json("compare", mesh, "--methods", "auto", "--budget", "0.01")["methods"]
         assert auto["taken"] == {"vertices": order["vertices"]["method"], "elements": order["cells"]["method"]}
+
+
+def test_compare_shows_an_order_that_auto_keeps_in_one_row(command):
+    made = command.json("models", "make", "grid", "--size", "8")["models"][0]["path"]
+    command.ok("order", made, "-o", "ordered.node")
+    words = ["compare", "ordered.node", "--budget", "0.01", "--methods"]
+    shown = command.ok(*words, "auto,rcm").stdout.splitlines()
+    assert [line[:26].strip() for line in shown if line.startswith(("original ", "rcm "))] == ["original (auto)", "rcm"]
+    [own, auto, rcm] = command.json(*words, "auto,rcm")["methods"]
+    assert [order["vertices"] for order in (own, auto, rcm)] == ["original", "auto", "rcm"]
+    assert {**auto, "vertices": "original", "elements": "original"} == own, "timed once"
+    assert command.ok(*words, "auto,rcm", "--details").stdout.count("\noriginal (auto) ") == 6, "in all tables"
+    alone = command.json(*words, "auto")
+    assert (len(alone["methods"]), alone["verdict"]["sentence"]) == (2, "auto keeps the file's own order")
 
 
 def test_models_keys(command, tmp_path, monkeypatch):

@@ -338,7 +338,8 @@ TEST(ReuseOfKernels, OfAnOrderIsThatOfTheReorderedMesh) {
     Mesh ordered = mesh;
     apply_reordering(ordered, vertices, cells);
     const Prepared prepared(ordered);
-    EXPECT_EQ(reuse_of_kernels(mesh, vertex_graph(mesh), vertices, cells),
+    const CsrGraph graph = vertex_graph(mesh);
+    EXPECT_EQ(reuse_of_kernels(KernelInput(mesh, graph).moved({{vertices}, {cells}})),
               reuse_of_kernels(prepared.graph, prepared.simplices));
   }
 }

@@ -312,7 +312,7 @@ TEST(ElasticLaws, RefuseWhatDoesNotFit) {
 
 TEST(ElasticLaws, HaveNoForcesOnFlatSimplices) {
   const std::vector<Point> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 0}};
-  const RestShapes rest = rest_shapes({3, {0, 1, 2, 3, 0, 1, 1, 2}, {}}, points);
+  const RestShapes rest = rest_shapes(Simplices{3, {0, 1, 2, 3, 0, 1, 1, 2}, {}}, points);
   const AlignedVector<double> x =
       padded_positions(std::vector<Point>{{0, 0, 0}, {2, 0, 0}, {0, 1, 1}, {1, 5, 0}});
   for (const MaterialModel model :

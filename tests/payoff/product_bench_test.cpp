@@ -197,8 +197,7 @@ TEST(ReuseOfProduct, IsThatOfTheGraphWhereTheDiagonalIsComplete) {
   const RunReuse of_graph = reuse_of(Kernel::spmv, graph, {1, {}});
   EXPECT_EQ(reuse_of_product(entry_pattern(mesh)), of_graph);
   const Permutation order = some_order(3000);
-  const Permutation cells = Permutation::identity(mesh.cell_count());
-  const KernelReuse moved_reuse = reuse_of_kernels(mesh, graph, order, cells);
+  const KernelReuse moved_reuse = reuse_of_kernels(KernelInput(mesh, graph).moved({{order}, {}}));
   EXPECT_EQ(moved_reuse[0], reuse_of(Kernel::spmv, renumbered(graph, order.old_to_new()), {1, {}}));
   for (std::size_t k = 1; k < kKernels.size(); ++k) EXPECT_EQ(moved_reuse[k].all.accesses(), 0);
 }

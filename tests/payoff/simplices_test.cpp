@@ -197,7 +197,7 @@ TEST(RestShapes, InverseMakesTheRestMetricTheIdentity) {
 TEST(RestShapes, TurnTheFrameOfATetrahedronTheRightWay) {
   const std::vector<Point> points{{0, 0, 0}, {1, 0.2, 0}, {0.3, 1, 0}, {0.1, 0.2, 1}};
   // the same corners in both orientations
-  const RestShapes rest = rest_shapes({3, {0, 1, 2, 3, 0, 2, 1, 3}, {}}, points);
+  const RestShapes rest = rest_shapes(Simplices{3, {0, 1, 2, 3, 0, 2, 1, 3}, {}}, points);
   for (Offset s = 0; s < 2; ++s) {
     // the diagonal of the inverse is its determinant, 1 / (6 · volume with its sign)
     const double diagonal = rest.geometry[s] * rest.geometry[3 * kBatch + s] * rest.geometry[5 * kBatch + s];

@@ -74,7 +74,7 @@ TEST_P(StvkStiffness, EqualsTheDenseOneWithEveryInstructionSet) {
 
 TEST(StvkForcesOfABar, AreThoseOfUniaxialStretch) {
   const std::vector<Point> points{{0, 0, 0}, {2, 0, 0}};
-  const RestShapes rest = rest_shapes({1, {0, 1}, {}}, points);
+  const RestShapes rest = rest_shapes(Simplices{1, {0, 1}, {}}, points);
   const AlignedVector<double> stretched{0, 0, 0, 0, 3, 0, 0, 0};
   AlignedVector<double> forces(8, 0.0);
   add_elasticity(rest, kStvk, stretched, forces, nullptr);

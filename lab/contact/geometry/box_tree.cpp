@@ -1,9 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/geometry/box_tree.hpp"
 
-#include "base/point.hpp"
-
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/geometry/simplex_point.hpp"
 
-#include "base/point.hpp"
 #include "lab/contact/geometry/box_tree.hpp"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/search/body_surface.hpp"
 
-#include "base/point.hpp"
 #include "mesh/boundary.hpp"
 #include <meshorder/error.hpp>
 

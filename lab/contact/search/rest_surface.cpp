@@ -5,7 +5,6 @@
 #include "lab/contact/geometry/simplex_point.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace meshorder {
 namespace {

@@ -1,8 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/report/figures/figures.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
 

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <string_view>
 
 namespace meshorder {
 namespace fs = std::filesystem;

@@ -5,7 +5,6 @@
 #include "lab/report/findings/mesh_findings.hpp"
 #include "lab/report/findings/numbers_in_words.hpp"
 #include "lab/report/findings/paper.hpp"
-#include "lab/report/tables/tables.hpp"
 #include "lab/study/statistics.hpp"
 
 #include <fmt/format.h>

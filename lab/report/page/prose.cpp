@@ -4,7 +4,6 @@
 #include "base/text.hpp"
 #include "lab/report/tables/tables.hpp"
 
-#include <algorithm>
 #include <cstddef>
 
 namespace meshorder {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <new>
-#include <utility>
 
 namespace meshorder::distributed {
 namespace {

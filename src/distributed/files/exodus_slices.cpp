@@ -2,7 +2,6 @@
 #include "distributed/files/exodus_slices.hpp"
 
 #include "io/stream/file_path.hpp"
-#include "io/stream/gzip.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/vtk/vtk.hpp"
 #include "mesh/degenerate.hpp"
@@ -11,11 +10,8 @@
 #endif
 
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace meshorder::distributed {
 

@@ -3,10 +3,8 @@
 
 #include "cells/cell_arrays.hpp"
 #include "distributed/comm/halo.hpp"
-#include "distributed/comm/moved_rows.hpp"
 #include "distributed/comm/number_types.hpp"
 #include "distributed/files/file_rows.hpp"
-#include "distributed/files/shared_file.hpp"
 #include "distributed/files/vtkhdf_head.hpp"
 #include "distributed/files/vtu_head.hpp"
 #include "distributed/files/xdmf_head.hpp"

@@ -3,14 +3,12 @@
 
 #include "distributed/comm/halo.hpp"
 #include "distributed/comm/number_types.hpp"
-#include "distributed/files/mold.hpp"
 #include "distributed/order/cell_order.hpp"
 #include "distributed/order/number_order.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
-#include <span>
 #include <type_traits>
 #include <utility>
 #include <variant>

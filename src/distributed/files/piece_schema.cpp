@@ -4,7 +4,6 @@
 #include "base/text.hpp"
 #include "distributed/comm/number_types.hpp"
 #include "distributed/files/text_store.hpp"
-#include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
 
 #include <fmt/format.h>

@@ -8,9 +8,7 @@
 #include "io/xdmf/raw.hpp"
 #endif
 
-#include <cstdint>
 #include <filesystem>
-#include <utility>
 
 namespace meshorder::distributed {
 

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <iterator>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 namespace meshorder::distributed {

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
-#include <span>
 
 namespace meshorder::distributed {
 namespace {

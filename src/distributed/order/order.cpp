@@ -9,7 +9,6 @@
 #include "distributed/order/cell_order.hpp"
 #include "distributed/order/curve.hpp"
 #include "distributed/order/fiedler.hpp"
-#include "distributed/order/global_graph.hpp"
 #include "distributed/order/local_orders.hpp"
 #include "distributed/order/quotient.hpp"
 #include <meshorder/error.hpp>
@@ -20,7 +19,6 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <utility>
 
 namespace meshorder::distributed {
 namespace {

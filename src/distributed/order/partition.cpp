@@ -5,9 +5,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace meshorder::distributed {
 namespace {

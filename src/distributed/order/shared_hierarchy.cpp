@@ -2,7 +2,6 @@
 #include "distributed/order/shared_hierarchy.hpp"
 
 #include "distributed/order/shared_problem.hpp"
-#include "graph/laplacian.hpp"
 #include "spectral/aggregation.hpp"
 #include "spectral/coarsening.hpp"
 #include "spectral/lobpcg.hpp"

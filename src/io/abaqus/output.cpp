@@ -15,7 +15,6 @@
 #include <cctype>
 #include <charconv>
 #include <set>
-#include <utility>
 
 namespace meshorder::abaqus {
 namespace {

@@ -20,7 +20,6 @@
 #include <cerrno>
 #include <cstring>
 #include <limits>
-#include <string_view>
 #include <utility>
 
 // Reads and writes nodes by CGIO.

@@ -16,7 +16,6 @@
 #include <memory>
 #include <numeric>
 #include <system_error>
-#include <utility>
 
 namespace meshorder::exodus {
 

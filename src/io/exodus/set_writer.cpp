@@ -2,7 +2,6 @@
 #include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/exodus/writing.hpp"
-#include "io/unsupported.hpp"
 
 #include <fmt/format.h>
 

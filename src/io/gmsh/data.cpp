@@ -5,7 +5,6 @@
 #include "io/names.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
-#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

@@ -10,7 +10,6 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <tuple>
 
 // Physical groups and their entities: read from a file, or made for a mesh of another format.
 

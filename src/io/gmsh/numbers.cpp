@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "io/gmsh/gmsh.hpp"
-#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

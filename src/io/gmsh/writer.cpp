@@ -3,7 +3,6 @@
 #include "io/deck/numbers.hpp"
 #include "io/gmsh/gmsh.hpp"
 #include "io/unsupported.hpp"
-#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <new>
-#include <set>
 
 namespace meshorder::hdf5 {
 namespace {

@@ -4,9 +4,7 @@
 #include "io/hdf5/visitor.hpp"
 
 #include <algorithm>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace meshorder::hdf5 {
 

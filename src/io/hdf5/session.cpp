@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <new>
 #include <string_view>
-#include <utility>
 
 namespace meshorder::hdf5 {
 namespace {

@@ -3,7 +3,6 @@
 #include "io/medit/medit.hpp"
 
 #include <algorithm>
-#include <system_error>
 
 namespace meshorder::medit {
 namespace {

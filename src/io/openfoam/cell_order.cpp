@@ -3,8 +3,6 @@
 
 #include "io/openfoam/foam_file.hpp"
 
-#include <fmt/format.h>
-
 #include <string>
 #include <system_error>
 

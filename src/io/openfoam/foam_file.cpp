@@ -11,7 +11,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <system_error>
 
 namespace meshorder::openfoam {
 namespace {

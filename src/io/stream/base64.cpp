@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/base64.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 

@@ -17,7 +17,6 @@
 #include <limits>
 #include <span>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 namespace meshorder {

@@ -11,7 +11,6 @@
 #include <map>
 #include <mutex>
 #include <thread>
-#include <utility>
 
 namespace meshorder {
 namespace {

@@ -9,15 +9,11 @@
 #include <meshorder/error.hpp>
 
 #include <fcntl.h>
-#include <fmt/compile.h>
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
-#include <iterator>
 #include <optional>
 #include <system_error>
 #include <utility>

@@ -6,13 +6,11 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
-#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <limits>
 #include <numeric>
 #include <system_error>
-#include <type_traits>
 #include <vector>
 
 namespace meshorder {

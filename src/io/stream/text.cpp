@@ -3,7 +3,6 @@
 
 #include <fmt/compile.h>
 
-#include <algorithm>
 #include <charconv>
 #include <iterator>
 

@@ -3,8 +3,6 @@
 
 #include "base/parallel.hpp"
 
-#include <algorithm>
-#include <cstddef>
 #include <utility>
 #include <vector>
 

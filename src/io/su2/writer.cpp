@@ -7,7 +7,6 @@
 #include "io/stream/text_rows.hpp"
 #include "io/su2/su2.hpp"
 #include "io/unsupported.hpp"
-#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 

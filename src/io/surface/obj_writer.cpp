@@ -10,13 +10,11 @@
 #include "io/surface/obj_parts.hpp"
 #include "io/surface/surface_data.hpp"
 #include "io/unsupported.hpp"
-#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
-#include <type_traits>
 
 namespace meshorder {
 namespace {

@@ -4,8 +4,6 @@
 #include "base/text.hpp"
 #include "io/stream/read_limits.hpp"
 
-#include <system_error>
-
 namespace meshorder {
 
 VegaLines::VegaLines(const FilePath& path) : main_(path) { open(path); }

@@ -5,7 +5,6 @@
 #include "base/text.hpp"
 #include "io/stream/byte_order.hpp"
 #include "io/stream/regular_numbers.hpp"
-#include "io/vtk/vtk.hpp"
 #include "mesh/values.hpp"
 
 #include <fmt/format.h>

@@ -15,8 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
-#include <cstring>
 #include <map>
 #include <span>
 #include <string_view>

@@ -1,8 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/vtk/vtu_document.hpp"
 
-#include "io/vtk/vtk.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>

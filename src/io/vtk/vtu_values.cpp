@@ -18,7 +18,6 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
-#include <limits>
 #include <numeric>
 #include <type_traits>
 #include <utility>

@@ -16,7 +16,6 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <set>
 #include <type_traits>
 #include <utility>
 #include <variant>

@@ -18,7 +18,6 @@
 #include <optional>
 #include <set>
 #include <span>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>

@@ -18,7 +18,6 @@
 #include <cstring>
 #include <limits>
 #include <tuple>
-#include <type_traits>
 #include <variant>
 
 namespace meshorder::xdmf {

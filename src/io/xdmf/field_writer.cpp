@@ -10,7 +10,6 @@
 #include <array>
 #include <limits>
 #include <new>
-#include <string_view>
 #include <type_traits>
 
 namespace meshorder::xdmf {

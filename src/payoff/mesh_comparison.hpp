@@ -1,0 +1,75 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "metrics/edge_span.hpp"
+#include "metrics/measures.hpp"
+#include "payoff/access_stream.hpp"
+#include "payoff/kernel_timing.hpp"
+#include <meshorder/order.hpp>
+#include <meshorder/payoff.hpp>
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace meshorder {
+
+/// Options of `compare_orders`.
+struct MeshComparisonOptions {
+  std::vector<MeshMethods> methods = {};  ///< orders besides the mesh's own
+  bool only_new = false;                  ///< leave out later methods that equal the choice of `auto`
+  OrderOptions ordering = {};
+  KernelSet kernels = KernelSet::plain;
+  int threads = 1;  ///< the kernels run on one thread and, if there are more, on all of them
+  double budget_seconds = TimingOptions{}.budget_seconds;  ///< for all runs of kernels
+  bool reuse = false;           ///< compute `reuse`, unless the mesh has more than two million simplices
+  bool reuse_of_large = false;  ///< … also then
+  bool iterations = false;      ///< and `iterations` where `reuse` is computed
+  /// Called as a stage begins, which is the share `from` … `to` of the whole.
+  std::function<void(const std::string& stage, double from, double to)> begins = {};
+};
+
+/// An order in a comparison: its methods, its cost and its quality.
+struct ComparedMeshOrder {
+  MeshMethods asked;
+  MeshOrder order;
+  double seconds = 0;  ///< cost of the order: graph and both methods; 0 for the mesh's own
+  EdgeSpan span = {};
+  std::optional<KernelReuse> reuse = {};      ///< of repeated runs
+  std::optional<Iterations> iterations = {};  ///< of the solvers that depend on the order
+};
+
+/// Kernels measured with a number of threads.
+struct KernelTable {
+  int threads = 1;
+  std::vector<OrderTimes> orders;  ///< the mesh's own first
+  OrderTimes band;
+  Steadiness steadiness;
+  std::vector<double> redundancy;  ///< of each order, see KernelBench::redundancy
+};
+
+/// The compared orders and, for reference, the band of the mesh's size (see `ideal_band`).
+struct MeshComparison {
+  KernelSet kernel_set = KernelSet::plain;
+  Workload workload = Workload::all;           ///< what the orders optimise
+  std::vector<ComparedMeshOrder> orders;       ///< the mesh's own first
+  std::optional<MeshMethods> auto_keeps = {};  ///< the methods of an `auto` that is the first order, too
+  EdgeSpan band_span;
+  std::vector<KernelTable> kernels;                ///< on one thread, then on several
+  std::span<const Kernel> kernels_run = kKernels;  ///< see kernels_of; only products for a matrix
+
+  [[nodiscard]] bool is_matrix() const noexcept { return kernels_run.size() < kKernels.size(); }
+};
+
+/// Computes the mesh's own order and others, each once, and times the kernels in all of them and on the band,
+/// in interleaved rounds. The mesh is cut into simplices and its graph is built once.
+///
+/// @throws as `compute_reordering` and `prepare_kernels`
+MeshComparison compare_orders(const Mesh& mesh, const MeshComparisonOptions& options);
+
+/// Returns the times on the largest number of threads as advice on the mesh: the other orders are candidates.
+Advice advice_of(const MeshComparison& comparison);
+
+}  // namespace meshorder
