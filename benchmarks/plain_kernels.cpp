@@ -1,22 +1,22 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // plain_kernels MESH [METHOD,METHOD… [rounds]]: times kernels as simple programs write them, without
-// prefetches (src/kernels/plain.hpp), on a tetrahedral mesh in several orders. Elements and edges are sorted
-// by their largest vertex; `springs*` has edges by their smaller end. NAME=@FILE.npy takes the order of the
-// vertices from a file, which has the old place of each new one. A mesh grid-N that is no file is made: a
-// lattice in random order.
+// prefetches (src/kernels/plain.hpp, plain_programs.hpp), on a tetrahedral mesh in several orders. Elements
+// and edges are sorted by their largest vertex; `springs*` has edges by their smaller end. NAME=@FILE.npy
+// takes the order of the vertices from a file, which has the old place of each new one. A mesh grid-N that is
+// no file is made: a lattice in random order.
 //
 // All orders share one memory, which each fills before its turn, so that all have the same pages. Each round
 // has another sequence of orders. A kernel runs alternately in the order and, in separate memory, in the
 // first order, because the speed of a shared machine changes from minute to minute. Prints medians of the
 // ratios of these times, multiplied by the median time in the first order, ms of the thread's processor time.
 #include "io/npy.hpp"
-#include "kernels/plain.hpp"
 #include "measuring.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
 #include "metrics/edge_span.hpp"
 #include "metrics/measures.hpp"
+#include "plain_programs.hpp"
 #include <meshorder/io.hpp>
 #include <meshorder/order.hpp>
 

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "mesh/values.hpp"
 #include <meshorder/mesh.hpp>
 
 #include <algorithm>
@@ -38,17 +39,10 @@ bool is_exact(From value) {
 /// Returns whether `To` can hold all values exactly; false for texts. O(values), O(1) if `To` is their type.
 template <class To>
 bool are_exact(const Values& values) {
-  return std::visit(
-      [](const auto& all) {
-        using From = typename std::decay_t<decltype(all)>::value_type;
-        if constexpr (std::is_arithmetic_v<From>) {
-          return std::is_same_v<From, To> ||
-                 std::all_of(all.begin(), all.end(), [](From value) { return is_exact<To>(value); });
-        } else {
-          return false;
-        }
-      },
-      values);
+  return with_numbers(values, []<class From>(const std::vector<From>& all) {
+    return std::is_same_v<From, To> ||
+           std::all_of(all.begin(), all.end(), [](From value) { return is_exact<To>(value); });
+  });
 }
 
 }  // namespace meshorder

@@ -2,11 +2,11 @@
 #include "io/labels.hpp"
 
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <type_traits>
-#include <utility>
 
 namespace meshorder {
 
@@ -28,18 +28,13 @@ Labels labels_of(const Mesh& mesh, Association association) {
   const Index count = association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
   result.values.assign(count, 0);
   result.given.assign(count, array->is_dense());
-  std::visit(
-      [&](const auto& values) {
-        using Value = typename std::decay_t<decltype(values)>::value_type;
-        if constexpr (std::is_integral_v<Value>) {
-          for (std::size_t i = 0; i < values.size(); ++i) {
-            const std::size_t item = array->is_dense() ? i : static_cast<std::size_t>(array->indices[i]);
-            result.values[item] = static_cast<std::int64_t>(values[i]);
-            result.given[item] = true;
-          }
-        }
-      },
-      array->values);
+  with_integers(array->values, [&](const auto& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const std::size_t item = array->is_dense() ? i : static_cast<std::size_t>(array->indices[i]);
+      result.values[item] = static_cast<std::int64_t>(values[i]);
+      result.given[item] = true;
+    }
+  });
   return result;
 }
 

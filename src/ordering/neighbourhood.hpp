@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/polymorphic.hpp"
 #include "cells/cell_arrays.hpp"
 #include "graph/clean_graph.hpp"
 #include "graph/csr_graph.hpp"
@@ -13,15 +14,8 @@
 namespace meshorder {
 
 /// The vertices of an update of a `Reorderer`, and which of them belong together.
-class Neighbourhood {
+class Neighbourhood : public Polymorphic {
  public:
-  Neighbourhood() = default;
-  virtual ~Neighbourhood() = default;
-  Neighbourhood(const Neighbourhood&) = delete;
-  Neighbourhood(Neighbourhood&&) = delete;
-  Neighbourhood& operator=(const Neighbourhood&) = delete;
-  Neighbourhood& operator=(Neighbourhood&&) = delete;
-
   [[nodiscard]] virtual Index size() const = 0;
   /// Returns `Update::span_log2` of an order.
   ///

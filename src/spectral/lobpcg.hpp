@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/polymorphic.hpp"
 #include "base/run_scope.hpp"
 #include "spectral/hierarchy.hpp"
 
@@ -25,16 +26,11 @@ struct LobpcgResult {
 
 /// A problem L x = λ B x in the form that `lobpcg` needs: L has the constants in its null space and B is
 /// diagonal. This process has some of the rows, or all.
-class EigenProblem {
+class EigenProblem : public Polymorphic {
  public:
   /// @param size    rows of this process
   /// @param masses  the diagonal of B in these rows; empty: all 1. Outlives this object
   EigenProblem(Index size, std::span<const double> masses) : size_(size), masses_(masses) {}
-  virtual ~EigenProblem() = default;
-  EigenProblem(const EigenProblem&) = delete;
-  EigenProblem(EigenProblem&&) = delete;
-  EigenProblem& operator=(const EigenProblem&) = delete;
-  EigenProblem& operator=(EigenProblem&&) = delete;
 
   [[nodiscard]] Index size() const noexcept { return size_; }
   [[nodiscard]] double mass(Index v) const { return masses_.empty() ? 1.0 : masses_[v]; }

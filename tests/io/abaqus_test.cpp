@@ -572,11 +572,8 @@ TEST(Abaqus, KnowsTypesByRule) {
 
 TEST(Abaqus, WritesAllTypesThatItHolds) {
   const Format& format = format_named("abaqus");
-  std::vector<std::pair<Shape, int>> types = test::linear_types();
-  const auto quadratic = test::quadratic_types();
-  types.insert(types.end(), quadratic.begin(), quadratic.end());
   int held = 0;
-  for (const auto& [shape, count] : types) {
+  for (const auto& [shape, count] : test::common_types()) {
     Mesh mesh = test::cells_of_type(shape, count, 3);
     mesh.data.clear();
     for (Point& point : mesh.points) {

@@ -103,10 +103,7 @@ TEST(Exodus, OrderAndBackKeepsAll) {
 }
 
 TEST(Exodus, EveryTypeComesBack) {
-  std::vector<std::pair<Shape, int>> types = test::linear_types();
-  const auto quadratic = test::quadratic_types();
-  types.insert(types.end(), quadratic.begin(), quadratic.end());
-  for (const auto& [shape, vertices] : types) {
+  for (const auto& [shape, vertices] : test::common_types()) {
     SCOPED_TRACE(type_name(shape, vertices));
     const Mesh mesh = test::cells_of_type(shape, vertices, 3);
     if (!format_named("exodus").holds(mesh, shape, vertices)) continue;

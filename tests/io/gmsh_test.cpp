@@ -499,25 +499,21 @@ TEST(Gmsh, PutsMiddleNodesWhereVtkHasThem) {
 }
 
 TEST(Gmsh, HoldsCellsOfEveryTypeThatItHas) {
-  auto types = linear_types();
-  for (const auto& type : quadratic_types()) types.push_back(type);
-  for (const auto& type : {std::pair{Shape::tetrahedron, 20},
-                           {Shape::tetrahedron, 35},
-                           {Shape::tetrahedron, 56},
-                           {Shape::triangle, 10},
-                           {Shape::triangle, 15},
-                           {Shape::triangle, 21},
-                           {Shape::line, 4},
-                           {Shape::line, 6},
-                           {Shape::quad, 16},
-                           {Shape::quad, 25},
-                           {Shape::hexahedron, 64},
-                           {Shape::hexahedron, 125},
-                           {Shape::wedge, 40},
-                           {Shape::pyramid, 14},
-                           {Shape::pyramid, 30}}) {
-    types.push_back(type);
-  }
+  const CellTypes types = common_types({{Shape::tetrahedron, 20},
+                                        {Shape::tetrahedron, 35},
+                                        {Shape::tetrahedron, 56},
+                                        {Shape::triangle, 10},
+                                        {Shape::triangle, 15},
+                                        {Shape::triangle, 21},
+                                        {Shape::line, 4},
+                                        {Shape::line, 6},
+                                        {Shape::quad, 16},
+                                        {Shape::quad, 25},
+                                        {Shape::hexahedron, 64},
+                                        {Shape::hexahedron, 125},
+                                        {Shape::wedge, 40},
+                                        {Shape::pyramid, 14},
+                                        {Shape::pyramid, 30}});
   for (const auto& [shape, count] : types) {
     SCOPED_TRACE(type_name(shape, count));
     const Mesh mesh = cells_of_type(shape, count, 3);

@@ -132,18 +132,14 @@ TEST(WriteMesh, RefusesEveryLossIfStrict) {
 
 /// Meshes of every cell type, alone and together.
 std::vector<Mesh> meshes_of_all_types() {
-  std::vector<std::pair<Shape, int>> types = test::linear_types();
-  const auto quadratic = test::quadratic_types();
-  types.insert(types.end(), quadratic.begin(), quadratic.end());
-  const std::array<std::pair<Shape, int>, 8> others{{{Shape::polygon, 5},
-                                                     {Shape::poly_vertex, 3},
-                                                     {Shape::polyline, 4},
-                                                     {Shape::triangle_strip, 5},
-                                                     {Shape::pyramid, 14},
-                                                     {Shape::triangle, 10},
-                                                     {Shape::tetrahedron, 20},
-                                                     {Shape::hexahedron, 64}}};
-  types.insert(types.end(), others.begin(), others.end());
+  const test::CellTypes types = test::common_types({{Shape::polygon, 5},
+                                                    {Shape::poly_vertex, 3},
+                                                    {Shape::polyline, 4},
+                                                    {Shape::triangle_strip, 5},
+                                                    {Shape::pyramid, 14},
+                                                    {Shape::triangle, 10},
+                                                    {Shape::tetrahedron, 20},
+                                                    {Shape::hexahedron, 64}});
   std::vector<Mesh> meshes{test::mixed_mesh(), solid_with_boundary()};
   for (const auto& [shape, vertices] : types) meshes.push_back(test::cells_of_type(shape, vertices, 2));
   // pairs of types on the vertices of the first

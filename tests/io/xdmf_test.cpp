@@ -174,10 +174,8 @@ TEST(Xdmf, MovesEverythingOfAMixedMesh) {
 }
 
 TEST(Xdmf, HoldsEveryTypeOfCells) {
-  std::vector<std::pair<Shape, int>> types = test::linear_types();
-  for (const auto& type : test::quadratic_types()) types.push_back(type);
   int held = 0;
-  for (const auto& [shape, vertices] : types) {
+  for (const auto& [shape, vertices] : test::common_types()) {
     SCOPED_TRACE(type_name(shape, vertices));
     Mesh mesh = test::cells_of_type(shape, vertices, 3);
     mesh.data.clear();

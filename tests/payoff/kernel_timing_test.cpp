@@ -106,14 +106,11 @@ TEST_P(KernelBenches, ComputeTheSameBitsOnAnyNumberOfThreads) {
 }
 
 TEST_P(KernelBenches, RunOnCellsOfEveryType) {
-  std::vector<std::pair<Shape, int>> types = test::linear_types();
-  const auto quadratic = test::quadratic_types();
-  types.insert(types.end(), quadratic.begin(), quadratic.end());
-  types.insert(types.end(), {{Shape::polygon, 5},
-                             {Shape::polyline, 4},
-                             {Shape::triangle_strip, 6},
-                             {Shape::poly_vertex, 3},
-                             {Shape::polyhedron, 9}});
+  const test::CellTypes types = test::common_types({{Shape::polygon, 5},
+                                                    {Shape::polyline, 4},
+                                                    {Shape::triangle_strip, 6},
+                                                    {Shape::poly_vertex, 3},
+                                                    {Shape::polyhedron, 9}});
   for (const auto& [shape, vertices] : types) {
     SCOPED_TRACE(type_name(shape, vertices));
     const auto bench = prepared(test::cells_of_type(shape, vertices, 5), GetParam());

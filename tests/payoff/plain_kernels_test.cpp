@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "../../benchmarks/plain_programs.hpp"
 #include "kernels/plain.hpp"
 #include "mesh/graphs.hpp"
 #include "support/sample_meshes.hpp"

@@ -80,12 +80,9 @@ Mesh tetrahedral_bar(Index n) {
 
 Mesh mixed_mesh() {
   Mesh mesh;
-  auto types = linear_types();
-  const auto quadratic = quadratic_types();
-  types.insert(types.end(), quadratic.begin(), quadratic.end());
   Index next = 0;
   for (int round = 0; round < 3; ++round) {
-    for (const auto& [shape, count] : types) {
+    for (const auto& [shape, count] : common_types()) {
       std::vector<Index> vertices(count);
       std::iota(vertices.begin(), vertices.end(), next);
       mesh.cells.push_back(shape, vertices);
@@ -98,15 +95,22 @@ Mesh mixed_mesh() {
   return mesh;
 }
 
-std::vector<std::pair<Shape, int>> linear_types() {
+CellTypes linear_types() {
   return {{Shape::vertex, 1},      {Shape::line, 2},    {Shape::triangle, 3}, {Shape::quad, 4},
           {Shape::tetrahedron, 4}, {Shape::pyramid, 5}, {Shape::wedge, 6},    {Shape::hexahedron, 8}};
 }
 
-std::vector<std::pair<Shape, int>> quadratic_types() {
+CellTypes quadratic_types() {
   return {{Shape::line, 3},         {Shape::triangle, 6},   {Shape::quad, 8},   {Shape::quad, 9},
           {Shape::tetrahedron, 10}, {Shape::pyramid, 13},   {Shape::wedge, 15}, {Shape::wedge, 18},
           {Shape::hexahedron, 20},  {Shape::hexahedron, 27}};
+}
+
+CellTypes common_types(const CellTypes& more) {
+  CellTypes types = linear_types();
+  for (const CellTypes& others : {quadratic_types(), more})
+    types.insert(types.end(), others.begin(), others.end());
+  return types;
 }
 
 Permutation shuffled(Index n, std::uint64_t seed) {

@@ -24,9 +24,13 @@ Mesh tetrahedral_bar(Index n);
 /// linear and quadratic; attachments as above.
 Mesh mixed_mesh();
 
-/// The types, as (shape, vertices per cell), that a format must carry: all linear and second-order ones.
-std::vector<std::pair<Shape, int>> linear_types();
-std::vector<std::pair<Shape, int>> quadratic_types();
+/// Types of cells, as (shape, vertices per cell).
+using CellTypes = std::vector<std::pair<Shape, int>>;
+
+/// The types that a format must carry: all linear and second-order ones, and both with `more` after them.
+CellTypes linear_types();
+CellTypes quadratic_types();
+CellTypes common_types(const CellTypes& more = {});
 
 /// A seeded random permutation of 0 … n−1.
 Permutation shuffled(Index n, std::uint64_t seed);

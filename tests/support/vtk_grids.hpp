@@ -3,6 +3,7 @@
 // For the tests that link VTK.
 #pragma once
 
+#include "support/sample_meshes.hpp"
 #include <meshorder/mesh.hpp>
 
 #include <gtest/gtest.h>
@@ -54,6 +55,17 @@ $Elements
 5 4 2 1 1 10 11 12 1
 $EndElements
 )";
+
+/// The types of cells that VTK's own formats hold.
+inline CellTypes types_of_vtk() {
+  return common_types({{Shape::poly_vertex, 3},
+                       {Shape::polyline, 4},
+                       {Shape::polygon, 5},
+                       {Shape::triangle_strip, 6},
+                       {Shape::line, 4},
+                       {Shape::triangle, 7},
+                       {Shape::pyramid, 19}});
+}
 
 /// The vertices of a cell of `mesh` as VTK lists those of its type `type`.
 inline std::vector<Index> vertices_in_vtk(const Mesh& mesh, Index cell, int type) {

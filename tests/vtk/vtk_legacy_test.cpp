@@ -431,19 +431,7 @@ TEST(VtkLegacy, MixedLineEndsAreRead) {
 }
 
 TEST(VtkLegacy, EveryCellTypeIsWrittenAndReadInEveryVersion) {
-  auto types = linear_types();
-  const auto quadratic = quadratic_types();
-  types.insert(types.end(), quadratic.begin(), quadratic.end());
-  for (const auto& more : std::vector<std::pair<Shape, int>>{{Shape::poly_vertex, 3},
-                                                             {Shape::polyline, 4},
-                                                             {Shape::polygon, 5},
-                                                             {Shape::triangle_strip, 6},
-                                                             {Shape::line, 4},
-                                                             {Shape::triangle, 7},
-                                                             {Shape::pyramid, 19}}) {
-    types.push_back(more);
-  }
-  for (const auto& [shape, vertices] : types) {
+  for (const auto& [shape, vertices] : types_of_vtk()) {
     SCOPED_TRACE(type_name(shape, vertices));
     expect_write_and_read(cells_of_type(shape, vertices, 3), "cells.vtk");
   }

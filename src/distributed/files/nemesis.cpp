@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -304,11 +303,6 @@ class NemesisPieces {
   /// @param part_starts  as in `part_of`
   NemesisPieces(const Communicator& communicator, OrderedMesh source,
                 const std::vector<GlobalIndex>& part_starts);
-  NemesisPieces(const NemesisPieces&) = delete;
-  NemesisPieces(NemesisPieces&&) = delete;
-  NemesisPieces& operator=(const NemesisPieces&) = delete;
-  NemesisPieces& operator=(NemesisPieces&&) = delete;
-  ~NemesisPieces() = default;
 
   /// Writes the files of this rank's parts. Every rank has to call it. O(size of the parts · log).
   ///

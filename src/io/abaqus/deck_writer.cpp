@@ -47,12 +47,7 @@ class DeckWriter {
         out_(file_, deck_.line_end),
         more_of_nodes_(by_place(deck_.more_of_nodes, nodes_)),
         more_of_elements_(by_place(deck_.more_of_elements, elements_)),
-        same_numbers_(nodes_.all_as_in_file() && elements_.all_as_in_file()) {
-    if (same_numbers_) return;
-    require_valid(nodes_, "vertex", kLargest, path);
-    require_valid(elements_, "cell", kLargest, path);
-    require_known_references(deck_.unknown, path);
-  }
+        same_numbers_(keep_numbers(nodes_, elements_, kLargest, deck_.unknown, path)) {}
 
   void write() {
     const auto after_last = [&](auto is_wanted) {

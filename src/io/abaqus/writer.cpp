@@ -23,8 +23,8 @@ class PlainWriter {
         notes_(notes),
         file_(path),
         out_(file_, "\n"),
-        vertex_ids_(can_be_numbers(mesh.vertex_ids, kLargest)),
-        cell_ids_(can_be_numbers(mesh.cell_ids, kLargest)) {}
+        vertices_(mesh.vertex_ids, kLargest),
+        cells_(mesh.cell_ids, kLargest) {}
 
   void write() {
     write_nodes();
@@ -32,20 +32,12 @@ class PlainWriter {
     std::vector<EntitySet> sets = mesh_.sets;
     add_sets_of_labels(sets);
     write_sets(
-        out_, sets, [&](Index v) { return vertex_number(v); }, [&](Index c) { return cell_number(c); },
-        notes_);
+        out_, sets, [&](Index v) { return vertices_.of(v); }, [&](Index c) { return cells_.of(c); }, notes_);
     file_.commit();
     note_losses();
   }
 
  private:
-  [[nodiscard]] std::int64_t vertex_number(Index v) const {
-    return vertex_ids_ ? mesh_.vertex_ids[v] : v + std::int64_t{1};
-  }
-  [[nodiscard]] std::int64_t cell_number(Index c) const {
-    return cell_ids_ ? mesh_.cell_ids[c] : c + std::int64_t{1};
-  }
-
   [[nodiscard]] ElementKind kind_of_cell(Index c) const {
     return {mesh_.cells.shapes[c], static_cast<int>(mesh_.cells[c].size())};
   }
@@ -53,7 +45,7 @@ class PlainWriter {
   void write_nodes() {
     out_.text("*NODE\n");
     out_.nodes(mesh_.points, mesh_.dimension,
-               [&](DeckOutput::Row& row, Index v) { row.number = vertex_number(v); });
+               [&](DeckOutput::Row& row, Index v) { row.number = vertices_.of(v); });
   }
 
   void write_elements() {
@@ -64,9 +56,9 @@ class PlainWriter {
       file_.print("*ELEMENT, TYPE={}\n", type_of(kind, mesh_.dimension == 2));
       out_.elements(end - first, [&](DeckOutput::Row& row, Index i) {
         const auto cell = mesh_.cells[first + i];
-        row.number = cell_number(first + i);
+        row.number = cells_.of(first + i);
         row.nodes.resize(cell.size());
-        for (std::size_t k = 0; k < cell.size(); ++k) row.nodes[node_place(kind, k)] = vertex_number(cell[k]);
+        for (std::size_t k = 0; k < cell.size(); ++k) row.nodes[node_place(kind, k)] = vertices_.of(cell[k]);
       });
       first = end;
     }
@@ -97,8 +89,8 @@ class PlainWriter {
   Notes& notes_;
   OutputFile file_;
   DeckOutput out_;
-  bool vertex_ids_;
-  bool cell_ids_;
+  NewNumbers vertices_;
+  NewNumbers cells_;
 };
 
 bool holds(const Mesh& mesh, Shape shape, int vertices) {

@@ -3,6 +3,7 @@
 #include "cells/polyhedron.hpp"
 #include "io/cgns/reading.hpp"
 #include "io/wedges.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -139,17 +140,13 @@ void PolyhedraReader::read_section(FoundSection& found) {
   if (connectivity == nullptr) {
     reading_.fail(found.path, "has no ElementConnectivity", "the file may be damaged");
   }
-  std::visit(
-      [&](const auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_integral_v<Number>) {
-          read_rows(found, numbers);
-        } else {
-          reading_.fail(found.path + "/ElementConnectivity", "does not hold whole numbers",
-                        "I4 or I8 is expected");
-        }
-      },
-      numbers_of(*connectivity));
+  const bool is_whole = with_integers(numbers_of(*connectivity), [&](const auto& numbers) {
+    read_rows(found, numbers);
+    return true;
+  });
+  if (!is_whole) {
+    reading_.fail(found.path + "/ElementConnectivity", "does not hold whole numbers", "I4 or I8 is expected");
+  }
 }
 
 template <class Number>

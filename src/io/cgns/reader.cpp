@@ -1,13 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
 #include "io/cgns/reading.hpp"
+#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -284,20 +284,15 @@ class MeshReader {
   /// Appends the cells of a section of standard elements.
   void read_elements(const ZonePlaces& zone, const FoundSection& found, const Node& connectivity) {
     const std::string path = found.path + "/ElementConnectivity";
-    std::visit(
-        [&](const auto& numbers) {
-          using Number = typename std::decay_t<decltype(numbers)>::value_type;
-          if constexpr (std::is_integral_v<Number>) {
-            if (found.section.type == kMixedElements) {
-              add_mixed(zone, found, numbers, path);
-            } else {
-              add_alike(zone, found, numbers, path);
-            }
-          } else {
-            reading_.fail(path, "does not hold whole numbers", "I4 or I8 is expected");
-          }
-        },
-        numbers_of(connectivity));
+    const bool is_whole = with_integers(numbers_of(connectivity), [&](const auto& numbers) {
+      if (found.section.type == kMixedElements) {
+        add_mixed(zone, found, numbers, path);
+      } else {
+        add_alike(zone, found, numbers, path);
+      }
+      return true;
+    });
+    if (!is_whole) reading_.fail(path, "does not hold whole numbers", "I4 or I8 is expected");
   }
 
   /// Appends a cell, given by its vertex numbers in the order of the file.

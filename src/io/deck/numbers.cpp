@@ -8,8 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string>
-#include <utility>
 
 namespace meshorder {
 
@@ -82,6 +80,37 @@ bool is_as_in_deck(const EntitySet& set, const EntitySet& of_deck, const FileNum
   return members == wanted;
 }
 
+/// Throws InputError unless the numbers in the mesh are valid (see `keep_numbers`). `item` is "vertex" or
+/// "cell".
+void require_valid(const FileNumbers& numbers, std::string_view item, std::int64_t largest,
+                   const FilePath& path) {
+  const Index count = numbers.of_file().size();
+  std::int64_t smallest = 1;
+  std::vector<std::int64_t> ids;
+  ids.reserve(static_cast<std::size_t>(count));
+  for (Index k = 0; k < count; ++k) {
+    smallest = std::min(smallest, numbers.of_file().id(k));
+    largest = std::max(largest, numbers.of_file().id(k));
+    ids.push_back(numbers.at(numbers.place(k)));
+  }
+  if (ids.empty() || can_be_numbers(ids, largest, smallest)) return;
+  std::vector<std::pair<std::int64_t, Index>> given;  // number and position in the mesh
+  given.reserve(ids.size());
+  for (Index k = 0; k < count; ++k) given.emplace_back(ids[k], numbers.place(k));
+  std::sort(given.begin(), given.end());
+  const std::string remedy = fmt::format("ids are {} to {} and differ from each other", smallest, largest);
+  for (const auto& [number, place] : {given.front(), given.back()}) {
+    if (number >= smallest && number <= largest) continue;
+    throw InputError(path.string(), fmt::format("the id of {} {} is {}", item, place, number), remedy);
+  }
+  const auto same = std::adjacent_find(given.begin(), given.end(),
+                                       [](const auto& a, const auto& b) { return a.first == b.first; });
+  throw InputError(path.string(),
+                   fmt::format("the id {} is that of {} {} and of {} {}", same->first, item, same->second,
+                               item, (same + 1)->second),
+                   remedy);
+}
+
 }  // namespace
 
 std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
@@ -114,37 +143,12 @@ void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t larg
   }
 }
 
-void require_valid(const FileNumbers& numbers, std::string_view item, std::int64_t largest,
-                   const FilePath& path) {
-  const Index count = numbers.of_file().size();
-  std::int64_t smallest = 1;
-  std::vector<std::int64_t> ids;
-  ids.reserve(static_cast<std::size_t>(count));
-  for (Index k = 0; k < count; ++k) {
-    smallest = std::min(smallest, numbers.of_file().id(k));
-    largest = std::max(largest, numbers.of_file().id(k));
-    ids.push_back(numbers.at(numbers.place(k)));
-  }
-  if (ids.empty() || can_be_numbers(ids, largest, smallest)) return;
-  std::vector<std::pair<std::int64_t, Index>> given;  // number and position in the mesh
-  given.reserve(ids.size());
-  for (Index k = 0; k < count; ++k) given.emplace_back(ids[k], numbers.place(k));
-  std::sort(given.begin(), given.end());
-  const std::string remedy = fmt::format("ids are {} to {} and differ from each other", smallest, largest);
-  for (const auto& [number, place] : {given.front(), given.back()}) {
-    if (number >= smallest && number <= largest) continue;
-    throw InputError(path.string(), fmt::format("the id of {} {} is {}", item, place, number), remedy);
-  }
-  const auto same = std::adjacent_find(given.begin(), given.end(),
-                                       [](const auto& a, const auto& b) { return a.first == b.first; });
-  throw InputError(path.string(),
-                   fmt::format("the id {} is that of {} {} and of {} {}", same->first, item, same->second,
-                               item, (same + 1)->second),
-                   remedy);
-}
-
-void require_known_references(const std::vector<std::string>& unknown, const FilePath& path) {
-  if (unknown.empty()) return;
+bool keep_numbers(const FileNumbers& nodes, const FileNumbers& elements, std::int64_t largest,
+                  const std::vector<std::string>& unknown, const FilePath& path) {
+  if (nodes.all_as_in_file() && elements.all_as_in_file()) return true;
+  require_valid(nodes, "vertex", largest, path);
+  require_valid(elements, "cell", largest, path);
+  if (unknown.empty()) return false;
   throw InputError(path.string(), "its numbers cannot change, as these may name some: " + join(unknown),
                    "keep them: --ids keep");
 }

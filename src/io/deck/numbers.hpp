@@ -25,6 +25,21 @@ bool move_places(std::vector<Index>& places, std::span<const Index> moves);
 /// False if there are no ids. O(n), O(n log n) if they are far apart.
 bool can_be_numbers(std::span<const std::int64_t> ids, std::int64_t largest, std::int64_t smallest = 1);
 
+/// The number of each vertex or cell in a new file: its id if all ids can be numbers, else its position after
+/// `first`. The ids must outlive this object.
+class NewNumbers {
+ public:
+  NewNumbers(std::span<const std::int64_t> ids, std::int64_t largest, std::int64_t smallest = 1,
+             std::int64_t first = 1)
+      : ids_(can_be_numbers(ids, largest, smallest) ? ids : std::span<const std::int64_t>()), first_(first) {}
+
+  [[nodiscard]] std::int64_t of(Index item) const { return ids_.empty() ? item + first_ : ids_[item]; }
+
+ private:
+  std::span<const std::int64_t> ids_;
+  std::int64_t first_;
+};
+
 /// Returns the positions in the file of the items numbered from, from + step, … ≤ to, ascending by number.
 /// `step` is at least 1. O(numbers) if they are fewer than the items, else O(items log items).
 std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step);
@@ -90,14 +105,12 @@ std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
 void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes,
                     std::int64_t smallest = 1);
 
-/// Throws InputError unless the numbers in the mesh are valid: from 1, or the least in the file, to
-/// `largest`, or the greatest in the file, each only once. `item` is "vertex" or "cell". Time as
-/// `can_be_numbers`.
-void require_valid(const FileNumbers& numbers, std::string_view item, std::int64_t largest,
-                   const FilePath& path);
-
-/// Throws InputError if there are `unknown` cards: they may name items by number, so no number can change.
-void require_known_references(const std::vector<std::string>& unknown, const FilePath& path);
+/// Returns whether all nodes and elements keep the numbers of their deck. Throws InputError if they do not
+/// and new ones are not valid: from 1, or the least in the file, to `largest`, or the greatest in the file,
+/// each only once; or if there are `unknown` cards: they may name items by number, so no number can change.
+/// Time as `can_be_numbers`.
+bool keep_numbers(const FileNumbers& nodes, const FileNumbers& elements, std::int64_t largest,
+                  const std::vector<std::string>& unknown, const FilePath& path);
 
 /// Notes that all numbers stay because of `unknown` cards, which may name nodes or elements; nothing if none.
 void note_kept_numbers(const std::vector<std::string>& unknown, Notes& notes);

@@ -32,43 +32,19 @@ const DataArray* dense_array(const Mesh& mesh, std::string_view name, Associatio
 }
 
 bool is_whole(const DataArray& array) {
-  return std::visit(
-      [](const auto& values) {
-        using Value = typename std::decay_t<decltype(values)>::value_type;
-        if constexpr (std::is_integral_v<Value>) {
-          return std::all_of(values.begin(), values.end(),
-                             [](Value value) { return std::in_range<std::int64_t>(value); });
-        } else {
-          return false;
-        }
-      },
-      array.values);
+  return with_integers(array.values, []<class Value>(const std::vector<Value>& values) {
+    return std::all_of(values.begin(), values.end(),
+                       [](Value value) { return std::in_range<std::int64_t>(value); });
+  });
 }
 
 double real_value(const DataArray& array, Offset at) {
-  return std::visit(
-      [&](const auto& values) {
-        using Value = typename std::decay_t<decltype(values)>::value_type;
-        if constexpr (std::is_arithmetic_v<Value>) {
-          return static_cast<double>(values[at]);
-        } else {
-          return 0.0;
-        }
-      },
-      array.values);
+  return with_numbers(array.values, [&](const auto& values) { return static_cast<double>(values[at]); });
 }
 
 std::int64_t whole_value(const DataArray& array, Offset at) {
-  return std::visit(
-      [&](const auto& values) {
-        using Value = typename std::decay_t<decltype(values)>::value_type;
-        if constexpr (std::is_integral_v<Value>) {
-          return static_cast<std::int64_t>(values[at]);
-        } else {
-          return std::int64_t{0};
-        }
-      },
-      array.values);
+  return with_integers(array.values,
+                       [&](const auto& values) { return static_cast<std::int64_t>(values[at]); });
 }
 
 void note_all_unsupported(const Mesh& mesh, std::string_view format,

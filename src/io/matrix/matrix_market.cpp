@@ -11,7 +11,7 @@
 #include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/stored_matrix.hpp"
-#include <meshorder/error.hpp>
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -288,15 +288,10 @@ Permutation settle_entries(Mesh& mesh) {
     std::swap(entry.front(), entry.back());
     for (Offset k = 0; values != nullptr && k < values->components; ++k) {
       if (!changes_sign(symmetry, k)) continue;
-      std::visit(
-          [&](auto& numbers) {
-            using Value = typename std::decay_t<decltype(numbers)>::value_type;
-            if constexpr (std::is_arithmetic_v<Value>) {
-              Value& number = numbers[Offset{c} * values->components + k];
-              number = negative(number);
-            }
-          },
-          values->values);
+      with_numbers(values->values, [&]<class Value>(std::vector<Value>& numbers) {
+        Value& number = numbers[Offset{c} * values->components + k];
+        number = negative(number);
+      });
     }
   }
   return Permutation::identity(mesh.cell_count());

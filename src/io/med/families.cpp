@@ -6,12 +6,12 @@
 #include "io/names.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <type_traits>
 #include <unordered_map>
 #include <unordered_set>
@@ -37,17 +37,12 @@ std::vector<std::int64_t> numbers_in(const Mesh& mesh, const std::string& name, 
   std::vector<std::int64_t> numbers(item_count(mesh, association), 0);
   const DataArray* const array = find_array(mesh, name, association);
   if (array == nullptr || array->components != 1) return numbers;
-  std::visit(
-      [&](const auto& values) {
-        using Value = typename std::decay_t<decltype(values)>::value_type;
-        if constexpr (std::is_integral_v<Value>) {
-          for (std::size_t row = 0; row < values.size(); ++row) {
-            const std::size_t item = array->is_dense() ? row : static_cast<std::size_t>(array->indices[row]);
-            numbers[item] = static_cast<std::int64_t>(values[row]);
-          }
-        }
-      },
-      array->values);
+  with_integers(array->values, [&](const auto& values) {
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      const std::size_t item = array->is_dense() ? row : static_cast<std::size_t>(array->indices[row]);
+      numbers[item] = static_cast<std::int64_t>(values[row]);
+    }
+  });
   return numbers;
 }
 

@@ -3,13 +3,13 @@
 #include "base/text.hpp"
 #include "io/med/med.hpp"
 #include "io/names.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <type_traits>
 #include <variant>
@@ -165,28 +165,22 @@ class FieldWriter {
     const std::size_t width = piece.points * piece.components;
     std::vector<Number> result;
     result.reserve(rows.rows.size() * width);
-    std::visit(
-        [&](const auto& values) {
-          using Value = typename std::decay_t<decltype(values)>::value_type;
-          if constexpr (std::is_arithmetic_v<Value>) {
-            for (std::size_t c = 0; c < piece.components; ++c) {
-              if (piece.points == 1 && order.empty()) {
-                for (const Index row : rows.rows)
-                  result.push_back(static_cast<Number>(values[static_cast<std::size_t>(row) * width + c]));
-                continue;
-              }
-              for (const Index row : rows.rows) {
-                for (std::size_t p = 0; p < piece.points; ++p) {
-                  const std::size_t place = order.empty() ? p : static_cast<std::size_t>(order[p]);
-                  const std::size_t from =
-                      static_cast<std::size_t>(row) * width + place * piece.components + c;
-                  result.push_back(static_cast<Number>(values[from]));
-                }
-              }
-            }
+    with_numbers(array.values, [&](const auto& values) {
+      for (std::size_t c = 0; c < piece.components; ++c) {
+        if (piece.points == 1 && order.empty()) {
+          for (const Index row : rows.rows)
+            result.push_back(static_cast<Number>(values[static_cast<std::size_t>(row) * width + c]));
+          continue;
+        }
+        for (const Index row : rows.rows) {
+          for (std::size_t p = 0; p < piece.points; ++p) {
+            const std::size_t place = order.empty() ? p : static_cast<std::size_t>(order[p]);
+            const std::size_t from = static_cast<std::size_t>(row) * width + place * piece.components + c;
+            result.push_back(static_cast<Number>(values[from]));
           }
-        },
-        array.values);
+        }
+      }
+    });
     return result;
   }
 
@@ -212,15 +206,10 @@ class FieldWriter {
     } else if (!is_whole) {
       profile = profiles_.name_for(profile_name(piece.field, piece.type), rows.places);
     }
-    std::visit(
-        [&](const auto& values) {
-          using Value = typename std::decay_t<decltype(values)>::value_type;
-          if constexpr (std::is_arithmetic_v<Value>) {
-            const std::vector<Value> of_file = values_of<Value>(*array, rows, piece);
-            writing_.file.write(path, Values(of_file), {of_file.size()});
-          }
-        },
-        array->values);
+    with_numbers(array->values, [&]<class Value>(const std::vector<Value>& /*values*/) {
+      const std::vector<Value> of_file = values_of<Value>(*array, rows, piece);
+      writing_.file.write(path, Values(of_file), {of_file.size()});
+    });
     const std::size_t count = piece.counts_profile ? rows.rows.size() : items_of(piece.type);
     writing_.file.set_attribute(group, "NBR", static_cast<std::int64_t>(count));
     if (profile == piece.profile) return;

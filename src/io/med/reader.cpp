@@ -7,13 +7,13 @@
 #include "io/med/med.hpp"
 #include "io/stream/id_map.hpp"
 #include "io/wedges.hpp"
+#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 #include <type_traits>
 #include <variant>
 
@@ -152,18 +152,12 @@ void read_points(Reading& reading) {
   reading.take(path);
   const Values values = reading.file.read(path);
   resize_large(mesh.points, static_cast<std::size_t>(count));
-  std::visit(
-      [&](const auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_arithmetic_v<Number>) {
-          for (std::size_t k = 0; k < width; ++k) {
-            const auto* const axis = numbers.data() + k * mesh.points.size();
-            for (std::size_t v = 0; v < mesh.points.size(); ++v)
-              mesh.points[v][k] = static_cast<double>(axis[v]);
-          }
-        }
-      },
-      values);
+  with_numbers(values, [&](const auto& numbers) {
+    for (std::size_t k = 0; k < width; ++k) {
+      const auto* const axis = numbers.data() + k * mesh.points.size();
+      for (std::size_t v = 0; v < mesh.points.size(); ++v) mesh.points[v][k] = static_cast<double>(axis[v]);
+    }
+  });
 }
 
 /// Throws for a group of cells that are not understood.
@@ -271,12 +265,7 @@ std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& path
   reading.take(path);
   const Values values = reading.file.read(path);
   std::vector<std::int64_t> result;
-  std::visit(
-      [&](const auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_integral_v<Number>) result.assign(numbers.begin(), numbers.end());
-      },
-      values);
+  with_integers(values, [&](const auto& numbers) { result.assign(numbers.begin(), numbers.end()); });
   if (index_size(result) != rows) {
     reading.fail(path, fmt::format("has {} whole numbers, not {}", result.size(), rows),
                  "the file may be damaged");

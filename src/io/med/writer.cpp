@@ -225,13 +225,9 @@ class ItemWriter {
   void write_global_numbers(const std::string& path, const std::vector<Index>& items) {
     std::optional<std::vector<std::int64_t>> numbers;
     if (global_numbers_ != nullptr) {
-      std::visit(
-          [&](const auto& values) {
-            using Value = typename std::decay_t<decltype(values)>::value_type;
-            if constexpr (std::is_integral_v<Value>)
-              numbers = rows_for<std::int64_t>(values, global_rows_, items);
-          },
-          global_numbers_->values);
+      with_integers(global_numbers_->values, [&](const auto& values) {
+        numbers = rows_for<std::int64_t>(values, global_rows_, items);
+      });
     }
     if (!numbers) return writing_.file.remove(path);
     writing_.put_integers(path, *numbers, items.size());

@@ -146,12 +146,7 @@ void write_set(OutputFile& out, const WriteContext& from, const EntitySet& set, 
 }
 
 void print_value(OutputFile& out, const Values& values, Offset at) {
-  std::visit(
-      [&](const auto& numbers) {
-        using Value = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_arithmetic_v<Value>) out.print(" {}", numbers[at]);
-      },
-      values);
+  with_numbers(values, [&](const auto& numbers) { out.print(" {}", numbers[at]); });
 }
 
 /// Writes a section, except lines that name a vertex or cell without a position in the file.

@@ -45,12 +45,7 @@ class BulkWriter {
         labels_(labels_of(mesh, Association::cells)),
         notes_(notes),
         file_(path),
-        same_numbers_(nodes_.all_as_in_file() && elements_.all_as_in_file()) {
-    if (same_numbers_) return;
-    require_valid(nodes_, "vertex", kLargestNumber, path);
-    require_valid(elements_, "cell", kLargestNumber, path);
-    require_known_references(deck_.unknown, path);
-  }
+        same_numbers_(keep_numbers(nodes_, elements_, kLargestNumber, deck_.unknown, path)) {}
 
   void write() {
     const std::vector<Index> nodes = items_at(nodes_);

@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 
 namespace meshorder::nastran {
@@ -24,8 +23,8 @@ class PlainBulkWriter {
         notes_(notes),
         file_(path),
         labels_(labels_of(mesh, Association::cells)),
-        vertex_ids_(can_be_numbers(mesh.vertex_ids, kLargestNumber)),
-        cell_ids_(can_be_numbers(mesh.cell_ids, kLargestNumber)) {
+        vertices_(mesh.vertex_ids, kLargestNumber),
+        cells_(mesh.cell_ids, kLargestNumber) {
     if (mesh.vertex_count() > kLargestNumber || mesh.cell_count() > kLargestNumber) {
       throw InputError(path.string(), "has more than 99999999 vertices or cells", "Nastran numbers no more");
     }
@@ -42,20 +41,13 @@ class PlainBulkWriter {
   }
 
  private:
-  [[nodiscard]] std::int64_t vertex_number(Index v) const {
-    return vertex_ids_ ? mesh_.vertex_ids[v] : v + std::int64_t{1};
-  }
-  [[nodiscard]] std::int64_t cell_number(Index c) const {
-    return cell_ids_ ? mesh_.cell_ids[c] : c + std::int64_t{1};
-  }
-
   void write_node(Index v) {
     std::array<RealText, 3> reals;
     for (std::size_t k = 0; k < reals.size(); ++k) {
       reals[k] = real_text(mesh_.points[v][k]);
       if (reals[k].is_rounded) ++rounded_;
     }
-    file_.print("GRID*   {:>16}                {:>16}{:>16}\n*       {:>16}\n", vertex_number(v),
+    file_.print("GRID*   {:>16}                {:>16}{:>16}\n*       {:>16}\n", vertices_.of(v),
                 reals[0].text, reals[1].text, reals[2].text);
   }
 
@@ -63,9 +55,9 @@ class PlainBulkWriter {
     const auto cell = mesh_.cells[c];
     const Shape shape = mesh_.cells.shapes[c];
     const int nodes = static_cast<int>(cell.size());
-    std::array<std::int64_t, 2 + kMostNodes> numbers{cell_number(c), property(c)};
+    std::array<std::int64_t, 2 + kMostNodes> numbers{cells_.of(c), property(c)};
     for (std::size_t k = 0; k < cell.size(); ++k) {
-      numbers[2 + node_place(shape, nodes, k)] = vertex_number(cell[k]);
+      numbers[2 + node_place(shape, nodes, k)] = vertices_.of(cell[k]);
     }
     line_.clear();
     constexpr std::size_t kOnLine = 8;
@@ -94,7 +86,7 @@ class PlainBulkWriter {
       std::vector<std::int64_t> members;
       const bool of_nodes = set.association == Association::vertices;
       for (const Index member : set.members) {
-        members.push_back(of_nodes ? vertex_number(member) : cell_number(member));
+        members.push_back(of_nodes ? vertices_.of(member) : cells_.of(member));
       }
       line_.clear();
       append_set(line_, ++number, set, members, "\n", notes_);
@@ -120,8 +112,8 @@ class PlainBulkWriter {
   std::string line_;
   std::int64_t rounded_ = 0;
   std::int64_t lost_labels_ = 0;
-  bool vertex_ids_;
-  bool cell_ids_;
+  NewNumbers vertices_;
+  NewNumbers cells_;
 };
 
 bool holds(const Mesh& mesh, Shape shape, int vertices) {

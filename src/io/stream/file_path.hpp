@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/input_file.hpp"
+#include "base/polymorphic.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -21,15 +22,8 @@ std::filesystem::path without_gz(std::filesystem::path path);
 std::string read_to_end(std::istream& stream, const std::string& name);
 
 /// Files kept elsewhere than on disk.
-class FileStore {
+class FileStore : public Polymorphic {
  public:
-  FileStore() = default;
-  FileStore(const FileStore&) = delete;
-  FileStore(FileStore&&) = delete;
-  FileStore& operator=(const FileStore&) = delete;
-  FileStore& operator=(FileStore&&) = delete;
-  virtual ~FileStore() = default;
-
   [[nodiscard]] virtual bool has(const std::filesystem::path& path) const = 0;
   /// Returns the bytes of a file, none if it is not there.
   [[nodiscard]] virtual std::string read(const std::filesystem::path& path) const = 0;

@@ -10,7 +10,7 @@
 #include "io/stream/text_rows.hpp"
 #include "io/surface/surface_data.hpp"
 #include "io/unsupported.hpp"
-#include <meshorder/error.hpp>
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -336,16 +336,12 @@ void add_face_color(Text& text, const Content& content, Index face) {
   const DataArray* const array = content.color_rows[face].first;
   const Offset row = content.color_rows[face].second;
   if (!array) return;
-  std::visit(
-      [&](const auto& values) {
-        if constexpr (std::is_arithmetic_v<typename std::decay_t<decltype(values)>::value_type>) {
-          for (Index k = 0; k < array->components; ++k) {
-            const auto x = static_cast<double>(values[row * array->components + k]);
-            add_color(text, {&x, 1}, holds_integers(array->values));
-          }
-        }
-      },
-      array->values);
+  with_numbers(array->values, [&](const auto& values) {
+    for (Index k = 0; k < array->components; ++k) {
+      const auto x = static_cast<double>(values[row * array->components + k]);
+      add_color(text, {&x, 1}, holds_integers(array->values));
+    }
+  });
 }
 
 void write_off(const Mesh& mesh, const FilePath& path, Notes& notes) {

@@ -2,6 +2,7 @@
 #include "base/text.hpp"
 #include "io/stream/number_reader.hpp"
 #include "io/surface/ply_parts.hpp"
+#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -359,14 +360,9 @@ Values values_of(Type type) {
 }
 
 void append(Values& values, BodyReader& body, Index count, const Property& property) {
-  std::visit(
-      [&](auto& list) {
-        using T = typename std::decay_t<decltype(list)>::value_type;
-        if constexpr (std::is_arithmetic_v<T>) {
-          for (Index i = 0; i < count; ++i) list.push_back(body.number<T>(property.name));
-        }
-      },
-      values);
+  with_numbers(values, [&]<class T>(std::vector<T>& list) {
+    for (Index i = 0; i < count; ++i) list.push_back(body.number<T>(property.name));
+  });
 }
 
 /// The values of one property; those of a list separately for each length.
@@ -459,19 +455,12 @@ class Reader {
   /// Returns whether the values are 0, 1, 2 …
   static bool counts_up(const Column& column) {
     return std::all_of(column.by_length.begin(), column.by_length.end(), [](const auto& part) {
-      return std::visit(
-          [](const auto& list) {
-            using T = typename std::decay_t<decltype(list)>::value_type;
-            if constexpr (std::is_integral_v<T>) {
-              for (std::size_t row = 0; row < list.size(); ++row) {
-                if (!std::cmp_equal(list[row], row)) return false;
-              }
-              return true;
-            } else {
-              return false;
-            }
-          },
-          part.second.values);
+      return with_integers(part.second.values, [](const auto& list) {
+        for (std::size_t row = 0; row < list.size(); ++row) {
+          if (!std::cmp_equal(list[row], row)) return false;
+        }
+        return true;
+      });
     });
   }
 

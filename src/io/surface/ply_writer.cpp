@@ -10,13 +10,12 @@
 #include "io/surface/ply_parts.hpp"
 #include "io/surface/surface_data.hpp"
 #include "io/unsupported.hpp"
-#include <meshorder/error.hpp>
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -439,13 +438,9 @@ class NumberWriter {
 
 /// Writes `count` numbers of the array from entry `first` on.
 void write_values(NumberWriter& to, Type type, const DataArray& array, Offset first, Index count) {
-  std::visit(
-      [&](const auto& values) {
-        if constexpr (std::is_arithmetic_v<typename std::decay_t<decltype(values)>::value_type>) {
-          for (Index k = 0; k < count; ++k) to.number(type, values[first + k]);
-        }
-      },
-      array.values);
+  with_numbers(array.values, [&](const auto& values) {
+    for (Index k = 0; k < count; ++k) to.number(type, values[first + k]);
+  });
 }
 
 void write_attached(NumberWriter& to, const Column& column, Index item) {

@@ -1,7 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/surface/surface_data.hpp"
 
-#include <algorithm>
+#include "mesh/values.hpp"
+
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -26,22 +27,16 @@ std::vector<double> interleaved(const std::vector<const DataArray*>& columns, In
 }  // namespace
 
 bool holds_integers(const Values& values) {
-  return std::visit(
-      [](const auto& list) { return std::is_integral_v<typename std::decay_t<decltype(list)>::value_type>; },
-      values);
+  return with_integers(values, [](const auto& /*list*/) { return true; });
 }
 
 std::vector<double> as_reals(const Values& values) {
-  return std::visit(
-      [](const auto& list) {
-        std::vector<double> result;
-        if constexpr (std::is_arithmetic_v<typename std::decay_t<decltype(list)>::value_type>) {
-          result.reserve(list.size());
-          for (const auto value : list) result.push_back(static_cast<double>(value));
-        }
-        return result;
-      },
-      values);
+  return with_numbers(values, [](const auto& list) {
+    std::vector<double> result;
+    result.reserve(list.size());
+    for (const auto value : list) result.push_back(static_cast<double>(value));
+    return result;
+  });
 }
 
 GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Association association) {

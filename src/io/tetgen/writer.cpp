@@ -9,16 +9,14 @@
 #include "io/stream/text_rows.hpp"
 #include "io/tetgen/tetgen.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
-#include <system_error>
 #include <type_traits>
-#include <utility>
 
 namespace meshorder::tetgen {
 
@@ -143,16 +141,9 @@ struct Column {
 std::string text_of(const Column& column, Index item) {
   const Offset row = column.row_of.empty() ? item : column.row_of[item];
   if (row < 0) return "0";  // a cell without a label
-  return std::visit(
-      [&](const auto& values) {
-        using Value = typename std::decay_t<decltype(values)>::value_type;
-        if constexpr (std::is_arithmetic_v<Value>) {
-          return fmt::format("{}", values[row * column.array->components + column.component]);
-        } else {
-          return std::string();
-        }
-      },
-      column.array->values);
+  return with_numbers(column.array->values, [&](const auto& values) {
+    return fmt::format("{}", values[row * column.array->components + column.component]);
+  });
 }
 
 /// Returns the row of each vertex or cell in the array; −1 for none.

@@ -30,16 +30,6 @@ const CellKind* kind_of(Shape shape, int nodes) {
 
 bool holds(const Mesh& /*mesh*/, Shape shape, int vertices) { return kind_of(shape, vertices) != nullptr; }
 
-/// The number of each vertex or cell in the file.
-struct Numbers {
-  const std::vector<std::int64_t>& ids;
-  bool are_ids;  ///< whether `ids` are written; else 1, 2, …
-
-  explicit Numbers(const std::vector<std::int64_t>& of)
-      : ids(of), are_ids(can_be_numbers(of, kMaxIndex, 0)) {}
-  [[nodiscard]] std::int64_t of(Index item) const { return are_ids ? ids[item] : item + std::int64_t{1}; }
-};
-
 class Writer {
  public:
   Writer(const Mesh& mesh, const FilePath& path, Notes& notes)
@@ -47,8 +37,8 @@ class Writer {
         own_(dynamic_cast<const Metadata*>(mesh.format_metadata.get())),
         notes_(notes),
         out_(path),
-        nodes_(mesh.vertex_ids),
-        cells_(mesh.cell_ids) {}
+        nodes_(mesh.vertex_ids, kMaxIndex, 0),
+        cells_(mesh.cell_ids, kMaxIndex, 0) {}
 
   void write() {
     collect_arrays();
@@ -136,7 +126,7 @@ class Writer {
     if (missing > 0) notes_.push_back(fmt::format("{} cells have no label and get the material 0", missing));
   }
 
-  void write_data(Association association, const Numbers& numbers) {
+  void write_data(Association association, const NewNumbers& numbers) {
     const std::vector<Array>& arrays = arrays_of(association);
     if (arrays.empty()) return;
     out_.integer("", index_size(arrays));
@@ -152,22 +142,17 @@ class Writer {
   }
 
   static void add_values(Text& text, const DataArray& array, Index row) {
-    std::visit(
-        [&](const auto& values) {
-          using Value = typename std::decay_t<decltype(values)>::value_type;
-          if constexpr (std::is_arithmetic_v<Value>) {
-            for (Index k = 0; k < array.components; ++k) {
-              const Value value = values[Offset{row} * array.components + k];
-              // a float is written as the same double, which reads back exactly
-              if constexpr (std::is_same_v<Value, float>) {
-                text.real(" ", double{value});
-              } else {
-                text.number(" ", value);
-              }
-            }
-          }
-        },
-        array.values);
+    with_numbers(array.values, [&]<class Value>(const std::vector<Value>& values) {
+      for (Index k = 0; k < array.components; ++k) {
+        const Value value = values[Offset{row} * array.components + k];
+        // a float is written as the same double, which reads back exactly
+        if constexpr (std::is_same_v<Value, float>) {
+          text.real(" ", double{value});
+        } else {
+          text.number(" ", value);
+        }
+      }
+    });
   }
 
   void note_losses() {
@@ -180,8 +165,8 @@ class Writer {
   const Metadata* own_;  // nullptr if the mesh comes from another format
   Notes& notes_;
   OutputFile out_;
-  Numbers nodes_;
-  Numbers cells_;
+  NewNumbers nodes_;
+  NewNumbers cells_;
   std::vector<Array> node_arrays_;
   std::vector<Array> cell_arrays_;
 };

@@ -9,14 +9,11 @@
 #include "io/unv/results.hpp"
 #include "io/unv/unv.hpp"
 #include "mesh/values.hpp"
-#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
-#include <numeric>
 #include <set>
 #include <type_traits>
 #include <utility>
@@ -152,11 +149,7 @@ class UnvWriter {
     if (cell_ids_.empty()) cell_ids_ = mesh.cell_ids;
     file_node_ = inverse(own_->vertex_of);
     file_element_ = inverse(own_->cell_of);
-    const bool same_numbers = nodes_.all_as_in_file() && elements_.all_as_in_file();
-    if (same_numbers) return;
-    require_valid(nodes_, "vertex", kLargestNumber, path);
-    require_valid(elements_, "cell", kLargestNumber, path);
-    require_known_references(file_.unknown, path);
+    keep_numbers(nodes_, elements_, kLargestNumber, file_.unknown, path);
   }
 
   void write() {
@@ -276,19 +269,12 @@ class UnvWriter {
   static std::vector<std::int64_t> materials_of(const Mesh& mesh) {
     const DataArray* const array = find_array(mesh, kMaterial, Association::cells);
     if (array == nullptr || array->components != 1 || !array->is_dense()) return {};
-    return std::visit(
-        [](const auto& values) -> std::vector<std::int64_t> {
-          using Value = typename std::decay_t<decltype(values)>::value_type;
-          if constexpr (std::is_integral_v<Value>) {
-            std::vector<std::int64_t> result;
-            result.reserve(values.size());
-            for (const Value value : values) result.push_back(static_cast<std::int64_t>(value));
-            return result;
-          } else {
-            return {};
-          }
-        },
-        array->values);
+    return with_integers(array->values, []<class Value>(const std::vector<Value>& values) {
+      std::vector<std::int64_t> result;
+      result.reserve(values.size());
+      for (const Value value : values) result.push_back(static_cast<std::int64_t>(value));
+      return result;
+    });
   }
 
   // ---- groups
@@ -382,18 +368,11 @@ class UnvWriter {
   // ---- results
 
   static bool holds_integers(const DataArray& array) {
-    return std::visit(
-        [](const auto& values) {
-          using Value = typename std::decay_t<decltype(values)>::value_type;
-          if constexpr (std::is_integral_v<Value>) {
-            return std::all_of(values.begin(), values.end(), [](Value value) {
-              return std::in_range<std::int64_t>(value) && fits_columns(static_cast<std::int64_t>(value));
-            });
-          } else {
-            return false;
-          }
-        },
-        array.values);
+    return with_integers(array.values, []<class Value>(const std::vector<Value>& values) {
+      return std::all_of(values.begin(), values.end(), [](Value value) {
+        return std::in_range<std::int64_t>(value) && fits_columns(static_cast<std::int64_t>(value));
+      });
+    });
   }
 
   void write_results(const Section& section) {
@@ -418,29 +397,24 @@ class UnvWriter {
     const auto width = static_cast<std::size_t>(array.components);
     const std::size_t on_line = results.integers ? 8 : results.digits > 5 ? 3 : 6;
     bool is_rounded = false;
-    std::visit(
-        [&](const auto& values) {
-          using Value = typename std::decay_t<decltype(values)>::value_type;
-          if constexpr (!std::is_same_v<Value, std::string>) {
-            for (Index row = 0; row < row_count(array); ++row) {
-              lines_.integer(numbers.at(array.is_dense() ? row : array.indices[row]));
-              if (components > 0) lines_.integer(components);
-              lines_.end_line();
-              for (std::size_t k = 0; k < width; ++k) {
-                const Value value = values[static_cast<std::size_t>(row) * width + k];
-                if (results.integers) {
-                  lines_.integer(static_cast<std::int64_t>(value));
-                } else if (own_ != nullptr) {
-                  lines_.exact(static_cast<double>(value), results.digits, 'E');
-                } else if (!lines_.real(static_cast<double>(value), results.digits)) {
-                  is_rounded = true;
-                }
-                if (k % on_line == on_line - 1 || k + 1 == width) lines_.end_line();
-              }
-            }
+    with_numbers(array.values, [&]<class Value>(const std::vector<Value>& values) {
+      for (Index row = 0; row < row_count(array); ++row) {
+        lines_.integer(numbers.at(array.is_dense() ? row : array.indices[row]));
+        if (components > 0) lines_.integer(components);
+        lines_.end_line();
+        for (std::size_t k = 0; k < width; ++k) {
+          const Value value = values[static_cast<std::size_t>(row) * width + k];
+          if (results.integers) {
+            lines_.integer(static_cast<std::int64_t>(value));
+          } else if (own_ != nullptr) {
+            lines_.exact(static_cast<double>(value), results.digits, 'E');
+          } else if (!lines_.real(static_cast<double>(value), results.digits)) {
+            is_rounded = true;
           }
-        },
-        array.values);
+          if (k % on_line == on_line - 1 || k + 1 == width) lines_.end_line();
+        }
+      }
+    });
     if (is_rounded) {
       notes_.push_back(fmt::format("the values of the array '{}' are rounded to the {} digits that {} keeps",
                                    array.name, results.digits + 1, kName));

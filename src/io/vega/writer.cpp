@@ -12,7 +12,7 @@
 #include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
 #include "io/vega/parts.hpp"
-#include <meshorder/error.hpp>
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -42,8 +42,8 @@ class VegaWriter {
         parts_(mesh),
         notes_(notes),
         native_(dynamic_cast<const vega::Metadata*>(mesh.format_metadata.get())),
-        vertex_ids_(native_ && can_be_numbers(mesh.vertex_ids, kLargestNumber, 0)),
-        cell_ids_(native_ && can_be_numbers(mesh.cell_ids, kLargestNumber, 0)),
+        vertices_(native_ ? mesh.vertex_ids : none_, kLargestNumber, 0, native_ ? native_->vertex_base : 1),
+        elements_(native_ ? mesh.cell_ids : none_, kLargestNumber, 0, native_ ? native_->element_base : 1),
         out_(path) {}
 
   void write() {
@@ -131,13 +131,9 @@ class VegaWriter {
   /// Writes the cells of each label as a set: without materials there can be no regions.
   void write_labels_as_sets(const DataArray& array) {
     std::map<std::int64_t, EntitySet> sets;
-    std::visit(
-        [&](const auto& values) {
-          if constexpr (std::is_integral_v<typename std::decay_t<decltype(values)>::value_type>) {
-            for (Index c = 0; c < mesh_.cell_count(); ++c) sets[values[c]].members.push_back(c);
-          }
-        },
-        array.values);
+    with_integers(array.values, [&](const auto& values) {
+      for (Index c = 0; c < mesh_.cell_count(); ++c) sets[values[c]].members.push_back(c);
+    });
     for (auto& [label, set] : sets) {
       set.name = fmt::format("label_{}", label);
       add_section(Kind::set, mesh_.sets.size() + label_sets_.size());
@@ -165,14 +161,6 @@ class VegaWriter {
     const bool fits = array && array->is_dense() && array->components == 1 &&
                       std::holds_alternative<std::vector<std::int32_t>>(array->values);
     return fits ? array : nullptr;
-  }
-
-  // a mesh from a Vega file keeps the file's numbers, although Vega itself counts lines when it reads
-  [[nodiscard]] std::int64_t vertex_number(Index v) const {
-    return vertex_ids_ ? mesh_.vertex_ids[v] : v + std::int64_t{native_ ? native_->vertex_base : 1};
-  }
-  [[nodiscard]] std::int64_t element_number(Index c) const {
-    return cell_ids_ ? mesh_.cell_ids[c] : c + std::int64_t{native_ ? native_->element_base : 1};
   }
 
   void write_section(const Section& section) {
@@ -211,7 +199,7 @@ class VegaWriter {
     out_.print("*VERTICES\n{} 3 {} {}\n", mesh_.vertex_count(), extra ? extra->components : 0,
                marker ? 1 : 0);
     write_rows(out_, mesh_.vertex_count(), [&](Text& row, Index v) {
-      row.integer("", vertex_number(v));
+      row.integer("", vertices_.of(v));
       for (const double x : mesh_.points[v]) row.real(" ", x);
       add_values(row, extra, v);
       if (marker) row.integer(" ", std::get<std::vector<std::int32_t>>(marker->values)[v]);
@@ -226,8 +214,8 @@ class VegaWriter {
     out_.print("*ELEMENTS\n{}\n{} {} {}\n", word_of(width), mesh_.cell_count(), width,
                extra ? extra->components : 0);
     write_rows(out_, mesh_.cell_count(), [&](Text& row, Index c) {
-      row.integer("", element_number(c));
-      for (const Index v : mesh_.cells[c]) row.integer(" ", vertex_number(v));
+      row.integer("", elements_.of(c));
+      for (const Index v : mesh_.cells[c]) row.integer(" ", vertices_.of(v));
       add_values(row, extra, c);
       row.write("\n");
     });
@@ -267,7 +255,7 @@ class VegaWriter {
     for (std::size_t i = 0; i < set.members.size(); ++i) {
       const bool last = i + 1 == set.members.size();
       const bool full = (i + 1) % kPerLine == 0;
-      out_.print("{}{}", element_number(set.members[i]), last ? "\n" : full ? ",\n" : ", ");
+      out_.print("{}{}", elements_.of(set.members[i]), last ? "\n" : full ? ",\n" : ", ");
     }
     out_.write("\n");
   }
@@ -276,8 +264,10 @@ class VegaWriter {
   NamedParts parts_;
   Notes& notes_;
   const vega::Metadata* native_;
-  bool vertex_ids_;  // the mesh's are written, not positions; so for cells
-  bool cell_ids_;
+  std::vector<std::int64_t> none_;
+  // a mesh from a Vega file keeps the file's numbers, although Vega itself counts lines when it reads
+  NewNumbers vertices_;
+  NewNumbers elements_;
   OutputFile out_;
   std::vector<Section> sections_;
   std::vector<EntitySet> label_sets_;
