@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "graph/traversal.hpp"
 
-#include "base/large_pages.hpp"
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
 #include "graph/row_access.hpp"

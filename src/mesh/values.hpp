@@ -5,8 +5,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -50,6 +52,41 @@ auto with_integers(OfValues&& values, const Work& work) {
 /// Returns whether values are texts, not numbers.
 inline bool are_texts(const Values& values) {
   return std::holds_alternative<std::vector<std::string>>(values);
+}
+
+/// Returns what stands for a missing value: NaN, or 0 for integers.
+template <class Number>
+Number missing_value() {
+  if constexpr (std::is_floating_point_v<Number>) return std::numeric_limits<Number>::quiet_NaN();
+  return Number{};
+}
+
+/// Returns an empty vector of the number type with that index in Values.
+inline Values values_of_type(std::size_t type) {
+  Values result;
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (void)((I == type && (result.emplace<I>(), true)) || ...);
+  }
+  (std::make_index_sequence<std::variant_size_v<Values>>());
+  return result;
+}
+
+/// Returns values of the number type with that index, which `fill` puts into an empty vector.
+template <class Fill>
+Values values_of_type(std::size_t type, const Fill& fill) {
+  Values values = values_of_type(type);
+  std::visit(fill, values);
+  return values;
+}
+
+/// Returns the size in bytes of a number; 0 for texts.
+inline std::int64_t size_of_type(std::size_t type) {
+  return std::visit(
+      [](const auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        return std::is_arithmetic_v<Number> ? static_cast<std::int64_t>(sizeof(Number)) : 0;
+      },
+      values_of_type(type));
 }
 
 }  // namespace meshorder

@@ -85,8 +85,8 @@ using ArrayRow = std::tuple<std::string, int, int, Offset, std::string, std::str
 std::vector<ArrayRow> table_of(const PieceSchema& schema) {
   std::vector<ArrayRow> table;
   for (const PieceArray& array : schema.arrays()) {
-    table.emplace_back(array.name, static_cast<int>(array.source), array.type, array.row, array.attributes,
-                       array.inside);
+    table.emplace_back(array.name, static_cast<int>(array.source), array.type, array.row_size(),
+                       array.attributes, array.inside);
   }
   return table;
 }

@@ -15,7 +15,8 @@
 namespace meshorder::distributed {
 namespace {
 
-constexpr Offset kBefore = 5;  // bytes of the file before the array
+constexpr Offset kBefore = 5;      // bytes of the file before the array
+constexpr std::uint8_t kByte = 3;  // number type
 
 std::string new_file_of_rows(const Communicator& communicator) {
   const std::vector<int> process = communicator.broadcast(std::vector<int>{static_cast<int>(::getpid())});
@@ -73,11 +74,7 @@ void expect_kept(const Communicator& communicator, const Kept& kept) {
     out.close();
   }
   const std::string bytes = communicator.at_root([&] { return content(path); });
-  FileArray array{};
-  array.at = kBefore;
-  array.stored = stored;
-  array.size = kept.values;
-  array.block = kept.block;
+  FilePart array{.type = kByte, .rows = kept.values, .at = kBefore, .stored = stored, .block = kept.block};
   std::vector<Offset> blocks;
   if (kept.compressor == Compressor::none) {
     communicator.at_root([&] { ASSERT_EQ(word_at(bytes, kBefore), kept.values); });
@@ -109,7 +106,7 @@ void expect_kept(const Communicator& communicator, const Kept& kept) {
   for (const auto& [begin, end] : {std::pair{even.begin(rank), even.end(rank)},
                                    std::pair{even.begin(rank) / 2, kept.values - even.begin(rank) / 3},
                                    std::pair{rank % 2 * kept.values, kept.values}}) {
-    ASSERT_EQ(read_values(communicator, in, "in", kept.compressor, array, blocks, begin, end),
+    ASSERT_EQ(read_values(communicator, in, {"in", "u"}, kept.compressor, array, blocks, begin, end),
               values_between(begin, end));
   }
   communicator.at_root([&] { std::filesystem::remove(path); });
@@ -137,20 +134,11 @@ TEST(VtuRows, EndAllRanksWhereABlockOfOneIsDamaged) {
     std::ofstream(path, std::ios::binary) << packed << packed.substr(0, packed.size() / 2);
     return std::ssize(packed);
   });
-  FileArray array{.name = {"u"},
-                  .role = FileArray::Role::data,
-                  .association = Association::cells,
-                  .type = 0,
-                  .at = 0,
-                  .stored = 0,
-                  .row = 1,
-                  .size = 200,
-                  .blocks = 2,
-                  .block = 100};
+  const FilePart array{.type = kByte, .rows = 200, .blocks = 2, .block = 100};
   const SharedFile in(communicator, path, "mesh.vtu", SharedFile::Use::read);
   const bool is_last = communicator.rank() == communicator.size() - 1;
   try {
-    (void)read_values(communicator, in, "mesh.vtu", VtuEncoding::Compressor::zlib, array,
+    (void)read_values(communicator, in, {"mesh.vtu", "u"}, VtuEncoding::Compressor::zlib, array,
                       {0, block, block + block / 2}, 0, is_last ? 101 : 100);
     FAIL() << "nothing was thrown";
   } catch (const SharedError& error) {

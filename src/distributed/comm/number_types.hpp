@@ -2,10 +2,11 @@
 #pragma once
 
 #include "base/index.hpp"
-#include "io/vtk/vtk.hpp"
+#include "mesh/values.hpp"
 
 #include <cstddef>
 #include <cstring>
+#include <span>
 #include <type_traits>
 #include <variant>
 #include <vector>
@@ -21,14 +22,25 @@ void with_number_type(std::size_t alternative, const Work& work) {
         using Number = typename std::decay_t<decltype(numbers)>::value_type;
         if constexpr (std::is_arithmetic_v<Number>) work(Number{});
       },
-      vtk::values_of_type(alternative));
+      values_of_type(alternative));
 }
 
-/// Returns the size in bytes of a number; 0 for texts.
-[[nodiscard]] inline Offset size_of_type(std::size_t alternative) {
-  Offset size = 0;
-  with_number_type(alternative, [&](auto zero) { size = sizeof(zero); });
-  return size;
+/// Returns the bytes of numbers.
+template <class Number>
+[[nodiscard]] std::vector<std::byte> raw_bytes(std::span<const Number> numbers) {
+  const auto bytes = std::as_bytes(numbers);
+  return {bytes.begin(), bytes.end()};
+}
+
+/// Returns the bytes of values; none for texts.
+[[nodiscard]] inline std::vector<std::byte> bytes_of_values(const Values& values) {
+  return std::visit(
+      [](const auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_arithmetic_v<Number>) return raw_bytes<Number>(numbers);
+        return std::vector<std::byte>();
+      },
+      values);
 }
 
 /// Returns the numbers of a run-time type, stored in `bytes`, converted to Target. O(bytes).

@@ -3,69 +3,63 @@
 
 #include "distributed/comm/layout.hpp"
 #include "distributed/files/vtu_offsets.hpp"
-#include "io/format.hpp"
+#include "io/file_layout.hpp"
 #include "io/vtu.hpp"
-#include <meshorder/mesh.hpp>
-#include <meshorder/shape.hpp>
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-namespace meshorder::xdmf {
-struct Layout;
-}
-
 namespace meshorder::distributed {
 
-/// An array of a .vtu, .vtkhdf or .xdmf file: its contents, and where its values are.
-struct FileArray {
-  enum class Role : std::uint8_t { points, types, offsets, connectivity, data };
-
-  std::array<char, 41> name;  ///< its first 40 bytes, for messages; ends with a zero
-  std::size_t element = 0;    ///< place among the arrays of the piece in the XML, from 0 on
-  Role role;
-  Association association;
-  std::uint8_t type;  ///< number type: index of an alternative of Values
-  Offset at;          ///< first byte in the file, of the words (sizes) before the values
-  Offset stored;      ///< bytes in the file, including those words
-  Offset row;         ///< bytes of a row
-  Offset size;        ///< bytes of all rows, uncompressed
-  Offset blocks;      ///< number of compressed blocks; 0: not compressed
-  Offset block;       ///< uncompressed bytes of a block; the last block has the rest
-};
-
 /// Facts on a .vtu, .vtkhdf or .xdmf file that all ranks have.
-struct FileFacts {
+struct FileFacts : FileSizes {
   /// A .vtkhdf file is an HDF5 file, an .xdmf file has one. Their arrays have no words before them.
   enum class Kind : std::uint8_t { vtu, vtkhdf, xdmf };
 
   Kind kind = Kind::vtu;
-  GlobalIndex vertices = 0;
-  GlobalIndex cells = 0;
-  GlobalIndex entries = 0;  ///< length of the connectivity
-  Offset bytes = 0;         ///< size of the file
-  Offset first_byte = 0;    ///< first byte of the appended data
+  Offset bytes = 0;       ///< size of the file
+  Offset first_byte = 0;  ///< first byte of the appended data
   VtuEncoding encoding;
-  // only of an .xdmf file, which has no arrays of types and offsets
-  Shape shape = Shape::vertex;  ///< of all cells
-  Offset nodes = 0;             ///< of each cell
 };
 
 /// The description of a file: from the XML of a .vtu file and the words before its arrays; or from libhdf5,
 /// of a .vtkhdf file or of the HDF5 file of an .xdmf file.
 struct FileHead {
   FileFacts facts;
-  std::vector<FileArray> arrays;  ///< sorted by their place in the file
+  std::vector<FilePart> parts;     ///< sorted by their place in the file
+  std::vector<std::string> names;  ///< of the parts, by their numbers, as messages have them
   std::vector<std::vector<Offset>>
-      blocks;  ///< of each array: first byte of each block, then the end of the last
+      blocks;  ///< of each part, by number: first byte of each block, then the end of the last
   VtuXml xml;
-  std::string mold;                            ///< of a .vtkhdf file: result of `mold_of` for its arrays
-  std::string data;                            ///< of an .xdmf file: path of its HDF5 file
-  std::shared_ptr<const xdmf::Layout> layout;  ///< of an .xdmf file; FileArray::element refers to its fields
+  std::string mold;                        ///< of a .vtkhdf file: result of `mold_of` for its arrays
+  std::string data;                        ///< of an .xdmf file: path of its HDF5 file
+  std::shared_ptr<const SplitFile> files;  ///< of an .xdmf file
 };
+
+/// Returns whether the name of a file is that of an XDMF file.
+[[nodiscard]] bool is_xdmf(const std::string& path);
+
+/// Reads the head of a file. Returns nothing unless it is of one of these kinds, and its arrays can be read
+/// directly:
+/// - a .vtu file of one piece with raw appended data in this machine's byte order, with a compression that
+///   this build supports. O(size of the XML + blocks);
+/// - a .vtkhdf file of one partition, without chunks, another byte order, texts on points or cells, or more
+///   than the format allows. O(datasets + size of the fields);
+/// - an .xdmf file: see `xdmf::find_raw`. O(size of the XML + datasets).
+///
+/// @param ranks  number of ranks that share the memory of uncompressed arrays
+/// @throws InputError for a damaged file: bad XML, counts or shapes that disagree, arrays beyond its end,
+///         blocks whose sizes are impossible, an HDF5 file that is missing or from another run
+[[nodiscard]] std::optional<FileHead> read_head(const std::string& path, int ranks);
+
+/// As `read_head`, for .vtu files.
+[[nodiscard]] std::optional<FileHead> read_vtu_head(const std::string& path, int ranks);
+
+/// Sorts parts by their first bytes. Returns whether all are within a file of so many bytes and no two
+/// overlap. O(n log n).
+[[nodiscard]] bool sort_by_bytes(std::vector<FilePart>& parts, Offset bytes);
 
 }  // namespace meshorder::distributed

@@ -2,6 +2,7 @@
 #include "distributed/files/file_rows.hpp"
 
 #include "io/vtk/vtu_compressor.hpp"
+#include "io/vtk/vtu_document.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -28,7 +29,7 @@ struct BlockRange {
 };
 
 /// Returns the blocks that have bytes begin … end − 1 of an array.
-BlockRange blocks_with(const FileArray& array, Offset begin, Offset end) {
+BlockRange blocks_with(const FilePart& array, Offset begin, Offset end) {
   if (begin == end) return {};
   // the last one may be longer than the others
   const auto block_of = [&](Offset byte) { return std::min(byte / array.block, array.blocks - 1); };
@@ -66,18 +67,6 @@ std::vector<std::byte> in_whole_blocks(const Communicator& communicator, const L
   return communicator.exchange(std::span<const std::byte>(own), starts).values;
 }
 
-/// Returns the bytes of words of 4 or 8 bytes, in this machine's byte order.
-std::vector<std::byte> words_of(const std::vector<std::uint64_t>& values, bool wide) {
-  std::vector<std::byte> result(values.size() * (wide ? 8 : 4));
-  std::byte* at = result.data();
-  for (const std::uint64_t value : values) {
-    const auto narrow = static_cast<std::uint32_t>(value);
-    std::memcpy(at, wide ? static_cast<const void*>(&value) : &narrow, wide ? 8 : 4);
-    at += wide ? 8 : 4;
-  }
-  return result;
-}
-
 /// Compressed blocks, one after another.
 struct CompressedBlocks {
   std::vector<std::uint64_t> sizes;
@@ -101,13 +90,13 @@ CompressedBlocks compressed(VtuEncoding::Compressor kind, std::span<const std::b
 }  // namespace
 
 std::vector<std::byte> read_values(const Communicator& communicator, const SharedFile& file,
-                                   const std::string& name, VtuEncoding::Compressor compressor,
-                                   const FileArray& array, const std::vector<Offset>& blocks, Offset begin,
+                                   const PartName& name, VtuEncoding::Compressor compressor,
+                                   const FilePart& array, const std::vector<Offset>& blocks, Offset begin,
                                    Offset end) {
   std::vector<std::byte> values =
       communicator.together([&] { return std::vector<std::byte>(static_cast<std::size_t>(end - begin)); });
   if (compressor == VtuEncoding::Compressor::none) {
-    file.read(array.at + array.stored - array.size + begin, values);
+    file.read(array.at + array.stored - array.size() + begin, values);
     return values;
   }
   const BlockRange range = blocks_with(array, begin, end);
@@ -125,7 +114,7 @@ std::vector<std::byte> read_values(const Communicator& communicator, const Share
     std::vector<std::byte> whole;  // of a block that is wanted in part
     for (Offset b = range.first; b < range.end; ++b) {
       const Offset block_begin = b * array.block;
-      const Offset block_end = b + 1 == array.blocks ? array.size : block_begin + array.block;
+      const Offset block_end = b + 1 == array.blocks ? array.size() : block_begin + array.block;
       const Offset from = std::max(begin, block_begin);
       const Offset to = std::min(end, block_end);
       const auto k = static_cast<std::size_t>(b - range.first);
@@ -136,9 +125,9 @@ std::vector<std::byte> read_values(const Communicator& communicator, const Share
       const bool is_all = to - from == block_end - block_begin;
       if (!is_all) whole.resize(static_cast<std::size_t>(block_end - block_begin));
       if (!codec.uncompress(characters(source), characters(is_all ? wanted : std::span(whole)))) {
-        throw InputError(
-            name, fmt::format("block {} of the array '{}' cannot be uncompressed", b, array.name.data()),
-            "the array is damaged");
+        throw InputError(name.file,
+                         fmt::format("block {} of the array '{}' cannot be uncompressed", b, name.part),
+                         "the array is damaged");
       }
       if (!is_all) std::copy_n(whole.begin() + (from - block_begin), to - from, wanted.begin());
     }
@@ -163,7 +152,8 @@ Offset write_values(const Communicator& communicator, const SharedFile& file, co
              static_cast<std::uint64_t>(layout.size() % block)};
     words.insert(words.end(), sizes.begin(), sizes.end());
   }
-  file.write(at, communicator.is_root() ? words_of(words, encoding.wide_headers) : std::vector<std::byte>());
+  const std::string header = communicator.is_root() ? vtk::vtu_words(words, encoding) : std::string();
+  file.write(at, std::as_bytes(std::span(header)));
   const Offset before = word_count * (encoding.wide_headers ? 8 : 4);
   return before + write_raw(communicator, file, at + before, values);
 }

@@ -3,8 +3,9 @@
 
 #include "distributed/comm/communicator.hpp"
 #include "distributed/comm/layout.hpp"
-#include "distributed/files/file_head.hpp"
 #include "distributed/files/shared_file.hpp"
+#include "io/file_layout.hpp"
+#include "io/vtu.hpp"
 
 #include <cstddef>
 #include <span>
@@ -13,16 +14,21 @@
 
 namespace meshorder::distributed {
 
+/// A part of a file as messages name it.
+struct PartName {
+  const std::string& file;
+  const std::string& part;
+};
+
 /// Reads bytes begin … end − 1 of the values of an array; each rank has its own range. Of a compressed array,
 /// reads whole blocks. Every rank has to call it. O(bytes + size of a block), O(blocks) at the root.
 ///
-/// @param name    of the file in messages
 /// @param blocks  at the root: first byte of each block in the file, then the end of the last. Ignored on
 ///                other ranks and if the file is not compressed
 /// @throws SharedError if a rank cannot read or uncompress a block
 [[nodiscard]] std::vector<std::byte> read_values(const Communicator& communicator, const SharedFile& file,
-                                                 const std::string& name, VtuEncoding::Compressor compressor,
-                                                 const FileArray& array, const std::vector<Offset>& blocks,
+                                                 const PartName& name, VtuEncoding::Compressor compressor,
+                                                 const FilePart& array, const std::vector<Offset>& blocks,
                                                  Offset begin, Offset end);
 
 /// Writes an array with the words before it, raw or in compressed blocks that do not depend on the number of

@@ -3,14 +3,11 @@
 
 #include "distributed/comm/communicator.hpp"
 #include "distributed/comm/layout.hpp"
-#include "distributed/comm/moved_rows.hpp"
 #include "distributed/files/file_head.hpp"
 #include "distributed/files/grid_rows.hpp"
-#include "distributed/files/shared_file.hpp"
 #include "distributed/order/mesh_slice.hpp"
 #include "distributed/order/order.hpp"
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -82,27 +79,11 @@ class FileSlices {
   [[nodiscard]] FileSlices written(const Communicator& communicator, const SliceFile& file) const;
 
  private:
-  [[nodiscard]] const FileArray& array(FileArray::Role role) const;
-  [[nodiscard]] MeshSlice empty_slice(const Communicator& communicator) const;
-  [[nodiscard]] std::vector<std::byte> rows(const Communicator& communicator, const SharedFile& file,
-                                            const FileArray& array, GlobalIndex begin, GlobalIndex end) const;
-  void read_points(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
-  [[nodiscard]] std::vector<int> types(const Communicator& communicator, const SharedFile& file,
-                                       const Layout& cells) const;
-  void read_shapes(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
-  void read_cells(const Communicator& communicator, const SharedFile& file, MeshSlice& slice) const;
-  /// Reads the offsets of this rank's cells, relative to their first entry, which it returns.
-  [[nodiscard]] Offset read_offsets(const Communicator& communicator, const SharedFile& file,
-                                    MeshSlice& slice) const;
-  /// Returns the rows of an array that are in this rank's places.
-  [[nodiscard]] std::vector<std::byte> moved_rows(const Communicator& communicator, const SharedFile& file,
-                                                  const FileArray& array, const RowMover& vertices,
-                                                  const RowMover& cells) const;
   /// As `write`, for .xdmf files.
   [[nodiscard]] std::vector<GlobalIndex> write_xdmf(const Communicator& communicator, const SliceFile& file,
                                                     const DistributedOrder& order) const;
-  [[nodiscard]] Rows moved_cells(const Communicator& communicator, const SharedFile& file, MeshSlice slice,
-                                 const RowMover& mover, const std::vector<GlobalIndex>& new_vertices) const;
+  /// Returns the first byte of each part in the data of a new .xdmf file.
+  [[nodiscard]] std::vector<Offset> new_places(const Communicator& communicator, const SliceFile& file) const;
 
   std::string path_;  ///< path of the file that has the arrays
   FileHead head_;     ///< has its blocks and XML only at the root

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/files/grid_rows.hpp"
 
+#include "distributed/comm/number_types.hpp"
 #include "distributed/files/mold.hpp"
 #include "io/vtk/vtk.hpp"
 
@@ -9,30 +10,11 @@
 #include <map>
 #include <memory>
 #include <span>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
 namespace meshorder::distributed {
 namespace {
-
-template <class Number>
-std::vector<std::byte> bytes_of_span(std::span<const Number> numbers) {
-  const auto bytes = std::as_bytes(numbers);
-  return {bytes.begin(), bytes.end()};
-}
-
-/// Returns an array with only the first row.
-DataArray first_row(const DataArray& array) {
-  DataArray row{array.name, array.association, array.components, {}, {}, array.component_names};
-  row.values = std::visit(
-      [&](const auto& values) {
-        using Numbers = std::decay_t<decltype(values)>;
-        return Values(Numbers(values.begin(), values.begin() + array.components));
-      },
-      array.values);
-  return row;
-}
 
 /// The whole mesh in the form of a .vtu file.
 class WholeGrid {
@@ -54,10 +36,13 @@ class WholeGrid {
     for (auto& [text, number] : places_) number = place++;
   }
 
-  /// Returns a .vtu file of one point and one cell with the first row of each array.
+  /// Returns a .vtu file of one point and one cell with a row of each array.
   [[nodiscard]] std::string xml() const {
     std::vector<DataArray> rows;
-    for (const DataArray* const array : arrays_) rows.push_back(first_row(*array));
+    for (const DataArray* const array : arrays_) {
+      rows.push_back(blank_row(array->name, array->association, array->values.index(), array->components,
+                               array->component_names));
+    }
     vtk::Metadata metadata = context_.metadata;
     metadata.float_points = context_.points_are_floats();
     return mold_of(std::move(rows), std::move(metadata),
@@ -74,14 +59,18 @@ class WholeGrid {
   /// Returns the bytes of the k-th array of the file.
   [[nodiscard]] std::vector<std::byte> bytes(std::size_t k) const {
     if (k < arrays_.size()) {
-      return std::visit([&](const auto& values) { return bytes_of_values(values); }, arrays_[k]->values);
+      const auto* const texts = std::get_if<std::vector<std::string>>(&arrays_[k]->values);
+      if (texts == nullptr) return bytes_of_values(arrays_[k]->values);
+      std::vector<std::int32_t> places;
+      places.reserve(texts->size());
+      for (const std::string& text : *texts) places.push_back(places_.at(text.substr(0, text.find('\0'))));
+      return raw_bytes<std::int32_t>(places);
     }
-    if (k > arrays_.size()) return bytes_of_span(std::span(context_.types));  // the last array of the file
+    if (k > arrays_.size()) return raw_bytes<std::uint8_t>(context_.types);  // the file's last array
     const std::vector<Point>& points = context_.mesh.points;
     const std::span<const double> numbers(points.front().data(), 3 * points.size());
-    if (!context_.points_are_floats()) return bytes_of_span(numbers);
-    const std::vector<float> floats(numbers.begin(), numbers.end());
-    return bytes_of_span(std::span<const float>(floats));
+    if (!context_.points_are_floats()) return raw_bytes(numbers);
+    return raw_bytes<float>(std::vector<float>(numbers.begin(), numbers.end()));
   }
 
   /// Returns whether the k-th array of the file is on vertices.
@@ -92,18 +81,6 @@ class WholeGrid {
   [[nodiscard]] const Cells& cells() const noexcept { return cells_; }
 
  private:
-  template <class Number>
-  [[nodiscard]] std::vector<std::byte> bytes_of_values(const std::vector<Number>& values) const {
-    if constexpr (std::is_same_v<Number, std::string>) {
-      std::vector<std::int32_t> places;
-      places.reserve(values.size());
-      for (const std::string& text : values) places.push_back(places_.at(text.substr(0, text.find('\0'))));
-      return bytes_of_span(std::span<const std::int32_t>(places));
-    } else {
-      return bytes_of_span(std::span<const Number>(values));
-    }
-  }
-
   vtk::WriteContext context_;
   const Cells& cells_;
   std::vector<const DataArray*> arrays_;

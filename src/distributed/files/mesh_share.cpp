@@ -29,17 +29,13 @@ constexpr std::size_t kId = 8;
 
 /// Returns numbers of a type from their bytes.
 Values values_of(const std::vector<std::byte>& bytes, std::size_t type) {
-  Values values = vtk::values_of_type(type);
-  std::visit(
-      [&](auto& numbers) {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_arithmetic_v<Number>) {
-          numbers.resize(bytes.size() / sizeof(Number));
-          std::memcpy(numbers.data(), bytes.data(), bytes.size());
-        }
-      },
-      values);
-  return values;
+  return values_of_type(type, [&](auto& numbers) {
+    using Number = typename std::decay_t<decltype(numbers)>::value_type;
+    if constexpr (std::is_arithmetic_v<Number>) {
+      numbers.resize(bytes.size() / sizeof(Number));
+      std::memcpy(numbers.data(), bytes.data(), bytes.size());
+    }
+  });
 }
 
 /// Gathers a rank's share of the whole mesh.

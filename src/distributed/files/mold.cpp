@@ -4,6 +4,7 @@
 #include "distributed/files/text_store.hpp"
 #include "io/vtk/vtu_document.hpp"
 #include "io/vtu.hpp"
+#include "mesh/values.hpp"
 
 #include <bit>
 #include <memory>
@@ -11,6 +12,13 @@
 #include <utility>
 
 namespace meshorder::distributed {
+
+DataArray blank_row(std::string name, Association association, std::size_t type, Index components,
+                    std::vector<std::string> component_names) {
+  const auto blank = [&](auto& values) { values.resize(static_cast<std::size_t>(components)); };
+  return {std::move(name),           association, components, values_of_type(type, blank), {},
+          std::move(component_names)};
+}
 
 std::string mold_of(std::vector<DataArray> arrays, vtk::Metadata metadata, bool in_order_of_vtk_9,
                     Notes& notes) {

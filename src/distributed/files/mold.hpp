@@ -5,10 +5,15 @@
 #include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace meshorder::distributed {
+
+/// Returns an array of one row of zeros or empty texts; `type`: index of an alternative of Values.
+[[nodiscard]] DataArray blank_row(std::string name, Association association, std::size_t type,
+                                  Index components, std::vector<std::string> component_names = {});
 
 /// Returns a .vtu file of one point and one cell that declares the arrays and fields of a mesh.
 ///

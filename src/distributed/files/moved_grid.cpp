@@ -136,14 +136,9 @@ std::string MovedGrid::xml(Notes& notes) const {
   sketch.format_metadata = moved_.part().mesh.format_metadata;
   for (std::size_t k = 0; k < moved_.part().mesh.data.size(); ++k) {
     const DataArray& array = moved_.part().mesh.data[k];
-    DataArray& row = sketch.data.emplace_back(DataArray{array.name,
-                                                        array.association,
-                                                        array.components,
-                                                        vtk::values_of_type(array.values.index()),
-                                                        {},
-                                                        array.component_names});
-    std::visit([&](auto& values) { values.resize(static_cast<std::size_t>(array.components)); }, row.values);
-    if (moved_.part().arrays[k].is_partial) row.indices = {0};
+    sketch.data.push_back(blank_row(array.name, array.association, array.values.index(), array.components,
+                                    array.component_names));
+    if (moved_.part().arrays[k].is_partial) sketch.data.back().indices = {0};
   }
   for (const EntitySet& set : moved_.part().mesh.sets) sketch.sets.push_back({set.name, set.association, {}});
   if (moved_.ids(Association::vertices) != nullptr) sketch.vertex_ids = {0};
@@ -155,13 +150,7 @@ std::string MovedGrid::xml(Notes& notes) const {
     for (const DataArray* const array : context.arrays) {
       if (array->association != association) continue;
       const Array& form = arrays_[rows.size()];
-      DataArray& row = rows.emplace_back(DataArray{array->name,
-                                                   association,
-                                                   form.components,
-                                                   vtk::values_of_type(form.type),
-                                                   {},
-                                                   array->component_names});
-      std::visit([&](auto& values) { values.resize(static_cast<std::size_t>(form.components)); }, row.values);
+      rows.push_back(blank_row(array->name, association, form.type, form.components, array->component_names));
     }
   }
   return mold_of(std::move(rows), context.metadata, false, notes);

@@ -5,9 +5,10 @@
 #include "distributed/comm/number_types.hpp"
 #include "distributed/order/cell_order.hpp"
 #include "distributed/order/number_order.hpp"
+#include "io/vtk/vtk.hpp"
+#include "mesh/values.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <type_traits>
 #include <utility>
@@ -35,17 +36,10 @@ std::size_t common_type(std::size_t a, std::size_t b) {
   return are_integers ? kWide : kReal;
 }
 
-/// Returns the number that stands for a missing value: NaN, or 0 for integers.
-template <class Number>
-Number nothing() {
-  if constexpr (std::is_floating_point_v<Number>) return std::numeric_limits<Number>::quiet_NaN();
-  return Number{};
-}
-
 /// Converts an array to a type and to a number of components, at least as many as it has.
 void give_form(DataArray& array, const ArrayForm& form) {
   if (array.values.index() == form.type && array.components == form.components) return;
-  Values result = vtk::values_of_type(form.type);
+  Values result = values_of_type(form.type);
   std::visit(
       [&](const auto& old, auto& values) {
         using Old = typename std::decay_t<decltype(old)>::value_type;
@@ -54,7 +48,7 @@ void give_form(DataArray& array, const ArrayForm& form) {
           const auto width = static_cast<std::size_t>(array.components);
           const auto new_width = static_cast<std::size_t>(form.components);
           const std::size_t rows = width == 0 ? 0 : old.size() / width;
-          values.assign(rows * new_width, nothing<Number>());
+          values.assign(rows * new_width, missing_value<Number>());
           for (std::size_t k = 0; k < rows * width; ++k)
             values[k / width * new_width + k % width] = static_cast<Number>(old[k]);
         }
@@ -62,37 +56,6 @@ void give_form(DataArray& array, const ArrayForm& form) {
       array.values, result);
   array.values = std::move(result);
   array.components = form.components;
-}
-
-/// Returns the bytes of an array. If it is only on some of the vertices or cells, the others get rows of
-/// missing values.
-///
-/// @param count  number of the vertices or cells
-std::vector<std::byte> bytes_of_rows(const DataArray& array, bool is_partial, std::size_t count) {
-  return std::visit(
-      [&](const auto& values) {
-        using Number = typename std::decay_t<decltype(values)>::value_type;
-        std::vector<std::byte> result;
-        if constexpr (std::is_arithmetic_v<Number>) {
-          const auto bytes_of_all = [&](const std::vector<Number>& rows) {
-            const auto bytes = std::as_bytes(std::span(rows));
-            result.assign(bytes.begin(), bytes.end());
-          };
-          if (!is_partial) {
-            bytes_of_all(values);
-          } else {
-            const auto width = static_cast<std::size_t>(array.components);
-            std::vector<Number> rows(count * width, nothing<Number>());
-            for (std::size_t row = 0; row < array.indices.size(); ++row) {
-              std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row * width), width,
-                          rows.begin() + static_cast<std::ptrdiff_t>(array.indices[row]) * array.components);
-            }
-            bytes_of_all(rows);
-          }
-        }
-        return result;
-      },
-      array.values);
 }
 
 }  // namespace
@@ -188,8 +151,11 @@ std::vector<std::byte> MovedPart::moved(Association association, std::span<const
 std::vector<std::byte> MovedPart::moved_array(std::size_t k) const {
   const DataArray& array = part_.mesh.data[k];
   const GlobalIndex count = layout(array.association).size(communicator_.rank());
-  const std::vector<std::byte> rows = communicator_.together(
-      [&] { return bytes_of_rows(array, part_.arrays[k].is_partial, static_cast<std::size_t>(count)); });
+  const std::vector<std::byte> rows = communicator_.together([&] {
+    return part_.arrays[k].is_partial
+               ? bytes_of_values(vtk::full_array(array, static_cast<Index>(count)).values)
+               : bytes_of_values(array.values);
+  });
   return moved(array.association, rows, size_of_type(array.values.index()) * array.components);
 }
 

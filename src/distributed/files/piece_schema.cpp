@@ -12,14 +12,13 @@
 #include <array>
 #include <bit>
 #include <charconv>
-#include <optional>
 #include <string_view>
 #include <utility>
 
 namespace meshorder::distributed {
 namespace {
 
-using Section = PieceArray::Section;
+using Role = FilePart::Role;
 using Source = PieceArray::Source;
 
 constexpr std::string_view kPointIds = "GlobalPointIds";
@@ -28,8 +27,13 @@ constexpr std::string_view kGhostType = "vtkGhostType";
 constexpr std::string_view kPart = "part";
 constexpr std::string_view kGlobalIds = "GlobalIds";  // VTK's name of the role
 
-/// Tags of the sections, in the order of Section and of a piece.
+/// Tags of the sections, in the order of a piece.
 constexpr std::array<std::string_view, 4> kSections{"PointData", "CellData", "Points", "Cells"};
+
+/// Returns the place of an array's section in `kSections`.
+std::size_t section_of(const PieceArray& array) {
+  return (array.role == Role::data ? 0U : 2U) + (array.is_on_vertices() ? 0U : 1U);
+}
 
 /// Returns the attributes of an element, except some, in the form of a tag.
 template <std::size_t N>
@@ -62,54 +66,47 @@ Offset components_of(const vtk::VtuElement& element) {
   return components;
 }
 
-/// Returns the section with that tag; nothing for other tags.
-std::optional<Section> section_named(std::string_view name) {
-  const auto* const found = std::find(kSections.begin(), kSections.end(), name);
-  if (found == kSections.end()) return std::nullopt;
-  return static_cast<Section>(found - kSections.begin());
-}
-
-bool is_of_pieces(std::string_view name, Section section) {
+bool is_of_pieces(std::string_view name, Association association) {
   return name == kGhostType || name == kPart ||
-         name == (section == Section::points_data ? kPointIds : kCellIds);
+         name == (association == Association::vertices ? kPointIds : kCellIds);
 }
 
 /// Returns an array that only the pieces have.
-PieceArray added(Section section, Source source, std::string_view type, std::string_view name,
+PieceArray added(Association association, Source source, std::string_view type, std::string_view name,
                  std::string_view more = "") {
   const auto* const known = std::find(vtk::kXmlTypeNames.begin(), vtk::kXmlTypeNames.end(), type);
-  const auto alternative = static_cast<std::uint8_t>(known - vtk::kXmlTypeNames.begin());
-  return {section,
+  return {{.association = association, .type = static_cast<std::uint8_t>(known - vtk::kXmlTypeNames.begin())},
           source,
           std::string(name),
-          0,
-          alternative,
-          size_of_type(alternative),
           fmt::format(" type=\"{}\"{} Name=\"{}\"", type, more, name),
           {}};
 }
 
-/// Returns the k-th array of the mesh as an array of the pieces.
-PieceArray taken(const vtk::VtuDocument& file, const vtk::VtuElement& element, Section section,
+/// Returns the k-th array of the mesh, in a section, as an array of the pieces.
+PieceArray taken(const vtk::VtuDocument& file, const vtk::VtuElement& element, std::size_t section,
                  std::size_t k) {
   constexpr std::array<std::string_view, 5> kOfValues{"format", "offset", "RangeMin", "RangeMax",
                                                       "NumberOfTuples"};
-  PieceArray array{section,
-                   Source::rows,
-                   std::string(name_of(element)),
-                   k,
-                   type_of(element),
-                   0,
-                   attributes_without(element, kOfValues),
-                   {}};
-  if (section == Section::cells && name_of(element) == "connectivity") array.source = Source::connectivity;
-  if (section == Section::cells && name_of(element) == "offsets") array.source = Source::offsets;
-  Offset number = size_of_type(array.type);
-  if (number == 0) {
+  constexpr std::uint8_t kInt32 = 6;
+  PieceArray array;
+  array.association = section % 2 == 0 ? Association::vertices : Association::cells;
+  array.type = type_of(element);
+  array.components = static_cast<Index>(components_of(element));
+  array.number = k;
+  array.name = name_of(element);
+  array.attributes = attributes_without(element, kOfValues);
+  if (size_of_type(array.type) == 0) {
     array.source = Source::texts;
-    number = sizeof(std::int32_t);
+    array.type = kInt32;
   }
-  array.row = number * components_of(element);
+  if (section >= 2) array.role = array.is_on_vertices() ? Role::points : Role::types;
+  if (array.role == Role::types && array.name == "connectivity") {
+    array.role = Role::connectivity;
+    array.source = Source::connectivity;
+  } else if (array.role == Role::types && array.name == "offsets") {
+    array.role = Role::offsets;
+    array.source = Source::offsets;
+  }
   for (const vtk::VtuElement& information : element.children) array.inside += file.source(information);
   return array;
 }
@@ -126,46 +123,41 @@ PieceSchema::PieceSchema(const std::string& xml, std::string fields, int ghosts)
   has_order_of_vtk_9_ = file.version() >= 21;
   std::size_t number = 0;
   for (const vtk::VtuElement& section : file.root().child("UnstructuredGrid")->child("Piece")->children) {
-    const std::optional<Section> known = section_named(section.name);
-    if (known == Section::points_data || known == Section::cells_data) {
-      (known == Section::points_data ? points_data_ : cells_data_) =
-          attributes_without(section, std::array{kGlobalIds});
-      add_roles(section, *known);
+    const auto known = static_cast<std::size_t>(std::find(kSections.begin(), kSections.end(), section.name) -
+                                                kSections.begin());
+    const Association association = known % 2 == 0 ? Association::vertices : Association::cells;
+    if (known < 2) {
+      attributes_.at(known) = attributes_without(section, std::array{kGlobalIds});
+      add_roles(section, association);
     }
     for (const vtk::VtuElement& element : section.children) {
       const std::size_t k = number++;
-      if (!known) continue;
-      if (section.name.ends_with("Data") && is_of_pieces(name_of(element), *known)) {
-        replaced_.push_back(
-            fmt::format("on {} '{}'", known == Section::points_data ? "points" : "cells", name_of(element)));
+      if (known == kSections.size()) continue;
+      if (known < 2 && is_of_pieces(name_of(element), association)) {
+        replaced_.push_back(fmt::format("on {} '{}'", known == 0 ? "points" : "cells", name_of(element)));
         continue;
       }
-      arrays_.push_back(taken(file, element, *known, k));
+      arrays_.push_back(taken(file, element, known, k));
     }
-  }
-  constexpr std::string_view kIdType = " IdType=\"1\"";
-  for (const auto& [section, ids] :
-       {std::pair{Section::points_data, kPointIds}, {Section::cells_data, kCellIds}}) {
-    arrays_.push_back(added(section, Source::global_ids, "Int64", ids, kIdType));
-    arrays_.push_back(added(section, Source::ghost_type, "UInt8", kGhostType));
-    arrays_.push_back(added(section, Source::part, "Int32", kPart));
   }
   for (const Association association : {Association::vertices, Association::cells}) {
     const std::string_view ids = association == Association::vertices ? kPointIds : kCellIds;
+    arrays_.push_back(added(association, Source::global_ids, "Int64", ids, " IdType=\"1\""));
+    arrays_.push_back(added(association, Source::ghost_type, "UInt8", kGhostType));
+    arrays_.push_back(added(association, Source::part, "Int32", kPart));
     roles_.push_back({vtk::Role::global_ids, association, std::string(ids), {}});
+    attributes_.at(association == Association::vertices ? 0 : 1) +=
+        fmt::format(" {}=\"{}\"", kGlobalIds, ids);
   }
-  points_data_ += fmt::format(" {}=\"{}\"", kGlobalIds, kPointIds);
-  cells_data_ += fmt::format(" {}=\"{}\"", kGlobalIds, kCellIds);
   std::stable_sort(arrays_.begin(), arrays_.end(),
-                   [](const PieceArray& a, const PieceArray& b) { return a.section < b.section; });
+                   [](const PieceArray& a, const PieceArray& b) { return section_of(a) < section_of(b); });
 }
 
 /// Adds the roles of a section's arrays, except that of global ids, which are the pieces' own.
-void PieceSchema::add_roles(const vtk::VtuElement& section, Section kind) {
+void PieceSchema::add_roles(const vtk::VtuElement& section, Association association) {
   for (std::size_t role = 0; role < vtk::kXmlRoles.size(); ++role) {
     const std::string* const name = section.attribute(vtk::kXmlRoles[role]);
     if (name == nullptr || name->empty() || vtk::kXmlRoles[role] == kGlobalIds) continue;
-    const Association association = kind == Section::points_data ? Association::vertices : Association::cells;
     roles_.push_back({static_cast<vtk::Role>(role), association, *name, {}});
   }
 }
@@ -177,12 +169,17 @@ std::string PieceSchema::opening(const char* type) const {
       word_ == 8 ? "UInt64" : "UInt32");
 }
 
-template <class Write>
-void PieceSchema::write_section(Section section, const Write& write) const {
+template <class Element>
+std::string PieceSchema::section_text(std::size_t section, std::string_view indent, std::string_view prefix,
+                                      const Element& element) const {
+  std::string text =
+      fmt::format("{}<{}{}{}>\n", indent, prefix, kSections.at(section), attributes_.at(section));
   for (std::size_t k = 0; k < arrays_.size(); ++k) {
-    if (arrays_[k].section == section)
-      write(arrays_[k].source == Source::texts ? "Array" : "DataArray", arrays_[k], k);
+    if (section_of(arrays_[k]) != section) continue;
+    const char* const tag = arrays_[k].source == Source::texts ? "Array" : "DataArray";
+    text += fmt::format("{}  {}\n", indent, element(tag, arrays_[k], k));
   }
+  return text + fmt::format("{}</{}{}>\n", indent, prefix, kSections.at(section));
 }
 
 std::string PieceSchema::head(GlobalIndex vertices, GlobalIndex cells,
@@ -192,18 +189,13 @@ std::string PieceSchema::head(GlobalIndex vertices, GlobalIndex cells,
   std::string text = opening("UnstructuredGrid") + "  <UnstructuredGrid>\n";
   if (!fields_.empty()) text += "    " + fields_ + "\n";
   text += fmt::format("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", vertices, cells);
-  for (std::size_t s = 0; s < kSections.size(); ++s) {
-    const auto section = static_cast<Section>(s);
-    text += fmt::format("      <{}{}>\n", kSections[s],
-                        section == Section::points_data  ? points_data_
-                        : section == Section::cells_data ? cells_data_
-                                                         : "");
-    write_section(section, [&](std::string_view tag, const PieceArray& array, std::size_t k) {
-      text +=
-          fmt::format("        <{}{} format=\"appended\" offset=\"{}\"", tag, array.attributes, begins[k]);
-      text += array.inside.empty() ? "/>\n" : fmt::format(">{}</{}>\n", array.inside, tag);
-    });
-    text += fmt::format("      </{}>\n", kSections[s]);
+  for (std::size_t section = 0; section < kSections.size(); ++section) {
+    text += section_text(
+        section, "      ", "", [&](std::string_view tag, const PieceArray& array, std::size_t k) {
+          const std::string end = array.inside.empty() ? "/>" : fmt::format(">{}</{}>", array.inside, tag);
+          return fmt::format("<{}{} format=\"appended\" offset=\"{}\"{}", tag, array.attributes, begins[k],
+                             end);
+        });
   }
   text += "    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n_";
   return text;
@@ -216,16 +208,11 @@ std::string PieceSchema::fields_alone() const {
 std::string PieceSchema::index(const std::vector<std::string>& files) const {
   std::string text =
       opening("PUnstructuredGrid") + fmt::format("  <PUnstructuredGrid GhostLevel=\"{}\">\n", ghosts_);
-  for (const Section section : {Section::points_data, Section::cells_data, Section::points}) {
-    const std::string_view name = kSections[static_cast<std::size_t>(section)];
-    text += fmt::format("    <P{}{}>\n", name,
-                        section == Section::points_data  ? points_data_
-                        : section == Section::cells_data ? cells_data_
-                                                         : "");
-    write_section(section, [&](std::string_view tag, const PieceArray& array, std::size_t /*k*/) {
-      text += fmt::format("      <P{}{}/>\n", tag, array.attributes);
-    });
-    text += fmt::format("    </P{}>\n", name);
+  for (std::size_t section = 0; section < 3; ++section) {  // all but the cells
+    text +=
+        section_text(section, "    ", "P", [](std::string_view tag, const PieceArray& array, std::size_t) {
+          return fmt::format("<P{}{}/>", tag, array.attributes);
+        });
   }
   for (const std::string& file : files)
     text += fmt::format("    <Piece Source=\"{}\"/>\n", xml_escaped(file));

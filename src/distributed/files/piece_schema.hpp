@@ -3,8 +3,10 @@
 
 #include "distributed/comm/layout.hpp"
 #include "distributed/comm/rows.hpp"
+#include "io/file_layout.hpp"
 #include "io/vtk/vtk.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -16,9 +18,9 @@ struct VtuElement;
 
 namespace meshorder::distributed {
 
-/// An array of the pieces.
-struct PieceArray {
-  enum class Section : std::uint8_t { points_data, cells_data, points, cells };
+/// An array of the pieces: a part of each without a place. The number is that of rows and texts: the place
+/// among the arrays of the mesh's file. Texts have the type of their places in the list of texts.
+struct PieceArray : FilePart {
   enum class Source : std::uint8_t {
     rows,          ///< an array of numbers of the mesh
     texts,         ///< an array of texts of the mesh
@@ -28,18 +30,12 @@ struct PieceArray {
     connectivity,  ///< places of the cells' vertices
     offsets,       ///< ends of the cells in the connectivity
   };
-  Section section;
-  Source source;
+  Source source = Source::rows;
   std::string name;
-  std::size_t number;      ///< of rows and texts: place among the arrays of the mesh's file
-  std::uint8_t type;       ///< number type: index of an alternative of Values
-  Offset row;              ///< bytes of a row; for texts, of a place in the list of texts
   std::string attributes;  ///< XML attributes, beginning with a blank, without those that locate the values
   std::string inside;      ///< XML elements inside the array's element
 
-  [[nodiscard]] bool is_on_vertices() const {
-    return section == Section::points_data || section == Section::points;
-  }
+  [[nodiscard]] bool is_on_vertices() const { return association == Association::vertices; }
 };
 
 /// The properties that all pieces of a mesh have in common, made from the XML of its file.
@@ -75,16 +71,17 @@ class PieceSchema {
   static constexpr std::string_view kEnd = "\n  </AppendedData>\n</VTKFile>\n";
 
  private:
-  void add_roles(const vtk::VtuElement& section, PieceArray::Section kind);
+  void add_roles(const vtk::VtuElement& section, Association association);
   [[nodiscard]] std::string opening(const char* type) const;
-  /// Writes the elements of a section's arrays.
-  template <class Write>
-  void write_section(PieceArray::Section section, const Write& write) const;
+  /// Returns a section, by its number, in lines with this indent; `element(tag, array, k)` returns the
+  /// element of the k-th array.
+  template <class Element>
+  [[nodiscard]] std::string section_text(std::size_t section, std::string_view indent,
+                                         std::string_view prefix, const Element& element) const;
 
   std::string version_;
   std::string fields_;
-  std::string points_data_;  ///< attributes
-  std::string cells_data_;
+  std::array<std::string, 4> attributes_;  ///< of the sections
   std::vector<PieceArray> arrays_;
   std::vector<std::string> replaced_;
   std::vector<vtk::ArrayRole> roles_;

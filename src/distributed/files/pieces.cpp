@@ -11,6 +11,7 @@
 #include "io/stream/descriptor.hpp"
 #include "io/stream/system_fault.hpp"
 #include "io/vtk/vtk.hpp"
+#include "io/vtk/vtu_document.hpp"
 #ifdef MESHORDER_HAS_HDF5
 #include "io/vtkhdf/vtkhdf.hpp"
 #endif
@@ -111,7 +112,7 @@ class RankPieces {
     const bool is_taken = array.source == Source::rows || array.source == Source::texts;
     const Halo& halo = array.is_on_vertices() ? vertices_ : cells_;
     std::vector<std::byte> rows;
-    if (is_taken) rows = halo.fetch_rows(grid_.rows(array.number), array.row);
+    if (is_taken) rows = halo.fetch_rows(grid_.rows(array.number), array.row_size());
     communicator_.together([&] {
       for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const PieceContents& piece = pieces_[p];
@@ -120,7 +121,7 @@ class RankPieces {
           continue;
         }
         std::vector<std::byte> values =
-            rows_of(rows, array.row, halo, array.is_on_vertices() ? piece.vertices : piece.cells);
+            rows_of(rows, array.row_size(), halo, array.is_on_vertices() ? piece.vertices : piece.cells);
         if (array.source == Source::texts) values = spelt_out(values, texts_);
         take(p, values);
       }
@@ -142,7 +143,7 @@ class RankPieces {
         const auto& numbers = array.source == Source::connectivity ? piece.cell_vertices.entries
                               : array.is_on_vertices()             ? piece.vertices
                                                                    : piece.cells;
-        result[p].push_back(std::ssize(numbers) * array.row);
+        result[p].push_back(std::ssize(numbers) * array.row_size());
       }
     }
     return result;
@@ -195,11 +196,7 @@ std::string size_word(Offset size, Offset word, const std::string& name) {
     throw TooLarge(name +
                    ": an array of more than 4 GiB, which sizes of 32 bits cannot hold; give more --parts");
   }
-  std::string text(static_cast<std::size_t>(word), '\0');
-  const auto wide = static_cast<std::uint64_t>(size);
-  const auto narrow = static_cast<std::uint32_t>(wide);
-  std::memcpy(text.data(), word == 8 ? static_cast<const void*>(&wide) : &narrow, text.size());
-  return text;
+  return vtk::vtu_words({static_cast<std::uint64_t>(size)}, {.wide_headers = word == 8});
 }
 
 }  // namespace
@@ -258,38 +255,22 @@ namespace {
 /// Number type of connectivity and offsets, the same as in VTK's own writer.
 constexpr std::uint8_t kInt64 = 8;
 
-/// Returns the arrays of the pieces that VTKHDF can hold.
-std::vector<PieceArray> arrays_in_vtkhdf(const PieceSchema& schema) {
+/// Returns the arrays of the pieces that VTKHDF can hold, with their rows in all partitions.
+std::vector<PieceArray> arrays_in_vtkhdf(const PieceSchema& schema,
+                                         const std::vector<vtkhdf::Partition>& partitions) {
   std::vector<PieceArray> arrays;
-  for (const PieceArray& array : schema.arrays()) {
+  for (PieceArray array : schema.arrays()) {
     if (array.source == Source::texts) continue;
-    arrays.push_back(array);
-    if (array.source == Source::connectivity || array.source == Source::offsets) {
-      arrays.back().type = kInt64;
-      arrays.back().row = sizeof(std::int64_t);
+    if (array.source == Source::connectivity || array.source == Source::offsets) array.type = kInt64;
+    for (const vtkhdf::Partition& partition : partitions) {
+      array.rows += array.is_on_vertices()                 ? partition.points
+                    : array.source == Source::connectivity ? partition.entries
+                    : array.source == Source::offsets      ? partition.cells + 1
+                                                           : partition.cells;
     }
+    arrays.push_back(std::move(array));
   }
   return arrays;
-}
-
-/// Returns the dataset that holds an array of all pieces.
-vtkhdf::RawDataset dataset_of(const PieceArray& array, const std::vector<vtkhdf::Partition>& partitions) {
-  using Role = vtkhdf::RawDataset::Role;
-  const Role role = array.section == PieceArray::Section::points  ? Role::points
-                    : array.section != PieceArray::Section::cells ? Role::data
-                    : array.source == Source::connectivity        ? Role::connectivity
-                    : array.source == Source::offsets             ? Role::offsets
-                                                                  : Role::types;
-  std::int64_t rows = 0;
-  for (const vtkhdf::Partition& partition : partitions) {
-    rows += array.is_on_vertices()       ? partition.points
-            : role == Role::connectivity ? partition.entries
-            : role == Role::offsets      ? partition.cells + 1
-                                         : partition.cells;
-  }
-  const auto components = static_cast<Index>(array.row / size_of_type(array.type));
-  const Association association = array.is_on_vertices() ? Association::vertices : Association::cells;
-  return {role, array.name, association, array.type, components, rows, 0};
 }
 
 /// Throws InputError if there are higher-order hexahedra with the node order of VTK before version 9.
@@ -297,7 +278,7 @@ void refuse_old_hexahedra(const Communicator& communicator, const GridRows& grid
                           const std::string& name) {
   if (schema.has_order_of_vtk_9()) return;
   for (const PieceArray& array : schema.arrays()) {
-    if (array.section != PieceArray::Section::cells || array.source != Source::rows) continue;
+    if (array.role != FilePart::Role::types || array.source != Source::rows) continue;
     const std::vector<std::byte> own = grid.rows(array.number);
     communicator.together([&] {
       const std::vector<int> types = numbers_of<int>(own, array.type);
@@ -335,19 +316,21 @@ PiecesReport write_pieces_to_vtkhdf(const Communicator& communicator, const Grid
   }
   // in the order of the parts, because ranks have ascending ranges of parts
   partitions = communicator.gathered_at_root(partitions);
-  const std::vector<PieceArray> arrays = arrays_in_vtkhdf(schema);
+  const std::vector<PieceArray> arrays = arrays_in_vtkhdf(schema, partitions);
   PiecesReport report = report_on(communicator, own.pieces());
   const std::vector<Offset> places = communicator.broadcast(communicator.at_root([&] {
-    std::vector<vtkhdf::RawDataset> datasets;
-    datasets.reserve(arrays.size());
-    for (const PieceArray& array : arrays) datasets.push_back(dataset_of(array, partitions));
+    FileLayout layout;
+    for (const PieceArray& array : arrays) {
+      layout.parts.push_back(array);
+      layout.parts.back().number = layout.names.size();
+      layout.names.push_back(array.name);
+    }
     vtk::Metadata metadata;
     metadata.roles = schema.roles();
     metadata.fields = field_arrays(schema);
-    vtkhdf::write_without_values(path, name, partitions, datasets, metadata, report.notes);
+    vtkhdf::write_without_values(path, name, partitions, layout, metadata, report.notes);
     std::vector<Offset> found;
-    found.reserve(datasets.size());
-    for (const vtkhdf::RawDataset& dataset : datasets) found.push_back(static_cast<Offset>(dataset.place));
+    for (const FilePart& part : layout.parts) found.push_back(part.at);
     return found;
   }));
   SharedFile file(communicator, path, name, SharedFile::Use::write);

@@ -1,15 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "distributed/files/vtu_head.hpp"
-
-#include "base/input_file.hpp"
-#include "base/memory.hpp"
-#include "distributed/comm/number_types.hpp"
+#include "distributed/files/appended_arrays.hpp"
+#include "distributed/files/file_head.hpp"
 #include "distributed/files/text_store.hpp"
 #include "io/stream/file_path.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include "io/vtk/vtu_document.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -17,6 +15,8 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <filesystem>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -25,7 +25,6 @@ namespace {
 
 constexpr std::size_t kLongestHead = std::size_t{1} << 26;
 constexpr Offset kMostComponents = Offset{1} << 24;
-constexpr const char* kCutShort = "the file may be cut short";
 constexpr std::string_view kAppended = "<AppendedData";
 
 /// Returns the file up to the underscore before its appended data; nothing if it has none.
@@ -41,7 +40,7 @@ std::string head_of(const FilePath& path) {
   return {};
 }
 
-using Role = FileArray::Role;
+using Role = FilePart::Role;
 
 class HeadReader {
  public:
@@ -54,8 +53,7 @@ class HeadReader {
     TextStore store(text + "</AppendedData></VTKFile>");
     const FilePath path(path_, store);
     const ReadScope scope(path);
-    file_.emplace(path_);
-    head_.facts.bytes = static_cast<Offset>(file_->size());
+    head_.facts.bytes = static_cast<Offset>(std::filesystem::file_size(path_));
     count_file(path, static_cast<std::uint64_t>(head_.facts.bytes));
     const vtk::VtuDocument file(path);
     const VtuEncoding& encoding = head_.facts.encoding = file.encoding();
@@ -64,10 +62,10 @@ class HeadReader {
         grid == nullptr || count_of(*grid, "Piece") != 1 || has_compressed_text(file, *grid)) {
       return std::nullopt;
     }
-    word_ = encoding.wide_headers ? 8 : 4;
-    if (!read_piece(file, *grid->child("Piece"))) return std::nullopt;
+    AppendedArrays arrays(path_, file, head_.facts.first_byte, ranks_);
+    if (!read_piece(file, *grid->child("Piece"), arrays)) return std::nullopt;
     head_.xml = VtuXml(std::move(text), file);
-    if (!are_apart()) return std::nullopt;
+    if (!sort_by_bytes(head_.parts, head_.facts.bytes) || begins_within()) return std::nullopt;
     return std::move(head_);
   }
 
@@ -86,33 +84,34 @@ class HeadReader {
            });
   }
 
-  bool read_piece(const vtk::VtuDocument& file, const vtk::VtuElement& piece) {
+  bool read_piece(const vtk::VtuDocument& file, const vtk::VtuElement& piece, AppendedArrays& arrays) {
     head_.facts.vertices = whole_number(file, piece, "NumberOfPoints");
     head_.facts.cells = whole_number(file, piece, "NumberOfCells");
     for (const vtk::VtuElement& section : piece.children) {
       for (const vtk::VtuElement& element : section.children) {
-        if (!read_array(file, section.name, element)) return false;
+        if (!read_array(file, section.name, element, arrays)) return false;
       }
     }
     if (head_.facts.vertices == 0 || head_.facts.cells == 0) return false;
     constexpr std::array kNeeded{Role::points, Role::types, Role::offsets, Role::connectivity};
     return std::all_of(kNeeded.begin(), kNeeded.end(), [&](Role role) {
-      return std::count_if(head_.arrays.begin(), head_.arrays.end(),
-                           [&](const FileArray& array) { return array.role == role; }) == 1;
+      return std::count_if(head_.parts.begin(), head_.parts.end(),
+                           [&](const FilePart& part) { return part.role == role; }) == 1;
     });
   }
 
   /// Adds the array of an element; returns false if it cannot be read by slices.
-  bool read_array(const vtk::VtuDocument& file, std::string_view section, const vtk::VtuElement& element) {
+  bool read_array(const vtk::VtuDocument& file, std::string_view section, const vtk::VtuElement& element,
+                  AppendedArrays& arrays) {
     const std::string* const type = element.attribute("type");
     const std::string* const name = element.attribute("Name");
     const auto* const known = type == nullptr
                                   ? vtk::kXmlTypeNames.end()
                                   : std::find(vtk::kXmlTypeNames.begin(), vtk::kXmlTypeNames.end(), *type);
-    FileArray array{};
-    array.element = head_.arrays.size();
+    FilePart part;
+    part.number = head_.names.size();
     if (section == "Points") {
-      array.role = Role::points;
+      part.role = Role::points;
     } else if (section == "Cells") {
       constexpr std::array<std::pair<std::string_view, Role>, 3> kNames{
           {{"types", Role::types}, {"offsets", Role::offsets}, {"connectivity", Role::connectivity}}};
@@ -120,9 +119,7 @@ class HeadReader {
         return name != nullptr && one.first == *name;
       });
       if (own == kNames.end()) return false;
-      array.role = own->second;
-    } else {
-      array.role = Role::data;
+      part.role = own->second;
     }
     const bool on_vertices = section == "Points" || section == "PointData";
     if (element.name != "DataArray" || known == vtk::kXmlTypeNames.end() ||
@@ -131,143 +128,47 @@ class HeadReader {
         file.mode(element) != VtuEncoding::Mode::appended_raw) {
       return false;
     }
-    array.association = on_vertices ? Association::vertices : Association::cells;
-    array.type = static_cast<std::uint8_t>(known - vtk::kXmlTypeNames.begin());
-    const Offset number = size_of_type(array.type);
+    part.association = on_vertices ? Association::vertices : Association::cells;
+    part.type = static_cast<std::uint8_t>(known - vtk::kXmlTypeNames.begin());
     const Offset components = whole_number(file, element, "NumberOfComponents", 1);
-    const bool is_whole = array.type > 1;
-    const bool fits = array.role == Role::points ? components == 3 && !is_whole
-                      : array.role == Role::data ? components > 0 && components < kMostComponents
-                                                 : components == 1 && is_whole;
-    if (number == 0 || !fits) return false;
-    array.row = number * components;
-    if (name != nullptr) copy_start(*name, array.name);
-    std::vector<Offset> blocks = place(file, element, array);
-    const auto behind = std::upper_bound(head_.arrays.begin(), head_.arrays.end(), array,
-                                         [](const FileArray& a, const FileArray& b) { return a.at < b.at; });
-    head_.blocks.insert(head_.blocks.begin() + (behind - head_.arrays.begin()), std::move(blocks));
-    head_.arrays.insert(behind, array);
+    const bool is_whole = part.type > 1;
+    const bool fits = part.role == Role::points ? components == 3 && !is_whole
+                      : part.role == Role::data ? components > 0 && components < kMostComponents
+                                                : components == 1 && is_whole;
+    if (size_of_type(part.type) == 0 || !fits) return false;
+    part.components = static_cast<Index>(components);
+    head_.names.push_back(name == nullptr ? "" : *name);
+    const Offset size = arrays.place(element, part, head_.blocks.emplace_back());
+    const Offset width = part.row_size();
+    const Offset needed = part.role == Role::connectivity ? size / width
+                          : on_vertices                   ? head_.facts.vertices
+                                                          : head_.facts.cells;
+    part.rows = size / width;
+    if (part.rows != needed || size % width != 0) {
+      throw file.error(element,
+                       fmt::format("the array '{}' has {} bytes for {} rows of {}",
+                                   head_.names.back().substr(0, 40), size, needed, width),
+                       "the file may be damaged");
+    }
+    if (part.role == Role::connectivity) head_.facts.entries = part.rows;
+    head_.parts.push_back(part);
     return true;
   }
 
-  /// Copies the first 40 bytes of a name, with '?' for control characters.
-  static void copy_start(std::string_view name, std::array<char, 41>& target) {
-    std::replace_copy_if(
-        name.begin(), name.begin() + std::min<std::ptrdiff_t>(std::ssize(name), 40), target.begin(),
-        [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
-  }
-
-  /// Finds the bytes of an array by its offset and the words before them; returns the bounds of its blocks.
-  std::vector<Offset> place(const vtk::VtuDocument& file, const vtk::VtuElement& element, FileArray& array) {
-    const std::string what = fmt::format("the array '{}'", array.name.data());
-    const Offset offset = whole_number(file, element, "offset");
-    if (offset > head_.facts.bytes - head_.facts.first_byte)
-      throw file.error(element, what + " lies beyond the end of the file", kCutShort);
-    array.at = head_.facts.first_byte + offset;
-    std::vector<Offset> blocks;
-    const std::uint64_t size = head_.facts.encoding.compressor == VtuEncoding::Compressor::none
-                                   ? place_bytes(file, element, what, array)
-                                   : place_blocks(file, element, what, array, blocks);
-    const Offset rows = array.association == Association::vertices ? head_.facts.vertices : head_.facts.cells;
-    const bool is_free = array.role == Role::connectivity;
-    array.size = static_cast<Offset>(size);
-    if (is_free ? array.size % array.row != 0
-                : array.size / array.row != rows || array.size % array.row != 0) {
-      throw file.error(element, fmt::format("{} has {} bytes for {} rows of {}", what, size, rows, array.row),
-                       "the file may be damaged");
-    }
-    if (is_free) head_.facts.entries = array.size / array.row;
-    return blocks;
-  }
-
-  /// Returns the next `count` words of the file.
-  std::vector<std::uint64_t> words(const vtk::VtuDocument& file, const vtk::VtuElement& element,
-                                   const std::string& what, std::uint64_t count) {
-    const auto left = static_cast<std::uint64_t>(head_.facts.bytes - at_);
-    if (count > left / word_) throw file.error(element, what + " ends early", kCutShort);
-    file.claim(element, bytes_for(count, 2 * sizeof(std::uint64_t)));
-    std::vector<char> bytes(count * word_);
-    const std::size_t got = file_->read_at(static_cast<std::uint64_t>(at_), bytes);
-    at_ += std::ssize(bytes);
-    if (got < bytes.size())
-      throw InputError(path_, "cannot be read", "it may have changed while it was read");
-    std::vector<std::uint64_t> result;
-    for (std::size_t at = 0; at < bytes.size(); at += word_) {
-      std::uint64_t wide = 0;
-      std::uint32_t narrow = 0;
-      std::memcpy(word_ == 8 ? static_cast<void*>(&wide) : &narrow, bytes.data() + at, word_);
-      result.push_back(word_ == 8 ? wide : narrow);
-    }
-    return result;
-  }
-
-  /// Finds the bytes of an uncompressed array by the word before them; returns their number.
-  std::uint64_t place_bytes(const vtk::VtuDocument& file, const vtk::VtuElement& element,
-                            const std::string& what, FileArray& array) {
-    at_ = array.at;
-    const std::uint64_t size = words(file, element, what, 1).front();
-    const auto left = static_cast<std::uint64_t>(head_.facts.bytes - at_);
-    if (size > left)
-      throw file.error(element, fmt::format("{} has {} bytes, but the file ends after {}", what, size, left),
-                       kCutShort);
-    array.stored = static_cast<Offset>(word_ + size);
-    return size;
-  }
-
-  /// Finds the blocks of a compressed array by the words before them: the number of blocks, the bytes of
-  /// each, those of the last if they differ, and the compressed bytes of each. Returns the uncompressed size.
-  std::uint64_t place_blocks(const vtk::VtuDocument& file, const vtk::VtuElement& element,
-                             const std::string& what, FileArray& array, std::vector<Offset>& blocks) {
-    at_ = array.at;
-    const std::vector<std::uint64_t> head = words(file, element, what, 3);
-    const std::vector<std::uint64_t> compressed = words(file, element, what, head[0]);
-    if (head[0] > 1 && head[1] == 0)
-      throw file.error(element, what + " has empty blocks", "the array is damaged");
-    const std::uint64_t ratio = vtk::VtuCompressor::greatest_ratio(head_.facts.encoding.compressor);
-    std::uint64_t size = 0;
-    blocks.push_back(at_);
-    for (std::size_t b = 0; b < compressed.size(); ++b) {
-      if (compressed[b] > static_cast<std::uint64_t>(head_.facts.bytes - blocks.back()))
-        throw file.error(element, what + " ends early", kCutShort);
-      const std::uint64_t bytes = b + 1 == compressed.size() && head[2] > 0 ? head[2] : head[1];
-      if (bytes > compressed[b] * ratio + 1024) {
-        throw file.error(element,
-                         fmt::format("{}: a block of {} bytes cannot hold {}", what, compressed[b], bytes),
-                         "the array is damaged");
-      }
-      size += bytes;
-      blocks.push_back(blocks.back() + static_cast<Offset>(compressed[b]));
-    }
-    // claim what a rank holds of the array: its share, and a block of which it needs a part
-    file.claim(element, size / static_cast<std::uint64_t>(ranks_) + std::min(head[1], size));
-    array.stored = blocks.back() - array.at;
-    array.blocks = std::ssize(compressed);
-    array.block = static_cast<Offset>(compressed.size() == 1 ? size : head[1]);
-    return size;
-  }
-
-  /// Returns whether no two arrays share bytes, and none begins within another.
-  [[nodiscard]] bool are_apart() const {
-    const std::vector<FileArray>& arrays = head_.arrays;
-    for (std::size_t k = 1; k < arrays.size(); ++k) {
-      if (arrays[k].at < arrays[k - 1].at + arrays[k - 1].stored) return false;
-    }
+  /// Returns whether an array that belongs to no part begins within a part.
+  [[nodiscard]] bool begins_within() const {
     const std::vector<Offset> offsets = head_.xml.offsets();
-    return std::none_of(offsets.begin(), offsets.end(), [&](Offset offset) {
+    return std::any_of(offsets.begin(), offsets.end(), [&](Offset offset) {
       if (offset > head_.facts.bytes) return false;  // an error of its own when the array is read
       const Offset at = head_.facts.first_byte + offset;
-      return std::any_of(arrays.begin(), arrays.end(), [&](const FileArray& array) {
-        return array.at < at && at < array.at + array.stored;
-      });
+      return std::any_of(head_.parts.begin(), head_.parts.end(),
+                         [&](const FilePart& part) { return part.at < at && at < part.at + part.stored; });
     });
   }
 
   const std::string& path_;
   int ranks_;
   FileHead head_;
-  std::size_t word_ = 8;  ///< bytes of a word before an array
-  std::optional<InputFile> file_;
-  Offset at_ = 0;  ///< of the next byte to read
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "io/exodus/writing.hpp"
 #include "io/names.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -21,9 +22,7 @@ namespace {
 template <class Number>
 std::vector<Number> column(const DataArray& array, Index component, const std::vector<Index>& table,
                            Index first, Index count) {
-  Number nothing{};
-  if constexpr (std::is_floating_point_v<Number>) nothing = std::numeric_limits<Number>::quiet_NaN();
-  std::vector<Number> result(static_cast<std::size_t>(count), nothing);
+  std::vector<Number> result(static_cast<std::size_t>(count), missing_value<Number>());
   std::visit(
       [&](const auto& values) {
         for (Index k = 0; k < count; ++k) {

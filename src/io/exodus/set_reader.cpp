@@ -3,6 +3,7 @@
 #include "base/memory.hpp"
 #include "io/exodus/exodus.hpp"
 #include "io/exodus/reading.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -93,9 +94,7 @@ template <class Number>
 std::vector<Number> packed(const Sides& sides, const std::vector<Number>& values,
                            const std::vector<int>& counts, int width) {
   const auto row_width = static_cast<std::size_t>(sides.most_sides) * static_cast<std::size_t>(width);
-  Number nothing{};
-  if constexpr (std::is_floating_point_v<Number>) nothing = std::numeric_limits<Number>::quiet_NaN();
-  std::vector<Number> result(sides.cells.members.size() * row_width, nothing);
+  std::vector<Number> result(sides.cells.members.size() * row_width, missing_value<Number>());
   std::size_t from = 0;
   for (std::size_t i = 0; i < sides.row_of_entry.size(); ++i) {
     const auto length = static_cast<std::size_t>(counts[i]);

@@ -1,4 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "mesh/values.hpp"
+
 #include "base/memory.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/parts.hpp"
@@ -117,19 +119,14 @@ void File::read(const std::string& path, hid_t type, void* values) const {
 Values File::read(const std::string& path) const {
   const Session session;
   const DatasetInfo of = info(path);
-  Values values;
-  const auto read_as = [&]<std::size_t I>(std::integral_constant<std::size_t, I> /*alternative*/) {
-    if (I != of.alternative) return;
-    auto& numbers = values.emplace<I>();
-    claim(path, bytes_for(of.size(), sizeof(numbers.front())));
-    resize_large(numbers, of.size());
-    if (!numbers.empty()) read(path, native_types()[I], numbers.data());
-  };
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (read_as(std::integral_constant<std::size_t, I>{}), ...);
-  }
-  (std::make_index_sequence<10>());
-  return values;
+  return values_of_type(of.alternative, [&](auto& numbers) {
+    using Number = typename std::decay_t<decltype(numbers)>::value_type;
+    if constexpr (std::is_arithmetic_v<Number>) {
+      claim(path, bytes_for(of.size(), sizeof(Number)));
+      resize_large(numbers, of.size());
+      if (!numbers.empty()) read(path, native_types()[of.alternative], numbers.data());
+    }
+  });
 }
 
 std::vector<Index> File::read_indices(const std::string& path) const {

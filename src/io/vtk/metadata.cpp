@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <set>
 #include <string_view>
@@ -48,10 +47,8 @@ std::optional<std::vector<Index>> members_of(const std::vector<Number>& marks) {
 
 template <class Number>
 std::vector<Number> filled(const DataArray& array, const std::vector<Number>& values, Index count) {
-  Number nothing{};
-  if constexpr (std::is_floating_point_v<Number>) nothing = std::numeric_limits<Number>::quiet_NaN();
   const auto width = static_cast<std::size_t>(array.components);
-  std::vector<Number> result(static_cast<std::size_t>(count) * width, nothing);
+  std::vector<Number> result(static_cast<std::size_t>(count) * width, missing_value<Number>());
   for (std::size_t i = 0; i < array.indices.size(); ++i) {
     const auto from = values.begin() + static_cast<Offset>(i * width);
     std::copy(from, from + array.components, result.begin() + Offset{array.indices[i]} * array.components);
@@ -106,7 +103,7 @@ const Metadata& metadata_of(const Mesh& mesh, Notes& notes) {
 
 DataArray full_array(const DataArray& array, Index count) {
   DataArray copy{array.name, array.association, array.components, {}, {}, array.component_names};
-  copy.values = array.is_dense()
+  copy.values = array.is_dense() && row_count(array) == count
                     ? array.values
                     : std::visit([&](const auto& values) { return Values(filled(array, values, count)); },
                                  array.values);

@@ -4,6 +4,7 @@
 #include "io/format.hpp"
 #include "io/vtk/polyhedra.hpp"
 #include "io/vtu.hpp"
+#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/mesh.hpp>
 
@@ -33,16 +34,6 @@ inline constexpr std::array<std::string_view, std::variant_size_v<Values>> kXmlT
 inline constexpr std::array<std::string_view, std::variant_size_v<Values>> kLegacyTypeNames{
     "double", "float",        "char",         "unsigned_char", "short", "unsigned_short",
     "int",    "unsigned_int", "vtktypeint64", "vtktypeuint64", "string"};
-
-/// Returns an empty vector of the number type with that index in Values.
-inline Values values_of_type(std::size_t alternative) {
-  Values result;
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (void)((I == alternative && (result.emplace<I>(), true)) || ...);
-  }
-  (std::make_index_sequence<std::variant_size_v<Values>>());
-  return result;
-}
 
 /// Converts integers to the type Target; returns none if the values are not integers.
 template <class Target>

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 
 namespace meshorder::vtk {
@@ -63,6 +64,18 @@ std::string unescaped(std::string_view text) {
 }
 
 }  // namespace
+
+std::string vtu_words(const std::vector<std::uint64_t>& values, const VtuEncoding& encoding) {
+  const std::size_t size = encoding.wide_headers ? 8 : 4;
+  std::string result;
+  for (const std::uint64_t value : values) {
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::size_t place = encoding.order == std::endian::big ? size - 1 - i : i;
+      result += static_cast<char>((value >> (8 * place)) & 0xFFU);
+    }
+  }
+  return result;
+}
 
 const std::string* VtuElement::attribute(std::string_view wanted) const {
   const auto found = std::find_if(attributes.begin(), attributes.end(),

@@ -17,6 +17,9 @@ namespace meshorder::vtk {
 
 inline constexpr std::string_view kXmlBlanks = " \t\r\n";
 
+/// Returns words before an array, such as its size, in the byte order of the file.
+std::string vtu_words(const std::vector<std::uint64_t>& values, const VtuEncoding& encoding);
+
 /// An element of a .vtu file.
 struct VtuElement {
   std::string name;

@@ -13,6 +13,7 @@
 #include "io/stream/text_rows.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
+#include "io/vtk/vtu_document.hpp"
 #include "mesh/values.hpp"
 
 #include <fmt/format.h>
@@ -287,25 +288,13 @@ class VtuWriter {
     return blocks;
   }
 
-  /// Returns words of a header in the byte order of the file.
-  [[nodiscard]] std::string words(const std::vector<std::uint64_t>& values) const {
-    std::string result;
-    for (const std::uint64_t value : values) {
-      for (std::size_t i = 0; i < header_size(); ++i) {
-        const std::size_t place = encoding_.order == std::endian::big ? header_size() - 1 - i : i;
-        result += static_cast<char>((value >> (8 * place)) & 0xFFU);
-      }
-    }
-    return result;
-  }
-
   /// Returns the header of compressed blocks: their number, the size of a full block, the size of a shorter
   /// last one or 0, and the compressed size of each.
   [[nodiscard]] std::string block_header(const Array& array, const std::vector<std::string>& blocks) const {
     std::vector<std::uint64_t> values{blocks.size(), VtuCompressor::kBlock,
                                       byte_count(array) % VtuCompressor::kBlock};
     for (const std::string& block : blocks) values.push_back(block.size());
-    return words(values);
+    return vtu_words(values, encoding_);
   }
 
   void write_bytes(const Array& array) {
@@ -317,7 +306,7 @@ class VtuWriter {
       });
     } else {
       write_coded([&](const auto& put) {
-        put(words({byte_count(array)}));
+        put(vtu_words({byte_count(array)}, encoding_));
         std::vector<char> room;
         for (std::uint64_t b = 0; b < block_count(array); ++b) put(block_of(array, b, room));
       });

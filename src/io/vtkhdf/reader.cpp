@@ -40,19 +40,22 @@ class VtkHdfReader {
     check_kind();
     read_counts();
     if (partitions_.size() != 1) return {};
-    grid_ = {all_.points, all_.cells, all_.entries, {}, {}};
-    using Role = RawDataset::Role;
+    layout_ = {{all_.points, all_.cells, all_.entries}, {}, {}};
+    using Role = FilePart::Role;
     const bool is_found = add(Role::points, "Points", all_.points, 3) &&
                           add(Role::connectivity, "Connectivity", all_.entries) &&
                           add(Role::offsets, "Offsets", all_.cells + 1) &&
                           add(Role::types, "Types", all_.cells) && add_data(Association::vertices) &&
                           add_data(Association::cells);
     if (!is_found) return {};
+    constexpr std::ptrdiff_t kOfMesh = 4;
+    std::rotate(layout_.parts.begin(), layout_.parts.begin() + kOfMesh, layout_.parts.end());
+    std::rotate(layout_.names.begin(), layout_.names.begin() + kOfMesh, layout_.names.end());
+    for (std::size_t k = 0; k < layout_.parts.size(); ++k) layout_.parts[k].number = k;
     read_fields();
     note_others();
     if (!notes_.empty()) return {};
-    grid_.metadata = *metadata_;
-    return std::move(grid_);
+    return RawGrid{std::move(layout_), *metadata_};
   }
 
   Mesh read() {
@@ -78,20 +81,32 @@ class VtkHdfReader {
 
   // ---- datasets by their places
 
-  /// Adds a dataset of the mesh; returns false if its values cannot be read by their bytes.
-  bool add(RawDataset::Role role, std::string_view name, std::int64_t rows, Index width = 1) {
-    const std::string path = path_of(name);
-    const hdf5::DatasetInfo info = check_rows(path, rows, static_cast<std::uint64_t>(width));
+  /// Adds a dataset as a part of the file; returns false if its values cannot be read by their bytes.
+  bool add(FilePart part, const std::string& path, const std::string& name) {
     const std::optional<std::uint64_t> place = file_.place_of_values(path);
-    const bool is_whole = info.alternative > 1;
-    if (!place || is_whole == (role == RawDataset::Role::points)) return false;
-    const Association association =
-        role == RawDataset::Role::points ? Association::vertices : Association::cells;
-    grid_.datasets.push_back({role, std::string(name), association, info.alternative, width, rows, *place});
+    if (!place) return false;
+    part.type = static_cast<std::uint8_t>(file_.info(path).alternative);
+    part.at = static_cast<std::int64_t>(*place);
+    if (part.role == FilePart::Role::offsets) {  // the others are the ends of cells
+      --part.rows;
+      part.at += part.row_size();
+    }
+    part.stored = part.size();
+    layout_.parts.push_back(part);
+    layout_.names.push_back(name);
     return true;
   }
 
-  /// Adds the arrays on points or cells; returns false if the values of one cannot be read by their bytes.
+  bool add(FilePart::Role role, const std::string& name, std::int64_t rows, Index width = 1) {
+    const std::string path = path_of(name);
+    const bool is_whole = check_rows(path, rows, static_cast<std::uint64_t>(width)).alternative > 1;
+    const bool are_points = role == FilePart::Role::points;
+    const Association association = are_points ? Association::vertices : Association::cells;
+    return is_whole != are_points &&
+           add({.role = role, .association = association, .components = width, .rows = rows}, path, name);
+  }
+
+  /// Adds the arrays on points or cells.
   bool add_data(Association association) {
     const std::string group = data_group(association);
     read_roles(association);
@@ -101,12 +116,10 @@ class VtkHdfReader {
       if (!file_.number_type(path)) return false;
       const hdf5::DatasetInfo info = file_.info(path);
       const Index components = components_of(path, info);
-      const std::optional<std::uint64_t> place = file_.place_of_values(path);
-      if (!place) return false;
       check_count(path, info.shape.empty() ? 1 : static_cast<std::int64_t>(info.shape.front()), association,
                   rows);
-      grid_.datasets.push_back(
-          {RawDataset::Role::data, name, association, info.alternative, components, rows, *place});
+      if (!add({.association = association, .components = components, .rows = rows}, path, name))
+        return false;
     }
     return true;
   }
@@ -428,7 +441,7 @@ class VtkHdfReader {
   vtk::FileCells cells_;              ///< of all partitions, like the arrays
   std::vector<DataArray> arrays_;
   Partition all_;
-  RawGrid grid_;
+  FileLayout layout_;
 };
 
 }  // namespace

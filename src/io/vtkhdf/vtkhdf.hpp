@@ -7,6 +7,7 @@
 // https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format/index.html. Files of version 1.0 are
 // written, which VTK 9.1 and later read; files of 2.x are read if they have the same layout.
 
+#include "io/file_layout.hpp"
 #include "io/format.hpp"
 #include "io/vtk/vtk.hpp"
 
@@ -37,26 +38,11 @@ struct Partition {
   std::int64_t entries = 0;  ///< of the connectivity
 };
 
-/// A dataset that stores its values one after another, as they are in memory.
-struct RawDataset {
-  enum class Role : std::uint8_t { points, connectivity, offsets, types, data };
-
-  Role role;
-  std::string name;         ///< of an array on points or cells
-  Association association;  ///< whether a row is that of a vertex or of a cell
-  std::size_t type;         ///< number type, as an alternative of Values
-  Index components;
-  std::int64_t rows;
-  std::uint64_t place;  ///< first byte in the file
-};
-
-/// What is needed to read a file of one partition by its bytes.
+/// A file of one partition as a list of parts: first the arrays of points and of cells, then the mesh, with
+/// the ends of the cells as offsets.
 struct RawGrid {
-  std::int64_t vertices = 0;
-  std::int64_t cells = 0;
-  std::int64_t entries = 0;          ///< of the connectivity
-  std::vector<RawDataset> datasets;  ///< one of each role, but of `data` one for each array
-  vtk::Metadata metadata;            ///< fields and roles
+  FileLayout layout;
+  vtk::Metadata metadata;  ///< fields and roles
 };
 
 /// Finds the bytes of the values in a file on disk. Returns nothing if only libhdf5 can read the file, or if
@@ -71,12 +57,12 @@ std::optional<RawGrid> find_raw(const FilePath& path);
 ///
 /// @param path      of the file
 /// @param name      of the file in messages
-/// @param datasets  one of each role, any number of `data`; receive the places of their values
-/// @param metadata  fields and roles of arrays that are among the datasets; others are left out
+/// @param layout    of all partitions; its parts receive the places of their values
+/// @param metadata  fields, and roles of arrays of the layout; others are left out
 /// @param notes     receives notes on arrays and fields that have another name in the file
 /// @throws InputError if it cannot be written
 void write_without_values(const std::filesystem::path& path, const std::string& name,
-                          const std::vector<Partition>& partitions, std::vector<RawDataset>& datasets,
+                          const std::vector<Partition>& partitions, FileLayout& layout,
                           const vtk::Metadata& metadata, Notes& notes);
 
 Mesh read(const FilePath& path, Notes& notes);

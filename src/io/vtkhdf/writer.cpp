@@ -136,25 +136,24 @@ class VtkHdfWriter {
   hdf5::File& file_;
 };
 
-/// Names of the datasets of a mesh, in the order of RawDataset::Role.
-constexpr std::array<std::string_view, 4> kDatasets{"Points", "Connectivity", "Offsets", "Types"};
+/// Names of the datasets of a mesh, in the order of FilePart::Role.
+constexpr std::array<std::string_view, 4> kDatasets{"Points", "Types", "Offsets", "Connectivity"};
 
 /// Returns the path of an array on points or cells, under a name that no other has. `held` maps the names
 /// that are taken to their arrays.
-std::string place_array(const RawDataset& dataset,
+std::string place_array(Association association, const std::string& array,
                         std::map<std::pair<Association, std::string>, std::string>& held,
                         std::map<Association, NameNumbers>& numbers, Notes& notes) {
-  const std::string wanted = vtk::name_in_hdf5(dataset.name);
-  const std::string name = numbers[dataset.association].free_name(
+  const std::string wanted = vtk::name_in_hdf5(array);
+  const std::string name = numbers[association].free_name(
       wanted, [&](int k) { return fmt::format("{}_{}", wanted, k); },
       [&](const std::string& free) {
-        return held.try_emplace({dataset.association, free}, dataset.name).second;
+        return held.try_emplace({association, free}, array).second;
       });
-  if (name != dataset.name) {
-    notes.push_back(fmt::format("the array '{}' on {} is written as '{}'", dataset.name,
-                                to_string(dataset.association), name));
-  }
-  return data_group(dataset.association) + "/" + name;
+  if (name != array)
+    notes.push_back(
+        fmt::format("the array '{}' on {} is written as '{}'", array, to_string(association), name));
+  return data_group(association) + "/" + name;
 }
 
 }  // namespace
@@ -174,7 +173,7 @@ void note_lacking(const vtk::WriteContext& from, Notes& notes) {
 }
 
 void write_without_values(const std::filesystem::path& path, const std::string& name,
-                          const std::vector<Partition>& partitions, std::vector<RawDataset>& datasets,
+                          const std::vector<Partition>& partitions, FileLayout& layout,
                           const vtk::Metadata& metadata, Notes& notes) {
   const hdf5::Session session;
   const std::string bytes = empty_file();
@@ -184,13 +183,13 @@ void write_without_values(const std::filesystem::path& path, const std::string& 
   std::map<std::pair<Association, std::string>, std::string> held;  // taken names and their arrays
   std::map<Association, NameNumbers> numbers;
   std::vector<std::string> paths;
-  for (const RawDataset& dataset : datasets) {
-    paths.push_back(dataset.role == RawDataset::Role::data
-                        ? place_array(dataset, held, numbers, notes)
-                        : fmt::format("{}/{}", kRoot, kDatasets[static_cast<std::size_t>(dataset.role)]));
-    std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(dataset.rows)};
-    if (dataset.components != 1) shape.push_back(static_cast<std::uint64_t>(dataset.components));
-    file.make_room(paths.back(), dataset.type, shape);
+  for (const FilePart& part : layout.parts) {
+    paths.push_back(part.role == FilePart::Role::data
+                        ? place_array(part.association, layout.names[part.number], held, numbers, notes)
+                        : fmt::format("{}/{}", kRoot, kDatasets[static_cast<std::size_t>(part.role)]));
+    std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(part.rows)};
+    if (part.components != 1) shape.push_back(static_cast<std::uint64_t>(part.components));
+    file.make_room(paths.back(), part.type, shape);
   }
   for (const auto& [place, array] : held) {
     for (const vtk::ArrayRole& role : metadata.roles) {
@@ -200,10 +199,10 @@ void write_without_values(const std::filesystem::path& path, const std::string& 
     }
   }
   write_fields(file, metadata.fields, notes);
-  for (std::size_t k = 0; k < datasets.size(); ++k) {
+  for (std::size_t k = 0; k < paths.size(); ++k) {
     const std::optional<std::uint64_t> place = file.place_of_values(paths[k]);
     if (!place) throw InputError(name, fmt::format("'{}' got no room", paths[k]), "is the disk full?");
-    datasets[k].place = *place;
+    layout.parts[k].at = static_cast<std::int64_t>(*place);
   }
   file.close();
 }

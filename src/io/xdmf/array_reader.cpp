@@ -41,7 +41,7 @@ void ArrayReader::add_moved_points(const GridElement& grid, std::vector<Field>& 
   for (const Point& point : points) values.insert(values.end(), point.begin(), point.begin() + dimension);
   array.values = std::move(values);
   Field& field = reading_.layout->fields.emplace_back(fields.front());
-  field.role = Field::Role::array;
+  field.role = Field::Role::data;
   field.name = add_growing(std::move(array));
 }
 
@@ -83,7 +83,7 @@ void ArrayReader::read_attribute(const GridElement& grid, int part, pugi::xml_no
                                   fmt::format("the attribute '{}' is on each {}", name, shortened(center)),
                                   "attributes of Node, Cell and Grid can be moved with the mesh");
   }
-  Field field{Field::Role::array, reading_.data.place_of(reading_.item_of(element))};
+  Field field{Field::Role::data, reading_.data.place_of(reading_.item_of(element))};
   field.part = on_vertices ? 0 : part;
   field.association = on_vertices ? Association::vertices : Association::cells;
   const std::string key = fmt::format("{} {} {}", key_of(field.place), field.part, on_vertices);
@@ -155,7 +155,7 @@ void ArrayReader::read_set(int part, pugi::xml_node element) {
                                   "attributes of Grids can be moved with the mesh");
   }
   const pugi::xml_node item = reading_.item_of(element);
-  Field field{Field::Role::set, reading_.data.place_of(item)};
+  Field field{Field::Role::members, reading_.data.place_of(item)};
   field.part = on_vertices ? 0 : part;
   field.association = on_vertices ? Association::vertices : Association::cells;
   field.name = name;

@@ -48,7 +48,7 @@ DataArray Writer::marks_of(const EntitySet& set) const {
 
 void Writer::add_others() {
   for (const Field& field : layout_.fields) {
-    if (field.role == Field::Role::array) names_.emplace(field.association, field.name);
+    if (field.role == Field::Role::data) names_.emplace(field.association, field.name);
   }
   const std::set<std::pair<Association, std::string>> covered = names_;
   const std::set<std::pair<Association, std::string>> placed = placed_sets();
@@ -75,7 +75,7 @@ std::set<std::pair<Association, std::string>> Writer::placed_sets() const {
     if (!part.set.empty()) placed.emplace(Association::cells, part.set);
   }
   for (const Field& field : layout_.fields) {
-    if (field.role == Field::Role::set) placed.emplace(field.association, field.name);
+    if (field.role == Field::Role::members) placed.emplace(field.association, field.name);
   }
   return placed;
 }

@@ -89,11 +89,6 @@ const char* number_in(const char* p, const char* end, Number& number) {
   return code == std::errc{} && (next == end || is_blank(*next)) ? next : nullptr;
 }
 
-std::size_t bytes_of_number(std::size_t alternative) {
-  constexpr std::array<std::size_t, 10> kBytes{8, 4, 1, 1, 2, 2, 4, 4, 8, 8};
-  return kBytes[alternative];
-}
-
 }  // namespace
 
 std::pair<std::string, int> number_type_of(std::size_t alternative) {
@@ -291,7 +286,7 @@ Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const 
   const ElementText whole_text(item);
   const std::string_view text = whole_text.view();
   const std::uint64_t count = place.count();
-  return values_as(place.alternative, [&](auto& numbers) {
+  return values_of_type(place.alternative, [&](auto& numbers) {
     using Number = typename std::decay_t<decltype(numbers)>::value_type;
     if constexpr (std::is_arithmetic_v<Number>) {
       const std::uint64_t most = std::min<std::uint64_t>(count, text.size() / 2 + 1);
@@ -345,13 +340,13 @@ Values DataReader::read_binary(const DataPlace& place, pugi::xml_node item) {
   }
   const std::string& bytes = known->second;
   const std::uint64_t count = place.count();
-  const std::size_t size = bytes_of_number(place.alternative);
+  const auto size = static_cast<std::uint64_t>(size_of_type(place.alternative));
   if (place.seek > bytes.size() || count > (bytes.size() - place.seek) / size) {
     throw document_.error(
         item, fmt::format("the file '{}' has {} bytes", place.file, bytes.size()),
         fmt::format("{} values of {} bytes from byte {} on are needed", count, size, place.seek));
   }
-  return values_as(place.alternative, [&](auto& numbers) {
+  return values_of_type(place.alternative, [&](auto& numbers) {
     using Number = typename std::decay_t<decltype(numbers)>::value_type;
     if constexpr (std::is_arithmetic_v<Number>) {
       claim(item, bytes_for(count, sizeof(Number)));

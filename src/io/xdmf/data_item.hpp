@@ -53,18 +53,6 @@ std::string key_of(const DataPlace& place);
 /// Returns the attributes NumberType and Precision for the number type of an alternative of Values.
 std::pair<std::string, int> number_type_of(std::size_t alternative);
 
-/// Calls `work` with an empty vector of the number type of that alternative; returns the vector as Values.
-template <class Work>
-Values values_as(std::size_t alternative, const Work& work) {
-  Values values;
-  const auto make = [&]<std::size_t I>(std::integral_constant<std::size_t, I> /*number*/) {
-    if (I == alternative) work(values.emplace<I>());
-  };
-  [&]<std::size_t... I>(std::index_sequence<I...>) { (make(std::integral_constant<std::size_t, I>{}), ...); }
-  (std::make_index_sequence<10>());
-  return values;
-}
-
 /// Splits "mesh.h5:/Mesh/topology" into the file and the path in it.
 std::pair<std::string, std::string> split_hdf5_name(std::string_view text);
 

@@ -8,19 +8,11 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <new>
 #include <type_traits>
 
 namespace meshorder::xdmf {
 namespace {
-
-/// Returns the value that is written for rows that an array lacks: NaN or 0.
-template <class Number>
-Number nothing() {
-  if constexpr (std::is_floating_point_v<Number>) return std::numeric_limits<Number>::quiet_NaN();
-  return Number{};
-}
 
 bool is_identity(const std::vector<Index>& rows, Index count) {
   if (index_size(rows) != count) return false;
@@ -62,12 +54,12 @@ void Writer::write_field(const Field& field) {
   switch (field.role) {
     case Field::Role::points:
       return write_points(field);
-    case Field::Role::topology:
+    case Field::Role::connectivity:
       return write_topology(field);
-    case Field::Role::array:
-      return write_array(field);
-    case Field::Role::set:
+    case Field::Role::members:
       return write_set(field);
+    default:
+      return write_array(field);
   }
 }
 
@@ -79,7 +71,7 @@ void Writer::write_points(const Field& field) {
   const std::size_t count = mesh_.points.size() * width;
   constexpr std::size_t kFloatAlternative = 1;
   const bool floats = field.place.alternative == kFloatAlternative && are_floats();
-  const Values values = values_as(floats ? kFloatAlternative : 0, [&](auto& numbers) {
+  const Values values = values_of_type(floats ? kFloatAlternative : 0, [&](auto& numbers) {
     using Number = typename std::decay_t<decltype(numbers)>::value_type;
     if constexpr (std::is_floating_point_v<Number>) {
       numbers.resize(count);
@@ -270,14 +262,14 @@ std::optional<Values> Writer::values_of(const DataArray& array, Association asso
   }
   const auto width = static_cast<std::size_t>(array.components);
   bool filled = false;
-  Values result = values_as(array.values.index(), [&](auto& numbers) {
+  Values result = values_of_type(array.values.index(), [&](auto& numbers) {
     using Number = typename std::decay_t<decltype(numbers)>::value_type;
     const auto& values = std::get<std::decay_t<decltype(numbers)>>(array.values);
     numbers.reserve(rows.size() * width);
     for (const Index item : rows) {
       const Index row = row_of.empty() ? item : row_of[static_cast<std::size_t>(item)];
       if (row < 0) {
-        numbers.insert(numbers.end(), width, nothing<Number>());
+        numbers.insert(numbers.end(), width, missing_value<Number>());
         filled = true;
       } else {
         const auto first = values.begin() + static_cast<Offset>(static_cast<std::size_t>(row) * width);

@@ -58,7 +58,7 @@ Layout layout_of(const Mesh& mesh, const FilePath& path) {
     const std::string name(kGridNames[static_cast<std::size_t>(dimensions.front() - dimensions[i])]);
     layout.parts.push_back({.name = name, .set = i == 0 ? "" : name, .grid = i});
     layout.xml += fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\"><Topology TopologyType=\"\">", name);
-    add_item(Field::Role::topology, fmt::format("/{}/{}/topology", i == 0 ? "Mesh" : "MeshTags", name),
+    add_item(Field::Role::connectivity, fmt::format("/{}/{}/topology", i == 0 ? "Mesh" : "MeshTags", name),
              kInt32, part);
     layout.xml +=
         fmt::format("</Topology><Geometry GeometryType=\"{}\">", mesh.dimension == 2 ? "XY" : "XYZ");

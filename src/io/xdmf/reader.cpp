@@ -146,11 +146,11 @@ class XdmfReader {
       if (!find_grid(grid)) return {};
     }
     if (reading_.data.files().size() != 1) return {};
-    raw_.data = reading_.data.path_of(reading_.document.root(), reading_.data.files().begin()->first).path();
-    keep_rest(raw_.datasets[0].rows, raw_.datasets[1].rows);
+    keep_rest(raw_.vertices, raw_.cells);
     if (!reading_.notes.empty()) return {};
-    raw_.layout = reading_.layout;
-    return std::move(raw_);
+    const std::string& data = reading_.data.files().begin()->first;
+    return RawGrid{std::move(raw_), reading_.data.path_of(reading_.document.root(), data).string(),
+                   with_data(reading_.layout)};
   }
 
  private:
@@ -178,7 +178,7 @@ class XdmfReader {
     const bool is_flat = same_but_for_case(type, "XY");
     if ((!is_flat && !type.empty() && !same_but_for_case(type, "XYZ")) || items_of(geometry).size() != 1)
       return false;
-    return find_values(reading_.item_of(geometry), RawDataset::Role::points, Association::vertices,
+    return find_values(reading_.item_of(geometry), Field::Role::points, Association::vertices,
                        is_flat ? 2 : 3);
   }
 
@@ -189,15 +189,15 @@ class XdmfReader {
         items_of(topology).size() != 1) {
       return false;
     }
-    const bool is_first = raw_.datasets.size() < 2;
+    const bool is_first = raw_.parts.size() < 2;
     const bool is_found =
-        find_values(reading_.item_of(topology), RawDataset::Role::topology, Association::cells, type->nodes);
+        find_values(reading_.item_of(topology), Field::Role::connectivity, Association::cells, type->nodes);
     if (!is_found || (!is_first && type->shape != raw_.shape)) return false;
     raw_.shape = type->shape;
     const std::string announced = attribute(topology, "NumberOfElements", "Dimensions");
     std::string_view rest = announced;
     const std::string_view cells = next_word(rest);
-    return cells.empty() || cells == std::to_string(raw_.datasets[1].rows);
+    return cells.empty() || cells == std::to_string(raw_.cells);
   }
 
   bool find_array(pugi::xml_node element) {
@@ -212,42 +212,52 @@ class XdmfReader {
       return reading_.data.place_of(item).format != DataPlace::Format::binary;
     const bool on_vertices = same_but_for_case(center, "Node");
     if (!on_vertices && !same_but_for_case(center, "Cell")) return false;
-    return find_values(item, RawDataset::Role::array,
-                       on_vertices ? Association::vertices : Association::cells, 0);
+    return find_values(item, Field::Role::data, on_vertices ? Association::vertices : Association::cells, 0);
   }
 
   /// Adds the dataset of a DataItem as rows of `components` numbers; 0: as many as fit the points or cells.
   /// The first call must be for the points, the second for the topology; other Grids must name the same
   /// datasets. Returns false if the dataset cannot be read by its bytes.
-  bool find_values(pugi::xml_node item, RawDataset::Role role, Association association, Index components) {
+  bool find_values(pugi::xml_node item, Field::Role role, Association association, Index components) {
     constexpr std::size_t kLastReal = 1;
     constexpr std::size_t kInt32 = 6;
     DataPlace place = reading_.data.place_of(item);
     if (place.format != DataPlace::Format::hdf) return false;
     const auto count = static_cast<std::int64_t>(place.count());
+    if (count == 0) return false;
     if (components == 0) {
-      const std::int64_t rows = raw_.datasets[association == Association::vertices ? 0 : 1].rows;
+      const std::int64_t rows = association == Association::vertices ? raw_.vertices : raw_.cells;
       if (count % rows != 0 || count / rows > kMaxIndex) return false;
       components = static_cast<Index>(count / rows);
     }
-    if (count == 0 || count % components != 0 || count / components > kMaxIndex) return false;
-    const auto known = std::find_if(raw_.datasets.begin(), raw_.datasets.end(),
-                                    [&](const RawDataset& dataset) { return dataset.name == place.dataset; });
-    if (known != raw_.datasets.end()) return known->role == role && known->association == association;
+    const std::int64_t rows = count / components;
+    if (count % components != 0 || rows > kMaxIndex) return false;
+    const auto known = std::find(raw_.names.begin(), raw_.names.end(), place.dataset);
+    if (known != raw_.names.end()) {
+      const FilePart& part = raw_.parts[static_cast<std::size_t>(known - raw_.names.begin())];
+      return part.role == role && part.association == association;
+    }
+    FilePart part{role, association, static_cast<std::uint8_t>(place.alternative), components, rows};
     // only one mesh, of real coordinates and of indices that have 32 bits or more
-    if (role == RawDataset::Role::points && (!raw_.datasets.empty() || place.alternative > kLastReal))
-      return false;
-    if (role == RawDataset::Role::topology && (raw_.datasets.size() != 1 || place.alternative < kInt32))
-      return false;
+    if (role == Field::Role::points) {
+      if (!raw_.parts.empty() || place.alternative > kLastReal) return false;
+      raw_.vertices = rows;
+    } else if (role == Field::Role::connectivity) {
+      if (raw_.parts.size() != 1 || place.alternative < kInt32) return false;
+      raw_.cells = rows;
+      raw_.nodes = components;
+      raw_.entries = part.rows = count;
+      part.components = 1;
+    }
     const std::optional<std::uint64_t> byte =
         reading_.data.files().at(place.file).place_of_values(place.dataset);
     if (!byte) return false;
-    raw_.datasets.push_back(
-        {role, place.dataset, association, place.alternative, components, count / components, *byte});
-    Field::Role of_field = Field::Role::array;
-    if (role == RawDataset::Role::points) of_field = Field::Role::points;
-    if (role == RawDataset::Role::topology) of_field = Field::Role::topology;
-    Field& field = reading_.layout->fields.emplace_back(Field{of_field, std::move(place)});
+    part.number = raw_.names.size();
+    part.at = static_cast<std::int64_t>(*byte);
+    part.stored = part.size();
+    raw_.parts.push_back(part);
+    raw_.names.push_back(place.dataset);
+    Field& field = reading_.layout->fields.emplace_back(Field{role, std::move(place)});
     field.association = association;
     return true;
   }
@@ -441,7 +451,7 @@ class XdmfReader {
   }
 
   Reading reading_;
-  RawGrid raw_;
+  FileLayout raw_;
   TopologyReader topologies_{reading_};
   ArrayReader arrays_{reading_};
   std::map<std::string, std::size_t> known_geometries_;  // index of their first field in the layout, by key

@@ -61,7 +61,7 @@ int TopologyReader::read(const GridElement& grid, pugi::xml_node topology) {
                                   "write it without");
   }
   const pugi::xml_node item = item_of_topology(topology);
-  Field field{Field::Role::topology, reading_.data.place_of(item)};
+  Field field{Field::Role::connectivity, reading_.data.place_of(item)};
   field.base = topology.attribute("BaseOffset").as_int(0);
   const std::string key = key_of_cells(topology, field.place, field.base);
   std::vector<Field>& fields = reading_.layout->fields;

@@ -111,7 +111,7 @@ void Writer::put_indices(const DataPlace& place, std::span<const Index> indices,
   const bool is_shared =
       place.format == DataPlace::Format::hdf && files_.at(place.file).written.contains(place.dataset);
   if (place.format != DataPlace::Format::hdf || place.alternative < kInt32 || is_shared) {
-    const Values values = values_as(std::max(place.alternative, kInt32), [&](auto& numbers) {
+    const Values values = values_of_type(std::max(place.alternative, kInt32), [&](auto& numbers) {
       using Number = typename std::decay_t<decltype(numbers)>::value_type;
       if constexpr (std::is_integral_v<Number>) {
         numbers.reserve(indices.size());

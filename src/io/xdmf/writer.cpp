@@ -60,7 +60,7 @@ std::string Writer::write_without_values(const std::filesystem::path& data, cons
   hdf5::File& file = *files_.emplace(old_name, std::move(output)).first->second.file;
   for (const Field& field : fields_) {
     file.give_room(field.place.dataset);
-    if (field.role == Field::Role::topology) announce_cells_of(field);
+    if (field.role == Field::Role::connectivity) announce_cells_of(field);
   }
   rename_files();
   mark_files(mark);

@@ -38,7 +38,7 @@ struct Hdf5Output {
   int next_array = 0;             ///< lowest number that an array without a name of its own may have
 };
 
-/// See `write` and `write_without_values`.
+/// See `write` and `SplitFile`.
 class Writer {
  public:
   /// `rows`: the cells of each part.
@@ -46,7 +46,7 @@ class Writer {
          Notes& notes);
   /// Writes the file and those that it names.
   void write();
-  /// See the function of that name.
+  /// See `SplitFile`; `mark` is that of its checksum.
   std::string write_without_values(const std::filesystem::path& data, const std::string& mark);
   /// Returns the new name of an HDF5 file of the old XML: it follows the name of the new .xdmf file.
   [[nodiscard]] std::string new_name(const std::string& old_name) const;

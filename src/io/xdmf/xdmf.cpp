@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <optional>
 
 namespace meshorder::xdmf {
@@ -28,34 +27,58 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
 
 std::string mark_of(std::uint64_t checksum) { return fmt::format("{:016x}", checksum); }
 
-std::string name_of_data(const Layout& layout, const std::filesystem::path& path) {
-  const Mesh none;
-  Notes ignored;
-  return Writer(none, layout, {}, FilePath(path), ignored).new_name(layout.hdf5.begin()->first);
-}
+namespace {
 
-std::string write_without_values(const Layout& layout, const std::filesystem::path& path,
-                                 const std::filesystem::path& data, const std::string& mark) {
-  const hdf5::Session session;
-  const Mesh none;
-  Notes ignored;
-  return Writer(none, layout, {}, FilePath(path), ignored).write_without_values(data, mark);
-}
+/// The files of a layout whose values are all in one HDF5 file.
+class XdmfWithData final : public SplitFile {
+ public:
+  explicit XdmfWithData(std::shared_ptr<const Layout> layout) : layout_(std::move(layout)) {}
 
-std::vector<std::uint64_t> places_of_values(const Layout& layout, const std::filesystem::path& data,
-                                            const std::string& name) {
-  const hdf5::Session session;
-  const hdf5::File file = hdf5::File::open(data, name);
-  std::vector<std::uint64_t> places;
-  for (const Field& field : layout.fields) {
-    const std::optional<std::uint64_t> place = file.place_of_values(field.place.dataset);
-    if (!place) {
-      throw InputError(name, fmt::format("the dataset '{}' got no room", field.place.dataset),
-                       "is the disk full?");
-    }
-    places.push_back(*place);
+  [[nodiscard]] std::string data_of(const std::string& document) const override {
+    return with_writer(document, [&](Writer& writer) {
+      return FilePath(document).beside(writer.new_name(layout_->hdf5.begin()->first)).string();
+    });
   }
-  return places;
+
+  [[nodiscard]] std::string write_without_values(const std::string& document, const std::string& data,
+                                                 std::uint64_t checksum) const override {
+    return with_writer(document,
+                       [&](Writer& writer) { return writer.write_without_values(data, mark_of(checksum)); });
+  }
+
+  [[nodiscard]] std::vector<std::int64_t> places_in(const std::string& data,
+                                                    const std::string& name) const override {
+    const hdf5::Session session;
+    const hdf5::File file = hdf5::File::open(data, name);
+    std::vector<std::int64_t> places;
+    for (const Field& field : layout_->fields) {
+      const std::optional<std::uint64_t> place = file.place_of_values(field.place.dataset);
+      if (!place) {
+        throw InputError(name, fmt::format("the dataset '{}' got no room", field.place.dataset),
+                         "is the disk full?");
+      }
+      places.push_back(static_cast<std::int64_t>(*place));
+    }
+    return places;
+  }
+
+ private:
+  template <class Work>
+  std::string with_writer(const std::string& document, const Work& work) const {
+    const hdf5::Session session;
+    const Mesh none;
+    Notes ignored;
+    Writer writer(none, *layout_, {}, FilePath(document), ignored);
+    return work(writer);
+  }
+
+  std::shared_ptr<const Layout> layout_;
+};
+
+}  // namespace
+
+std::shared_ptr<const SplitFile> with_data(std::shared_ptr<const Layout> layout) {
+  return std::make_shared<XdmfWithData>(std::move(layout));
 }
 
 }  // namespace meshorder::xdmf

@@ -7,12 +7,14 @@
 // The numbers of topology types are those of XDMF's own library (XdmfTopologyType.cpp). Nodes of cells are in
 // VTK's order: VTK's readers take them as they are (IO/Xdmf2/vtkXdmfHeavyData.cxx).
 
+#include "io/file_layout.hpp"
 #include "io/format.hpp"
 #include "io/xdmf/data_item.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -61,8 +63,8 @@ struct Part {
 
 /// The meaning of a DataItem's values.
 struct Field {
-  enum class Role : std::uint8_t { points, topology, array, set };
-  Role role;
+  using Role = FilePart::Role;
+  Role role;  ///< points, connectivity, data or members
   DataPlace place;
   int part = 0;  ///< number of the part, for cells
   Association association = Association::vertices;
@@ -84,6 +86,9 @@ struct Layout final : FormatMetadata {
 
   [[nodiscard]] std::vector<std::string> contents() const override { return words; }
 };
+
+/// Returns what makes files of a layout whose values are all in one HDF5 file.
+std::shared_ptr<const SplitFile> with_data(std::shared_ptr<const Layout> layout);
 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);

@@ -1,0 +1,106 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "distributed/files/appended_arrays.hpp"
+
+#include "base/memory.hpp"
+#include "distributed/files/vtu_offsets.hpp"
+#include "io/vtk/vtu_compressor.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace meshorder::distributed {
+namespace {
+
+constexpr const char* kCutShort = "the file may be cut short";
+
+}  // namespace
+
+AppendedArrays::AppendedArrays(const std::string& path, const vtk::VtuDocument& document, Offset first_byte,
+                               int ranks)
+    : file_(path),
+      document_(document),
+      bytes_(static_cast<Offset>(file_.size())),
+      first_byte_(first_byte),
+      ranks_(ranks),
+      word_(document.encoding().wide_headers ? 8 : 4) {}
+
+Offset AppendedArrays::place(const vtk::VtuElement& element, FilePart& part, std::vector<Offset>& bounds) {
+  const std::string* const name = element.attribute("Name");
+  const std::string what = fmt::format("the array '{}'", name == nullptr ? "" : name->substr(0, 40));
+  const Offset offset = whole_number(document_, element, "offset");
+  if (offset > bytes_ - first_byte_)
+    throw document_.error(element, what + " lies beyond the end of the file", kCutShort);
+  part.at = at_ = first_byte_ + offset;
+  return static_cast<Offset>(document_.encoding().compressor == VtuEncoding::Compressor::none
+                                 ? place_bytes(element, what, part)
+                                 : place_blocks(element, what, part, bounds));
+}
+
+/// Returns the next `count` words of the file.
+std::vector<std::uint64_t> AppendedArrays::words(const vtk::VtuElement& element, const std::string& what,
+                                                 std::uint64_t count) {
+  const auto left = static_cast<std::uint64_t>(bytes_ - at_);
+  if (count > left / word_) throw document_.error(element, what + " ends early", kCutShort);
+  document_.claim(element, bytes_for(count, 2 * sizeof(std::uint64_t)));
+  std::vector<char> bytes(count * word_);
+  const std::size_t got = file_.read_at(static_cast<std::uint64_t>(at_), bytes);
+  at_ += std::ssize(bytes);
+  if (got < bytes.size())
+    throw document_.error(element, what + " cannot be read", "the file may have changed while it was read");
+  std::vector<std::uint64_t> result;
+  for (std::size_t at = 0; at < bytes.size(); at += word_) {
+    std::uint64_t wide = 0;
+    std::uint32_t narrow = 0;
+    std::memcpy(word_ == 8 ? static_cast<void*>(&wide) : &narrow, bytes.data() + at, word_);
+    result.push_back(word_ == 8 ? wide : narrow);
+  }
+  return result;
+}
+
+/// Finds the bytes of an uncompressed array by the word before them; returns their number.
+std::uint64_t AppendedArrays::place_bytes(const vtk::VtuElement& element, const std::string& what,
+                                          FilePart& part) {
+  const std::uint64_t size = words(element, what, 1).front();
+  const auto left = static_cast<std::uint64_t>(bytes_ - at_);
+  if (size > left) {
+    throw document_.error(
+        element, fmt::format("{} has {} bytes, but the file ends after {}", what, size, left), kCutShort);
+  }
+  part.stored = static_cast<Offset>(word_ + size);
+  return size;
+}
+
+/// Finds the blocks of a compressed array by the words before them: the number of blocks, the bytes of each,
+/// those of the last if they differ, and the compressed bytes of each. Returns the uncompressed size.
+std::uint64_t AppendedArrays::place_blocks(const vtk::VtuElement& element, const std::string& what,
+                                           FilePart& part, std::vector<Offset>& bounds) {
+  const std::vector<std::uint64_t> head = words(element, what, 3);
+  const std::vector<std::uint64_t> compressed = words(element, what, head[0]);
+  if (head[0] > 1 && head[1] == 0)
+    throw document_.error(element, what + " has empty blocks", "the array is damaged");
+  const std::uint64_t ratio = vtk::VtuCompressor::greatest_ratio(document_.encoding().compressor);
+  std::uint64_t size = 0;
+  bounds = {at_};
+  for (std::size_t b = 0; b < compressed.size(); ++b) {
+    if (compressed[b] > static_cast<std::uint64_t>(bytes_ - bounds.back()))
+      throw document_.error(element, what + " ends early", kCutShort);
+    const std::uint64_t bytes = b + 1 == compressed.size() && head[2] > 0 ? head[2] : head[1];
+    if (bytes > compressed[b] * ratio + 1024) {
+      throw document_.error(element,
+                            fmt::format("{}: a block of {} bytes cannot hold {}", what, compressed[b], bytes),
+                            "the array is damaged");
+    }
+    size += bytes;
+    bounds.push_back(bounds.back() + static_cast<Offset>(compressed[b]));
+  }
+  // claim what a rank holds of the array: its share, and a block of which it needs a part
+  document_.claim(element, size / static_cast<std::uint64_t>(ranks_) + std::min(head[1], size));
+  part.stored = bounds.back() - part.at;
+  part.blocks = std::ssize(compressed);
+  part.block = static_cast<Offset>(compressed.size() == 1 ? size : head[1]);
+  return size;
+}
+
+}  // namespace meshorder::distributed

@@ -1,0 +1,47 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/input_file.hpp"
+#include "distributed/comm/layout.hpp"
+#include "io/file_layout.hpp"
+#include "io/vtk/vtu_document.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// Finds arrays in the raw appended data of a .vtu file by the words before them.
+class AppendedArrays {
+ public:
+  /// @param path        of the file
+  /// @param document    its XML; must outlive this object
+  /// @param first_byte  of the appended data
+  /// @param ranks       number of ranks that share the memory of uncompressed arrays
+  /// @throws InputError if the file cannot be opened
+  AppendedArrays(const std::string& path, const vtk::VtuDocument& document, Offset first_byte, int ranks);
+
+  /// Sets the place and the blocks of the array of an element; returns its bytes, uncompressed. O(blocks).
+  ///
+  /// @param bounds  receives the first byte of each compressed block, then the end of the last
+  /// @throws InputError for an array beyond the end of the file, and for blocks whose sizes are impossible
+  Offset place(const vtk::VtuElement& element, FilePart& part, std::vector<Offset>& bounds);
+
+ private:
+  [[nodiscard]] std::vector<std::uint64_t> words(const vtk::VtuElement& element, const std::string& what,
+                                                 std::uint64_t count);
+  std::uint64_t place_bytes(const vtk::VtuElement& element, const std::string& what, FilePart& part);
+  std::uint64_t place_blocks(const vtk::VtuElement& element, const std::string& what, FilePart& part,
+                             std::vector<Offset>& bounds);
+
+  InputFile file_;
+  const vtk::VtuDocument& document_;
+  Offset bytes_;  ///< of the file
+  Offset first_byte_;
+  int ranks_;
+  std::size_t word_;  ///< bytes of a word before an array
+  Offset at_ = 0;     ///< of the next byte to read
+};
+
+}  // namespace meshorder::distributed

@@ -1,0 +1,78 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "distributed/comm/communicator.hpp"
+#include "distributed/comm/layout.hpp"
+#include "distributed/comm/moved_rows.hpp"
+#include "distributed/comm/rows.hpp"
+#include "distributed/files/file_head.hpp"
+#include "distributed/files/shared_file.hpp"
+#include "distributed/order/mesh_slice.hpp"
+#include "distributed/order/order.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meshorder::distributed {
+
+/// Reads a file by its head, each rank its range of the rows. Every rank has to call all functions.
+class SliceReader {
+ public:
+  /// @param communicator  like `path` and `head`, it must outlive this object
+  /// @param path          of the file that has the parts
+  /// @throws SharedError if a rank cannot open it
+  SliceReader(const Communicator& communicator, const std::string& path, const FileHead& head);
+
+  [[nodiscard]] const SharedFile& file() const noexcept { return file_; }
+  [[nodiscard]] const FilePart& part(FilePart::Role role) const;
+  /// Returns the ranges of all ranks, without points and cells.
+  [[nodiscard]] MeshSlice empty_slice() const;
+  /// Returns the bytes of rows begin … end − 1 of a part.
+  [[nodiscard]] std::vector<std::byte> rows(const FilePart& part, GlobalIndex begin, GlobalIndex end) const;
+  /// Returns the VTK types of this rank's cells.
+  [[nodiscard]] std::vector<int> types() const;
+  void read_points(MeshSlice& slice) const;
+  void read_shapes(MeshSlice& slice) const;
+  /// Reads the vertices of the cells; `slice.shapes` must be set.
+  void read_cells(MeshSlice& slice) const;
+
+ private:
+  /// Reads the offsets of this rank's cells, relative to their first entry, which it returns.
+  [[nodiscard]] Offset read_offsets(MeshSlice& slice) const;
+
+  const Communicator& communicator_;
+  const std::string& path_;
+  const FileHead& head_;
+  SharedFile file_;
+};
+
+/// The parts of a file with their rows in new places. Every rank has to call all functions.
+class MovedFile {
+ public:
+  /// As SliceReader; reads the shapes of the cells. `order` must outlive the first call of `cells`.
+  MovedFile(const Communicator& communicator, const std::string& path, const FileHead& head,
+            const DistributedOrder& order);
+
+  [[nodiscard]] const SliceReader& reader() const noexcept { return reader_; }
+  /// Returns the new place of each cell of the slice.
+  [[nodiscard]] const std::vector<GlobalIndex>& new_cells() const noexcept { return new_cells_; }
+  /// Returns the cells of this rank's places, with the new numbers of their vertices. Reads them at the first
+  /// call.
+  [[nodiscard]] Rows& cells();
+  /// Returns the rows of a part that are in this rank's places.
+  [[nodiscard]] std::vector<std::byte> rows(const FilePart& part);
+
+ private:
+  const Communicator& communicator_;
+  SliceReader reader_;
+  const DistributedOrder& order_;
+  MeshSlice slice_;
+  RowMover vertices_;
+  std::vector<GlobalIndex> new_cells_;
+  RowMover cell_mover_;
+  std::optional<Rows> cells_;
+};
+
+}  // namespace meshorder::distributed

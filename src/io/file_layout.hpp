@@ -1,0 +1,77 @@
+// Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "base/polymorphic.hpp"
+#include "mesh/values.hpp"
+#include <meshorder/mesh.hpp>
+#include <meshorder/shape.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace meshorder {
+
+/// A part of a file: rows of numbers, what they are, and the bytes that hold them.
+struct FilePart {
+  enum class Role : std::uint8_t { points, types, offsets, connectivity, data, members };
+
+  Role role = Role::data;
+  Association association = Association::vertices;  ///< whether a row is that of a vertex or of a cell
+  std::uint8_t type = 0;                            ///< number type: index of an alternative of Values
+  Index components = 1;                             ///< numbers of a row
+  std::int64_t rows = 0;                            ///< those of the connectivity are single vertices
+  std::size_t number = 0;                           ///< place of its name in the layout
+  std::int64_t at = 0;      ///< first byte in the file, of the words (sizes) before the values if it has any
+  std::int64_t stored = 0;  ///< bytes in the file, including those words
+  std::int64_t blocks = 0;  ///< number of compressed blocks; 0: not compressed
+  std::int64_t block = 0;   ///< uncompressed bytes of a block; the last block has the rest
+
+  /// Returns the bytes of a row, uncompressed.
+  [[nodiscard]] std::int64_t row_size() const { return components * size_of_type(type); }
+  /// Returns the bytes of all rows, uncompressed.
+  [[nodiscard]] std::int64_t size() const { return rows * row_size(); }
+};
+
+/// Sizes of the mesh of a file.
+struct FileSizes {
+  std::int64_t vertices = 0;
+  std::int64_t cells = 0;
+  std::int64_t entries = 0;  ///< length of the connectivity
+  // only of a file without types and offsets of cells
+  Shape shape = Shape::vertex;  ///< of all cells
+  std::int64_t nodes = 0;       ///< of each cell
+};
+
+/// A file as a list of parts, for code that reads and writes it by its bytes.
+struct FileLayout : FileSizes {
+  std::vector<FilePart> parts;
+  std::vector<std::string> names;  ///< of the parts, by their numbers
+};
+
+/// A mesh in two files: a document, and the data that it names. Makes new ones.
+class SplitFile : public Polymorphic {
+ public:
+  /// Returns the path of the data that belong to a new document.
+  [[nodiscard]] virtual std::string data_of(const std::string& document) const = 0;
+
+  /// Writes data to a path on disk. Allocates space for the values of all parts, which the caller must then
+  /// write.
+  ///
+  /// @param document  path of the new document, which is not written
+  /// @param checksum  marks both files: a `Checksum` of all points, then of the vertices of each cell
+  /// @return the text of the document
+  /// @throws InputError if the data cannot be written
+  [[nodiscard]] virtual std::string write_without_values(const std::string& document, const std::string& data,
+                                                         std::uint64_t checksum) const = 0;
+
+  /// Returns the first byte of each part, by its number, in data of `write_without_values`.
+  ///
+  /// @param name  of the data in messages
+  /// @throws InputError if they cannot be read, or a part has no room
+  [[nodiscard]] virtual std::vector<std::int64_t> places_in(const std::string& data,
+                                                            const std::string& name) const = 0;
+};
+
+}  // namespace meshorder
