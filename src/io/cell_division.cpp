@@ -3,6 +3,7 @@
 
 #include "base/index.hpp"
 #include "io/labels.hpp"
+#include "mesh/values.hpp"
 
 #include <algorithm>
 #include <map>
@@ -15,9 +16,7 @@ namespace {
 /// Returns the labels of cells if they can be ids of blocks; else none.
 std::vector<std::int64_t> usable_labels(const Mesh& mesh, bool with_wide_ones) {
   Labels labels = labels_of(mesh, Association::cells);
-  const bool are_usable =
-      with_wide_ones || std::all_of(labels.values.begin(), labels.values.end(),
-                                    [](std::int64_t x) { return std::in_range<std::int32_t>(x); });
+  const bool are_usable = with_wide_ones || fit_32_bits(labels.values);
   return are_usable ? std::move(labels.values) : std::vector<std::int64_t>();
 }
 

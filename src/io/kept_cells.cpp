@@ -3,6 +3,7 @@
 
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
 
@@ -137,20 +138,6 @@ void keep_blocks(std::vector<Index>& blocks, const std::vector<Index>& kept) {
 }
 
 }  // namespace
-
-Values rows_of_values(const Values& values, Index components, std::span<const Index> rows) {
-  return std::visit(
-      [&](const auto& all) {
-        std::decay_t<decltype(all)> chosen;
-        chosen.reserve(rows.size() * static_cast<std::size_t>(components));
-        for (const Index row : rows) {
-          const auto first = all.begin() + static_cast<std::ptrdiff_t>(row) * components;
-          chosen.insert(chosen.end(), first, first + components);
-        }
-        return Values(std::move(chosen));
-      },
-      values);
-}
 
 std::vector<Index> all_cells(const Mesh& mesh) { return index_range(0, mesh.cell_count()); }
 

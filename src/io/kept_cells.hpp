@@ -4,7 +4,6 @@
 #include "base/index.hpp"
 #include "io/format.hpp"
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -31,9 +30,6 @@ std::string fault_of_cells(const Mesh& mesh, const Format& format);
 
 /// Returns advice such as "write .msh or .vtu": formats that hold all cells of a mesh. O(cells · formats).
 std::string advice_on_formats(const Mesh& mesh);
-
-/// Returns the given rows of an array's values, `components` values each. O(returned values).
-Values rows_of_values(const Values& values, Index components, std::span<const Index> rows);
 
 /// Throws InputError if a file of the format cannot hold the cells at the positions `kept`; the error has the
 /// text of `fault_of_cells` and that of `advice_on_formats`. O(cells); for a format with a `conflict` it

@@ -4,28 +4,20 @@
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
 
-#include <algorithm>
-#include <limits>
 #include <type_traits>
 
 namespace meshorder {
 
-const DataArray* label_array(const Mesh& mesh, Association association) {
-  const DataArray* array = find_array(mesh, kLabel, association);
-  if (!array || array->components != 1) return nullptr;
-  const bool whole = std::visit(
-      [](const auto& values) {
-        return std::is_integral_v<typename std::decay_t<decltype(values)>::value_type>;
-      },
-      array->values);
-  return whole ? array : nullptr;
+const DataArray* label_array(const Mesh& mesh, Association association, std::string_view name) {
+  const DataArray* array = find_array(mesh, name, association);
+  return array && array->components == 1 && are_integers(array->values) ? array : nullptr;
 }
 
-Labels labels_of(const Mesh& mesh, Association association) {
+Labels labels_of(const Mesh& mesh, Association association, std::string_view name) {
   Labels result;
-  const DataArray* array = label_array(mesh, association);
+  const DataArray* array = label_array(mesh, association, name);
   if (!array) return result;
-  const Index count = association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
+  const Index count = item_count(mesh, association);
   result.values.assign(count, 0);
   result.given.assign(count, array->is_dense());
   with_integers(array->values, [&](const auto& values) {
@@ -46,10 +38,7 @@ void note_arrays_beside_cell_labels(const Mesh& mesh, std::string_view format, N
 }
 
 Values label_values(std::vector<std::int64_t> labels) {
-  using Limits = std::numeric_limits<std::int32_t>;
-  const bool small = std::all_of(labels.begin(), labels.end(),
-                                 [](std::int64_t x) { return x >= Limits::min() && x <= Limits::max(); });
-  if (!small) return labels;
+  if (!fit_32_bits(labels)) return labels;
   return std::vector<std::int32_t>(labels.begin(), labels.end());
 }
 

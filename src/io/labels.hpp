@@ -17,11 +17,12 @@ struct Labels {
   [[nodiscard]] bool any() const noexcept { return !values.empty(); }
 };
 
-/// Returns the labels of vertices or cells. Ignores an array whose rows are not single integers.
-Labels labels_of(const Mesh& mesh, Association association);
+/// Returns the labels of vertices or cells, or the numbers of an array of another name. Ignores an array
+/// whose rows are not single integers.
+Labels labels_of(const Mesh& mesh, Association association, std::string_view name = kLabel);
 
 /// Returns the array that `labels_of` uses, or nullptr.
-const DataArray* label_array(const Mesh& mesh, Association association);
+const DataArray* label_array(const Mesh& mesh, Association association, std::string_view name = kLabel);
 
 /// Notes that all arrays but the labels of cells are not written, for formats that hold no others.
 void note_arrays_beside_cell_labels(const Mesh& mesh, std::string_view format, Notes& notes);

@@ -22,6 +22,17 @@ void note_set_empty(const EntitySet& set, Notes& notes) {
                               to_string(set.association)));
 }
 
+void note_filled(const DataArray& array, std::string_view filling, Notes& notes) {
+  notes.push_back(fmt::format("the array '{}' is given for some {}; the others get {}", array.name,
+                              to_string(array.association), filling));
+}
+
+void note_component_names_unsupported(const DataArray& array, std::string_view format, Notes& notes) {
+  if (array.component_names.empty()) return;
+  notes.push_back(fmt::format("the names of the components of '{}' are not written: {} has no place for them",
+                              array.name, format));
+}
+
 void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& notes) {
   for (const Association association : {Association::vertices, Association::cells}) {
     const auto& ids = association == Association::vertices ? mesh.vertex_ids : mesh.cell_ids;

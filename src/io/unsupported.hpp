@@ -18,6 +18,15 @@ void note_set_unsupported(const EntitySet& set, std::string_view format, Notes& 
 /// Notes "the set 'fixed' of vertices is not written: it has no members".
 void note_set_empty(const EntitySet& set, Notes& notes);
 
+/// Returns the word for `missing_value` of these values.
+inline const char* missing_word(const Values& values) { return values.index() <= 1 ? "NaN" : "0"; }
+
+/// Notes "the array 'stress' is given for some cells; the others get NaN".
+void note_filled(const DataArray& array, std::string_view filling, Notes& notes);
+
+/// Notes that the names of the components of an array are not written, if it has any.
+void note_component_names_unsupported(const DataArray& array, std::string_view format, Notes& notes);
+
 /// Notes that the ids of vertices and cells are not written, if there are any.
 void note_ids_unsupported(const Mesh& mesh, std::string_view format, Notes& notes);
 

@@ -3,9 +3,11 @@
 
 #include <meshorder/mesh.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -53,6 +55,40 @@ auto with_integers(OfValues&& values, const Work& work) {
 inline bool are_texts(const Values& values) {
   return std::holds_alternative<std::vector<std::string>>(values);
 }
+
+/// Returns whether values are of an integer type.
+inline bool are_integers(const Values& values) {
+  constexpr std::size_t kLastReal = 1;
+  return values.index() > kLastReal && !are_texts(values);
+}
+
+/// Returns whether all numbers fit 32 bits. O(numbers).
+inline bool fit_32_bits(std::span<const std::int64_t> numbers) {
+  return std::all_of(numbers.begin(), numbers.end(),
+                     [](std::int64_t number) { return std::in_range<std::int32_t>(number); });
+}
+
+/// Returns the number of vertices or cells.
+inline Index item_count(const Mesh& mesh, Association association) {
+  return association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
+}
+
+/// Returns the row in an array of each of `count` vertices or cells, −1 for none; no rows for a dense array,
+/// whose row i is that of vertex or cell i. O(count).
+std::vector<Index> rows_by_item(const DataArray& array, Index count);
+
+/// Returns the given rows of an array's values, `components` values each. O(returned values).
+Values rows_of_values(const Values& values, Index components, std::span<const Index> rows);
+
+/// Makes an array dense if it has a row for each of `count` vertices or cells. Its indices are distinct.
+/// O(values).
+void make_dense(DataArray& array, Index count);
+
+/// Appends values of the same type. O(values).
+void append_values(Values& values, Values more);
+
+/// Returns numbers as real ones; nothing for texts. O(values).
+std::vector<double> as_reals(const Values& values);
 
 /// Returns what stands for a missing value: NaN, or 0 for integers.
 template <class Number>

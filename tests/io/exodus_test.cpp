@@ -179,13 +179,13 @@ void write_two_blocks(const std::filesystem::path& path, const std::function<voi
   for (const char* const name : {"coordx", "coordy"}) {
     const exodus::NcSink sink = file.variable(name, exodus::kDouble, {"num_nodes"});
     file.later([sink, name] {
-      sink.reals(name[5] == 'x' ? std::vector<double>{0, 1, 0} : std::vector<double>{0, 0, 1});
+      sink.list(name[5] == 'x' ? std::vector<double>{0, 1, 0} : std::vector<double>{0, 0, 1});
     });
   }
   for (const char* const name : {"connect1", "connect2"}) {
     const exodus::NcSink sink =
         file.variable(name, exodus::kInt, {"one", "three"}, {exodus::text_attribute("elem_type", "TRI3")});
-    file.later([sink] { sink.integers(std::vector<std::int32_t>{1, 2, 3}); });
+    file.later([sink] { sink.part({0, 0}, {1, 3}, std::vector<std::int32_t>{1, 2, 3}); });
   }
   put(file);
   file.finish();
@@ -231,7 +231,7 @@ TEST(Exodus, TellsWhichNamesOfVariablesOfSetsChange) {
   write_two_blocks(path, [](exodus::NcOutput& file) {
     (void)file.dimension({"num_node_sets", 1});
     const exodus::NcSink sink = file.variable("node_ns1", exodus::kInt, {"one"});
-    file.later([sink] { sink.integers(std::vector<std::int32_t>{2}); });
+    file.later([sink] { sink.list(std::vector<std::int32_t>{2}); });
     put_names(file, "nset", "\t");
     put_values(file, "vals_nset_var1ns1", "one", exodus::kDouble, {4});
   });

@@ -6,6 +6,7 @@
 #include "distributed/files/piece_contents.hpp"
 #include "distributed/order/parts.hpp"
 #include "io/kept_cells.hpp"
+#include "mesh/values.hpp"
 
 #include <algorithm>
 #include <numeric>

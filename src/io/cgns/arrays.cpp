@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/cgns/reading.hpp"
 #include "io/names.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -93,32 +94,10 @@ class ArrayMaker {
                     "each may have one value");
     }
     array.values = std::move(group.front()->values);
-    for (std::size_t p = 1; p < group.size(); ++p) {
-      std::visit(
-          [&](auto& all) {
-            auto& more = std::get<std::decay_t<decltype(all)>>(group[p]->values);
-            all.insert(all.end(), more.begin(), more.end());
-            more = {};
-          },
-          array.values);
-    }
-    make_dense(array);
+    for (std::size_t p = 1; p < group.size(); ++p)
+      append_values(array.values, std::exchange(group[p]->values, {}));
+    make_dense(array, static_cast<Index>(total(association)));
     reading_.mesh.data.push_back(std::move(array));
-  }
-
-  /// Makes an array dense if it has a value for each vertex or cell: sorts the values into their order.
-  void make_dense(DataArray& array) const {
-    if (array.indices.size() != total(array.association)) return;
-    if (!std::is_sorted(array.indices.begin(), array.indices.end())) {
-      std::visit(
-          [&](auto& values) {
-            auto sorted = values;
-            for (std::size_t i = 0; i < values.size(); ++i) sorted[array.indices[i]] = values[i];
-            values = std::move(sorted);
-          },
-          array.values);
-    }
-    array.indices.clear();
   }
 
   Reading& reading_;

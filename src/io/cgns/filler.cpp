@@ -3,6 +3,7 @@
 
 #include "base/index.hpp"
 #include "io/exact_values.hpp"
+#include "mesh/values.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -156,9 +157,8 @@ void Filler::put(Node& node, std::string type, std::vector<std::int64_t> dimensi
 
 void Filler::put_whole(Node& node, const std::string& type, std::vector<std::int64_t> dimensions,
                        const std::vector<std::int64_t>& numbers) {
-  const bool fit = std::all_of(numbers.begin(), numbers.end(),
-                               [](std::int64_t number) { return std::in_range<std::int32_t>(number); });
-  if (!fit || type == "I8" || type == "U8") return put(node, "I8", std::move(dimensions), numbers);
+  if (!fit_32_bits(numbers) || type == "I8" || type == "U8")
+    return put(node, "I8", std::move(dimensions), numbers);
   put(node, "I4", std::move(dimensions), std::vector<std::int32_t>(numbers.begin(), numbers.end()));
 }
 
@@ -308,12 +308,7 @@ void Filler::fill_values(Node& node, const Field& field) const {
   const DataArray& array = *find_array(mesh_, field.array, field.association);
   const std::string type = written_type(field.type, array.values);
   const std::vector<Index> rows = rows_of(field);
-  std::vector<Index> table;
-  if (!array.is_dense()) {
-    table.assign(field.association == Association::vertices ? mesh_.points.size() : mesh_.cells.shapes.size(),
-                 -1);
-    for (Index row = 0; row < index_size(array.indices); ++row) table[array.indices[row]] = row;
-  }
+  const std::vector<Index> table = rows_by_item(array, item_count(mesh_, field.association));
   std::visit(
       [&](const auto& values) {
         const auto put_as = [&](auto zero) {

@@ -116,7 +116,7 @@ Columns attributes_of(Writing& writing, const BlockPlan& block) {
                        !std::holds_alternative<std::vector<std::string>>(array.values);
     if (!named) continue;
     writing.placed.insert(&array);
-    const std::vector<Index> table = row_table(array, writing.mesh.cell_count());
+    const std::vector<Index> table = rows_by_item(array, writing.mesh.cell_count());
     bool has_values = false;
     std::visit(
         [&](const auto& values) {
@@ -153,17 +153,7 @@ std::vector<std::int32_t> connectivity(const Mesh& mesh, const Block& block, Ind
 
 /// Returns the values of an attribute for the elements of a block, 0 for elements without a value.
 std::vector<double> values_in(const Mesh& mesh, const Block& block, const DataArray& array) {
-  std::vector<double> result(static_cast<std::size_t>(block.count), 0);
-  const std::vector<Index> places = row_table(array, mesh.cell_count());
-  std::visit(
-      [&](const auto& values) {
-        for (Index e = 0; e < block.count; ++e) {
-          const Index row = places.empty() ? block.first + e : places[block.first + e];
-          if (row >= 0) result[e] = number_as<double>(values[row]);
-        }
-      },
-      array.values);
-  return result;
+  return column<double>(array, 0, rows_by_item(array, mesh.cell_count()), block.first, block.count, 0);
 }
 
 void write_attributes(Writing& writing, const std::string& number, const BlockPlan& block,
@@ -188,12 +178,8 @@ void write_attributes(Writing& writing, const std::string& number, const BlockPl
     }
     sink.part({0, 0}, {rows, width}, table);
   });
-  std::vector<std::string> names;
-  names.reserve(columns.size());
-  for (const auto& [name, array] : columns) names.push_back(name);
-  if (block.record == nullptr || block.record->names_attributes) {
-    writing.write_names("attrib_name" + number, count, names);
-  }
+  if (block.record == nullptr || block.record->names_attributes)
+    writing.write_names("attrib_name" + number, count, names_of(columns));
 }
 
 void write_elements(Writing& writing, const std::string& number, const BlockPlan& block) {
@@ -221,32 +207,16 @@ void write_elements(Writing& writing, const std::string& number, const BlockPlan
 
 void write_blocks(Writing& writing, const std::vector<Columns>& attributes) {
   const std::string count = "num_el_blk";
-  std::vector<std::int64_t> ids;
-  std::vector<std::int64_t> status;
+  const std::vector<std::string> names =
+      write_plans(writing, "eb", count, writing.blocks, writing.metadata.block_properties,
+                  [](const BlockPlan& block) { return block.cells.count > 0; });
   std::vector<std::int64_t> labels;
-  std::vector<std::string> names;
-  bool ids_are_labels = true;
-  for (const BlockPlan& block : writing.blocks) {
-    ids.push_back(block.id);
-    status.push_back(block.cells.count > 0 ? 1 : 0);
-    labels.push_back(block.cells.label);
-    names.push_back(block.name);
-    ids_are_labels = ids_are_labels && block.cells.label == block.id;
-  }
-  writing.write_integers("eb_status", count, status);
-  writing.write_integers("eb_prop1", count, ids, {text_attribute("name", "ID")});
-  int next = 2;
-  for (std::size_t p = 0; p < writing.metadata.block_properties.size(); ++p) {
-    std::vector<std::int64_t> values;
-    for (const BlockPlan& block : writing.blocks) {
-      values.push_back(block.record != nullptr ? block.record->properties[p] : 0);
-    }
-    writing.write_integers(fmt::format("eb_prop{}", next++), count, values,
-                           {text_attribute("name", writing.metadata.block_properties[p])});
-  }
+  for (const BlockPlan& block : writing.blocks) labels.push_back(block.cells.label);
+  const bool ids_are_labels = std::all_of(writing.blocks.begin(), writing.blocks.end(),
+                                          [](const auto& block) { return block.cells.label == block.id; });
   if (!ids_are_labels) {
-    writing.write_integers(fmt::format("eb_prop{}", next), count, labels,
-                           {text_attribute("name", std::string(kLabelProperty))});
+    writing.write_integers(fmt::format("eb_prop{}", writing.metadata.block_properties.size() + 2), count,
+                           labels, {text_attribute("name", std::string(kLabelProperty))});
   }
   const bool named =
       std::any_of(names.begin(), names.end(), [](const std::string& name) { return !name.empty(); });

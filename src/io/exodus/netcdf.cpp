@@ -6,6 +6,7 @@
 #include "io/exodus/netcdf_library.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/stream/system_fault.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -16,6 +17,8 @@
 #include <memory>
 #include <numeric>
 #include <system_error>
+#include <type_traits>
+#include <utility>
 
 namespace meshorder::exodus {
 
@@ -31,6 +34,16 @@ constexpr const char* kNameInMemory = "mesh";  // netCDF could take other names 
 constexpr std::string_view kDamaged = "the file may be damaged";
 constexpr std::uint64_t kMostExpansion = 1032;  // largest ratio that deflate can reach
 constexpr std::size_t kBuffer = std::size_t{1} << 18;
+
+/// Types of netCDF, in the order of the alternatives of Values.
+constexpr std::array<NcType, 10> kTypesOfValues{NC_DOUBLE, NC_FLOAT, NC_BYTE, NC_UBYTE, NC_SHORT,
+                                                NC_USHORT, NC_INT,   NC_UINT, NC_INT64, NC_UINT64};
+
+/// Returns the alternative of Values for a type; that of texts for types without numbers.
+std::size_t alternative_of(NcType type) {
+  return static_cast<std::size_t>(std::find(kTypesOfValues.begin(), kTypesOfValues.end(), type) -
+                                  kTypesOfValues.begin());
+}
 
 std::size_t product(const std::vector<std::size_t>& lengths) {
   return std::accumulate(lengths.begin(), lengths.end(), std::size_t{1}, std::multiplies<>());
@@ -50,57 +63,23 @@ int read_part(int file, int variable, const std::size_t* starts, const std::size
 }  // namespace
 
 bool is_whole(NcType type) {
-  constexpr std::array kWhole{NC_BYTE, NC_SHORT, NC_INT, NC_UBYTE, NC_USHORT, NC_UINT, NC_INT64, NC_UINT64};
-  return std::find(kWhole.begin(), kWhole.end(), type) != kWhole.end();
+  constexpr std::size_t kFirstWhole = 2;
+  const std::size_t found = alternative_of(type);
+  return found >= kFirstWhole && found < kTypesOfValues.size();
 }
 
 std::size_t size_of(NcType type) {
-  switch (type) {
-    case NC_BYTE:
-    case NC_UBYTE:
-    case NC_CHAR:
-      return 1;
-    case NC_SHORT:
-    case NC_USHORT:
-      return 2;
-    case NC_INT:
-    case NC_UINT:
-    case NC_FLOAT:
-      return 4;
-    case NC_INT64:
-    case NC_UINT64:
-    case NC_DOUBLE:
-      return 8;
-    default:
-      return 0;
-  }
+  return type == NC_CHAR ? 1 : static_cast<std::size_t>(size_of_type(alternative_of(type)));
 }
 
 bool can_hold(NcType type, const Values& values) {
-  switch (type) {
-    case NC_FLOAT:
-      return are_exact<float>(values);
-    case NC_DOUBLE:
-      return are_exact<double>(values);
-    case NC_BYTE:
-      return are_exact<std::int8_t>(values);
-    case NC_UBYTE:
-      return are_exact<std::uint8_t>(values);
-    case NC_SHORT:
-      return are_exact<std::int16_t>(values);
-    case NC_USHORT:
-      return are_exact<std::uint16_t>(values);
-    case NC_INT:
-      return are_exact<std::int32_t>(values);
-    case NC_UINT:
-      return are_exact<std::uint32_t>(values);
-    case NC_INT64:
-      return are_exact<std::int64_t>(values);
-    case NC_UINT64:
-      return are_exact<std::uint64_t>(values);
-    default:
-      return false;
-  }
+  return std::visit(
+      [&](const auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_arithmetic_v<Number>) return are_exact<Number>(values);
+        return false;
+      },
+      values_of_type(alternative_of(type)));
 }
 
 Attribute text_attribute(std::string name, std::string text) {
@@ -375,37 +354,16 @@ std::vector<std::string> NcInput::texts(const Variable& variable) const {
 Values NcInput::values(const Variable& variable, const std::vector<std::size_t>& starts,
                        const std::vector<std::size_t>& counts) const {
   (void)size(variable);  // throws if it claims too much
-  const auto read_as = [&]<class Number>(Number /*of*/) -> Values {
-    std::vector<Number> result(claimed(variable.name, product(counts), sizeof(Number)));
-    if (!result.empty()) {
-      check(read_part(id_, variable.id, starts.data(), counts.data(), result.data()), variable.name);
-    }
-    return result;
-  };
-  switch (variable.type) {
-    case NC_FLOAT:
-      return read_as(float{});
-    case NC_DOUBLE:
-      return read_as(double{});
-    case NC_BYTE:
-      return read_as(std::int8_t{});
-    case NC_UBYTE:
-      return read_as(std::uint8_t{});
-    case NC_SHORT:
-      return read_as(std::int16_t{});
-    case NC_USHORT:
-      return read_as(std::uint16_t{});
-    case NC_INT:
-      return read_as(std::int32_t{});
-    case NC_UINT:
-      return read_as(std::uint32_t{});
-    case NC_INT64:
-      return read_as(std::int64_t{});
-    case NC_UINT64:
-      return read_as(std::uint64_t{});
-    default:
+  return values_of_type(alternative_of(variable.type), [&](auto& numbers) {
+    using Number = typename std::decay_t<decltype(numbers)>::value_type;
+    if constexpr (std::is_arithmetic_v<Number>) {
+      numbers.resize(claimed(variable.name, product(counts), sizeof(Number)));
+      if (numbers.empty()) return;
+      check(read_part(id_, variable.id, starts.data(), counts.data(), numbers.data()), variable.name);
+    } else {
       fail(variable.name + " has no numbers", std::string(kDamaged));
-  }
+    }
+  });
 }
 
 Storage NcInput::storage() const {
@@ -543,24 +501,10 @@ void NcOutput::finish() {
   if (out_) out_->commit();
 }
 
-void NcSink::integers(const std::vector<std::int32_t>& values) const {
-  if (!values.empty()) file_->check(nc_put_var_int(file_->id_, variable_, values.data()), name_);
-}
-
 void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
                   const std::vector<std::int32_t>& values) const {
   if (values.empty()) return;
   file_->check(nc_put_vara_int(file_->id_, variable_, starts.data(), counts.data(), values.data()), name_);
-}
-
-void NcSink::integers(const std::vector<std::int64_t>& values) const {
-  if (values.empty()) return;
-  const std::vector<long long> numbers(values.begin(), values.end());
-  file_->check(nc_put_var_longlong(file_->id_, variable_, numbers.data()), name_);
-}
-
-void NcSink::reals(const std::vector<double>& values) const {
-  if (!values.empty()) file_->check(nc_put_var_double(file_->id_, variable_, values.data()), name_);
 }
 
 void NcSink::part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -48,6 +49,14 @@ struct Attribute {
 
 /// Returns an attribute that is a text.
 Attribute text_attribute(std::string name, std::string text);
+
+/// Returns an attribute that is a number; `type` is that of Number.
+template <class Number>
+Attribute number_attribute(std::string name, NcType type, Number value) {
+  Attribute attribute{std::move(name), type, 1, std::string(sizeof(value), '\0')};
+  std::memcpy(attribute.bytes.data(), &value, sizeof(value));
+  return attribute;
+}
 
 struct Dimension {
   std::string name;
@@ -163,10 +172,11 @@ class NcSink {
  public:
   NcSink(const NcOutput& file, std::string name, int variable)
       : file_(&file), name_(std::move(name)), variable_(variable) {}
-  /// Write all values.
-  void integers(const std::vector<std::int64_t>& values) const;
-  void integers(const std::vector<std::int32_t>& values) const;
-  void reals(const std::vector<double>& values) const;
+  /// Writes all values of a variable of one dimension.
+  template <class Number>
+  void list(const std::vector<Number>& values) const {
+    part({0}, {values.size()}, values);
+  }
   /// Write a part: along each dimension `counts` values from `starts` on.
   void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
             const std::vector<double>& values) const;

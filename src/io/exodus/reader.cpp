@@ -11,6 +11,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
 // Reads a file: points, elements and their numbers, and the variables that are kept as they are.
@@ -53,6 +54,17 @@ const BlockRecord& Reading::block_of(Index cell) const {
   return metadata->blocks[static_cast<std::size_t>(behind - block_ends.begin()) - 1];
 }
 
+namespace {
+
+/// Returns the smallest number that is given twice, if any.
+std::optional<std::int64_t> given_twice(std::vector<std::int64_t> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  const auto twice = std::adjacent_find(numbers.begin(), numbers.end());
+  return twice == numbers.end() ? std::nullopt : std::optional(*twice);
+}
+
+}  // namespace
+
 std::vector<std::int64_t> read_ids(Reading& reading, const std::string& variable, std::size_t objects) {
   std::vector<std::int64_t> ids(objects);
   std::iota(ids.begin(), ids.end(), std::int64_t{1});
@@ -60,10 +72,8 @@ std::vector<std::int64_t> read_ids(Reading& reading, const std::string& variable
   if (found == nullptr) return ids;
   reading.require_shape(*found, {objects});
   std::vector<std::int64_t> given = reading.file.integers(*found);
-  std::vector<std::int64_t> sorted = given;
-  std::sort(sorted.begin(), sorted.end());
-  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-  if (twice == sorted.end()) return given;
+  const std::optional<std::int64_t> twice = given_twice(given);
+  if (!twice) return given;
   reading.notes.push_back(fmt::format("{} gives the id {} twice; the ids are now 1, 2, …", variable, *twice));
   return ids;
 }
@@ -444,10 +454,8 @@ std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& name
   for (std::size_t i = 0; i < numbers.size() && plain; ++i)
     plain = numbers[i] == static_cast<std::int64_t>(i) + 1;
   if (plain) return {};
-  std::vector<std::int64_t> sorted = numbers;
-  std::sort(sorted.begin(), sorted.end());
-  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-  if (twice == sorted.end()) return numbers;
+  const std::optional<std::int64_t> twice = given_twice(numbers);
+  if (!twice) return numbers;
   reading.notes.push_back(note_of_number_twice(name, *twice));
   is_there = false;
   return {};

@@ -4,7 +4,6 @@
 #include "io/exodus/writing.hpp"
 #include "io/names.hpp"
 #include "io/unsupported.hpp"
-#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -17,24 +16,6 @@
 namespace meshorder::exodus {
 namespace {
 
-/// Returns one component of an array for `count` vertices or cells from `first` on. Those without a row get
-/// NaN, or 0 if Number is an integer type.
-template <class Number>
-std::vector<Number> column(const DataArray& array, Index component, const std::vector<Index>& table,
-                           Index first, Index count) {
-  std::vector<Number> result(static_cast<std::size_t>(count), missing_value<Number>());
-  std::visit(
-      [&](const auto& values) {
-        for (Index k = 0; k < count; ++k) {
-          const Offset row = table.empty() ? first + k : table[first + k];
-          if (row < 0) continue;
-          result[k] = number_as<Number>(values[static_cast<std::size_t>(row * array.components + component)]);
-        }
-      },
-      array.values);
-  return result;
-}
-
 /// Writes the values of one step for `count` vertices or cells from `first` on, along the last dimension of
 /// the variable. If `array` is null, writes NaN, or 0 for integer types.
 void put(const NcSink& sink, NcType type, std::vector<std::size_t> starts, const DataArray* array,
@@ -46,7 +27,7 @@ void put(const NcSink& sink, NcType type, std::vector<std::size_t> starts, const
       counts.back() = static_cast<std::size_t>(rows);
       sink.part(starts, counts,
                 array == nullptr ? std::vector<Number>(static_cast<std::size_t>(rows), nothing)
-                                 : column<Number>(*array, component, table, first + begin, rows));
+                                 : column<Number>(*array, component, table, first + begin, rows, nothing));
     });
   };
   if (type == kFloat) return put_as(std::numeric_limits<float>::quiet_NaN());
@@ -166,11 +147,6 @@ NcType type_of_all(const std::vector<SeriesPlan>& series) {
   return is_one ? first : kDouble;
 }
 
-void note_filled(const DataArray& array, Notes& notes) {
-  notes.push_back(fmt::format("the array '{}' is given for some {}; the others get NaN", array.name,
-                              to_string(array.association)));
-}
-
 /// Returns the number of cells of each block that an array has a row for.
 std::vector<Index> rows_in_blocks(const Writing& writing, const DataArray& array) {
   std::vector<Index> rows;
@@ -214,20 +190,12 @@ std::vector<Presence> presence(Writing& writing, const SeriesPlan& series) {
       if (rows[b] > 0) result[b] = {true, true};
       filled = filled || (rows[b] > 0 && rows[b] < writing.blocks[b].cells.count);
     }
-    if (filled && series.component == 0) note_filled(*array, writing.notes);
+    if (filled && series.component == 0) note_filled(*array, "NaN", writing.notes);
   }
   return result;
 }
 
 }  // namespace
-
-std::vector<Index> row_table(const DataArray& array, Index count) {
-  std::vector<Index> table;
-  if (array.is_dense()) return table;
-  table.assign(static_cast<std::size_t>(count), -1);
-  for (Index row = 0; row < index_size(array.indices); ++row) table[array.indices[row]] = row;
-  return table;
-}
 
 std::vector<SeriesPlan> plan_series(Writing& writing, Association association) {
   return SeriesPlanner(writing, association).plans();
@@ -247,7 +215,8 @@ void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series) {
   for (std::size_t v = 0; v < series.size(); ++v) {
     const SeriesPlan& one = series[v];
     const DataArray* const first = one.arrays.empty() ? nullptr : one.arrays.front();
-    if (first != nullptr && !first->is_dense() && one.component == 0) note_filled(*first, writing.notes);
+    if (first != nullptr && !first->is_dense() && one.component == 0)
+      note_filled(*first, "NaN", writing.notes);
     if (!packed && one.arrays.empty() && (writing.steps > 0 || !one.declared.front())) continue;
     const NcSink sink =
         packed ? together
@@ -257,7 +226,7 @@ void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series) {
       std::vector<Index> table;
       for (std::size_t step = 0; step < one.arrays.size(); ++step) {
         const DataArray* const array = one.arrays[step];
-        if (array != nullptr && array != last) table = row_table(*array, mesh.vertex_count());
+        if (array != nullptr && array != last) table = rows_by_item(*array, mesh.vertex_count());
         last = array;
         put(sink, one.type, packed ? std::vector{step, v, std::size_t{0}} : std::vector{step, std::size_t{0}},
             array, one.component, table, 0, mesh.vertex_count());
@@ -287,7 +256,7 @@ void write_elemental(Writing& writing, const std::vector<SeriesPlan>& series) {
       std::vector<Index> rows;
       for (std::size_t step = 0; step < one.arrays.size(); ++step) {
         const DataArray* const array = one.arrays[step];
-        if (array != nullptr && array != last) rows = row_table(*array, writing.mesh.cell_count());
+        if (array != nullptr && array != last) rows = rows_by_item(*array, writing.mesh.cell_count());
         last = array;
         for (const auto& [b, sink] : sinks) {
           const Block& cells = writing.blocks[b].cells;
@@ -297,7 +266,9 @@ void write_elemental(Writing& writing, const std::vector<SeriesPlan>& series) {
     });
   }
   const NcSink sink = writing.declare("elem_var_tab", kInt, {"num_el_blk", "num_elem_var"});
-  file.later([sink, table] { sink.integers(table); });
+  file.later([sink, table, blocks = writing.blocks.size(), variables = series.size()] {
+    sink.part({0, 0}, {blocks, variables}, table);
+  });
 }
 
 }  // namespace meshorder::exodus

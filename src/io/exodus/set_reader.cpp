@@ -535,19 +535,6 @@ void read_nodal(Reading& reading) {
   }
 }
 
-Values as_reals(const Values& values) {
-  return std::visit(
-      [](const auto& all) -> std::vector<double> {
-        using Number = typename std::decay_t<decltype(all)>::value_type;
-        if constexpr (std::is_arithmetic_v<Number>) {
-          return {all.begin(), all.end()};
-        } else {
-          return {};
-        }
-      },
-      values);
-}
-
 /// A variable of elements, and the blocks that have values of it.
 struct ElementVariable {
   std::string name;
@@ -574,12 +561,7 @@ Values values_at(const Reading& reading, const ElementVariable& variable, NcType
       result = std::move(values);
       continue;
     }
-    std::visit(
-        [&](auto& all) {
-          const auto& more = std::get<std::decay_t<decltype(all)>>(values);
-          all.insert(all.end(), more.begin(), more.end());
-        },
-        *result);
+    append_values(*result, std::move(values));
   }
   return result ? *std::move(result) : Values();
 }

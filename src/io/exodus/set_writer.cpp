@@ -223,23 +223,9 @@ class FamilyWriter {
     const std::string prefix(kind_.prefix);
     const std::string count(kind_.count);
     writing_.file.dimension({count, plans_.size()});
-    std::vector<std::int64_t> ids;
-    std::vector<std::int64_t> status;
-    std::vector<std::string> names;
-    for (const SetPlan& plan : plans_) {
-      ids.push_back(plan.id);
-      status.push_back(plan.members.empty() ? 0 : 1);
-      names.push_back(plan.name);
-    }
-    writing_.write_integers(prefix + "_status", count, status);
-    writing_.write_integers(prefix + "_prop1", count, ids, {text_attribute("name", "ID")});
-    for (std::size_t p = 0; p < family_.properties.size(); ++p) {
-      std::vector<std::int64_t> values;
-      for (const SetPlan& plan : plans_)
-        values.push_back(plan.record != nullptr ? plan.record->properties[p] : 0);
-      writing_.write_integers(fmt::format("{}_prop{}", prefix, p + 2), count, values,
-                              {text_attribute("name", family_.properties[p])});
-    }
+    const std::vector<std::string> names =
+        write_plans(writing_, prefix, count, plans_, family_.properties,
+                    [](const SetPlan& plan) { return !plan.members.empty(); });
     const bool named =
         std::any_of(names.begin(), names.end(), [](const std::string& name) { return !name.empty(); });
     if (named || family_.has_names) writing_.write_names(prefix + "_names", count, names);
@@ -255,10 +241,10 @@ class FamilyWriter {
     const NcType type = plan.record != nullptr && plan.record->type == kInt64 ? kInt64 : kInt;
     file.dimension({size, plan.members.size()});
     const NcSink members = writing_.declare(std::string(kind_.members) + number, type, {size});
-    file.later([members, &plan] { members.integers(plan.members); });
+    file.later([members, &plan] { members.list(plan.members); });
     if (!plan.sides.empty()) {
       const NcSink sides = writing_.declare("side_ss" + number, type, {size});
-      file.later([sides, &plan] { sides.integers(plan.sides); });
+      file.later([sides, &plan] { sides.list(plan.sides); });
     }
     if (plan.factors == nullptr) return;
     std::size_t factors = plan.members.size();
@@ -273,7 +259,7 @@ class FamilyWriter {
     const NcSink sink =
         writing_.declare("dist_fact_" + std::string(kind_.prefix) + number, of_factors, {factor_size});
     file.later([sink, &plan] {
-      sink.reals(values_of_members(plan, *plan.factors, plan.factor_width, plan.factor_counts, 1.0));
+      sink.list(values_of_members(plan, *plan.factors, plan.factor_width, plan.factor_counts, 1.0));
     });
   }
 
@@ -289,7 +275,9 @@ class FamilyWriter {
         table.push_back(is_in_table(plan, v) ? 1 : 0);
     }
     const NcSink sink = writing_.declare(of + "_var_tab", kInt, {std::string(kind_.count), count});
-    writing_.file.later([sink, table] { sink.integers(table); });
+    writing_.file.later([sink, table, sets = plans_.size(), variables = family_.variables.size()] {
+      sink.part({0, 0}, {sets, variables}, table);
+    });
     for (std::size_t v = 0; v < family_.variables.size(); ++v) {
       for (std::size_t s = 0; s < plans_.size(); ++s) {
         if (is_declared(plans_[s], v)) write_variable(v, s);

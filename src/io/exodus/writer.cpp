@@ -2,6 +2,7 @@
 #include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
+#include "io/coordinates.hpp"
 #include "io/exodus/exodus.hpp"
 #include "io/exodus/library.hpp"
 #include "io/exodus/writing.hpp"
@@ -64,10 +65,9 @@ void Writing::write_names(const std::string& variable, const std::string& count,
 void Writing::write_integers(const std::string& variable, const std::string& dimension,
                              std::vector<std::int64_t> values, const std::vector<Attribute>& attributes,
                              NcType type) {
-  const bool fit = std::all_of(values.begin(), values.end(),
-                               [](std::int64_t value) { return std::in_range<std::int32_t>(value); });
-  const NcSink sink = declare(variable, fit && type != kInt64 ? kInt : kInt64, {dimension}, attributes);
-  file.later([sink, values = std::move(values)] { sink.integers(values); });
+  const bool is_narrow = type != kInt64 && fit_32_bits(values);
+  const NcSink sink = declare(variable, is_narrow ? kInt : kInt64, {dimension}, attributes);
+  file.later([sink, values = std::move(values)] { sink.list(values); });
 }
 
 NcType written_type(NcType of_file, const Values& values) {
@@ -105,27 +105,16 @@ const Metadata* own_metadata(const Mesh& mesh) {
   return dynamic_cast<const Metadata*>(mesh.format_metadata.get());
 }
 
-Attribute real_attribute(std::string name, float value) {
-  Attribute attribute{std::move(name), kFloat, 1, std::string(sizeof(value), '\0')};
-  std::memcpy(attribute.bytes.data(), &value, sizeof(value));
-  return attribute;
-}
-
 Attribute integer_attribute(std::string name, std::int32_t value) {
-  Attribute attribute{std::move(name), kInt, 1, std::string(sizeof(value), '\0')};
-  std::memcpy(attribute.bytes.data(), &value, sizeof(value));
-  return attribute;
+  return number_attribute(std::move(name), kInt, value);
 }
 
 /// Returns whether a file needs CDF-5: for 64-bit numbers of vertices or cells, or for variables of 4 GiB.
 bool is_large(const Mesh& mesh) {
   constexpr std::size_t kMostBytes = 0xFFFFFFF0U;
-  const auto fit = [](const std::vector<std::int64_t>& ids) {
-    return std::all_of(ids.begin(), ids.end(),
-                       [](std::int64_t id) { return std::in_range<std::int32_t>(id); });
-  };
   return mesh.cells.vertices.size() > kMostBytes / sizeof(std::int32_t) ||
-         mesh.points.size() > kMostBytes / sizeof(double) || !fit(mesh.vertex_ids) || !fit(mesh.cell_ids);
+         mesh.points.size() > kMostBytes / sizeof(double) || !fit_32_bits(mesh.vertex_ids) ||
+         !fit_32_bits(mesh.cell_ids);
 }
 
 /// Returns the metadata of a new file, for a mesh of another format.
@@ -134,10 +123,11 @@ Metadata new_metadata(const Mesh& mesh) {
   Metadata result;
   result.storage = plain_storage(is_large(mesh));
   result.coordinates = mesh.dimension;
-  result.attributes = {real_attribute("api_version", kVersion),          real_attribute("version", kVersion),
-                       integer_attribute("floating_point_word_size", 8), integer_attribute("file_size", 1),
-                       integer_attribute("maximum_name_length", 32),     integer_attribute("int64_status", 0),
-                       text_attribute("title", "written by meshorder")};
+  result.attributes = {
+      number_attribute("api_version", kFloat, kVersion), number_attribute("version", kFloat, kVersion),
+      integer_attribute("floating_point_word_size", 8),  integer_attribute("file_size", 1),
+      integer_attribute("maximum_name_length", 32),      integer_attribute("int64_status", 0),
+      text_attribute("title", "written by meshorder")};
   constexpr std::size_t kLength = 33;
   std::string names(static_cast<std::size_t>(mesh.dimension) * kLength, '\0');
   for (std::size_t k = 0; k < static_cast<std::size_t>(mesh.dimension); ++k) names[k * kLength] = "xyz"[k];
@@ -153,11 +143,7 @@ void write_points(Writing& writing, int dimension) {
   const Mesh& mesh = writing.mesh;
   NcOutput& file = writing.file;
   if (mesh.points.empty()) return;
-  const bool are_floats = writing.metadata.coordinate_type == kFloat &&
-                          std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& point) {
-                            return std::all_of(point.begin(), point.end(),
-                                               [](double x) { return double{static_cast<float>(x)} == x; });
-                          });
+  const bool are_floats = writing.metadata.coordinate_type == kFloat && are_float_points(mesh.points);
   const NcType type = are_floats ? kFloat : kDouble;
   const auto put_axis = [&mesh](const NcSink& sink, std::size_t k, bool packed) {
     in_parts(mesh.vertex_count(), [&](Index first, Index rows) {
@@ -271,10 +257,7 @@ void write_nodal_attributes(Writing& writing, const Columns& columns) {
   NcOutput& file = writing.file;
   file.dimension({"num_att_in_nblk", columns.size()});
   const NcSink sink = writing.declare("nattrb", kDouble, {"num_nodes", "num_att_in_nblk"});
-  std::vector<std::string> names;
-  names.reserve(columns.size());
-  for (const auto& [name, array] : columns) names.push_back(name);
-  writing.write_names("nattrib_name", "num_att_in_nblk", names);
+  writing.write_names("nattrib_name", "num_att_in_nblk", names_of(columns));
   file.later([sink, columns, nodes = writing.mesh.points.size()] {
     std::vector<double> table(nodes * columns.size());
     for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -334,7 +317,7 @@ void write_plain(Writing& writing) {
   for (const Dimension& dimension : writing.metadata.dimensions) (void)file.dimension(dimension);
   if (writing.steps > 0 && !file.has_variable("time_whole")) {
     const NcSink sink = file.variable("time_whole", kDouble, {"time_step"});
-    file.later([sink, steps = writing.steps] { sink.part({0}, {steps}, std::vector<double>(steps, 0)); });
+    file.later([sink, steps = writing.steps] { sink.list(std::vector<double>(steps, 0)); });
   }
 }
 
@@ -352,7 +335,7 @@ std::size_t length_of_names(const Writing& writing, const std::vector<std::strin
 }
 
 void add_names(const Columns& columns, std::vector<std::string>& names) {
-  for (const auto& [name, array] : columns) names.push_back(name);
+  for (std::string& name : names_of(columns)) names.push_back(std::move(name));
 }
 
 /// Writes the attributes of the file. Raises maximum_name_length to the longest name.
@@ -367,16 +350,6 @@ void write_attributes_of_file(Writing& writing, const std::vector<std::string>& 
     }
     writing.file.attribute(attribute);
   }
-}
-
-/// Returns the number of coordinates that the points need, at least that of the file.
-int coordinates_of(const Mesh& mesh, int of_file) {
-  int needed = of_file;
-  for (const Point& point : mesh.points) {
-    if (point[2] != 0) return 3;
-    if (point[1] != 0) needed = std::max(needed, 2);
-  }
-  return needed;
 }
 
 }  // namespace
@@ -454,7 +427,7 @@ void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
   metadata.name_length = length_of_names(writing, names);
 
   // declare the dimensions and variables
-  const int dimension = coordinates_of(mesh, metadata.coordinates);
+  const int dimension = coordinates_of(mesh.points, metadata.coordinates);
   write_attributes_of_file(writing, names);
   file.dimension({"time_step", writing.steps, metadata.steps_unlimited || writing.steps == 0});
   file.dimension({"len_name", metadata.name_length});

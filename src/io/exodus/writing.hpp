@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/exodus/exodus.hpp"
+#include "mesh/values.hpp"
 
 #include <algorithm>
 #include <set>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace meshorder::exodus {
@@ -62,10 +64,6 @@ bool are_whole(const Values& values);
 /// strings become 0.
 std::vector<std::int64_t> whole_values(const Values& values);
 
-/// Returns for each of `count` vertices or cells its row in an array, −1 if it has none. Returns an empty
-/// table for a dense array: its row i belongs to vertex or cell i.
-std::vector<Index> row_table(const DataArray& array, Index count);
-
 /// Converts a number to another type; a string becomes 0.
 template <class To, class From>
 To number_as(const From& value) {
@@ -74,6 +72,31 @@ To number_as(const From& value) {
   } else {
     return To{};
   }
+}
+
+/// Declares the status, ids and properties of blocks or sets. `prefix` begins the names of the variables,
+/// `count` is their dimension; `is_full(plan)` returns whether a plan has members. Returns the names.
+template <class Plan, class IsFull>
+std::vector<std::string> write_plans(Writing& writing, const std::string& prefix, const std::string& count,
+                                     const std::vector<Plan>& plans,
+                                     const std::vector<std::string>& properties, const IsFull& is_full) {
+  std::vector<std::int64_t> ids;
+  std::vector<std::int64_t> status;
+  std::vector<std::string> names;
+  for (const Plan& plan : plans) {
+    ids.push_back(plan.id);
+    status.push_back(is_full(plan) ? 1 : 0);
+    names.push_back(plan.name);
+  }
+  writing.write_integers(prefix + "_status", count, status);
+  writing.write_integers(prefix + "_prop1", count, ids, {text_attribute("name", "ID")});
+  for (std::size_t p = 0; p < properties.size(); ++p) {
+    std::vector<std::int64_t> values;
+    for (const Plan& plan : plans) values.push_back(plan.record != nullptr ? plan.record->properties[p] : 0);
+    writing.write_integers(prefix + "_prop" + std::to_string(p + 2), count, values,
+                           {text_attribute("name", properties[p])});
+  }
+  return names;
 }
 
 inline constexpr Index kRowsAtOnce = 1 << 16;
@@ -89,6 +112,31 @@ void in_parts(Index count, const Put& put) {
 
 /// Attributes of elements or nodes: their names and arrays.
 using Columns = std::vector<std::pair<std::string, const DataArray*>>;
+
+/// Returns the names of attributes, in their sequence.
+inline std::vector<std::string> names_of(const Columns& columns) {
+  std::vector<std::string> names;
+  for (const auto& [name, array] : columns) names.push_back(name);
+  return names;
+}
+
+/// Returns one component of an array for `count` vertices or cells from `first` on; `missing` for those
+/// without a row. `table`: see `rows_by_item`.
+template <class Number>
+std::vector<Number> column(const DataArray& array, Index component, const std::vector<Index>& table,
+                           Index first, Index count, Number missing) {
+  std::vector<Number> result(static_cast<std::size_t>(count), missing);
+  std::visit(
+      [&](const auto& values) {
+        for (Index k = 0; k < count; ++k) {
+          const Offset row = table.empty() ? first + k : table[first + k];
+          if (row < 0) continue;
+          result[k] = number_as<Number>(values[static_cast<std::size_t>(row * array.components + component)]);
+        }
+      },
+      array.values);
+  return result;
+}
 
 /// Divides the cells, which already are in the order of the file, into `writing.blocks`.
 void plan_blocks(Writing& writing, bool is_own);

@@ -160,21 +160,6 @@ std::vector<double> even_rows(const ReadContext& reading, Entries& entries, cons
   return values;
 }
 
-/// Makes an array dense if it has a row for each vertex or cell: sorts `values` into the order of the mesh.
-void sort_full(DataArray& array, std::vector<double>& values, Index count) {
-  if (index_size(array.indices) != count) return;
-  // the rows are distinct, so that ascending rows already are in place
-  if (std::is_sorted(array.indices.begin(), array.indices.end())) return array.indices.clear();
-  std::vector<double> sorted(values.size());
-  const auto width = static_cast<std::size_t>(array.components);
-  for (std::size_t i = 0; i < array.indices.size(); ++i) {
-    std::copy_n(values.begin() + static_cast<Offset>(i * width), width,
-                sorted.begin() + static_cast<Offset>(array.indices[i] * width));
-  }
-  values = std::move(sorted);
-  array.indices.clear();
-}
-
 /// Converts labels, which data sections hold as real numbers, back to integers if they are whole.
 void restore_labels(DataArray& array) {
   const auto* values = std::get_if<std::vector<double>>(&array.values);
@@ -248,7 +233,6 @@ void check_distinct(const NumberReader& source, std::vector<Index> rows, std::st
 
 void read_view(ReadContext& reading, std::string_view section) {
   View view = read_view_head(reading.source, section);
-  const bool on_vertices = view.association == Association::vertices;
   Entries entries = read_entries(reading, view);
   check_distinct(reading.source, entries.rows, section);
   find_rule(reading, entries, view);
@@ -264,8 +248,8 @@ void read_view(ReadContext& reading, std::string_view section) {
     view.array.reset();
   } else {
     array.indices = std::move(entries.rows);
-    sort_full(array, values, on_vertices ? reading.mesh.vertex_count() : reading.mesh.cell_count());
     array.values = std::move(values);
+    make_dense(array, item_count(reading.mesh, array.association));
     reading.mesh.data.push_back(std::move(array));
   }
   reading.metadata.views.push_back(std::move(view));

@@ -18,18 +18,9 @@ namespace {
 
 constexpr std::size_t kCoreStep = std::size_t{1} << 20;  // growth of a file in memory, in bytes
 
-Handle link_access() {
-  Handle access(H5Pcreate(H5P_LINK_ACCESS), H5Pclose);
-  // links to other files are not followed
-  const auto refuse = [](const char* /*file*/, const char* /*group*/, const char* /*target*/,
-                         const char* /*object*/, unsigned* /*flags*/, hid_t /*access*/,
-                         void* /*data*/) -> herr_t { return -1; };
-  H5Pset_elink_cb(access.id(), refuse, nullptr);
-  return access;
-}
-
-Handle dataset_access() {
-  Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+/// Returns properties for access to links or datasets that follows no link to another file.
+Handle access_within_file(hid_t kind) {
+  Handle access(H5Pcreate(kind), H5Pclose);
   const auto refuse = [](const char* /*file*/, const char* /*group*/, const char* /*target*/,
                          const char* /*object*/, unsigned* /*flags*/, hid_t /*access*/,
                          void* /*data*/) -> herr_t { return -1; };
@@ -39,7 +30,7 @@ Handle dataset_access() {
 
 /// Returns a path up to its first link to another file; an empty text if it has no such link.
 std::string external_link_on(hid_t file, const std::string& path) {
-  const Handle access = link_access();
+  const Handle access = access_within_file(H5P_LINK_ACCESS);
   for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
     std::string part = path.substr(0, end);
     H5L_info_t link;
@@ -56,7 +47,7 @@ bool leads_to_object(hid_t group, const std::string& name) {
   if (H5Lget_info(group, name.c_str(), &link, H5P_DEFAULT) < 0) return false;
   if (link.type == H5L_TYPE_HARD) return true;
   const Unwatched may_lead_nowhere;
-  const Handle access = link_access();
+  const Handle access = access_within_file(H5P_LINK_ACCESS);
   return link.type == H5L_TYPE_SOFT && H5Oexists_by_name(group, name.c_str(), access.id()) > 0;
 }
 
@@ -147,7 +138,7 @@ File File::in_memory(std::string_view bytes, std::string name) {
 }
 
 Handle File::open_dataset(const std::string& path) const {
-  const Handle access = dataset_access();
+  const Handle access = access_within_file(H5P_DATASET_ACCESS);
   Handle dataset(H5Dopen2(file_.id(), path.c_str(), access.id()), H5Dclose);
   if (dataset.is_open()) return dataset;
   if (const std::string link = external_link_on(file_.id(), path); !link.empty()) {
@@ -184,7 +175,7 @@ std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
 }
 
 Handle File::open_object(const std::string& path) const {
-  const Handle access = link_access();
+  const Handle access = access_within_file(H5P_LINK_ACCESS);
   Handle object(H5Oopen(file_.id(), "/", access.id()), H5Oclose);
   const std::string normal = normal_path(path);
   for (std::size_t begin = 1; begin < normal.size();) {

@@ -44,6 +44,27 @@ std::uint64_t bytes_of_chunk(hid_t creation, hid_t type) {
   return bytes;
 }
 
+Handle space_of(const std::vector<std::uint64_t>& shape) {
+  const std::vector<hsize_t> dims(shape.begin(), shape.end());
+  return {H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose};
+}
+
+/// Returns the properties of a new dataset.
+Handle new_creation() {
+  Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  forget_times(creation);
+  return creation;
+}
+
+/// Makes a dataset, and the groups around it.
+Handle new_dataset(hid_t file, const std::string& path, hid_t type, const std::vector<std::uint64_t>& shape,
+                   const Handle& creation) {
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links.id(), 1);
+  return {H5Dcreate2(file, path.c_str(), type, space_of(shape).id(), links.id(), creation.id(), H5P_DEFAULT),
+          H5Dclose};
+}
+
 }  // namespace
 
 std::uint64_t DatasetInfo::size() const {
@@ -171,24 +192,16 @@ void File::write(const std::string& path, std::span<const Index> values,
 
 void File::write(const std::string& path, hid_t type, const void* values, std::uint64_t count,
                  const std::vector<std::uint64_t>& shape) {
-  const std::vector<hsize_t> dims(shape.begin(), shape.end());
-  const Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
   Handle dataset = open_dataset_if_there(path);
   if (!dataset.is_open()) {
-    const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-    H5Pset_create_intermediate_group(links.id(), 1);
-    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    forget_times(creation);
-    dataset =
-        Handle(H5Dcreate2(file_.id(), path.c_str(), type, space.id(), links.id(), creation.id(), H5P_DEFAULT),
-               H5Dclose);
+    dataset = new_dataset(file_.id(), path, type, shape, new_creation());
   } else {
     const Handle old_space(H5Dget_space(dataset.id()), H5Sclose);
     const hssize_t old_count = H5Sget_simple_extent_npoints(old_space.id());
     if (old_count < 0 || static_cast<std::uint64_t>(old_count) != count) {
       const std::string aside = free_path(path);
       H5Lmove(file_.id(), path.c_str(), file_.id(), aside.c_str(), H5P_DEFAULT, H5P_DEFAULT);
-      Handle copy = empty_copy(dataset.id(), file_.id(), path.c_str(), space.id());
+      Handle copy = empty_copy(dataset.id(), file_.id(), path.c_str(), space_of(shape).id());
       H5Ldelete(file_.id(), aside.c_str(), H5P_DEFAULT);
       dataset = std::move(copy);
     }
@@ -211,17 +224,10 @@ std::string File::free_path(const std::string& path) const {
 void File::make_room(const std::string& path, std::size_t alternative,
                      const std::vector<std::uint64_t>& shape) {
   const Session session;
-  const std::vector<hsize_t> dims(shape.begin(), shape.end());
-  const Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
-  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(links.id(), 1);
-  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  forget_times(creation);
+  const Handle creation = new_creation();
   H5Pset_alloc_time(creation.id(), H5D_ALLOC_TIME_EARLY);
   H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER);
-  const Handle dataset(H5Dcreate2(file_.id(), path.c_str(), native_types()[alternative], space.id(),
-                                  links.id(), creation.id(), H5P_DEFAULT),
-                       H5Dclose);
+  const Handle dataset = new_dataset(file_.id(), path, native_types()[alternative], shape, creation);
   if (!dataset.is_open())
     fail(path, fmt::format("cannot be written ({})", last_cause()), "is the disk full?");
 }

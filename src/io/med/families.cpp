@@ -28,21 +28,10 @@ constexpr std::size_t kMostLabels = 256;
 
 std::size_t place_of(Association association) { return association == Association::vertices ? 0 : 1; }
 
-std::size_t item_count(const Mesh& mesh, Association association) {
-  return association == Association::vertices ? mesh.points.size() : mesh.cells.shapes.size();
-}
-
 /// Returns the numbers that an array gives to all vertices or cells, 0 where it gives none.
 std::vector<std::int64_t> numbers_in(const Mesh& mesh, const std::string& name, Association association) {
-  std::vector<std::int64_t> numbers(item_count(mesh, association), 0);
-  const DataArray* const array = find_array(mesh, name, association);
-  if (array == nullptr || array->components != 1) return numbers;
-  with_integers(array->values, [&](const auto& values) {
-    for (std::size_t row = 0; row < values.size(); ++row) {
-      const std::size_t item = array->is_dense() ? row : static_cast<std::size_t>(array->indices[row]);
-      numbers[item] = static_cast<std::int64_t>(values[row]);
-    }
-  });
+  std::vector<std::int64_t> numbers = labels_of(mesh, association, name).values;
+  numbers.resize(item_count(mesh, association), 0);
   return numbers;
 }
 

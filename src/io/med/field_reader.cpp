@@ -2,6 +2,7 @@
 #include "base/index.hpp"
 #include "base/memory.hpp"
 #include "io/med/med.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -46,19 +47,7 @@ void sort_rows(DataArray& array, std::vector<Index> items, Index count) {
     std::sort(order.begin(), order.end(), [&](Index a, Index b) {
       return items[static_cast<std::size_t>(a)] < items[static_cast<std::size_t>(b)];
     });
-    const auto width = static_cast<std::size_t>(array.components);
-    std::visit(
-        [&](auto& values) {
-          auto sorted = values;
-          for (std::size_t r = 0; r < order.size(); ++r) {
-            const auto from =
-                values.begin() + static_cast<Offset>(static_cast<std::size_t>(order[r]) * width);
-            std::copy(from, from + static_cast<Offset>(width),
-                      sorted.begin() + static_cast<Offset>(r * width));
-          }
-          values = std::move(sorted);
-        },
-        array.values);
+    array.values = rows_of_values(array.values, array.components, order);
     std::sort(items.begin(), items.end());
   }
   if (index_size(items) < count) array.indices = std::move(items);

@@ -178,10 +178,6 @@ struct Writing {
   void put_integers(const std::string& path, const std::vector<std::int64_t>& values, std::size_t rows);
 };
 
-/// Returns the row of an array for each of `count` vertices or cells, −1 for those without one; empty if the
-/// array is dense.
-std::vector<Index> rows_by_item(const DataArray& array, Index count);
-
 /// Writes the families and returns their numbers for each vertex or cell; empty if all are 0.
 std::vector<std::int64_t> write_families(Writing& writing, Association association);
 void write_fields(Writing& writing);

@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
 #include "io/all_formats.hpp"
+#include "io/coordinates.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/med/med.hpp"
 #include "io/unsupported.hpp"
@@ -25,20 +26,6 @@ constexpr std::string_view kStep = "-0000000000000000001-0000000000000000001";
 constexpr std::size_t kInt32Alternative = 6;
 constexpr std::size_t kInt64Alternative = 8;
 constexpr std::size_t kFloatAlternative = 1;
-
-/// Returns the number of coordinates that the points need, at least that of the file.
-int axes_of(const Mesh& mesh, int of_file) {
-  int needed = of_file;
-  for (const Point& point : mesh.points) {
-    if (point[2] != 0) return 3;
-    if (point[1] != 0) needed = std::max(needed, 2);
-  }
-  return needed;
-}
-
-bool is_of_floats(const Point& point) {
-  return std::all_of(point.begin(), point.end(), [](double x) { return double{static_cast<float>(x)} == x; });
-}
 
 /// Returns the names of the axes, each padded to 16 characters.
 std::string axis_names(int axes) {
@@ -69,7 +56,7 @@ void write_points(Writing& writing) {
   const Layout& layout = writing.layout;
   hdf5::File& file = writing.file;
   const std::string mesh = layout.mesh_path();
-  const int axes = axes_of(writing.mesh, layout.axes);
+  const int axes = coordinates_of(writing.mesh.points, layout.axes);
   if (axes != layout.axes) {
     file.set_attribute(mesh, "ESP", std::int64_t{axes});
     file.set_attribute(mesh, "NOM", axis_names(axes));
@@ -78,8 +65,7 @@ void write_points(Writing& writing) {
   const std::string group = layout.nodes_path();
   const std::string path = group + "/COO";
   const std::optional<std::size_t> type = file.number_type(path);
-  const bool floats = type == kFloatAlternative &&
-                      std::all_of(writing.mesh.points.begin(), writing.mesh.points.end(), is_of_floats);
+  const bool floats = type == kFloatAlternative && are_float_points(writing.mesh.points);
   if (type && *type != (floats ? kFloatAlternative : 0)) file.remove(path);
   writing.put(
       path,
@@ -328,22 +314,9 @@ void Writing::put(const std::string& path, const Values& values, std::size_t row
 
 void Writing::put_integers(const std::string& path, const std::vector<std::int64_t>& values,
                            std::size_t rows) {
-  using Limits = std::numeric_limits<std::int32_t>;
-  const bool small = std::all_of(values.begin(), values.end(), [](std::int64_t value) {
-    return value >= Limits::min() && value <= Limits::max();
-  });
-  if (!small && file.number_type(path) != kInt64Alternative) file.remove(path);
-  if (!small) return put(path, values, rows);
-  put(path, std::vector<std::int32_t>(values.begin(), values.end()), rows);
-}
-
-std::vector<Index> rows_by_item(const DataArray& array, Index count) {
-  std::vector<Index> rows;
-  if (array.is_dense()) return rows;
-  rows.assign(static_cast<std::size_t>(count), -1);
-  for (Index row = 0; row < index_size(array.indices); ++row)
-    rows[static_cast<std::size_t>(array.indices[static_cast<std::size_t>(row)])] = row;
-  return rows;
+  const Values held = label_values(values);
+  if (held.index() == kInt64Alternative && file.number_type(path) != kInt64Alternative) file.remove(path);
+  put(path, held, rows);
 }
 
 std::shared_ptr<const FormatMetadata> Layout::moved(std::span<const Index> new_vertices,
@@ -369,7 +342,7 @@ Layout new_layout(const Mesh& mesh) {
   layout.is_made = true;
   layout.mesh = "mesh";
   layout.step = kStep;
-  layout.axes = axes_of(mesh, mesh.dimension);
+  layout.axes = coordinates_of(mesh.points, mesh.dimension);
   hdf5::File file = hdf5::File::in_memory({}, "");
   const std::string infos = "/INFOS_GENERALES";
   file.make_group(infos);

@@ -65,12 +65,7 @@ struct WriteContext {
 /// Returns the version to write: 4 if a reference needs 64 bits, else that of the file, or 2.
 std::int64_t version(const WriteContext& from) {
   const std::int64_t wanted = from.own ? from.own->version : 2;
-  using Limits = std::numeric_limits<std::int32_t>;
-  const auto large = [](std::int64_t x) { return x < Limits::min() || x > Limits::max(); };
-  const auto has_large = [&](const Labels& labels) {
-    return std::any_of(labels.values.begin(), labels.values.end(), large);
-  };
-  return has_large(from.vertex_labels) || has_large(from.cell_labels) ? 4 : wanted;
+  return fit_32_bits(from.vertex_labels.values) && fit_32_bits(from.cell_labels.values) ? wanted : 4;
 }
 
 void write_vertices(OutputFile& out, const WriteContext& from) {

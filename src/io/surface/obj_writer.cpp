@@ -10,6 +10,8 @@
 #include "io/surface/obj_parts.hpp"
 #include "io/surface/surface_data.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -31,8 +33,7 @@ std::vector<std::int32_t> cell_integers(const DataArray& array) {
   if (!array.is_dense() || array.components != 1) return {};
   if (const auto* same = std::get_if<std::vector<std::int32_t>>(&array.values)) return *same;
   const auto* wide = std::get_if<std::vector<std::int64_t>>(&array.values);
-  const auto fits = [](std::int64_t x) { return std::in_range<std::int32_t>(x); };
-  if (!wide || !std::all_of(wide->begin(), wide->end(), fits)) return {};
+  if (!wide || !fit_32_bits(*wide)) return {};
   return {wide->begin(), wide->end()};
 }
 
@@ -77,7 +78,7 @@ class ObjWriter {
     if (!native_ || !weights || weights->components != 1) return;
     if (const auto* values = std::get_if<std::vector<double>>(&weights->values)) {
       weights_ = values;
-      weight_rows_ = rows_of(*weights);
+      weight_rows_ = rows_by_item(*weights, mesh_.vertex_count());
       written_.insert(weights);
     }
   }
@@ -88,18 +89,9 @@ class ObjWriter {
     colors_.values = as_reals(array->values);
     if (colors_.values.empty()) return;
     colors_.width = 3;
-    colors_.integers = holds_integers(array->values);
-    color_rows_ = rows_of(*array);
+    colors_.integers = are_integers(array->values);
+    color_rows_ = rows_by_item(*array, mesh_.vertex_count());
     written_.insert(array);
-  }
-
-  /// Returns the row of each vertex, −1 for none; empty if the array is dense.
-  [[nodiscard]] std::vector<Index> rows_of(const DataArray& array) const {
-    std::vector<Index> rows;
-    if (array.is_dense()) return rows;
-    rows.assign(mesh_.points.size(), -1);
-    for (Index row = 0; row < index_size(array.indices); ++row) rows[array.indices[row]] = row;
-    return rows;
   }
 
   /// Finds the indices of corners if the file was OBJ; else the normals and texture coordinates of vertices,

@@ -11,6 +11,7 @@
 #include "io/surface/surface_data.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -339,7 +340,7 @@ void add_face_color(Text& text, const Content& content, Index face) {
   with_numbers(array->values, [&](const auto& values) {
     for (Index k = 0; k < array->components; ++k) {
       const auto x = static_cast<double>(values[row * array->components + k]);
-      add_color(text, {&x, 1}, holds_integers(array->values));
+      add_color(text, {&x, 1}, are_integers(array->values));
     }
   });
 }

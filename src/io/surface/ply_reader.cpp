@@ -592,14 +592,8 @@ class Reader {
   /// Appends the later parts to the first.
   void join(const std::vector<std::size_t>& parts) {
     DataArray& whole = mesh_.data[parts[0]];
-    std::visit(
-        [&](auto& list) {
-          for (std::size_t p = 1; p < parts.size(); ++p) {
-            const auto& part = std::get<std::decay_t<decltype(list)>>(mesh_.data[parts[p]].values);
-            list.insert(list.end(), part.begin(), part.end());
-          }
-        },
-        whole.values);
+    for (std::size_t p = 1; p < parts.size(); ++p)
+      append_values(whole.values, std::move(mesh_.data[parts[p]].values));
     whole.indices.clear();
     for (std::size_t p = parts.size() - 1; p > 0; --p) {
       mesh_.data.erase(mesh_.data.begin() + static_cast<std::ptrdiff_t>(parts[p]));

@@ -11,6 +11,7 @@
 #include "io/surface/surface_data.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -81,16 +82,8 @@ TypeWord written_type(const Values& values) {
   return wide ? word_for_wide(values) : word_of(values);
 }
 
-Index item_count(const Mesh& mesh, Association association) {
-  return association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
-}
-
 ArraySource source_of(const Mesh& mesh, const DataArray& array, Index component) {
-  ArraySource source{&array, component, {}};
-  if (array.is_dense()) return source;
-  source.row_of.assign(item_count(mesh, array.association), -1);
-  for (Index row = 0; row < index_size(array.indices); ++row) source.row_of[array.indices[row]] = row;
-  return source;
+  return {&array, component, rows_by_item(array, item_count(mesh, array.association))};
 }
 
 Index row_in(const ArraySource& source, Index item) {

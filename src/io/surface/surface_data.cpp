@@ -3,6 +3,7 @@
 
 #include "mesh/values.hpp"
 
+#include <algorithm>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -10,9 +11,7 @@
 namespace meshorder {
 namespace {
 
-bool is_usable(const DataArray* array) {
-  return array && array->is_dense() && !std::holds_alternative<std::vector<std::string>>(array->values);
-}
+bool is_usable(const DataArray* array) { return array && array->is_dense() && !are_texts(array->values); }
 
 /// Returns the columns row by row: the first of each column, then the second, …
 std::vector<double> interleaved(const std::vector<const DataArray*>& columns, Index rows) {
@@ -26,26 +25,13 @@ std::vector<double> interleaved(const std::vector<const DataArray*>& columns, In
 
 }  // namespace
 
-bool holds_integers(const Values& values) {
-  return with_integers(values, [](const auto& /*list*/) { return true; });
-}
-
-std::vector<double> as_reals(const Values& values) {
-  return with_numbers(values, [](const auto& list) {
-    std::vector<double> result;
-    result.reserve(list.size());
-    for (const auto value : list) result.push_back(static_cast<double>(value));
-    return result;
-  });
-}
-
 GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Association association) {
   GatheredVector result;
   const int most = static_cast<int>(vector.components.size());
   // one array of all components
   const DataArray* whole = find_array(mesh, vector.name, association);
   if (is_usable(whole) && whole->components >= vector.least && whole->components <= most) {
-    return {whole->components, holds_integers(whole->values), as_reals(whole->values), {whole}};
+    return {whole->components, are_integers(whole->values), as_reals(whole->values), {whole}};
   }
   // or an array for each, of one type
   for (const std::string_view component : vector.components) {
@@ -56,7 +42,7 @@ GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Association
   }
   if (static_cast<int>(result.from.size()) < vector.least) return {};
   result.width = static_cast<int>(result.from.size());
-  result.integers = holds_integers(result.from[0]->values);
+  result.integers = are_integers(result.from[0]->values);
   result.values = interleaved(result.from,
                               association == Association::vertices ? mesh.vertex_count() : mesh.cell_count());
   return result;

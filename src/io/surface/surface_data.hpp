@@ -37,10 +37,4 @@ struct GatheredVector {
 /// Returns the vector of all vertices or cells; of width 0 unless the mesh has it for all of them. O(rows).
 GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Association association);
 
-/// Returns whether the values are of an integer type.
-bool holds_integers(const Values& values);
-
-/// Returns the values as real numbers; none for strings.
-std::vector<double> as_reals(const Values& values);
-
 }  // namespace meshorder

@@ -146,15 +146,6 @@ std::string text_of(const Column& column, Index item) {
   });
 }
 
-/// Returns the row of each vertex or cell in the array; −1 for none.
-std::vector<Index> rows_of(const DataArray& array, Index count) {
-  std::vector<Index> result;
-  if (array.is_dense()) return result;
-  result.assign(count, -1);
-  for (Index r = 0; r < index_size(array.indices); ++r) result[array.indices[r]] = r;
-  return result;
-}
-
 void note_missing_labels(std::ptrdiff_t missing, std::string_view file, Notes& notes) {
   notes.push_back(fmt::format("{} in {} have no label and get 0", missing, file));
 }
@@ -178,7 +169,7 @@ std::vector<Column> attribute_columns(const Mesh& mesh, Association association,
 
   std::vector<Column> columns;
   for (const DataArray* array : arrays) {
-    std::vector<Index> row_of = rows_of(*array, count);
+    std::vector<Index> row_of = rows_by_item(*array, count);
     const auto has_row = [&](Index item) { return row_of.empty() || row_of[item] >= 0; };
     const auto given = std::count_if(items.begin(), items.end(), has_row);
     if (array == labels && given == 0) continue;  // these labels are markers of faces and edges

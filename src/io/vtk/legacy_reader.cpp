@@ -128,21 +128,7 @@ class LegacyReader {
     if (!metadata_->float_points && !std::holds_alternative<std::vector<double>>(array.values)) {
       in_.notes.push_back("the points are of type " + type + " and are stored as double");
     }
-    resize_large(mesh_.points, static_cast<std::size_t>(count));
-    std::visit(
-        [&](const auto& values) {
-          using Number = typename std::decay_t<decltype(values)>::value_type;
-          if constexpr (!std::is_same_v<Number, std::string>) {
-            const Number* value = values.data();
-            for (std::size_t p = 0; p < mesh_.points.size(); ++p) {
-              for (double& x : mesh_.points[p]) {
-                x = static_cast<double>(*value++);
-                if (!std::isfinite(x)) throw not_finite(start, p);
-              }
-            }
-          }
-        },
-        array.values);
+    add_points(mesh_.points, array.values, [&](std::size_t p) { return not_finite(start, p); });
   }
 
   [[nodiscard]] InputError not_finite(std::int64_t line, std::size_t point) const {

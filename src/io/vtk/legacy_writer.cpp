@@ -187,9 +187,8 @@ class LegacyWriter {
     if (facts == nullptr || facts->type.empty()) return usual;
     const auto is = [&](std::string_view name) { return same_but_for_case(facts->type, name); };
     if (const auto* wide = std::get_if<std::vector<std::int64_t>>(&array.values)) {
-      const bool narrow = std::all_of(wide->begin(), wide->end(),
-                                      [](std::int64_t n) { return std::in_range<std::int32_t>(n); });
-      return is("long") || is("long_long") || (is("vtkIdType") && narrow) ? facts->type : usual;
+      const bool may_be_ids = is("vtkIdType") && fit_32_bits(*wide);
+      return is("long") || is("long_long") || may_be_ids ? facts->type : usual;
     }
     const bool kept =
         (is("unsigned_long") && std::holds_alternative<std::vector<std::uint64_t>>(array.values)) ||

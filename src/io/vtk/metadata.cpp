@@ -1,5 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/memory.hpp"
 #include "base/text.hpp"
+#include "io/coordinates.hpp"
 #include "io/labels.hpp"
 #include "io/names.hpp"
 #include "io/unsupported.hpp"
@@ -9,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string_view>
@@ -19,10 +22,6 @@ namespace meshorder::vtk {
 namespace {
 
 constexpr std::string_view kSetPrefix = "set:";
-
-Index owner_count(const Mesh& mesh, Association association) {
-  return association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
-}
 
 /// Returns the members of a set from an array of marks or ranks; nothing if the array is neither.
 template <class Number>
@@ -84,11 +83,6 @@ class Names {
   std::set<std::pair<Association, std::string>> taken_;
   std::map<Association, NameNumbers> numbers_;
 };
-
-bool filled_with_nan(const DataArray& array) {
-  return std::holds_alternative<std::vector<double>>(array.values) ||
-         std::holds_alternative<std::vector<float>>(array.values);
-}
 
 /// Returns the metadata of a mesh that came from VTK, or empty ones; notes those of another format.
 const Metadata& metadata_of(const Mesh& mesh, Notes& notes) {
@@ -152,6 +146,26 @@ Values marks_of(const EntitySet& set, Index count) {
   return ranks;
 }
 
+void add_points(std::vector<Point>& points, const Values& coordinates,
+                const std::function<InputError(std::size_t k)>& not_finite) {
+  const std::size_t first = points.size();
+  resize_large(points, first + size_of(coordinates) / 3);
+  std::visit(
+      [&](const auto& numbers) {
+        using Number = typename std::decay_t<decltype(numbers)>::value_type;
+        if constexpr (std::is_arithmetic_v<Number>) {
+          const Number* number = numbers.data();
+          for (std::size_t p = first; p < points.size(); ++p) {
+            for (double& x : points[p]) {
+              x = static_cast<double>(*number++);
+              if (!std::isfinite(x)) throw not_finite(p - first);
+            }
+          }
+        }
+      },
+      coordinates);
+}
+
 void add_array(Mesh& mesh, DataArray array) {
   if (array.name == kCellTypes && find_array(mesh, kCellTypes, array.association) != nullptr) return;
   if (array.name.starts_with(kSetPrefix) && array.components == 1 && array.is_dense()) {
@@ -208,11 +222,8 @@ void WriteContext::collect_arrays(NamePlace place) {
       arrays.push_back(&array);
       continue;
     }
-    if (!array.is_dense()) {
-      notes.push_back(fmt::format("the array '{}' is given for some {}; the others get {}", array.name,
-                                  to_string(array.association), filled_with_nan(array) ? "NaN" : "0"));
-    }
-    add_made(full_array(array, owner_count(mesh, array.association)));
+    if (!array.is_dense()) note_filled(array, missing_word(array.values), notes);
+    add_made(full_array(array, item_count(mesh, array.association)));
     made_.back()->name = name;
   }
 
@@ -222,7 +233,7 @@ void WriteContext::collect_arrays(NamePlace place) {
       notes.push_back(fmt::format("the set '{}' of {} is written as the array '{}'", set.name,
                                   to_string(set.association), name));
     }
-    add_made({name, set.association, 1, marks_of(set, owner_count(mesh, set.association)), {}, {}});
+    add_made({name, set.association, 1, marks_of(set, item_count(mesh, set.association)), {}, {}});
   }
 
   const auto add_ids = [&](const std::vector<std::int64_t>& ids, const char* wanted,
@@ -249,10 +260,7 @@ const ArrayRole* WriteContext::role(Association association, Role role) const {
 }
 
 bool WriteContext::points_are_floats() const {
-  return metadata.float_points && std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& point) {
-           return std::all_of(point.begin(), point.end(),
-                              [](double x) { return double{static_cast<float>(x)} == x; });
-         });
+  return metadata.float_points && are_float_points(mesh.points);
 }
 
 }  // namespace meshorder::vtk

@@ -216,6 +216,11 @@ void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& ty
 
 // ---- reading
 
+/// Appends points from their coordinates, three for each. Throws `not_finite(k)` for the k-th of them, from 0
+/// on, with a coordinate that is not finite. Integers are converted; texts make no points. O(points).
+void add_points(std::vector<Point>& points, const Values& coordinates,
+                const std::function<InputError(std::size_t k)>& not_finite);
+
 /// Adds an array of a file to the mesh. An array of integers named "set:NAME" that marks members by 1, or by
 /// their rank from 1, becomes the set NAME.
 void add_array(Mesh& mesh, DataArray array);

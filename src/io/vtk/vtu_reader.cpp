@@ -10,12 +10,12 @@
 #include "io/vtk/joined_pieces.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -24,16 +24,6 @@
 
 namespace meshorder::vtk {
 namespace {
-
-/// Appends the values of one piece to those of others, of the same type.
-void append(Values& values, Values more) {
-  std::visit(
-      [&](auto& all) {
-        auto& part = std::get<std::decay_t<decltype(all)>>(more);
-        all.insert(all.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
-      },
-      values);
-}
 
 class VtuReader {
  public:
@@ -179,28 +169,14 @@ class VtuReader {
       metadata_->float_points = std::holds_alternative<std::vector<float>>(values);
       metadata_->vtu->mode = file_->mode(array);
     }
-    const std::size_t first = mesh_.points.size();
-    mesh_.points.resize(first + static_cast<std::size_t>(count));
-    std::visit(
-        [&](const auto& numbers) {
-          using Number = typename std::decay_t<decltype(numbers)>::value_type;
-          if constexpr (std::is_same_v<Number, std::string>) {
-            throw file_->error(array, "the points are strings", "Float32 or Float64 is needed");
-          } else {
-            if constexpr (!std::is_floating_point_v<Number>)
-              notes_.push_back("the points are integers and are stored as Float64");
-            for (std::size_t i = 0; i < numbers.size(); ++i) {
-              const auto x = static_cast<double>(numbers[i]);
-              if (!std::isfinite(x))
-                throw file_->error(
-                    array,
-                    fmt::format("point {} (counted from 0) has a coordinate that is not finite", i / 3),
-                    "finite numbers are needed");
-              mesh_.points[first + i / 3][i % 3] = x;
-            }
-          }
-        },
-        values);
+    if (are_texts(values))
+      throw file_->error(array, "the points are strings", "Float32 or Float64 is needed");
+    if (values.index() > 1) notes_.push_back("the points are integers and are stored as Float64");
+    add_points(mesh_.points, values, [&](std::size_t p) {
+      return file_->error(array,
+                          fmt::format("point {} (counted from 0) has a coordinate that is not finite", p),
+                          "finite numbers are needed");
+    });
   }
 
   [[nodiscard]] std::int64_t components_of(const VtuElement& array) const {
@@ -509,7 +485,7 @@ class VtuReader {
                            "the array '" + array.name + "' is of another type than in the piece before",
                            "all pieces have the same arrays");
       }
-      append(before.values, std::move(array.values));
+      append_values(before.values, std::move(array.values));
     }
   }
 

@@ -220,26 +220,11 @@ class VtkHdfReader {
     const std::string path = path_of("Points");
     const Values values = read_rows(path, all_.points, 3);
     metadata_->float_points = std::holds_alternative<std::vector<float>>(values);
-    mesh_.points.resize(static_cast<std::size_t>(all_.points));
-    std::visit(
-        [&](const auto& numbers) {
-          using Number = typename std::decay_t<decltype(numbers)>::value_type;
-          if constexpr (!std::is_same_v<Number, std::string>) {
-            if constexpr (!std::is_floating_point_v<Number>)
-              notes_.push_back("the points are integers and are stored as double");
-            for (std::size_t i = 0; i < numbers.size(); ++i) {
-              const auto x = static_cast<double>(numbers[i]);
-              if (!std::isfinite(x)) {
-                throw error(
-                    path,
-                    fmt::format("has a coordinate of point {} (counted from 0) that is not finite", i / 3),
-                    "finite numbers are needed");
-              }
-              mesh_.points[i / 3][i % 3] = x;
-            }
-          }
-        },
-        values);
+    if (values.index() > 1) notes_.push_back("the points are integers and are stored as double");
+    vtk::add_points(mesh_.points, values, [&](std::size_t p) {
+      return error(path, fmt::format("has a coordinate of point {} (counted from 0) that is not finite", p),
+                   "finite numbers are needed");
+    });
   }
 
   /// Reserves `all` entries in `target`, then calls `take(partition, i, number)` for every number of a

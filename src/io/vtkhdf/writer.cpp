@@ -162,9 +162,8 @@ void note_lacking(const vtk::WriteContext& from, Notes& notes) {
   for (const DataArray* const array : from.arrays) {
     if (are_texts(array->values)) {
       note_array_unsupported(*array, "VTKHDF", notes);
-    } else if (!array->component_names.empty()) {
-      notes.push_back(fmt::format(
-          "the names of the components of '{}' are not written: VTKHDF has no place for them", array->name));
+    } else {
+      note_component_names_unsupported(*array, "VTKHDF", notes);
     }
   }
   for (const std::string& what : from.metadata.contents()) {

@@ -9,24 +9,11 @@
 #include <algorithm>
 #include <map>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 
 // Reads Attributes and Sets. Those of several Grids may become one array.
 
 namespace meshorder::xdmf {
-namespace {
-
-bool is_integral(const Values& values) {
-  return std::visit(
-      [](const auto& numbers) {
-        return std::is_integral_v<typename std::decay_t<decltype(numbers)>::value_type>;
-      },
-      values);
-}
-
-}  // namespace
-
 void ArrayReader::add_moved_points(const GridElement& grid, std::vector<Field>& fields,
                                    std::vector<Point> points, int dimension) {
   if (fields.size() != 1) {
@@ -122,7 +109,7 @@ void ArrayReader::read_of_grid(pugi::xml_node item, const std::string& name) {
 }
 
 bool ArrayReader::is_label(const Field& field, const DataArray& array) const {
-  if (array.association == Association::vertices || array.components != 1 || !is_integral(array.values)) {
+  if (array.association == Association::vertices || array.components != 1 || !are_integers(array.values)) {
     return false;
   }
   const std::string& dataset = field.place.dataset;
@@ -183,7 +170,7 @@ void ArrayReader::read_set(int part, pugi::xml_node element) {
 void ArrayReader::finish() {
   name_pending();
   for (GrowingArray& growing : arrays_) {
-    finish_array(growing);
+    make_dense(growing.array, reading_.mesh.cell_count());
     vtk::add_array(reading_.mesh, std::move(growing.array));
   }
 }
@@ -217,7 +204,7 @@ bool ArrayReader::append_rows(GrowingArray& growing, DataArray& array, const std
   DataArray& all = growing.array;
   const bool same_type = all.values.index() == array.values.index();
   const bool may_join =
-      same_type || (array.name == kLabel && is_integral(all.values) && is_integral(array.values));
+      same_type || (array.name == kLabel && are_integers(all.values) && are_integers(array.values));
   if (all.is_dense() || all.components != array.components || !may_join) return false;
   if (growing.has_row.empty()) {
     growing.has_row.assign(reading_.mesh.cells.shapes.size(), false);
@@ -232,33 +219,8 @@ bool ArrayReader::append_rows(GrowingArray& growing, DataArray& array, const std
   }
   for (const Index c : rows) growing.has_row[static_cast<std::size_t>(c)] = true;
   all.indices.insert(all.indices.end(), rows.begin(), rows.end());
-  std::visit(
-      [&](auto& values) {
-        const auto& more = std::get<std::decay_t<decltype(values)>>(array.values);
-        values.insert(values.end(), more.begin(), more.end());
-      },
-      all.values);
+  append_values(all.values, std::move(array.values));
   return true;
-}
-
-void ArrayReader::finish_array(GrowingArray& growing) const {
-  DataArray& array = growing.array;
-  if (array.is_dense() || index_size(array.indices) != reading_.mesh.cell_count()) return;
-  if (!std::is_sorted(array.indices.begin(), array.indices.end())) {
-    std::visit(
-        [&](auto& values) {
-          auto sorted_values = values;
-          const auto width = static_cast<std::size_t>(array.components);
-          for (std::size_t r = 0; r < array.indices.size(); ++r) {
-            std::copy_n(values.begin() + static_cast<Offset>(r * width), width,
-                        sorted_values.begin() +
-                            static_cast<Offset>(static_cast<std::size_t>(array.indices[r]) * width));
-          }
-          values = std::move(sorted_values);
-        },
-        array.values);
-  }
-  array.indices.clear();
 }
 
 }  // namespace meshorder::xdmf

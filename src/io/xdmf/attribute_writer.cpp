@@ -101,10 +101,7 @@ std::string Writer::unused_name(const DataArray& array) {
 
 void Writer::add_array(const DataArray& array) {
   if (are_texts(array.values)) return note_array_unsupported(array, "XDMF", notes_);
-  if (!array.component_names.empty()) {
-    notes_.push_back(fmt::format(
-        "the names of the components of '{}' are not written: XDMF has no place for them", array.name));
-  }
+  note_component_names_unsupported(array, "XDMF", notes_);
   const std::string name = unused_name(array);
   if (array.association == Association::vertices) {
     const std::optional<Values> values = values_of(array, array.association, 0);

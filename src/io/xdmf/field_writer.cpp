@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
 #include "base/text.hpp"
+#include "io/coordinates.hpp"
+#include "io/unsupported.hpp"
 #include "io/xdmf/writer.hpp"
 #include "mesh/values.hpp"
 
@@ -70,7 +72,7 @@ void Writer::write_points(const Field& field) {
   };
   const std::size_t count = mesh_.points.size() * width;
   constexpr std::size_t kFloatAlternative = 1;
-  const bool floats = field.place.alternative == kFloatAlternative && are_floats();
+  const bool floats = field.place.alternative == kFloatAlternative && are_float_points(mesh_.points);
   const Values values = values_of_type(floats ? kFloatAlternative : 0, [&](auto& numbers) {
     using Number = typename std::decay_t<decltype(numbers)>::value_type;
     if constexpr (std::is_floating_point_v<Number>) {
@@ -86,13 +88,6 @@ void Writer::write_points(const Field& field) {
 
 int Writer::dimension_of(const Field& field) const {
   return same_but_for_case(attribute(element_of(field), "GeometryType", "Type"), "XY") ? 2 : 3;
-}
-
-bool Writer::are_floats() const {
-  return std::all_of(mesh_.points.begin(), mesh_.points.end(), [](const Point& point) {
-    return std::all_of(point.begin(), point.end(),
-                       [](double x) { return double{static_cast<float>(x)} == x; });
-  });
 }
 
 void Writer::write_topology(const Field& field) {
@@ -253,13 +248,7 @@ std::optional<Values> Writer::values_of(const DataArray& array, Association asso
   if (on_vertices) all = index_range(0, count);
   const std::vector<Index>& rows = on_vertices ? all : rows_[static_cast<std::size_t>(part)];
   if (array.is_dense() && is_identity(rows, count)) return {};
-  std::vector<Index> row_of;  // of the array, by vertex or cell
-  if (!array.is_dense()) {
-    row_of.assign(static_cast<std::size_t>(count), -1);
-    for (Index r = 0; r < index_size(array.indices); ++r) {
-      row_of[static_cast<std::size_t>(array.indices[static_cast<std::size_t>(r)])] = r;
-    }
-  }
+  const std::vector<Index> row_of = rows_by_item(array, count);
   const auto width = static_cast<std::size_t>(array.components);
   bool filled = false;
   Values result = values_of_type(array.values.index(), [&](auto& numbers) {
@@ -277,15 +266,14 @@ std::optional<Values> Writer::values_of(const DataArray& array, Association asso
       }
     }
   });
-  if (filled) note_filled(array);
+  if (filled) note_filled_once(array);
   return result;
 }
 
-void Writer::note_filled(const DataArray& array) {
-  const bool real = array.values.index() <= 1;
-  const std::string note = fmt::format("the array '{}' is given for some {}; the others get {}", array.name,
-                                       to_string(array.association), real ? "NaN" : "0");
-  if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
+void Writer::note_filled_once(const DataArray& array) {
+  Notes note;
+  note_filled(array, missing_word(array.values), note);
+  if (std::find(notes_.begin(), notes_.end(), note.front()) == notes_.end()) notes_.push_back(note.front());
 }
 
 }  // namespace meshorder::xdmf

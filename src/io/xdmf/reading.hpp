@@ -141,8 +141,6 @@ class ArrayReader {
   std::string add(DataArray array, int part);
   /// Appends rows if their type fits and their cells have none yet; else returns false.
   bool append_rows(GrowingArray& growing, DataArray& array, const std::vector<Index>& rows) const;
-  /// Makes an array dense if it has a row for every cell.
-  void finish_array(GrowingArray& growing) const;
 
   Reading& reading_;
   std::vector<GrowingArray> arrays_;

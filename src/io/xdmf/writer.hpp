@@ -96,7 +96,6 @@ class Writer {
   void write_field(const Field& field);
   void write_points(const Field& field);
   [[nodiscard]] int dimension_of(const Field& field) const;
-  [[nodiscard]] bool are_floats() const;
   void write_topology(const Field& field);
   /// Writes to the Topology of a field the number of cells that follows from the field's shape.
   void announce_cells_of(const Field& field) const;
@@ -119,7 +118,7 @@ class Writer {
   /// Returns the values of an array for all vertices or for the cells of a part; none if these are the values
   /// that the array has. Notes rows that the array lacks.
   std::optional<Values> values_of(const DataArray& array, Association association, int part);
-  void note_filled(const DataArray& array);
+  void note_filled_once(const DataArray& array);
 
   // what the layout has no place for: attribute_writer.cpp
   /// Returns the array of marks of the set that "set:NAME" names; none if there is no such set.
