@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -53,6 +54,24 @@ struct Parcels {
     return {values.data() + starts[r], values.data() + starts[r + 1]};
   }
 };
+
+/// Returns values in parcels, those of a rank in their sequence. O(values + ranks), besides the functions.
+///
+/// @param rank_of   returns the rank of value k, in two passes over all
+/// @param value_of  returns value k
+template <class RankOf, class ValueOf>
+[[nodiscard]] auto parcels_by_rank(std::size_t count, int ranks, const RankOf& rank_of,
+                                   const ValueOf& value_of) {
+  Parcels<std::invoke_result_t<const ValueOf&, std::size_t>> parcels;
+  parcels.starts.assign(static_cast<std::size_t>(ranks) + 1, 0);
+  for (std::size_t k = 0; k < count; ++k) ++parcels.starts[static_cast<std::size_t>(rank_of(k)) + 1];
+  std::partial_sum(parcels.starts.begin(), parcels.starts.end(), parcels.starts.begin());
+  std::vector<Offset> next(parcels.starts.begin(), parcels.starts.end() - 1);
+  parcels.values.resize(count);
+  for (std::size_t k = 0; k < count; ++k)
+    parcels.values[static_cast<std::size_t>(next[static_cast<std::size_t>(rank_of(k))]++)] = value_of(k);
+  return parcels;
+}
 
 /// A group of ranks. Every rank has to call all functions in the same sequence, except `handle`, `rank`,
 /// `size`, `is_root` and those of the chunk limit. Sums do not depend on timing.
@@ -111,7 +130,7 @@ class Communicator {
   /// Throws as `exchange`.
   ///
   /// @param at_root  ignored on other ranks
-  /// @param starts   ranks + 1, ascending, the same on all ranks
+  /// @param starts   ranks + 1, ascending; on other ranks only their number counts
   template <class T>
   [[nodiscard]] std::vector<T> scattered_from_root(const std::vector<T>& at_root,
                                                    const std::vector<Offset>& starts) const {

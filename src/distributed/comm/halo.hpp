@@ -107,18 +107,12 @@ template <class T>
     GlobalIndex number;
     T value;
   };
-  Parcels<Letter> letters;
-  communicator.together([&] {
-    letters.starts.assign(static_cast<std::size_t>(layout.ranks()) + 1, 0);
-    for (const GlobalIndex number : numbers)
-      ++letters.starts[static_cast<std::size_t>(layout.owner(number)) + 1];
-    for (std::size_t r = 1; r < letters.starts.size(); ++r) letters.starts[r] += letters.starts[r - 1];
-    letters.values.resize(numbers.size());
-    std::vector<Offset> next(letters.starts.begin(), letters.starts.end() - 1);
-    for (std::size_t k = 0; k < numbers.size(); ++k) {
-      const auto place = next[static_cast<std::size_t>(layout.owner(numbers[k]))]++;
-      letters.values[static_cast<std::size_t>(place)] = {numbers[k], values[k]};
-    }
+  const Parcels<Letter> letters = communicator.together([&] {
+    return parcels_by_rank(
+        numbers.size(), layout.ranks(), [&](std::size_t k) { return layout.owner(numbers[k]); },
+        [&](std::size_t k) {
+          return Letter{numbers[k], values[k]};
+        });
   });
   const Parcels<Letter> received = communicator.exchange(letters);
   return communicator.together([&] {

@@ -11,17 +11,14 @@ RowMover::RowMover(const Communicator& communicator, const Layout& layout,
                    std::span<const GlobalIndex> places)
     : communicator_(communicator) {
   const std::vector<GlobalIndex> sent = communicator.together([&] {
-    starts_.assign(static_cast<std::size_t>(layout.ranks()) + 1, 0);
-    for (const GlobalIndex place : places) ++starts_[static_cast<std::size_t>(layout.owner(place)) + 1];
-    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
-    std::vector<Offset> next(starts_.begin(), starts_.end() - 1);
-    sent_.resize(places.size());
+    Parcels<Offset> rows = parcels_by_rank(
+        places.size(), layout.ranks(), [&](std::size_t row) { return layout.owner(places[row]); },
+        [](std::size_t row) { return static_cast<Offset>(row); });
+    starts_ = std::move(rows.starts);
+    sent_ = std::move(rows.values);
     std::vector<GlobalIndex> numbers(places.size());
-    for (std::size_t row = 0; row < places.size(); ++row) {
-      const auto at = static_cast<std::size_t>(next[static_cast<std::size_t>(layout.owner(places[row]))]++);
-      sent_[at] = static_cast<Offset>(row);
-      numbers[at] = places[row];
-    }
+    std::transform(sent_.begin(), sent_.end(), numbers.begin(),
+                   [&](Offset row) { return places[static_cast<std::size_t>(row)]; });
     return numbers;
   });
   places_ = communicator.exchange(std::span<const GlobalIndex>(sent), starts_).values;

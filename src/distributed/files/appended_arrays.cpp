@@ -27,8 +27,7 @@ AppendedArrays::AppendedArrays(const std::string& path, const vtk::VtuDocument& 
       word_(document.encoding().wide_headers ? 8 : 4) {}
 
 Offset AppendedArrays::place(const vtk::VtuElement& element, FilePart& part, std::vector<Offset>& bounds) {
-  const std::string* const name = element.attribute("Name");
-  const std::string what = fmt::format("the array '{}'", name == nullptr ? "" : name->substr(0, 40));
+  const std::string what = fmt::format("the array '{}'", element.text_of("Name").substr(0, 40));
   const Offset offset = whole_number(document_, element, "offset");
   if (offset > bytes_ - first_byte_)
     throw document_.error(element, what + " lies beyond the end of the file", kCutShort);

@@ -96,7 +96,6 @@ GridRows scattered_grid(const Communicator& communicator, const Mesh& mesh, Note
     if (!communicator.is_root()) return result;
     result = std::make_shared<WholeGrid>(mesh, notes);
     grid.xml = result->xml();
-    grid.fields = fields_of(grid.xml);
     grid.texts = result->texts();
     return result;
   });

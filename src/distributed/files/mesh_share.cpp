@@ -101,17 +101,14 @@ class ShareMaker {
       std::vector<char> is_used(count, 0);
       for (const GlobalIndex vertex : asked.asked_of_this_rank())
         is_used[static_cast<std::size_t>(vertex - first)] = 1;
-      // parts, and so ranks, ascend with the vertices
-      Parcels<GlobalIndex> parcels;
-      parcels.starts.assign(static_cast<std::size_t>(communicator_.size()) + 1, 0);
+      std::vector<GlobalIndex> found;
       for (std::size_t v = 0; v < count; ++v) {
-        if (is_used[v] != 0) continue;
-        const GlobalIndex vertex = first + static_cast<GlobalIndex>(v);
-        parcels.values.push_back(vertex);
-        ++parcels.starts[static_cast<std::size_t>(ranks.owner(part_of(vertex, part_starts_))) + 1];
+        if (is_used[v] == 0) found.push_back(first + static_cast<GlobalIndex>(v));
       }
-      std::partial_sum(parcels.starts.begin(), parcels.starts.end(), parcels.starts.begin());
-      return parcels;
+      return parcels_by_rank(
+          found.size(), communicator_.size(),
+          [&](std::size_t k) { return ranks.owner(part_of(found[k], part_starts_)); },
+          [&](std::size_t k) { return found[k]; });
     });
     const std::vector<GlobalIndex> more = communicator_.exchange(unused).values;
     communicator_.together([&] {

@@ -42,11 +42,4 @@ std::string mold_of(std::vector<DataArray> arrays, vtk::Metadata metadata, bool 
   return text;
 }
 
-std::string fields_of(const std::string& mold) {
-  TextStore store(mold);
-  const vtk::VtuDocument file(FilePath("mold.vtu", store));
-  const vtk::VtuElement* const fields = file.root().child("UnstructuredGrid")->child("FieldData");
-  return fields == nullptr ? "" : file.source(*fields);
-}
-
 }  // namespace meshorder::distributed

@@ -24,7 +24,4 @@ namespace meshorder::distributed {
 [[nodiscard]] std::string mold_of(std::vector<DataArray> arrays, vtk::Metadata metadata,
                                   bool in_order_of_vtk_9, Notes& notes);
 
-/// Returns the <FieldData> of such a file, unchanged, with its values; empty if it has none.
-[[nodiscard]] std::string fields_of(const std::string& mold);
-
 }  // namespace meshorder::distributed

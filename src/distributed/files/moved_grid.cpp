@@ -5,6 +5,7 @@
 #include "distributed/comm/number_types.hpp"
 #include "distributed/files/mold.hpp"
 #include "io/vtk/vtk.hpp"
+#include "mesh/values.hpp"
 
 #include <algorithm>
 #include <array>
@@ -95,10 +96,8 @@ void MovedGrid::list_arrays() {
       arrays_.push_back({Source::set, s, association, has_ranks ? kNumber : kMemberMark, 1});
     }
     if (const std::vector<std::int64_t>* const numbers = moved_.ids(association)) {
-      const bool fit = std::all_of(numbers->begin(), numbers->end(),
-                                   [](std::int64_t number) { return std::in_range<std::int32_t>(number); });
-      arrays_.push_back(
-          {Source::ids, 0, association, communicator_.sum(fit ? 0 : 1) == 0 ? kNumber : kWideNumber, 1});
+      const bool fit = communicator_.sum(fit_32_bits(*numbers) ? 0 : 1) == 0;
+      arrays_.push_back({Source::ids, 0, association, fit ? kNumber : kWideNumber, 1});
     }
   }
 }
@@ -161,10 +160,7 @@ GridRows MovedGrid::rows(Notes& notes) {
   grid.vertices = moved_.layout(Association::vertices);
   grid.cells = moved_.layout(Association::cells);
   grid.rows = [this](std::size_t k) { return rows_of_array(k); };
-  communicator_.at_root([&] {
-    grid.xml = xml(notes);
-    grid.fields = fields_of(grid.xml);
-  });
+  communicator_.at_root([&] { grid.xml = xml(notes); });
   grid.cell_vertices = moved_.moved_cells(communicator_.together([&] {
     Mesh bare;
     bare.cells = moved_.take_cells();

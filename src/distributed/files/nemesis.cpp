@@ -8,7 +8,10 @@
 #include "distributed/files/piece_contents.hpp"
 #include "distributed/files/text_store.hpp"
 #include "io/exodus/exodus.hpp"
+#include "io/exodus/writing.hpp"
 #include "io/format.hpp"
+#include "io/named_parts.hpp"
+#include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -51,13 +54,12 @@ const Metadata* exodus_metadata(const Mesh& mesh) {
 
 /// Returns whether the metadata name all sets of the mesh, and the mesh has all sets and arrays they name.
 bool knows_all(const Mesh& mesh, const Metadata& metadata) {
+  const NamedParts parts(mesh);
   const auto has_set = [&](const SetRecord& record, Association association) {
-    return std::any_of(mesh.sets.begin(), mesh.sets.end(), [&](const EntitySet& set) {
-      return set.association == association && set.name == record.in_mesh;
-    });
+    return parts.set(record.in_mesh, association) != nullptr;
   };
   const auto has_array = [&](const std::string& name) {
-    return find_array(mesh, name, Association::cells) != nullptr;
+    return parts.array(name, Association::cells) != nullptr;
   };
   std::size_t known = 0;  // sets, and blocks with a name
   for (const BlockRecord& block : metadata.blocks) known += block.in_mesh.empty() ? 0 : 1;
@@ -101,20 +103,13 @@ void add_integers(Metadata& metadata, std::string_view name, std::string_view di
   std::vector<exodus::Dimension> dimensions;
   if (!dimension.empty()) dimensions.push_back({std::string(dimension), values.size()});
   // as in the Exodus library: 64 bits only if the numbers need them
-  const bool fit = std::all_of(values.begin(), values.end(),
-                               [](std::int64_t value) { return std::in_range<std::int32_t>(value); });
+  const bool fit = fit_32_bits(values);
   metadata.plain.push_back(
       {std::string(name),
        fit ? exodus::kInt : exodus::kInt64,
        std::move(dimensions),
        {},
        fit ? bytes_of_numbers<std::int32_t>(values) : bytes_of_numbers<std::int64_t>(values)});
-}
-
-exodus::Attribute version_attribute(std::string name, float version) {
-  exodus::Attribute attribute{std::move(name), exodus::kFloat, 1, std::string(sizeof(version), '\0')};
-  std::memcpy(attribute.bytes.data(), &version, sizeof(version));
-  return attribute;
 }
 
 constexpr std::string_view kFiles = "num_procs_file";
@@ -181,22 +176,16 @@ SideCounts counts_of_sides(const Mesh& mesh, const SetRecord& record, const exod
   if (array == nullptr) return counts;
   const bool has_factors =
       find_array(mesh, record.in_mesh + std::string(exodus::kFactors), Association::cells) != nullptr;
-  std::visit(
-      [&](const auto& masks) {
-        using Number = typename std::decay_t<decltype(masks)>::value_type;
-        if constexpr (std::is_integral_v<Number>) {
-          for (Index row = 0; row < index_size(masks); ++row) {
-            const Index cell = array->is_dense() ? row : array->indices[row];
-            for (int side = 1; side <= exodus::kMostSides; ++side) {
-              if ((static_cast<std::uint64_t>(masks[row]) >> (side - 1) & 1U) == 0) continue;
-              ++counts.sides;
-              if (!has_factors) continue;
-              counts.factors += record.factors_by_nodes ? nodes.count(cell, side) : record.factor_width;
-            }
-          }
-        }
-      },
-      array->values);
+  const std::vector<std::int64_t> masks = exodus::whole_values(array->values);
+  for (Index row = 0; row < index_size(masks); ++row) {
+    const Index cell = array->is_dense() ? row : array->indices[row];
+    for (int side = 1; side <= exodus::kMostSides; ++side) {
+      if ((masks[row] >> (side - 1) & 1) == 0) continue;
+      ++counts.sides;
+      if (has_factors)
+        counts.factors += record.factors_by_nodes ? nodes.count(cell, side) : record.factor_width;
+    }
+  }
   return counts;
 }
 
@@ -205,11 +194,9 @@ SideCounts counts_of_sides(const Mesh& mesh, const SetRecord& record, const exod
 std::vector<std::int64_t> counts_of_sets(const Mesh& mesh, const Metadata& metadata) {
   std::vector<std::int64_t> counts;
   const exodus::SideNodes nodes(mesh, metadata);
+  const NamedParts parts(mesh);
   for (const SetRecord& record : metadata.sets[exodus::kNodeSets].sets) {
-    const auto set = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const EntitySet& one) {
-      return one.association == Association::vertices && one.name == record.in_mesh;
-    });
-    counts.push_back(std::ssize(set->members));
+    counts.push_back(std::ssize(parts.set(record.in_mesh, Association::vertices)->members));
     counts.push_back(factors_of_nodes(mesh, record));
   }
   for (const SetRecord& record : metadata.sets[exodus::kSideSets].sets) {
@@ -448,8 +435,8 @@ Metadata NemesisPieces::metadata_of(const Mesh& piece) const {
   for (SetRecord& record : metadata.sets[exodus::kSideSets].sets) {
     if (!record.in_mesh.empty() && !has(record.in_mesh)) record.in_mesh.clear();
   }
-  metadata.attributes.push_back(version_attribute("nemesis_file_version", 2.6F));
-  metadata.attributes.push_back(version_attribute("nemesis_api_version", 7.14F));
+  metadata.attributes.push_back(exodus::number_attribute("nemesis_file_version", exodus::kFloat, 2.6F));
+  metadata.attributes.push_back(exodus::number_attribute("nemesis_api_version", exodus::kFloat, 7.14F));
   metadata.attributes.push_back(exodus::text_attribute(std::string(kMark), std::string(kMaker)));
   metadata.dimensions.insert(metadata.dimensions.end(), whole_.dimensions.begin(), whole_.dimensions.end());
   metadata.plain.insert(metadata.plain.end(), whole_.plain.begin(), whole_.plain.end());

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <numeric>
 #include <span>
 #include <tuple>
 
@@ -84,17 +83,15 @@ void for_pairs(std::vector<Candidate>& facets, const Take& take) {
 /// Sends values to ranks, and returns those that this rank receives: by sending rank, then in the sequence
 /// there.
 template <class T, class RankOf>
-std::vector<T> sent_to_ranks(const Communicator& communicator, std::vector<T> values, const RankOf& rank_of) {
-  Parcels<T> parcels;
-  communicator.together([&] {
-    std::stable_sort(values.begin(), values.end(),
-                     [&](const T& a, const T& b) { return rank_of(a) < rank_of(b); });
-    parcels.starts.assign(static_cast<std::size_t>(communicator.size()) + 1, 0);
-    for (const T& value : values) ++parcels.starts[static_cast<std::size_t>(rank_of(value)) + 1];
-    std::partial_sum(parcels.starts.begin(), parcels.starts.end(), parcels.starts.begin());
-    parcels.values = std::move(values);
-  });
-  return communicator.exchange(parcels).values;
+std::vector<T> sent_to_ranks(const Communicator& communicator, const std::vector<T>& values,
+                             const RankOf& rank_of) {
+  return communicator
+      .exchange(communicator.together([&] {
+        return parcels_by_rank(
+            values.size(), communicator.size(), [&](std::size_t k) { return rank_of(values[k]); },
+            [&](std::size_t k) { return values[k]; });
+      }))
+      .values;
 }
 
 }  // namespace

@@ -2,8 +2,9 @@
 #include "distributed/files/piece_schema.hpp"
 
 #include "base/text.hpp"
-#include "distributed/comm/number_types.hpp"
 #include "distributed/files/text_store.hpp"
+#include "distributed/files/vtu_offsets.hpp"
+#include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <string_view>
 #include <utility>
 
@@ -47,25 +47,6 @@ std::string attributes_without(const vtk::VtuElement& element,
   return text;
 }
 
-std::string_view name_of(const vtk::VtuElement& element) {
-  const std::string* const name = element.attribute("Name");
-  return name == nullptr ? std::string_view() : *name;
-}
-
-std::uint8_t type_of(const vtk::VtuElement& element) {
-  const std::string* const type = element.attribute("type");
-  const auto* const known = std::find(vtk::kXmlTypeNames.begin(), vtk::kXmlTypeNames.end(),
-                                      type == nullptr ? std::string_view() : *type);
-  return static_cast<std::uint8_t>(known - vtk::kXmlTypeNames.begin());
-}
-
-Offset components_of(const vtk::VtuElement& element) {
-  const std::string* const text = element.attribute("NumberOfComponents");
-  Offset components = 1;
-  if (text != nullptr) std::from_chars(text->data(), text->data() + text->size(), components);
-  return components;
-}
-
 bool is_of_pieces(std::string_view name, Association association) {
   return name == kGhostType || name == kPart ||
          name == (association == Association::vertices ? kPointIds : kCellIds);
@@ -90,10 +71,10 @@ PieceArray taken(const vtk::VtuDocument& file, const vtk::VtuElement& element, s
   constexpr std::uint8_t kInt32 = 6;
   PieceArray array;
   array.association = section % 2 == 0 ? Association::vertices : Association::cells;
-  array.type = type_of(element);
-  array.components = static_cast<Index>(components_of(element));
+  array.type = static_cast<std::uint8_t>(element.number_type());
+  array.components = static_cast<Index>(whole_number(file, element, "NumberOfComponents", 1));
   array.number = k;
-  array.name = name_of(element);
+  array.name = element.text_of("Name");
   array.attributes = attributes_without(element, kOfValues);
   if (size_of_type(array.type) == 0) {
     array.source = Source::texts;
@@ -117,10 +98,12 @@ PieceSchema::PieceSchema(const std::string& xml, std::string fields, int ghosts)
     : fields_(std::move(fields)), ghosts_(ghosts) {
   TextStore store(xml);
   const vtk::VtuDocument file(FilePath("mesh.vtu", store));
-  const std::string* const version = file.root().attribute("version");
-  version_ = version == nullptr ? "0.1" : *version;
+  version_ = file.root().text_of("version");
+  if (version_.empty()) version_ = "0.1";
   word_ = file.encoding().wide_headers ? 8 : 4;
   has_order_of_vtk_9_ = file.version() >= 21;
+  const vtk::VtuElement* const of_file = file.root().child("UnstructuredGrid")->child("FieldData");
+  if (fields_.empty() && of_file != nullptr) fields_ = file.source(*of_file);
   std::size_t number = 0;
   for (const vtk::VtuElement& section : file.root().child("UnstructuredGrid")->child("Piece")->children) {
     const auto known = static_cast<std::size_t>(std::find(kSections.begin(), kSections.end(), section.name) -
@@ -133,8 +116,9 @@ PieceSchema::PieceSchema(const std::string& xml, std::string fields, int ghosts)
     for (const vtk::VtuElement& element : section.children) {
       const std::size_t k = number++;
       if (known == kSections.size()) continue;
-      if (known < 2 && is_of_pieces(name_of(element), association)) {
-        replaced_.push_back(fmt::format("on {} '{}'", known == 0 ? "points" : "cells", name_of(element)));
+      if (known < 2 && is_of_pieces(element.text_of("Name"), association)) {
+        replaced_.push_back(
+            fmt::format("on {} '{}'", known == 0 ? "points" : "cells", element.text_of("Name")));
         continue;
       }
       arrays_.push_back(taken(file, element, known, k));
@@ -156,9 +140,9 @@ PieceSchema::PieceSchema(const std::string& xml, std::string fields, int ghosts)
 /// Adds the roles of a section's arrays, except that of global ids, which are the pieces' own.
 void PieceSchema::add_roles(const vtk::VtuElement& section, Association association) {
   for (std::size_t role = 0; role < vtk::kXmlRoles.size(); ++role) {
-    const std::string* const name = section.attribute(vtk::kXmlRoles[role]);
-    if (name == nullptr || name->empty() || vtk::kXmlRoles[role] == kGlobalIds) continue;
-    roles_.push_back({static_cast<vtk::Role>(role), association, *name, {}});
+    const std::string_view name = section.text_of(vtk::kXmlRoles[role]);
+    if (name.empty() || vtk::kXmlRoles[role] == kGlobalIds) continue;
+    roles_.push_back({static_cast<vtk::Role>(role), association, std::string(name), {}});
   }
 }
 

@@ -42,7 +42,7 @@ struct PieceArray : FilePart {
 class PieceSchema {
  public:
   /// @param xml     of a .vtu file of one piece, as in `GridRows`
-  /// @param fields  its <FieldData>
+  /// @param fields  as in `GridRows`
   /// @param ghosts  layers of ghost cells
   PieceSchema(const std::string& xml, std::string fields, int ghosts);
 

@@ -103,11 +103,7 @@ class HeadReader {
   /// Adds the array of an element; returns false if it cannot be read by slices.
   bool read_array(const vtk::VtuDocument& file, std::string_view section, const vtk::VtuElement& element,
                   AppendedArrays& arrays) {
-    const std::string* const type = element.attribute("type");
-    const std::string* const name = element.attribute("Name");
-    const auto* const known = type == nullptr
-                                  ? vtk::kXmlTypeNames.end()
-                                  : std::find(vtk::kXmlTypeNames.begin(), vtk::kXmlTypeNames.end(), *type);
+    const std::string_view name = element.text_of("Name");
     FilePart part;
     part.number = head_.names.size();
     if (section == "Points") {
@@ -115,21 +111,20 @@ class HeadReader {
     } else if (section == "Cells") {
       constexpr std::array<std::pair<std::string_view, Role>, 3> kNames{
           {{"types", Role::types}, {"offsets", Role::offsets}, {"connectivity", Role::connectivity}}};
-      const auto* const own = std::find_if(kNames.begin(), kNames.end(), [&](const auto& one) {
-        return name != nullptr && one.first == *name;
-      });
+      const auto* const own =
+          std::find_if(kNames.begin(), kNames.end(), [&](const auto& one) { return one.first == name; });
       if (own == kNames.end()) return false;
       part.role = own->second;
     }
     const bool on_vertices = section == "Points" || section == "PointData";
-    if (element.name != "DataArray" || known == vtk::kXmlTypeNames.end() ||
+    if (element.name != "DataArray" || element.number_type() == vtk::kXmlTypeNames.size() ||
         element.attribute("TimeStep") != nullptr ||
         (!on_vertices && section != "Cells" && section != "CellData") ||
         file.mode(element) != VtuEncoding::Mode::appended_raw) {
       return false;
     }
     part.association = on_vertices ? Association::vertices : Association::cells;
-    part.type = static_cast<std::uint8_t>(known - vtk::kXmlTypeNames.begin());
+    part.type = static_cast<std::uint8_t>(element.number_type());
     const Offset components = whole_number(file, element, "NumberOfComponents", 1);
     const bool is_whole = part.type > 1;
     const bool fits = part.role == Role::points ? components == 3 && !is_whole
@@ -137,7 +132,7 @@ class HeadReader {
                                                 : components == 1 && is_whole;
     if (size_of_type(part.type) == 0 || !fits) return false;
     part.components = static_cast<Index>(components);
-    head_.names.push_back(name == nullptr ? "" : *name);
+    head_.names.emplace_back(name);
     const Offset size = arrays.place(element, part, head_.blocks.emplace_back());
     const Offset width = part.row_size();
     const Offset needed = part.role == Role::connectivity ? size / width

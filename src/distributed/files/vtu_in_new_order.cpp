@@ -2,7 +2,6 @@
 #include "distributed/files/appended_arrays.hpp"
 #include "distributed/files/file_rows.hpp"
 #include "distributed/files/file_slices.hpp"
-#include "distributed/files/mold.hpp"
 #include "distributed/files/slice_reader.hpp"
 #include "distributed/files/text_store.hpp"
 #include "distributed/order/cell_order.hpp"
@@ -32,12 +31,11 @@ std::string as_text(const std::string& path, const vtk::VtuDocument& document, O
   FilePart part{.type = kByte};
   std::vector<Offset> bounds;
   part.rows = AppendedArrays(path, document, first_byte, 1).place(element, part, bounds);
-  const std::string* const name = element.attribute("Name");
   const Communicator alone(MPI_COMM_SELF);
   const std::vector<std::byte> values =
       read_values(alone, SharedFile(alone, path, path, SharedFile::Use::read),
-                  {path, name == nullptr ? std::string() : *name}, document.encoding().compressor, part,
-                  bounds, 0, part.rows);
+                  {path, std::string(element.text_of("Name"))}, document.encoding().compressor, part, bounds,
+                  0, part.rows);
   return to_base64(vtk::vtu_words({values.size()}, document.encoding()) +
                    std::string(reinterpret_cast<const char*>(values.data()), values.size()));
 }
@@ -53,7 +51,7 @@ std::string fields_with_values(const std::string& head, const std::string& path)
   if (fields == nullptr) return "";
   std::string text = "<FieldData>";
   for (const vtk::VtuElement& element : fields->children) {
-    if (element.attribute("format") == nullptr || *element.attribute("format") != "appended") {
+    if (element.text_of("format") != "appended") {
       text += file.source(element);
       continue;
     }
@@ -82,14 +80,10 @@ GridRows FileSlices::in_new_order(const Communicator& communicator, const Distri
   };
   grid.cell_vertices = std::move(moved->cells());
   communicator.at_root([&] {
-    if (head_.facts.kind == FileFacts::Kind::vtkhdf) {
-      grid.xml = head_.mold;
-      grid.fields = fields_of(head_.mold);
-      return;
-    }
-    const std::string& head = head_.xml.text();
-    grid.xml = head + std::string(kEndOfHead);
-    grid.fields = fields_with_values(head, path_);
+    grid.xml = head_.mold;
+    if (head_.facts.kind == FileFacts::Kind::vtkhdf) return;
+    grid.xml = head_.xml.text() + std::string(kEndOfHead);
+    grid.fields = fields_with_values(head_.xml.text(), path_);
   });
   return grid;
 }

@@ -25,15 +25,11 @@ Parcels<Share> shares_by_owner(const Layout& layout, const Rows& elements) {
     for (const GlobalIndex vertex : element)
       weights[vertices.position(vertex)] += std::max<GlobalIndex>(kElementWeight / std::ssize(element), 1);
   }
-  Parcels<Share> parcels;
-  parcels.starts.assign(static_cast<std::size_t>(layout.ranks()) + 1, 0);
-  parcels.values.reserve(weights.size());
-  for (std::size_t k = 0; k < weights.size(); ++k) {  // ascending numbers, so owners ascend too
-    parcels.values.push_back({vertices.numbers()[k], weights[k]});
-    ++parcels.starts[static_cast<std::size_t>(layout.owner(vertices.numbers()[k])) + 1];
-  }
-  std::partial_sum(parcels.starts.begin(), parcels.starts.end(), parcels.starts.begin());
-  return parcels;
+  return parcels_by_rank(
+      weights.size(), layout.ranks(), [&](std::size_t k) { return layout.owner(vertices.numbers()[k]); },
+      [&](std::size_t k) {
+        return Share{vertices.numbers()[k], weights[k]};
+      });
 }
 
 }  // namespace

@@ -121,14 +121,11 @@ std::vector<GlobalIndex> places_by_dimension(const Communicator& communicator, c
       }
       return result;
     });
-    const auto starts = [&](std::size_t size) {
-      std::vector<GlobalIndex> result(1, 0);
-      for (const GlobalIndex count : communicator.gathered(static_cast<GlobalIndex>(size)))
-        result.push_back(result.back() + count);
-      return result;
+    const auto layout_of = [&](const auto& own_ones) {
+      return Layout::of_sizes(communicator.gathered(std::ssize(own_ones)));
     };
-    const GlobalIndex first = starts(cells.size())[static_cast<std::size_t>(rank)];
-    const Layout slot_layout(starts(slots.size()));
+    const GlobalIndex first = layout_of(cells).begin(rank);
+    const Layout slot_layout = layout_of(slots);
     std::vector<GlobalIndex> wanted(cells.size());
     std::iota(wanted.begin(), wanted.end(), first);
     const Halo halo(communicator, slot_layout, wanted);

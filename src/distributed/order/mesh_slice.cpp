@@ -3,45 +3,26 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <span>
 
 namespace meshorder::distributed {
-namespace {
-
-/// Returns this rank's part of the root's values. `starts` counts only at the root.
-template <class T>
-std::vector<T> shared_out(const Communicator& communicator, const std::vector<T>& values,
-                          std::vector<Offset> starts) {
-  if (!communicator.is_root()) starts.assign(static_cast<std::size_t>(communicator.size()) + 1, 0);
-  return communicator.exchange(std::span<const T>(values), starts).values;
-}
-
-std::vector<Offset> starts_of(const Layout& layout) {
-  std::vector<Offset> starts(1, 0);
-  for (int rank = 0; rank < layout.ranks(); ++rank) starts.push_back(layout.end(rank));
-  return starts;
-}
-
-}  // namespace
-
 MeshSlice scattered(const Communicator& communicator, const Mesh& mesh) {
   const std::vector<GlobalIndex> counts =
       communicator.broadcast(std::vector<GlobalIndex>{mesh.vertex_count(), mesh.cell_count()});
   MeshSlice slice;
   slice.vertices = Layout::even(counts[0], communicator.size());
   slice.cells = Layout::even(counts[1], communicator.size());
-  slice.points = shared_out(communicator, mesh.points, starts_of(slice.vertices));
-  const std::vector<Offset> cell_starts = starts_of(slice.cells);
-  slice.shapes = shared_out(communicator, mesh.cells.shapes, cell_starts);
+  slice.points = communicator.scattered_from_root(mesh.points, slice.vertices.starts());
+  const std::vector<Offset>& cell_starts = slice.cells.starts();
+  slice.shapes = communicator.scattered_from_root(mesh.cells.shapes, cell_starts);
 
   // rows begin at these places in the root's array; the places in the own array follow below
-  const std::vector<Offset> begins = shared_out(communicator, mesh.cells.offsets, cell_starts);
+  const std::vector<Offset> begins = communicator.scattered_from_root(mesh.cells.offsets, cell_starts);
   std::vector<Offset> vertex_starts(cell_starts.size(), 0);
   if (communicator.is_root()) {
     std::transform(cell_starts.begin(), cell_starts.end(), vertex_starts.begin(),
                    [&](Offset cell) { return mesh.cells.offsets[static_cast<std::size_t>(cell)]; });
   }
-  const std::vector<Index> vertices = shared_out(communicator, mesh.cells.vertices, std::move(vertex_starts));
+  const std::vector<Index> vertices = communicator.scattered_from_root(mesh.cells.vertices, vertex_starts);
   communicator.together([&] {
     slice.cell_vertices.entries.assign(vertices.begin(), vertices.end());
     std::vector<Offset>& offsets = slice.cell_vertices.offsets;

@@ -4,6 +4,7 @@
 #include "io/stream/scanner.hpp"
 #include "io/vtk/vtk.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -31,6 +32,16 @@ struct VtuElement {
 
   /// Returns the value of an attribute, or nullptr.
   [[nodiscard]] const std::string* attribute(std::string_view wanted) const;
+  /// Returns the value of an attribute; empty without it.
+  [[nodiscard]] std::string_view text_of(std::string_view wanted) const {
+    const std::string* const value = attribute(wanted);
+    return value == nullptr ? std::string_view() : *value;
+  }
+  /// Returns the index in Values of its number type; the number of alternatives for an unknown type.
+  [[nodiscard]] std::size_t number_type() const {
+    return static_cast<std::size_t>(std::find(kXmlTypeNames.begin(), kXmlTypeNames.end(), text_of("type")) -
+                                    kXmlTypeNames.begin());
+  }
   /// Returns the first child of that name, or nullptr.
   [[nodiscard]] const VtuElement* child(std::string_view wanted) const;
 };

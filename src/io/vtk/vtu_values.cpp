@@ -303,11 +303,10 @@ std::vector<std::string> VtuDocument::strings(const VtuElement& array, std::int6
 /// Returns an empty vector of the array's number type.
 Values VtuDocument::no_values(const VtuElement& array) const {
   const std::string& type = required(array, "type");
-  const auto found = std::find(kXmlTypeNames.begin(), kXmlTypeNames.end(), type);
-  if (found == kXmlTypeNames.end())
+  if (array.number_type() == kXmlTypeNames.size())
     throw error(array, "the type is '" + type.substr(0, 40) + "'",
                 "Int8 … UInt64, Float32, Float64 or String is needed");
-  return values_of_type(static_cast<std::size_t>(found - kXmlTypeNames.begin()));
+  return values_of_type(array.number_type());
 }
 
 std::int64_t VtuDocument::value_count(const VtuElement& array) const {
