@@ -11,7 +11,7 @@ namespace meshorder {
 
 template <>
 struct EnumNames<Workload> {
-  static constexpr std::string_view kind = "use";
+  static constexpr std::string_view kind = "workload";
   static constexpr std::array names{
       std::pair{Workload::all, "all"},         std::pair{Workload::element, "element"},
       std::pair{Workload::spmv, "spmv"},       std::pair{Workload::assembly, "assembly"},
