@@ -142,7 +142,7 @@ class PointsView {
 /// Cells of one type, one after another.
 struct CellBlock {
   Shape shape = Shape::vertex;
-  int vertices_per_cell = 0;  ///< ≥ 1; not fewer than the shape has corners
+  int vertices_per_cell = 0;  ///< as many as a cell of this shape can have: 4, 10, … for tetrahedra
   IndexView vertices = {};    ///< vertices_per_cell for each cell
 };
 
@@ -150,7 +150,8 @@ struct CellBlock {
 /// descriptors and the view's own few bytes are copied.
 ///
 /// The arrays are not checked here: each function that takes the view throws InvalidArgument for sizes that
-/// do not match and vertices outside base … base + vertex_count − 1.
+/// do not match, vertices outside base … base + vertex_count − 1, and blocks with a number of vertices that
+/// no usual cell of their shape has, such as 5 for a tetrahedron.
 class CellsView {
  public:
   /// No cells.
@@ -159,7 +160,9 @@ class CellsView {
   /// Cells of one type.
   ///
   /// @param shape              shape of every cell
-  /// @param vertices_per_cell  vertices of every cell, ≥ 1: 4 for linear, 10 for quadratic tetrahedra
+  /// @param vertices_per_cell  vertices of every cell, as many as a cell of this shape can have: 4 for
+  /// linear,
+  ///                           10 for quadratic tetrahedra
   /// @param vertices           vertices_per_cell numbers for each cell; may be a range of std::array<integer,
   ///                           …>
   /// @param base               number of the first vertex, 0 or 1
@@ -251,7 +254,7 @@ class CellsView {
 struct MeshView {
   PointsView points = {};  ///< one for each vertex, or none
   CellsView cells = {};
-  std::size_t vertex_count = 0;  ///< 0: as many as there are points
+  std::size_t vertex_count = 0;  ///< 0: as many as there are points; else the same, where there are points
 };
 
 }  // namespace v0_3

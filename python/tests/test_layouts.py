@@ -115,7 +115,7 @@ def test_faults_are_named(cells):
     with pytest.raises(InvalidArgument, match="another type"):
         meshorder.patches({"tetra": cells, "triangle": cells[:, :3]})
     for layout in (meshorder.patches, meshorder.gather_lists, meshorder.colours, meshorder.sort_corners, meshorder.gpu_cost):
-        with pytest.raises(InvalidArgument, match="vertex"):
+        with pytest.raises(InvalidArgument, match="outside 0"):
             layout(cells, vertices=800)
         with pytest.raises(InvalidArgument):
             layout(cells - 1)

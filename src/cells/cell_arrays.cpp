@@ -4,10 +4,16 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
+#include "base/text.hpp"
+#include "cells/cell_widths.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
+#include <set>
+#include <span>
+#include <string>
 #include <utility>
 
 namespace meshorder {
@@ -51,8 +57,26 @@ void check_base(int base) {
   }
 }
 
+/// Returns entry `k` of all cells as the caller gave it.
+std::int64_t given_entry(const CellsView& view, std::size_t k) {
+  if (view.is_mixed()) return view.vertices()[k];
+  auto block = view.block_list().begin();
+  for (; k >= block->vertices.size(); ++block) k -= block->vertices.size();
+  return block->vertices[k];
+}
+
+/// Returns the fault of a number that is none of `n` vertices from `base` on, with a remedy for numbers that
+/// begin at another base.
+std::string out_of_range(std::int64_t number, Offset n, int base) {
+  if (n == 0) return ", but there are no vertices";
+  const std::string range = ", outside " + std::to_string(base) + " … " + std::to_string(n + base - 1);
+  if (base == 0 && number == n) return range + "; if the numbers begin at 1, set the base to 1 or subtract 1";
+  if (base == 1 && number == 0) return range + "; if the numbers begin at 0, set the base to 0";
+  return range;
+}
+
 /// Throws InvalidArgument for the first cell with a vertex out of range.
-void check_vertices(const CellArrays& cells, int base) {
+void check_vertices(const CellArrays& cells, const CellsView& view) {
   std::atomic<bool> sound = true;
   const auto n = static_cast<std::uint32_t>(cells.vertex_count);
   for_each_range(static_cast<Offset>(cells.vertices.size()), kEntriesPerRange, [&](Offset begin, Offset end) {
@@ -62,12 +86,14 @@ void check_vertices(const CellArrays& cells, int base) {
     if (!in_range) sound = false;
   });
   if (sound) return;
+  const int base = view.base();
   for (Index c = 0; c < cells.size(); ++c) {
     for (Offset k = cells.offsets[c]; k < cells.offsets[c + 1]; ++k) {
-      if (static_cast<std::uint32_t>(cells.vertices[k]) < n) continue;
+      const std::int64_t number = given_entry(view, static_cast<std::size_t>(k));
+      if (number >= base && number - base < cells.vertex_count) continue;
       throw InvalidArgument("cells: entry " + std::to_string(k - cells.offsets[c]) + " of cell " +
-                            std::to_string(c) + " names a vertex outside " + std::to_string(base) + " … " +
-                            std::to_string(Offset{cells.vertex_count} + base - 1));
+                            std::to_string(c) + " is " + std::to_string(number) +
+                            out_of_range(number, cells.vertex_count, base));
     }
   }
 }
@@ -93,6 +119,25 @@ void check_corners(const CellArrays& cells) {
   }
 }
 
+/// Throws InvalidArgument for the first block whose cells have a number of vertices that is not usual for
+/// their shape. Mixed cells, which may be those of a file, are not looked at.
+void check_widths(const CellsView& view) {
+  constexpr std::size_t kNamed = 6;
+  const std::span<const CellBlock> blocks = view.block_list();
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const int width = blocks[b].vertices_per_cell;
+    if (blocks[b].vertices.empty() || width == corners(blocks[b].shape, width)) continue;
+    const std::set<int> usual = cell_widths(blocks[b].shape);
+    if (usual.empty() || usual.contains(width)) continue;
+    std::vector<int> first(std::min(kNamed, usual.size()));
+    std::copy_n(usual.begin(), first.size(), first.begin());
+    throw InvalidArgument("cells: the cells of block " + std::to_string(b) + " have " +
+                          std::to_string(width) + " vertices; a " + std::string(to_string(blocks[b].shape)) +
+                          " has " + join(first, [](int one) { return std::to_string(one); }) +
+                          (usual.size() > kNamed ? ", …" : ""));
+  }
+}
+
 void take_mixed(const CellsView& view, bool trusted, CellArrays& cells) {
   const Index count = checked_size(view.offsets().size() - 1, "cells");
   const IndexView offsets = view.offsets();
@@ -110,9 +155,11 @@ void take_mixed(const CellsView& view, bool trusted, CellArrays& cells) {
   cells.vertices = narrowed(view.vertices(), view.base(), cells.own_vertices);
   if (!trusted) {
     if (cells.offsets.front() != 0 || cells.offsets.back() != static_cast<Offset>(cells.vertices.size())) {
-      throw InvalidArgument("cells: the offsets must go from " + std::to_string(view.base()) +
-                            " to the number of entries, " + std::to_string(cells.vertices.size()) +
-                            (view.base() == 1 ? " + 1" : ""));
+      const std::size_t entries = cells.vertices.size();
+      throw InvalidArgument("cells: the offsets go from " + std::to_string(offsets[0]) + " to " +
+                            std::to_string(offsets[offsets.size() - 1]) + "; for " + std::to_string(entries) +
+                            " entries they go from " + std::to_string(view.base()) + " to " +
+                            std::to_string(entries + static_cast<unsigned>(view.base())));
     }
     const auto descent = std::is_sorted_until(cells.offsets.begin(), cells.offsets.end());
     if (descent != cells.offsets.end()) {
@@ -259,6 +306,20 @@ std::optional<Shape> shape_of_vtk_type(int type) {
   }
 }
 
+std::size_t vertex_count_of(const MeshView& mesh) {
+  const std::size_t points = mesh.points.size();
+  if (mesh.vertex_count == 0) {
+    if (points == 0 && mesh.cells.size() > 0)
+      throw InvalidArgument("cells: there are no points and no vertex_count");
+    return points;
+  }
+  if (points != 0 && points != mesh.vertex_count) {
+    throw InvalidArgument("points: there are " + std::to_string(points) + ", but vertex_count is " +
+                          std::to_string(mesh.vertex_count));
+  }
+  return mesh.vertex_count;
+}
+
 CellArrays cell_arrays(const CellsView& view, std::size_t vertex_count, Check check) {
   CellArrays cells;
   cells.vertex_count = checked_size(vertex_count, "vertices");
@@ -274,7 +335,8 @@ CellArrays cell_arrays(const CellsView& view, std::size_t vertex_count, Check ch
   if (check != Check::none) {
     check_shapes(cells);
     check_corners(cells);
-    check_vertices(cells, view.base());
+    check_widths(view);
+    check_vertices(cells, view);
   }
   poll();
   return cells;

@@ -43,8 +43,14 @@ struct CellArrays {
 /// Returns the shape of a VTK type (vtkCellType.h), nothing for types that are not supported. O(1).
 std::optional<Shape> shape_of_vtk_type(int type);
 
+/// Returns the number of a mesh's vertices: `vertex_count`, or the number of points.
+///
+/// @throws InvalidArgument if both are given and differ, or if there are cells and neither is given
+std::size_t vertex_count_of(const MeshView& mesh);
+
 /// Converts a view of cells, and checks it unless `check` is none: sizes that match, ascending offsets, known
-/// VTK types, as many vertices as the shape has corners, vertices in range.
+/// VTK types, as many vertices as the shape has corners, in blocks a number of them that is one of
+/// `cell_widths`, vertices in range.
 ///
 /// @throws InvalidArgument for the first fault, with the cell that has it
 /// @throws TooLarge for more than 2,147,483,647 vertices or cells

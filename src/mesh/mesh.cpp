@@ -181,7 +181,7 @@ MeshView view(const Mesh& mesh) {
 }
 
 Mesh make_mesh(const MeshView& view) {
-  const std::size_t n = view.vertex_count > 0 ? view.vertex_count : view.points.size();
+  const std::size_t n = vertex_count_of(view);
   const CellArrays cells = cell_arrays(view.cells, n, Check::full);
   if (cells.shapes.empty() && cells.size() > 0) fail("the types of the cells are not known");
   if (view.points.size() != n) {

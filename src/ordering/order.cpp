@@ -31,9 +31,11 @@ PointsView points_to_go_by(const PointsView& points, GraphRef graph, std::string
   if (points.empty()) return points;
   const bool goes_by_points = method == "auto" || needs_points(vertex_methods(), method);
   if (!goes_by_points || points_fit(graph, points)) return points;
-  notes.emplace_back(
-      "neighbours are as far apart as any two points: is an array transposed, or of another mesh?");
-  return method == "auto" ? PointsView() : points;
+  const bool is_auto = method == "auto";
+  notes.push_back(std::string("neighbours are as far apart as any two points") +
+                  (is_auto ? ", so auto does not use the coordinates" : "") +
+                  ": is an array transposed, or of another mesh?");
+  return is_auto ? PointsView() : points;
 }
 
 Graph adopted(CsrGraph&& graph) {
@@ -90,7 +92,7 @@ MeshOrder order_mesh(const MeshView& mesh, const MeshMethods& methods, const Ord
   return in_call(options.run, [&] {
     const Stopwatch vertex_time;
     report("check");
-    const std::size_t n = mesh.vertex_count > 0 ? mesh.vertex_count : mesh.points.size();
+    const std::size_t n = vertex_count_of(mesh);
     const CellArrays arrays = cell_arrays(mesh.cells, n, options.check);
     check_finite(mesh.points, n, options.check);
     MeshOrder result;

@@ -170,10 +170,13 @@ Permutation Permutation::repeated(Index components, bool node_major) const {
 void Permutation::check_size(std::size_t values, std::size_t width) const {
   const std::size_t n = old_to_new_.size();
   const bool fits = n == 0 || width == 0 ? values == 0 : values % n == 0 && values / n == width;
-  if (!fits) {
-    throw InvalidArgument("permutation: " + std::to_string(values) + " values for " + std::to_string(n) +
-                          " places of " + std::to_string(width));
-  }
+  if (fits) return;
+  const bool has_width = n > 0 && values > 0 && values % n == 0;
+  throw InvalidArgument(
+      "permutation: " + std::to_string(values) + " values, wanted " + std::to_string(n) + " rows of " +
+      std::to_string(width) + "; " +
+      (has_width ? "for rows of " + std::to_string(values / n) + " pass that width, and " : "") +
+      "for lists of vertex numbers call renumber");
 }
 
 }  // namespace meshorder

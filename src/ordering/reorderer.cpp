@@ -248,7 +248,7 @@ Update Reorderer::update(const GraphView& graph, const PointsView& points, const
 Update Reorderer::update(const MeshView& mesh, const IndexView& previous) {
   const OrderOptions& options = inside_->order();
   return in_call(options.run, [&] {
-    const std::size_t n = mesh.vertex_count > 0 ? mesh.vertex_count : mesh.points.size();
+    const std::size_t n = vertex_count_of(mesh);
     const CellArrays cells = cell_arrays(mesh.cells, n, options.check);
     check_finite(mesh.points, n, options.check);
     CellNeighbourhood hood(cells, mesh.points);

@@ -215,7 +215,7 @@ TEST(Layouts, AreRefusedWithTheFault) {
         +[](const CellsView&c, std::size_t v) { (void)colours(c, v); },
         +[](const CellsView&c, std::size_t v) { (void)sort_corners(c, v); },
         +[](const CellsView&c, std::size_t v) { (void)gpu_cost(c, v, GpuLayout::padded); }}) {
-    EXPECT_THAT(refusal([&] { layout(cells, n - 1); }), HasSubstr("vertex"));
+    EXPECT_THAT(refusal([&] { layout(cells, n - 1); }), HasSubstr("outside 0"));
     layout({}, 0);
     layout({}, 5);
   }

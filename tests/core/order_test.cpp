@@ -17,6 +17,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <span>
 #include <string>
@@ -450,9 +451,19 @@ TEST(OrderElements, RefusesFaultyCells) {
   };
   const std::vector<int> tets{0, 1, 2, 3, 1, 2, 3, 4};
   EXPECT_EQ(refused(CellsView::uniform(Shape::tetrahedron, 4, tets)),
-            "cells: entry 3 of cell 1 names a vertex outside 0 … 3");
+            "cells: entry 3 of cell 1 is 4, outside 0 … 3; if the numbers begin at 1, set the base to 1 or "
+            "subtract 1");
   EXPECT_EQ(refused(CellsView::uniform(Shape::tetrahedron, 4, tets, 1)),
-            "cells: entry 0 of cell 0 names a vertex outside 1 … 4");
+            "cells: entry 0 of cell 0 is 0, outside 1 … 4; if the numbers begin at 0, set the base to 0");
+  const std::vector<std::uint64_t> far{0, 1, 2, 3, 1, 2, 7'000'000'000, 3};
+  EXPECT_EQ(refused(CellsView::uniform(Shape::tetrahedron, 4, far)),
+            "cells: entry 2 of cell 1 is 7000000000, outside 0 … 3");
+  const std::array<CellBlock, 2> blocks{
+      {{Shape::tetrahedron, 4, IndexView(far.data(), 4)}, {Shape::tetrahedron, 4, IndexView(&far[4], 4)}}};
+  EXPECT_EQ(refused(CellsView::blocks(blocks)), "cells: entry 2 of cell 1 is 7000000000, outside 0 … 3");
+  EXPECT_EQ(
+      refusal([&] { (void)order_elements(CellsView::uniform(Shape::tetrahedron, 4, tets), {}, "lexmax"); }),
+      "cells: entry 0 of cell 0 is 0, but there are no vertices");
   EXPECT_THAT(refused(CellsView::uniform(Shape::tetrahedron, 4, IndexView(tets.data(), 6))),
               HasSubstr("do not make cells of 4"));
   EXPECT_THAT(refused(CellsView::uniform(Shape::tetrahedron, 0, tets)), HasSubstr("cells of 0"));
@@ -470,9 +481,51 @@ TEST(OrderElements, RefusesFaultyCells) {
   EXPECT_THAT(refused(CellsView::uniform(static_cast<Shape>(kShapes), 4, first)), HasSubstr("the shape 13"));
   EXPECT_THAT(refused(CellsView::mixed(offsets, first, two_types, 3)), HasSubstr("base"));
   const std::vector<std::int64_t> falling{0, 5, 4};
+  const std::vector<int> voxel_offsets{0, 8};
+  const std::vector<int> voxel{0, 1, 2, 9, 0, 1, 2, 3};
+  const std::vector<std::uint8_t> voxel_type{11};
   EXPECT_THAT(refused(CellsView::mixed(falling, first)), HasSubstr("offset 2 is less"));
-  EXPECT_THAT(refused(CellsView::mixed(offsets, tets)), HasSubstr("number of entries, 8"));
+  EXPECT_EQ(refused(CellsView::mixed(offsets, tets)),
+            "cells: the offsets go from 0 to 4; for 8 entries they go from 0 to 8");
+  EXPECT_EQ(refused(CellsView::mixed(offsets, tets, 1)),
+            "cells: the offsets go from 0 to 4; for 8 entries they go from 1 to 9");
+  EXPECT_EQ(refused(CellsView::mixed(voxel_offsets, voxel, voxel_type)),
+            "cells: entry 3 of cell 0 is 9, outside 0 … 3")
+      << "the caller's entry, although corners 2 and 3 change places";
   EXPECT_THAT(refusal([&] { (void)order_elements({}, four, "best"); }), HasSubstr("'best'; known are auto"));
+}
+
+TEST(OrderElements, RefusesBlocksWhoseCellsHaveAnUnusualNumberOfVertices) {
+  const Permutation vertices = Permutation::identity(1000);
+  std::vector<int> numbers(1000);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  const auto refused = [&](Shape shape, int width) {
+    const CellsView cell = CellsView::uniform(shape, width, IndexView(numbers.data(), width));
+    return refusal([&] { (void)order_elements(cell, vertices, "original"); });
+  };
+  EXPECT_EQ(refused(Shape::tetrahedron, 5),
+            "cells: the cells of block 0 have 5 vertices; a tetrahedron has 4, 8, 10, 11, 14, 15, …");
+  EXPECT_THAT(refused(Shape::triangle, 4), HasSubstr("a triangle has 3, 6, 7, 9, 10, 12, …"));
+  EXPECT_THAT(refused(Shape::hexahedron, 10), HasSubstr("a hexahedron has 8, 9, 12, 16, 18, 20, …"));
+  EXPECT_THAT(refused(Shape::vertex, 2), HasSubstr("a vertex has 1"));
+  const std::vector<std::pair<Shape, std::vector<int>>> usual{
+      {Shape::vertex, {1}},
+      {Shape::line, {2, 3, 4, 11}},
+      {Shape::triangle, {3, 6, 7, 9, 10, 12, 15, 21, 28, 36, 45, 55, 66}},
+      {Shape::quad, {4, 5, 6, 8, 9, 12, 16, 20, 25, 36, 49, 64, 81, 100, 121}},
+      {Shape::tetrahedron, {4, 8, 10, 11, 14, 15, 16, 20, 22, 35, 56, 84, 120, 165, 220, 286}},
+      {Shape::pyramid, {5, 13, 14, 18, 19, 21, 30, 55, 91, 140, 204, 285, 385, 506}},
+      {Shape::wedge, {6, 12, 15, 16, 18, 20, 21, 24, 40, 75, 126, 196, 288, 405, 550, 726}},
+      {Shape::hexahedron, {8, 9, 12, 18, 20, 24, 27, 32, 64, 125, 216, 343, 512, 729, 1000}},
+      {Shape::polygon, {5, 7, 13}},
+      {Shape::polyhedron, {5, 7, 13}}};
+  for (const auto& [shape, widths] : usual)
+    for (const int width : widths) EXPECT_EQ(refused(shape, width), "") << width;
+
+  const std::vector<int> offsets{0, 5};
+  const std::vector<Shape> shapes{Shape::tetrahedron};
+  const CellsView mixed = CellsView::mixed(offsets, IndexView(numbers.data(), 5), std::span(shapes));
+  EXPECT_EQ(order_elements(mixed, vertices, "original").permutation.size(), 1) << "as files have them";
 }
 
 TEST(OrderEdges, GoesByTheLargerPlaceOfTheTwo) {
@@ -493,6 +546,9 @@ TEST(OrderEdges, GoesByTheLargerPlaceOfTheTwo) {
   ASSERT_EQ(order.size(), index_size(expected));
   for (Index k = 0; k < order.size(); ++k) EXPECT_EQ(order.new_to_old()[k], std::get<2>(expected[k]));
   EXPECT_EQ(order_edges({}, vertices).size(), 0);
+  std::vector<Index> renumbered = ends;
+  vertices.renumber(renumbered);
+  EXPECT_EQ(order_edges(renumbered, Permutation::identity(200)), order);
   EXPECT_THAT(refusal([&] { (void)order_edges(std::span(ends).first(3), vertices); }),
               HasSubstr("two for each"));
   ends[5] = 200;
@@ -532,8 +588,9 @@ TEST(OrderMesh, TakesTheNumberOfVerticesFromThePoints) {
   EXPECT_EQ(order.vertices.permutation.size(), 4);
   EXPECT_EQ(order.cells.permutation.size(), 2);
   EXPECT_THAT(refusal([&] { (void)order_mesh({.points = plane, .cells = cells, .vertex_count = 6}); }),
-              HasSubstr("4 points for 6 vertices"));
-  EXPECT_THAT(refusal([&] { (void)order_mesh({.cells = cells}); }), HasSubstr("names a vertex outside"));
+              HasSubstr("points: there are 4, but vertex_count is 6"));
+  EXPECT_EQ(refusal([&] { (void)order_mesh({.cells = cells}); }),
+            "cells: there are no points and no vertex_count");
   EXPECT_EQ(order_mesh({}).cells.permutation.size(), 0);
 }
 
@@ -693,12 +750,16 @@ TEST(OrderMesh, NoticesTransposedPoints) {
   const PointsView misread(by_axes, 3);
   const Order by_auto = order_mesh({misread, cells}).vertices;
   EXPECT_NE(by_auto.method, right.method);
-  EXPECT_THAT(by_auto.notes, ElementsAre(HasSubstr("is an array transposed")));
+  EXPECT_THAT(
+      by_auto.notes,
+      ElementsAre("neighbours are as far apart as any two points, so auto does not use the coordinates: "
+                  "is an array transposed, or of another mesh?"));
   EXPECT_EQ(by_auto.permutation, order_mesh({{}, cells, sheet.points.size()}).vertices.permutation)
       << "does not go by the coordinates";
   const Order named = order_mesh({misread, cells}, {.vertices = "hilbert"}).vertices;
   EXPECT_EQ(named.method.name, "hilbert") << "but where it is asked to";
-  EXPECT_THAT(named.notes, ElementsAre(HasSubstr("is an array transposed")));
+  EXPECT_THAT(named.notes, ElementsAre("neighbours are as far apart as any two points: is an array "
+                                       "transposed, or of another mesh?"));
   const auto points = static_cast<Offset>(sheet.points.size()) * Offset{sizeof(double)};
   const PointsView well_read(by_axes.data(), sheet.points.size(), 3, Offset{sizeof(double)}, points);
   EXPECT_EQ(order_mesh({well_read, cells}).vertices.permutation, right.permutation);

@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "support/refusal.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/permutation.hpp>
 
@@ -61,6 +62,12 @@ TEST(Permutation, MovesRowsOfAnyType) {
   EXPECT_EQ(moved, words);
   EXPECT_THROW(kThree.move(pairs, pairs, 2), InvalidArgument);
   EXPECT_THROW(kThree.move_in_place(pairs, 3), InvalidArgument);
+  EXPECT_EQ(
+      test::refusal([&] { kThree.move_in_place(pairs); }),
+      "permutation: 6 values, wanted 3 rows of 1; for rows of 2 pass that width, and for lists of vertex "
+      "numbers call renumber");
+  EXPECT_EQ(test::refusal([&] { kThree.move_in_place(std::span(pairs).first(4)); }),
+            "permutation: 4 values, wanted 3 rows of 1; for lists of vertex numbers call renumber");
 }
 
 TEST(Permutation, MovesInPlaceWhatACopyWouldMove) {
