@@ -2,6 +2,7 @@
 // The C interface to orders, Fiedler vectors and methods.
 #include "base/stopwatch.hpp"
 #include "c/arguments.hpp"
+#include "cells/cell_arrays.hpp"
 #include "ordering/foreign_method.hpp"
 #include <meshorder/changing.hpp>
 #include <meshorder/error.hpp>
@@ -18,6 +19,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -30,6 +33,29 @@
 
 namespace meshorder::c {
 namespace {
+
+/// Throws unless there are no points, or one for each of the `n` vertices of a graph.
+void check_points(const PointsView& points, std::size_t n) {
+  if (points.empty() || points.size() == n) return;
+  fail("points", "there are " + std::to_string(points.size()) + ", but the offsets are those of " +
+                     std::to_string(n) + " vertices");
+}
+
+/// Throws if a call has no place to write anything to.
+void check_any_output(std::initializer_list<const mo_out*> maps,
+                      std::initializer_list<const mo_result*> results) {
+  const auto exists = [](const auto* output) { return output != nullptr; };
+  if (std::ranges::any_of(maps, exists) || std::ranges::any_of(results, exists)) return;
+  throw InvalidArgument("all outputs are null; give at least one");
+}
+
+/// Throws if two arrays of so many bytes overlap.
+void check_apart(const void* from, const void* to, std::uint64_t bytes) {
+  const auto a = reinterpret_cast<std::uintptr_t>(from);
+  const auto b = reinterpret_cast<std::uintptr_t>(to);
+  if (a != 0 && b != 0 && (a < b ? b - a : a - b) < bytes)
+    fail("to", "the rows overlap those of from; give another array");
+}
 
 void check_result(const mo_result* result) {
   if (result != nullptr) check_struct_size(result->struct_size, "result");
@@ -63,6 +89,8 @@ mo_result report_of(const Order& order) {
 void order_graph(const GraphView& graph, const PointsView& points, const mo_options& options,
                  const mo_out* new_to_old, const mo_out* old_to_new, mo_result* result) {
   const std::size_t n = graph.offsets.size() - 1;
+  check_points(points, n);
+  check_any_output({new_to_old, old_to_new}, {result});
   check_integers(new_to_old, n, "new_to_old");
   check_integers(old_to_new, n, "old_to_new");
   check_result(result);
@@ -152,7 +180,9 @@ mo_status mo_order_mesh(const mo_in* cell_offsets, const mo_in* cell_vertices, c
         .cells = CellsView::mixed(offsets, integers(cell_vertices, "cell_vertices"), std::span(types), base),
         .vertex_count = static_cast<std::size_t>(vertex_count)};
 
-    const std::size_t n = mesh.vertex_count > 0 ? mesh.vertex_count : mesh.points.size();
+    const std::size_t n = vertex_count_of(mesh);
+    check_any_output({vertex_new_to_old, vertex_old_to_new, cell_new_to_old, cell_old_to_new},
+                     {vertex_result, cell_result});
     check_integers(vertex_new_to_old, n, "vertex_new_to_old");
     check_integers(vertex_old_to_new, n, "vertex_old_to_new");
     check_integers(cell_new_to_old, mesh.cells.size(), "cell_new_to_old");
@@ -176,6 +206,7 @@ mo_status mo_order_edges(const mo_in* ends, const mo_in* vertex_new_to_old, int3
                          const mo_out* new_to_old) {
   return guarded([&] {
     if (vertex_new_to_old == nullptr) fail("vertex_new_to_old", "the map is null");
+    if (new_to_old == nullptr) fail("new_to_old", "the output is null");
     const IndexView given = integers(ends, "ends");
     check_integers(new_to_old, given.size() / 2, "new_to_old");
     const Permutation vertices =
@@ -214,6 +245,7 @@ mo_status mo_reorderer_update(mo_reorderer* reorderer, const mo_in* offsets, con
     const PointsView coordinates = points_of(points, dimension);
     const GraphView graph = offsets == nullptr ? GraphView() : graph_of(offsets, neighbours, nullptr, base);
     const std::size_t n = offsets == nullptr ? coordinates.size() : graph.offsets.size() - 1;
+    check_points(coordinates, n);
     check_integers(new_to_old, n, "new_to_old");
     check_integers(old_to_new, n, "old_to_new");
     const std::vector<std::int64_t> places = places_before(integers(previous, "previous"), base);
@@ -250,8 +282,9 @@ mo_status mo_move(const mo_in* new_to_old, int32_t base, const void* from, void*
   return guarded([&] {
     if (new_to_old == nullptr) fail("new_to_old", "the map is null");
     if (row_bytes < 0) fail("row_bytes", "must not be negative");
-    permutation_of(integers(new_to_old, "new_to_old"), base_of(base))
-        .move_rows(from, row_bytes, to, row_bytes, static_cast<std::size_t>(row_bytes));
+    const Permutation order = permutation_of(integers(new_to_old, "new_to_old"), base_of(base));
+    check_apart(from, to, static_cast<std::uint64_t>(order.size()) * static_cast<std::uint64_t>(row_bytes));
+    order.move_rows(from, row_bytes, to, row_bytes, static_cast<std::size_t>(row_bytes));
   });
 }
 

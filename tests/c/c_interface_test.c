@@ -314,6 +314,56 @@ static void test_fiedler(void) {
   CHECK(mo_fiedler(&offsets, &neighbours, NULL, &options, &output, NULL) == MO_INVALID_ARGUMENT);
 }
 
+/* Messages name the argument that is wrong, and a call that returns nothing is refused. */
+static void test_messages(void) {
+  static const int32_t cell_offsets[2] = {0, 3};
+  static const int32_t triangle[3] = {0, 1, 2};
+  const double xy[8] = {0};
+  const mo_in offsets = in32(offsets32, N + 1);
+  const mo_in neighbours = in32(neighbours32, 8);
+  const mo_in cells = in32(cell_offsets, 2);
+  const mo_in vertices = in32(triangle, 3);
+  const mo_in one_edge = in32(triangle, 2);
+  const mo_in four_points = {xy, 8, MO_DOUBLE};
+  int32_t numbers[N];
+  const mo_out order = out32(numbers, 4);
+  mo_options options = options_of("rcm");
+  mo_result result;
+  mo_reorderer* reorderer = NULL;
+  int v;
+  CHECK(mo_order_graph(&offsets, &neighbours, NULL, &four_points, 2, NULL, &order, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  CHECK(strcmp(mo_last_error(), "points: there are 4, but the offsets are those of 5 vertices") == 0);
+  CHECK(mo_reorderer_create(&options, 0.02, INFINITY, &reorderer) == MO_OK);
+  CHECK(mo_reorderer_update(reorderer, &offsets, &neighbours, &four_points, 2, NULL, &order, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  CHECK(strncmp(mo_last_error(), "points: there are 4", 19) == 0);
+  mo_reorderer_destroy(reorderer);
+  CHECK(mo_order_mesh(&cells, &vertices, NULL, 3, &four_points, 2, NULL, &order, NULL, NULL, NULL, NULL,
+                      NULL) == MO_INVALID_ARGUMENT);
+  CHECK(strcmp(mo_last_error(), "points: there are 4, but vertex_count is 3") == 0);
+
+  CHECK(mo_order_mesh(&cells, &vertices, NULL, 3, NULL, 0, NULL, NULL, NULL, NULL, NULL, NULL, NULL) ==
+        MO_INVALID_ARGUMENT);
+  CHECK(strstr(mo_last_error(), "all outputs are null") != NULL);
+  CHECK(mo_order_graph(&offsets, &neighbours, NULL, NULL, 0, NULL, NULL, NULL, NULL) == MO_INVALID_ARGUMENT);
+  CHECK(strstr(mo_last_error(), "all outputs are null") != NULL);
+  result.struct_size = sizeof result;
+  CHECK(mo_order_mesh(&cells, &vertices, NULL, 3, NULL, 0, NULL, NULL, NULL, NULL, NULL, NULL, &result) ==
+        MO_OK);
+  CHECK(mo_order_edges(&one_edge, &vertices, 0, NULL) == MO_INVALID_ARGUMENT);
+  CHECK(strcmp(mo_last_error(), "new_to_old: the output is null") == 0);
+
+  for (v = 0; v < N; ++v) numbers[v] = v;
+  {
+    const mo_in map = in32(numbers, 3);
+    int32_t rows[4] = {0};
+    CHECK(mo_move(&map, 0, rows, rows + 1, 4) == MO_INVALID_ARGUMENT);
+    CHECK(strcmp(mo_last_error(), "to: the rows overlap those of from; give another array") == 0);
+    CHECK(mo_move(&map, 0, rows, rows, 0) == MO_OK);
+  }
+}
+
 static void test_mistakes(void) {
   static const int32_t lonely[8] = {3, 3, 4, 4, 1, 1, 1, 2}; /* row 3 lacks its neighbour 0 */
   int32_t new_to_old[N];
@@ -634,6 +684,7 @@ int main(void) {
   test_reorderer();
   test_alignment();
   test_fiedler();
+  test_messages();
   test_mistakes();
   test_smaller_structures();
   test_own_methods();
