@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include <concepts>
 #include <cstddef>
 #include <string>
 
@@ -22,9 +23,8 @@ inline namespace v0_3 {
 /// Returns a view of the rows of a matrix as points.
 ///
 /// @param points  n × 1, 2 or 3 of float or double: a matrix, map or block, not an unevaluated expression. It
-///                must live as long as the view
-///                is used
-/// @throws InvalidArgument for more columns: a matrix with a column for each point has to be transposed
+///                must live as long as the view is used
+/// @throws InvalidArgument for another number of columns: transpose a matrix with a column for each point
 template <class Derived>
 [[nodiscard]] PointsView points_view(const Eigen::DenseBase<Derived>& points MESHORDER_LIFETIMEBOUND) {
   static_assert((Derived::Flags & Eigen::DirectAccessBit) != 0, "evaluate the expression first: .eval()");
@@ -63,18 +63,40 @@ template <class Scalar, int Options, class StorageIndex>
       Eigen::Map<const Eigen::Matrix<Index, Eigen::Dynamic, 1>>(map.data(), permutation.size()));
 }
 
+namespace detail {
+
+/// Returns the shape of cells that are given without one; see `order_mesh`.
+template <class V, class F>
+Shape shape_by_columns(const Eigen::DenseBase<V>& points, const Eigen::DenseBase<F>& cells) {
+  switch (cells.cols()) {
+    case 2:
+      return Shape::line;
+    case 3:
+      return Shape::triangle;
+    case 4:
+      return points.cols() == 3 ? Shape::tetrahedron : Shape::quad;
+    default:
+      if (cells.size() == 0) throw InvalidArgument("cells: F is empty");
+      throw InvalidArgument(
+          "cells: " + std::to_string(cells.rows()) + " × " + std::to_string(cells.cols()) +
+          " numbers; F has a row for each cell. Name the shape of cells that have not 2 to 4 vertices");
+  }
+}
+
+}  // namespace detail
+
 /// Orders the vertices and cells of a mesh. Nothing is changed.
 ///
 /// @param points   V: n × 1, 2 or 3, a row for each vertex
 /// @param cells    F: m × k integers from 0, a row for each cell
-/// @param shape    of every cell
+/// @param shape    of every cell; a `Shape`
 /// @param methods  names of the two methods
 /// @param options  as of `order_mesh`
 /// @throws as `order_mesh` and `points_view`
 /// @note Cost of `order_mesh`, and a copy of the cells.
-template <class V, class F>
+template <class V, class F, std::same_as<Shape> S>
 [[nodiscard]] MeshOrder order_mesh(const Eigen::DenseBase<V>& points, const Eigen::DenseBase<F>& cells,
-                                   Shape shape, const MeshMethods& methods = {},
+                                   S shape, const MeshMethods& methods = {},
                                    const OrderOptions& options = {}) {
   const Eigen::Matrix<typename F::Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = cells;
   return order_mesh({points_view(points),
@@ -83,23 +105,15 @@ template <class V, class F>
                     methods, options);
 }
 
-/// The same for segments, triangles or tetrahedra: F has 2, 3 or 4 columns.
+/// The same where the number of F's columns says the shape: 2 for lines, 3 for triangles, 4 for tetrahedra.
+/// Four columns are quads if V has fewer than three columns. For quads in space, name the shape.
 ///
-/// @throws InvalidArgument also for other numbers of columns: name the shape, or transpose F if it has a
-///         column for each
-///         cell
+/// @throws InvalidArgument also for other numbers of columns: name the shape, or transpose an F that has a
+///         column for each cell
 template <class V, class F>
 [[nodiscard]] MeshOrder order_mesh(const Eigen::DenseBase<V>& points, const Eigen::DenseBase<F>& cells,
                                    const MeshMethods& methods = {}, const OrderOptions& options = {}) {
-  if (cells.cols() < 2 || cells.cols() > 4) {
-    throw InvalidArgument(
-        "cells: " + std::to_string(cells.rows()) + " × " + std::to_string(cells.cols()) +
-        " numbers; a row for each cell is wanted, and a shape where it has not 2 to 4 columns");
-  }
-  const Shape shape = cells.cols() == 2   ? Shape::line
-                      : cells.cols() == 3 ? Shape::triangle
-                                          : Shape::tetrahedron;
-  return order_mesh(points, cells, shape, methods, options);
+  return order_mesh(points, cells, detail::shape_by_columns(points, cells), methods, options);
 }
 
 /// Moves the rows of a matrix or vector to their new places, for values of vertices or of cells.
@@ -135,14 +149,21 @@ void renumber(const Permutation& vertices, Eigen::PlainObjectBase<Derived>& cell
 
 /// Orders a mesh and moves V and F. Returns the order, by which `move_rows` moves all other values of
 /// vertices and cells. Parameters, exceptions and cost as of `order_mesh`.
-template <class V, class F>
-MeshOrder reorder(Eigen::PlainObjectBase<V>& points, Eigen::PlainObjectBase<F>& cells,
+template <class V, class F, std::same_as<Shape> S>
+MeshOrder reorder(Eigen::PlainObjectBase<V>& points, Eigen::PlainObjectBase<F>& cells, S shape,
                   const MeshMethods& methods = {}, const OrderOptions& options = {}) {
-  MeshOrder order = order_mesh(points, cells, methods, options);
+  MeshOrder order = order_mesh(points, cells, shape, methods, options);
   move_rows(order.vertices.permutation, points);
   renumber(order.vertices.permutation, cells);
   move_rows(order.cells.permutation, cells);
   return order;
+}
+
+/// The same where the number of F's columns says the shape, as for `order_mesh`.
+template <class V, class F>
+MeshOrder reorder(Eigen::PlainObjectBase<V>& points, Eigen::PlainObjectBase<F>& cells,
+                  const MeshMethods& methods = {}, const OrderOptions& options = {}) {
+  return reorder(points, cells, detail::shape_by_columns(points, cells), methods, options);
 }
 
 }  // namespace v0_3
