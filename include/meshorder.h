@@ -165,9 +165,11 @@ MO_API mo_status mo_order_mesh(const mo_in* cell_offsets, const mo_in* cell_vert
 
 /**
  * Orders edges by the larger place of their two ends, then by the smaller one. A loop over them then touches
- * new vertices nearly in their order. The ends are neither moved nor renumbered.
+ * new vertices nearly in their order. The function does not change `ends`.
  *
- * @param ends               2 for each edge, from `base` on
+ * @param ends               2 for each edge, from `base` on. They are old numbers: call this function before
+ *                           you renumber them. For ends that are renumbered already, pass the identity
+ *                           (base, base + 1, ...) as `vertex_new_to_old`
  * @param vertex_new_to_old  the order of the vertices, a bijection from `base` on
  * @param base               0 or 1
  * @param new_to_old         one integer for each edge: the old number of the edge at each new place
@@ -246,7 +248,7 @@ MO_API mo_status mo_fiedler(const mo_in* offsets, const mo_in* neighbours, const
  * @param new_to_old  a bijection, n integers
  * @param base        0 or 1
  * @param from        n rows
- * @param to          n rows that do not overlap `from`
+ * @param to          n rows that do not overlap those of `from`
  * @param row_bytes   bytes of a row, >= 0
  */
 MO_API mo_status mo_move(const mo_in* new_to_old, int32_t base, const void* from, void* to,

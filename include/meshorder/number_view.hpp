@@ -25,7 +25,7 @@ using Offset = std::int64_t;
 /// `std::vector<std::array<int, 4>>` are 40 numbers. bool, character types and other sizes do not compile.
 ///
 /// @note Nothing is copied: the array must live, at the same address, as long as the view is used. Functions
-///       of meshorder use views only until they return. The view stores the type at run time, so that the
+///       of meshorder use views only until they return. The view stores the type at run time: each function
 ///       is compiled once for all types.
 class IndexView {
  public:

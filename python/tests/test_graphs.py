@@ -59,6 +59,8 @@ def test_edges_go_by_the_larger_of_their_places(graph):
     order = meshorder.order_edges(edges, vertices)
     moved = np.sort(vertices.renumber(order.move(edges)), axis=1)
     assert np.array_equal(moved, moved[np.lexsort(moved.T)])
+    stay = meshorder.Permutation(old_to_new=np.arange(len(vertices)))
+    assert meshorder.order_edges(vertices.renumber(edges), stay) == order, "of edges that are renumbered already"
     for wrong in (edges.ravel(), edges[:, :1], edges + 10**6, edges - 1.5):
         with pytest.raises(meshorder.InvalidArgument):
             meshorder.order_edges(wrong, vertices)
