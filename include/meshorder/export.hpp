@@ -4,6 +4,10 @@
 /// @file
 /// Macros of the public headers, not for use elsewhere.
 
+#if __cplusplus < 201709L && !(defined(_MSVC_LANG) && _MSVC_LANG >= 202002L)
+#error "meshorder needs C++20: compile with -std=c++20 or newer"
+#endif
+
 /// Marks what a shared library exports. Empty for static libraries. `MESHORDER_SHARED` is set by the CMake
 /// targets and pkg-config files of shared builds, `MESHORDER_BUILDING` only while the library itself is
 /// compiled.

@@ -199,7 +199,8 @@ def test_find_package(prefix, tmp_path, environment):
     ("0.3 COMPONENTS c", None),
     ("0.2", "0.3.0"),
     ("0.4", "0.3.0"),
-    ("0.3 COMPONENTS c gpu", "the component 'gpu' is not installed"),
+    ("0.3 COMPONENTS c gpu", "the component 'gpu' is not installed; installed are c, core"),
+    ("0.3 COMPONENTS Core", "the component 'Core' is not installed; installed are c, core"),
     ("0.3 COMPONENTS c OPTIONAL_COMPONENTS gpu", None),
 ])
 def test_find_package_says_what_is_missing(prefix, tmp_path, request_, reason):
@@ -228,6 +229,31 @@ def test_pkg_config(prefix, tmp_path, environment):
         "CMAKE_PROJECT_VERSION")
     run("pkg-config", "--validate", "meshorder-payoff", env=environment)
     assert prefix.exists()
+
+
+def test_the_lines_of_the_manual_make_programs_that_start(prefix, tmp_path):
+    lines = re.search(r"^export PKG_CONFIG_PATH=.*?(?=^```)", (ROOT / "docs" / "install.md").read_text(),
+                      re.MULTILINE | re.DOTALL)[0]
+    (tmp_path / "meshorder").symlink_to(prefix)
+    programs = 0
+    for suffix in ("cpp", "c", "f90"):
+        if suffix == "f90" and not FORTRAN:
+            continue
+        shutil.copy(USER / f"order.{suffix}", tmp_path / f"solver.{suffix}")
+        [line] = [line for line in lines.splitlines() if f"solver.{suffix} " in line]
+        without = {name: value for name, value in os.environ.items() if name != "LD_LIBRARY_PATH"}
+        run("bash", "-ec", f"{lines.splitlines()[0]}\n{line}\n./solver", cwd=tmp_path,
+            env={**without, "HOME": str(tmp_path)})
+        programs += 1
+    assert programs >= 2
+
+
+@pytest.mark.parametrize("header", ["meshorder.hpp", "order.hpp"])
+def test_headers_ask_for_the_standard_that_they_need(prefix, tmp_path, header):
+    (tmp_path / "old.cpp").write_text(f"#include <meshorder/{header}>\n")
+    said = run("c++", "-std=c++17", "-fsyntax-only", f"-I{prefix / 'include'}", tmp_path / "old.cpp", status=1)
+    errors = [line for line in said.splitlines() if ": error: " in line]
+    assert "meshorder needs C++20" in errors[0]
 
 
 @pytest.mark.parametrize("source, options", [("matrix_test", True), ("plex_test", False)])
