@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <span>
 #include <vector>
 
 namespace mo = meshorder;
@@ -55,7 +54,7 @@ void refine(Surface& s, double wave) {
 }
 
 mo::CellsView cells_of(const Surface& s) {
-  return mo::CellsView::uniform(mo::Shape::triangle, 3, {s.triangles[0].data(), 3 * s.triangles.size()});
+  return mo::CellsView::uniform(mo::Shape::triangle, 3, s.triangles);
 }
 
 double mean_log2_span(const Surface& s) {
@@ -75,15 +74,15 @@ int main() {
     refine(kept, 0.03 * step);
     refine(left, 0.03 * step);
     previous.resize(kept.x.size(), -1);
-    const mo::Update update = reorderer.update({kept.x, cells_of(kept), kept.x.size()}, previous);
+    const mo::Update update = reorderer.update(mo::MeshView{kept.x, cells_of(kept)}, previous);
     if (update.repair == mo::Repair::none) continue;
-    update.permutation.move_in_place(std::span(kept.x));
-    update.permutation.renumber({kept.triangles[0].data(), 3 * kept.triangles.size()});
+    update.permutation.move_in_place(kept.x);
+    update.permutation.renumber(kept.triangles);
   }
   Surface fresh = kept;
   const mo::Permutation order =
       mo::order_mesh({fresh.x, cells_of(fresh)}, {.vertices = "hilbert"}).vertices.permutation;
-  order.renumber({fresh.triangles[0].data(), 3 * fresh.triangles.size()});
+  order.renumber(fresh.triangles);
   std::printf("mean log2 span: %.2f left alone, %.2f kept fresh, %.2f in a fresh order\n",
               mean_log2_span(left), mean_log2_span(kept), mean_log2_span(fresh));
   return mean_log2_span(kept) < 1.05 * mean_log2_span(fresh) && mean_log2_span(kept) < mean_log2_span(left)

@@ -3,11 +3,12 @@
 // Orders a simulator's own arrays in place, before its first step.
 #include <meshorder/order.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <span>
+#include <set>
 #include <vector>
 
 namespace mo = meshorder;
@@ -18,18 +19,49 @@ struct Body {
   std::vector<std::array<double, 3>> x;
   std::vector<std::array<double, 3>> v;
   std::vector<double> mass;
+  std::vector<int> pinned;  // numbers of vertices
   std::vector<std::array<int, 4>> tets;
+  std::vector<std::array<int, 2>> springs;
+  std::vector<double> rest_length;  // of each spring
 };
 
-void reorder(Body& b) {
-  const std::span corners(b.tets[0].data(), 4 * b.tets.size());
-  const mo::MeshView mesh{
-      {b.x[0].data(), b.x.size()}, mo::CellsView::uniform(mo::Shape::tetrahedron, 4, corners), b.x.size()};
-  const auto [vertices, cells] = mo::order_mesh(mesh, {}, {.workload = mo::Workload::element});
-  for (auto* field : {&b.x, &b.v}) vertices.permutation.move_in_place(std::span(*field));
-  vertices.permutation.move_in_place(std::span(b.mass));
-  vertices.permutation.renumber(corners);
-  cells.permutation.move_in_place(std::span(b.tets));
+// Returns the order of the vertices, for what is stored elsewhere.
+mo::Permutation reorder(Body& b) {
+  const mo::MeshView mesh{b.x, mo::CellsView::uniform(mo::Shape::tetrahedron, 4, b.tets)};
+  const auto [vertices, tets] = mo::order_mesh(mesh, {}, {.workload = mo::Workload::element});
+  const mo::Permutation& moved = vertices.permutation;
+  const mo::Permutation springs = mo::order_edges(b.springs, moved);  // takes the old numbers of the ends
+
+  moved.move_in_place(b.x);  // what belongs to vertices moves
+  moved.move_in_place(b.v);
+  moved.move_in_place(b.mass);
+  moved.renumber(b.pinned);  // what names vertices gets the new numbers
+  moved.renumber(b.tets);
+  moved.renumber(b.springs);
+  tets.permutation.move_in_place(b.tets);
+  springs.move_in_place(b.springs);
+  springs.move_in_place(b.rest_length);
+  return moved;
+}
+
+double distance(const Body& b, const std::array<int, 2>& ends) {
+  const auto& p = b.x[static_cast<std::size_t>(ends[0])];
+  const auto& q = b.x[static_cast<std::size_t>(ends[1])];
+  return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+}
+
+// Adds a spring on each edge of the tetrahedra.
+void add_springs(Body& body) {
+  std::set<std::array<int, 2>> edges;
+  for (const auto& tet : body.tets) {
+    for (const int a : tet)
+      for (const int b : tet)
+        if (a < b) edges.insert({a, b});
+  }
+  for (const auto& ends : edges) {
+    body.springs.push_back(ends);
+    body.rest_length.push_back(distance(body, ends));
+  }
 }
 
 // Returns a bar of side × side × 4 side cubes, each cut into five tetrahedra. Point i of the grid is vertex
@@ -65,6 +97,8 @@ Body sample(int side) {
       }
     }
   }
+  for (int point = 0; point < nx * nx; ++point) body.pinned.push_back(number(point));
+  add_springs(body);
   return body;
 }
 
@@ -90,6 +124,24 @@ double moment(const Body& body) {
   return sum;
 }
 
+// Returns whether each spring is at rest, and the pinned vertices are those of the first layer.
+bool is_at_rest(const Body& body) {
+  for (std::size_t s = 0; s < body.springs.size(); ++s)
+    if (std::abs(distance(body, body.springs[s]) - body.rest_length[s]) > 1e-12) return false;
+  return std::ranges::all_of(body.pinned, [&](int v) { return body.x[static_cast<std::size_t>(v)][2] == 0; });
+}
+
+// Returns the mean distance in memory, in vertices, of the ends that springs use one after another.
+double mean_step(const Body& body) {
+  double sum = 0;
+  for (std::size_t s = 1; s < body.springs.size(); ++s) {
+    const auto [a, b] = std::ranges::minmax(body.springs[s]);
+    const auto [c, d] = std::ranges::minmax(body.springs[s - 1]);
+    sum += std::abs(a - c) + std::abs(b - d);
+  }
+  return sum / (2.0 * static_cast<double>(body.springs.size() - 1));
+}
+
 // Returns the mean distance in memory, in vertices, from the first corner of a tetrahedron to the others.
 double mean_reach(const Body& body) {
   double sum = 0;
@@ -105,9 +157,16 @@ int main() {
   Body body = sample(8);
   const double moment_before = moment(body);
   const double reach_before = mean_reach(body);
-  reorder(body);
+  const double step_before = mean_step(body);
+  const std::vector<double> mass_before = body.mass;
+  const mo::Permutation moved = reorder(body);
   std::printf("mean distance of a tetrahedron's corners: %.0f before, %.0f after\n", reach_before,
               mean_reach(body));
-  const bool same = std::abs(moment(body) - moment_before) < 1e-9 * moment_before && body.v == body.x;
-  return same && mean_reach(body) < reach_before ? 0 : 1;
+  std::printf("mean distance from a spring's ends to the next one's: %.0f before, %.0f after\n", step_before,
+              mean_step(body));
+  std::vector<double> mass(body.mass.size());
+  moved.inverse().move(body.mass, mass);  // results in the old order
+  const bool same = std::abs(moment(body) - moment_before) < 1e-9 * moment_before && body.v == body.x &&
+                    is_at_rest(body) && mass == mass_before;
+  return same && mean_reach(body) < reach_before && mean_step(body) < step_before ? 0 : 1;
 }
