@@ -17,6 +17,7 @@ constexpr double kTail = 0.003;           // probability on each side of the int
 constexpr double kTrimmed = 0.2;
 constexpr double kBetweenChecks = 1.2;
 constexpr double kLeastSpread = 0.003;
+constexpr double kLeastDistance = 0.001;  // of an interval from 1: reports show three decimals
 
 /// Returns the probability that Student's t exceeds `t` > 0, by the finite series of Abramowitz and Stegun,
 /// "Handbook of Mathematical Functions", 1964, 26.7.3 and 26.7.4.
@@ -140,9 +141,9 @@ void PairedTrials::check() {
   const TimeRatio found = time_ratio_of(logs_[left_.front()]);
   if (found.low > 1 / (1 + kTie) && found.high < 1 + kTie) {
     verdict_ = TrialVerdict::tie;
-  } else if (found.low > 1 && found.ratio > 1 + kTie) {
+  } else if (found.low >= 1 + kLeastDistance && found.ratio > 1 + kTie) {
     verdict_ = TrialVerdict::faster;
-  } else if (found.high < 1 && found.ratio < 1 / (1 + kTie)) {
+  } else if (found.high <= 1 - kLeastDistance && found.ratio < 1 / (1 + kTie)) {
     verdict_ = TrialVerdict::slower;
   }
 }

@@ -116,6 +116,22 @@ TEST(PairedTrials, SteadyTimesAreDecidedAtOnce) {
   EXPECT_EQ(verdict_of(0.99), TrialVerdict::tie);
 }
 
+TEST(PairedTrials, AnIntervalThatIsShownAsOneDecidesNothing) {
+  const std::vector<double> noise{-0.02, -0.01, 0, 0, 0.01, 0.02};
+  const double width = std::log(time_ratio_of(noise).high);
+  const auto verdict_of = [&](double log) {
+    PairedTrials trials(1);
+    for (const double disturbance : noise)
+      trials.add_round(std::vector<double>{std::exp(log + disturbance), 1});
+    return trials.verdict();
+  };
+  ASSERT_GT(width, 2 * kTie);
+  EXPECT_EQ(verdict_of(width + 0.0004), TrialVerdict::undecided);
+  EXPECT_EQ(verdict_of(width + 0.002), TrialVerdict::faster);
+  EXPECT_EQ(verdict_of(-width - 0.0004), TrialVerdict::undecided);
+  EXPECT_EQ(verdict_of(-width - 0.002), TrialVerdict::slower);
+}
+
 TEST(PairedTrials, OrdersThatAreAllTheSameAreRarelyCalledDifferent) {
   constexpr int kTrials = 400;
   for (const double budget : {40.0, 120.0}) {
