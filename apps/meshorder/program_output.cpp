@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "program_output.hpp"
 
+#include "base/input_file.hpp"
 #include "base/text.hpp"
 #include "io/stream/file_path.hpp"
 #include <meshorder/error.hpp>
@@ -8,9 +9,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <numeric>
 #include <system_error>
 #include <utility>
 
@@ -20,9 +24,55 @@ namespace {
 constexpr std::size_t kLongestLine = 10'000;
 constexpr std::string_view kSeparators = " \t\r\n,;";
 
-bool agree(double a, double b, double tolerance) {
-  return a == b || (std::isnan(a) && std::isnan(b)) ||
-         std::abs(a - b) <= tolerance * std::max(std::abs(a), std::abs(b));
+/// Calls `use` with each line of these files, cut after `kLongestLine` characters.
+template <class Use>
+void for_each_line(const std::vector<std::filesystem::path>& files, Use use) {
+  for (const std::filesystem::path& file : files) {
+    const InputFile opened(file);
+    const std::string text = opened.size() > 0 ? FilePath(file).read() : std::string();
+    std::string_view rest = text;
+    while (!rest.empty()) {
+      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      use(rest.substr(0, std::min(end, kLongestLine)));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+  }
+}
+
+/// Returns whether a line begins with the word "error", after blanks and marks such as "*" or "[", and is not
+/// a result: "error = 1e-9", "error condition (0=good, 1=bad) = 0".
+bool begins_with_error(std::string_view line) {
+  constexpr std::string_view kMarks = " \t*-#[";
+  constexpr std::string_view kError = "error";
+  line = line.substr(0, line.find('\r'));
+  line.remove_prefix(std::min(line.find_first_not_of(kMarks), line.size()));
+  if (!same_but_for_case(line.substr(0, kError.size()), kError)) return false;
+  line.remove_prefix(kError.size());
+  const unsigned char next = line.empty() ? ' ' : static_cast<unsigned char>(line.front());
+  if (next == '_' || std::isalnum(next) != 0) return false;
+  return !number_of(trimmed(line.substr(line.find_last_of("=:") + 1)));
+}
+
+/// How far two numbers of an output may be apart.
+struct Closeness {
+  double tolerance = 0;  ///< relative to the larger one
+  double floor = 0;      ///< absolute: sums that are zero but for rounding differ by as much
+
+  [[nodiscard]] bool agree(double a, double b) const {
+    return a == b || (std::isnan(a) && std::isnan(b)) ||
+           std::abs(a - b) <= std::max(tolerance * std::max(std::abs(a), std::abs(b)), floor);
+  }
+};
+
+/// Returns the difference that is allowed in an output in which the largest number is `largest`.
+Closeness closeness(double tolerance, double largest) {
+  constexpr double kRounding = 1e-12;
+  return {.tolerance = tolerance, .floor = kRounding * largest};
+}
+
+/// Returns the larger one of `largest` and the magnitude of a number, if that is finite.
+double larger(double largest, double number) {
+  return std::isfinite(number) ? std::max(largest, std::abs(number)) : largest;
 }
 
 std::regex compiled(const std::string& option, const std::string& pattern) {
@@ -32,6 +82,13 @@ std::regex compiled(const std::string& option, const std::string& pattern) {
     throw InvalidArgument(
         fmt::format("{} {}: it is no regular expression: {}", option, pattern, error.what()));
   }
+}
+
+/// Returns a line as messages show it: without blanks at its ends, and at most 300 bytes of it.
+std::string shown_line(std::string_view line) {
+  constexpr std::size_t kMost = 300;
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return std::string(utf8_prefix(trimmed(line), kMost));
 }
 
 }  // namespace
@@ -57,24 +114,17 @@ PrintedNumbers::PrintedNumbers(std::string option, std::string pattern)
 
 std::vector<double> PrintedNumbers::find(const std::vector<std::filesystem::path>& files) const {
   std::vector<double> numbers;
-  for (const std::filesystem::path& file : files) {
-    const InputFile opened(file);
-    const std::string text = opened.size() > 0 ? FilePath(file).read() : std::string();
-    std::string_view rest = text;
-    while (!rest.empty()) {
-      const std::size_t end = std::min(rest.find('\n'), rest.size());
-      const std::string line(rest.substr(0, std::min(end, kLongestLine)));
-      rest.remove_prefix(std::min(end + 1, rest.size()));
-      for (std::sregex_iterator match(line.begin(), line.end(), expression_), last; match != last; ++match) {
-        const std::string captured = (*match)[expression_.mark_count()].str();
-        const std::optional<double> number = number_of(trimmed(captured));
-        if (!number)
-          throw InvalidArgument(
-              fmt::format("{} {}: it captures '{}', which is no number", option_, pattern_, captured));
-        numbers.push_back(*number);
-      }
+  for_each_line(files, [&](std::string_view line) {
+    const char* const end = line.data() + line.size();
+    for (std::cregex_iterator match(line.data(), end, expression_), last; match != last; ++match) {
+      const std::string captured = (*match)[expression_.mark_count()].str();
+      const std::optional<double> number = number_of(trimmed(captured));
+      if (!number)
+        throw InvalidArgument(
+            fmt::format("{} {}: it captures '{}', which is no number", option_, pattern_, captured));
+      numbers.push_back(*number);
     }
-  }
+  });
   if (numbers.empty())
     throw InvalidArgument(fmt::format("{} {}: no line that the program printed matches", option_, pattern_));
   return numbers;
@@ -84,23 +134,52 @@ std::string difference(const std::vector<double>& expected, const std::vector<do
                        double tolerance) {
   if (expected.size() != found.size())
     return fmt::format("{} numbers instead of {}", found.size(), expected.size());
+  const Closeness allowed =
+      closeness(tolerance, std::accumulate(expected.begin(), expected.end(), 0.0, larger));
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    if (!agree(expected[i], found[i], tolerance))
-      return fmt::format("{} instead of {}", found[i], expected[i]);
+    if (!allowed.agree(expected[i], found[i])) return fmt::format("{} instead of {}", found[i], expected[i]);
   }
   return {};
 }
 
 std::string difference(std::string_view expected, std::string_view found, double tolerance) {
+  double largest = 0;
+  for (std::string_view rest = expected, word; !(word = next_word(rest, kSeparators)).empty();)
+    largest = larger(largest, number_of(word).value_or(0));
+  const Closeness allowed = closeness(tolerance, largest);
   for (;;) {
     const std::string_view a = next_word(expected, kSeparators);
     const std::string_view b = next_word(found, kSeparators);
     if (a.empty() && b.empty()) return {};
     const std::optional<double> x = number_of(a);
     const std::optional<double> y = number_of(b);
-    if (x && y ? agree(*x, *y, tolerance) : a == b) continue;
+    if (x && y ? allowed.agree(*x, *y) : a == b) continue;
     return fmt::format("'{}' instead of '{}'", utf8_prefix(b, 40), utf8_prefix(a, 40));
   }
+}
+
+std::vector<std::filesystem::path> printed_files(const std::filesystem::path& log) {
+  return {log.string() + ".out", log.string() + ".err"};
+}
+
+std::string error_line(const std::filesystem::path& log) {
+  std::string result;
+  for_each_line(printed_files(log), [&](std::string_view line) {
+    if (begins_with_error(line)) result = shown_line(line);
+  });
+  return result;
+}
+
+std::string last_line(const std::filesystem::path& file) {
+  constexpr std::uint64_t kTail = 4096;
+  const InputFile opened(file);
+  std::string tail(std::min(kTail, opened.size()), '\0');
+  tail.resize(opened.read_at(opened.size() - tail.size(), tail));
+  const std::size_t last = tail.find_last_not_of(" \t\r\n");
+  if (last == std::string::npos) return {};
+  tail.resize(last + 1);
+  const std::size_t before = tail.find_last_of('\n');
+  return shown_line(std::string_view(tail).substr(before == std::string::npos ? 0 : before + 1));
 }
 
 }  // namespace meshorder::command

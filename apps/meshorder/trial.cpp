@@ -2,9 +2,10 @@
 #include "trial.hpp"
 
 #include "base/text.hpp"
-#include "io/stream/file_path.hpp"
 #include "program_output.hpp"
 #include "trial_program.hpp"
+#include "trial_readings.hpp"
+#include "try_finding.hpp"
 #include "wording.hpp"
 #include <meshorder/error.hpp>
 
@@ -12,7 +13,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 
 namespace meshorder::command {
@@ -22,54 +26,6 @@ namespace fs = std::filesystem;
 
 constexpr double kLeastTime = 1e-6;
 
-/// Reads the times, counts and results of a program from what it printed and wrote.
-class Readings {
- public:
-  explicit Readings(const TrialOptions& options)
-      : tolerance_(options.tolerance), same_file_(options.same_file) {
-    if (options.time != "cpu" && options.time != "wall") time_.emplace("--time", options.time);
-    if (!options.count.empty()) count_.emplace("--count", options.count);
-    if (!options.same.empty()) same_.emplace("--same", options.same);
-    const fs::path file = fs::path(same_file_).lexically_normal();
-    if (same_file_ != "{out}" && (file.is_absolute() || file.string().starts_with("..")))
-      throw InvalidArgument("--same-file " + same_file_ +
-                            ": give its path in the folder that the program runs in, or {out}");
-  }
-
-  /// Throws InvalidArgument if something that was requested is missing. Returns how the results differ from
-  /// those of the first run; empty if they are the same.
-  std::string read(const TrialFolder& folder, TriedOrder& order, double& time) {
-    const std::vector<fs::path> printed{folder.log().string() + ".out", folder.log().string() + ".err"};
-    if (time_) time = time_->find(printed).back();
-    if (time <= 0) throw InvalidArgument(fmt::format("a time of {} cannot be compared", time));
-    if (count_) order.count = count_->find(printed).back();
-    std::string found;
-    if (same_) {
-      std::vector<double> numbers = same_->find(printed);
-      if (!numbers_) numbers_ = numbers;
-      found = difference(*numbers_, numbers, tolerance_);
-    }
-    if (!same_file_.empty() && found.empty()) {
-      const fs::path file = same_file_ == "{out}" ? folder.output() : folder.run() / same_file_;
-      if (!fs::is_regular_file(file))
-        throw InvalidArgument(fmt::format("--same-file {}: the program writes no such file", same_file_));
-      std::string text = FilePath(file).read();
-      if (!text_) text_ = text;
-      found = difference(*text_, text, tolerance_);
-    }
-    return found;
-  }
-
- private:
-  double tolerance_;
-  std::string same_file_;
-  std::optional<PrintedNumbers> time_;
-  std::optional<PrintedNumbers> count_;
-  std::optional<PrintedNumbers> same_;
-  std::optional<std::vector<double>> numbers_;  ///< of the first run
-  std::optional<std::string> text_;
-};
-
 /// Runs a program on a mesh in several orders.
 class Trial {
  public:
@@ -77,11 +33,12 @@ class Trial {
       : options_(options),
         subject_(subject),
         progress_(progress),
-        readings_(options),
         program_(find_program(options.command.front())),
-        folder_(subject.folder(options.with)) {
+        folder_(subject.folder(options.with)),
+        readings_(options, subject, folder_) {
     report_.command = options.command;
     report_.time = options.time;
+    report_.budget_seconds = options.budget_seconds;
     report_.orders.push_back({.name = "original", .methods = {"original", "original"}});
   }
 
@@ -90,7 +47,9 @@ class Trial {
     warm_up(0);
     find_orders();
     report_.trials = PairedTrials(report_.orders.size() - 1);
-    for (std::size_t i = 1; i < report_.orders.size(); ++i) warm_up(i);
+    for (std::size_t i = 1; i < report_.orders.size(); ++i) {
+      if (!report_.orders[i].fault.empty()) report_.trials.exclude(i);
+    }
     refuse_if_all_fail();
     for (std::vector<std::size_t> round = report_.trials.next_round(); fits(round);
          round = report_.trials.next_round()) {
@@ -101,6 +60,8 @@ class Trial {
       report_.trials.add_round(times);
     }
     refuse_if_all_fail();
+    note_differences();
+    note_counts();
     note_short_runs();
   }
 
@@ -108,20 +69,13 @@ class Trial {
   [[nodiscard]] const Notes& notes() const { return notes_; }
 
  private:
-  // runs of the best order: a warm-up, rounds to choose among the orders, and pairs; then runs of each order
-  static constexpr double kRunsOfBest = 15;
-  static constexpr double kRunsOfEach = 3;
-
   [[nodiscard]] TrialCommand command() const {
     TrialCommand result{.words = {program_},
                         .folder = folder_.run(),
                         .log = folder_.log(),
                         .timeout_seconds = options_.timeout_seconds};
-    for (auto word = options_.command.begin() + 1; word != options_.command.end(); ++word) {
-      result.words.push_back(
-          replaced(replaced(replaced(*word, "{out}", folder_.output().string()), "{stem}", subject_.stem()),
-                   "{}", subject_.name()));
-    }
+    for (auto word = options_.command.begin() + 1; word != options_.command.end(); ++word)
+      result.words.push_back(with_places(*word, subject_, folder_));
     return result;
   }
 
@@ -140,8 +94,8 @@ class Trial {
     }
     double time = std::max(options_.time == "wall" ? run.wall_seconds : run.processor_seconds, kLeastTime);
     try {
-      if (!run.succeeded()) throw InvalidArgument(failure_of(run, command));
-      const std::string found = readings_.read(folder_, order, time);
+      if (!run.succeeded()) throw InvalidArgument(failure_of(run, command) + remedy());
+      const std::string found = readings_.read(order, time);
       order.is_different = !found.empty();
       if (order.is_different) throw InvalidArgument("the results differ: " + found);
     } catch (const InvalidArgument& fault) {
@@ -155,7 +109,7 @@ class Trial {
   }
 
   void take_out(std::size_t number, const std::string& fault) {
-    const std::string program = fs::path(program_).filename().string();
+    const std::string program = program_name(options_.command);
     if (number == 0 && report_.orders[0].is_different) {
       throw InvalidArgument(
           fmt::format("{}: its results vary from run to run in one order ({}); give a larger --tolerance",
@@ -173,6 +127,17 @@ class Trial {
         options_.keep.empty() ? fs::path() : fs::absolute(options_.keep) / replaced(order.name, "/", "_");
     (void)timed_run(number, kept);
     order.times.clear();
+    if (const std::string line = error_line(folder_.log()); !line.empty() && !has_error_note_) {
+      notes_.push_back(fmt::format("the program printed '{}': did it read the mesh?{}", line, remedy()));
+      has_error_note_ = true;
+    }
+  }
+
+  /// Returns what to change in a command that gives CalculiX a name with extension; it adds one by itself.
+  [[nodiscard]] std::string remedy() const {
+    const bool is_calculix = fs::path(program_).filename().string().starts_with("ccx");
+    if (!is_calculix || !std::ranges::count(options_.command, "{}")) return {};
+    return " (CalculiX adds .inp by itself: write {stem} in place of {})";
   }
 
   void refuse_if_all_fail() const {
@@ -181,9 +146,44 @@ class Trial {
                                          [](const TriedOrder& order) { return order.fault.empty(); })) {
       return;
     }
-    throw InvalidArgument(fmt::format("{} runs in no other order than the mesh's own; in {}: {}",
-                                      fs::path(program_).filename().string(), orders[1].name,
-                                      orders[1].fault));
+    std::vector<std::string> faults;
+    for (auto order = orders.begin() + 1; order != orders.end(); ++order)
+      faults.push_back(fmt::format("in {}: {}", order->name, order->fault));
+    const bool differ = std::any_of(orders.begin() + 1, orders.end(), std::mem_fn(&TriedOrder::is_different));
+    throw InvalidArgument(fmt::format(
+        "{} {} no other order than the mesh's own; {}{}{}", program_name(options_.command),
+        differ ? "has the same results in" : "runs in", join(faults, std::string_view("; ")),
+        differ
+            ? fmt::format("; compare numbers that do not depend on the order, or give a --tolerance larger "
+                          "than {:g}",
+                          options_.tolerance)
+            : "",
+        report_.left_out.empty() ? "" : "; --budget leaves no time for " + join(report_.left_out)));
+  }
+
+  /// Notes the orders that are excluded because their results differ.
+  void note_differences() {
+    std::vector<std::string> found;
+    for (const TriedOrder& order : report_.orders) {
+      if (order.is_different) found.push_back(fmt::format("{} ({})", order.name, order.fault));
+    }
+    if (found.empty()) return;
+    notes_.push_back(fmt::format("left out: {}; --tolerance, now {:g}, allows larger differences",
+                                 join(found), options_.tolerance));
+  }
+
+  /// Notes the orders in which the number of --count is larger by a tenth or more.
+  void note_counts() {
+    constexpr double kMuch = 1.1;
+    const double own = report_.orders.front().count;
+    std::vector<std::string> found;
+    for (const TriedOrder& order : report_.orders) {
+      if (order.fault.empty() && own > 0 && order.count >= kMuch * own)
+        found.push_back(fmt::format("{:.6g} in {}", order.count, order.name));
+    }
+    if (found.empty()) return;
+    notes_.push_back(
+        fmt::format("--count is larger in other orders: {:.6g} in the mesh's own, {}", own, join(found)));
   }
 
   void note_short_runs() {
@@ -202,24 +202,35 @@ class Trial {
 
   // ---- orders
 
-  /// Makes the orders, as many as the budget allows.
+  /// Makes the orders and runs the program once in each, as many as the budget allows. Orders that fail do
+  /// not count: others take their place. Orders that the user named share the budget, if it allows two runs
+  /// of each.
   void find_orders() {
-    const std::vector<std::string> names = options_.methods.empty() ? subject_.orders() : options_.methods;
+    const bool are_named = !options_.methods.empty();
+    const std::vector<std::string> names = are_named ? options_.methods : subject_.orders();
     const double runs = options_.budget_seconds / std::max(last_seconds_[0], kLeastTime);
-    const auto most =
-        static_cast<std::size_t>(std::max(1.0, (std::min(runs, 1e6) - kRunsOfBest) / kRunsOfEach));
+    const std::size_t most =
+        are_named && runs >= 2 * static_cast<double>(names.size() + 1) ? names.size() : orders_that_fit(runs);
+    std::size_t sound = 0;
     for (const std::string& name : names) {
-      if (report_.orders.size() > most) {
+      const bool has_time =
+          report_.orders.size() == 1 || report_.run_seconds + last_seconds_[0] <= options_.budget_seconds;
+      if (sound >= most || !has_time) {
         report_.left_out.push_back(name);
-      } else {
-        progress_.stage(fmt::format("ordering by {}", name), 0, 0.05);
-        add_order(name);
+        continue;
       }
+      progress_.stage(fmt::format("ordering by {}", name), 0, 0.05);
+      const std::size_t number = report_.orders.size();
+      add_order(name);
+      if (report_.orders.size() == number) continue;
+      warm_up(number);
+      if (report_.orders[number].fault.empty()) ++sound;
     }
     if (!are_own_.empty()) notes_.push_back("no other order than the mesh's own: " + join(are_own_));
     if (!report_.left_out.empty()) {
-      notes_.push_back(fmt::format("there is no time for {}: a run takes {}, and --budget allows {:.0f}",
-                                   join(report_.left_out), duration(last_seconds_[0]), runs));
+      notes_.push_back(fmt::format(
+          "there is no time for {}: a run takes {}, and --budget allows {:.0f} run{}", join(report_.left_out),
+          duration(last_seconds_[0]), std::floor(runs), std::floor(runs) == 1 ? "" : "s"));
     }
   }
 
@@ -263,13 +274,14 @@ class Trial {
   const TrialOptions& options_;
   const TrialSubject& subject_;
   Progress& progress_;
-  Readings readings_;
   std::string program_;
   TrialFolder folder_;
+  TrialReadings readings_;
   TrialReport report_;
   Notes notes_;
   std::vector<std::string> are_own_;  ///< names of orders that move nothing
   std::vector<double> last_seconds_;  ///< wall-clock time of each order's last run
+  bool has_error_note_ = false;
 };
 
 }  // namespace

@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "trial_program.hpp"
 
-#include "base/input_file.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "payoff/quantities.hpp"
+#include "program_output.hpp"
 #include <meshorder/error.hpp>
 
 #include <fcntl.h>
@@ -33,7 +33,6 @@ namespace fs = std::filesystem;
 
 constexpr std::array kEndings{SIGINT, SIGTERM, SIGHUP};
 constexpr int kCannotExecute = 127;
-constexpr std::size_t kMostOfLine = 300;
 
 bool is_executable(const fs::path& path) {
   std::error_code ignored;
@@ -220,21 +219,6 @@ int await(const Processes& processes, double timeout_seconds, TrialRun& run) {
   return interruption;
 }
 
-/// Returns the last line of a file that is not blank, cut to `kMostOfLine` bytes.
-std::string last_line(const fs::path& path) {
-  constexpr std::uint64_t kTail = 4096;
-  const InputFile file(path);
-  std::string tail(std::min(kTail, file.size()), '\0');
-  tail.resize(file.read_at(file.size() - tail.size(), tail));
-  const std::size_t last = tail.find_last_not_of(" \t\r\n");
-  if (last == std::string::npos) return {};
-  tail.resize(last + 1);
-  const std::size_t before = tail.find_last_of('\n');
-  const std::string_view line =
-      trimmed(std::string_view(tail).substr(before == std::string::npos ? 0 : before + 1));
-  return std::string(utf8_prefix(line, kMostOfLine));
-}
-
 }  // namespace
 
 TrialSignals::TrialSignals() {
@@ -304,8 +288,10 @@ TrialRun run_program(const TrialCommand& command) {
 
 std::string failure_of(const TrialRun& run, const TrialCommand& command) {
   if (run.timed_out) return fmt::format("no end within {} (--timeout)", duration(command.timeout_seconds));
-  std::string line = last_line(command.log.string() + ".err");
-  if (line.empty()) line = last_line(command.log.string() + ".out");
+  std::string line = error_line(command.log);
+  for (const std::string& file : {command.log.string() + ".err", command.log.string() + ".out"}) {
+    if (line.empty()) line = last_line(file);
+  }
   const std::string how = run.signal != 0 ? fmt::format("ended by signal {}", run.signal)
                                           : fmt::format("exit status {}", run.exit_status);
   return line.empty() ? how : how + ": " + line;

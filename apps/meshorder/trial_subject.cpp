@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <system_error>
 #include <utility>
@@ -26,6 +27,18 @@ constexpr std::array kOrdersOfMesh{"auto", "hilbert", "rcm", "spectral-fronts", 
 constexpr std::array kOrdersOfMatrix{"auto", "rcm", "spectral-fronts"};
 constexpr const char* kRenumberMesh = "renumberMesh";
 constexpr std::array kOrdersOfCase{"auto", kRenumberMesh, "bfs", "fiedler", "hilbert"};
+
+/// Throws InvalidArgument for an order that does not exist, as `method` is neither one of these methods nor
+/// `also`. Proposes the one that is spelt almost like it, or else says `remedy`.
+[[noreturn]] void refuse_order(const std::string& order, const std::string& method,
+                               const std::vector<MethodInfo>& methods, const std::string& also,
+                               const std::string& remedy) {
+  std::vector<std::string> names{also};
+  for (const MethodInfo& known : methods) names.push_back(known.name);
+  const std::string nearest = suggestion(method, names);
+  throw InvalidArgument(fmt::format("--methods {}: there is no such order{}", order,
+                                    nearest.empty() ? "; " + remedy : nearest));
+}
 
 std::string own_program() {
   std::error_code code;
@@ -76,13 +89,13 @@ class TriedMesh final : public TrialSubject {
   }
 
   void check_order(const std::string& name) const override {
+    if (name == "auto") return;
     const MeshMethods methods = order_named(name);
-    if (name == "auto" || (method_named(vertex_methods(), methods.vertices) &&
-                           method_named(element_methods(), methods.elements))) {
-      return;
-    }
-    throw InvalidArgument(
-        fmt::format("--methods {}: there is no such order; meshorder methods lists them", name));
+    const std::string remedy = "meshorder methods lists them";
+    if (!method_named(vertex_methods(), methods.vertices))
+      refuse_order(name, methods.vertices, vertex_methods(), "auto", remedy);
+    if (!method_named(element_methods(), methods.elements))
+      refuse_order(name, methods.elements, element_methods(), "auto", remedy);
   }
 
   bool make(TriedOrder& order, TrialFolder& folder, std::size_t number) const override {
@@ -123,6 +136,13 @@ class TriedMesh final : public TrialSubject {
   OrderingOptions options_;
 };
 
+/// Returns whether the folder of a case has pieces of it for several processes: processor0, processors4.
+bool is_decomposed(const fs::path& folder) {
+  return std::ranges::any_of(fs::directory_iterator(folder), [](const fs::directory_entry& entry) {
+    return entry.is_directory() && entry.path().filename().string().starts_with("processor");
+  });
+}
+
 /// A case of OpenFOAM; renumberMesh moves its cells.
 class TriedCase final : public TrialSubject {
  public:
@@ -133,6 +153,9 @@ class TriedCase final : public TrialSubject {
     if (options_.ids != "renumber") throw InvalidArgument("--ids: a case of OpenFOAM has no such numbers");
     const fs::path mesh = fs::path(path_) / "constant" / "polyMesh";
     if (!fs::exists(mesh / "owner") && !fs::exists(mesh / "owner.gz")) {
+      if (is_decomposed(path_))
+        throw InputError(path_, "decomposed cases cannot be tried",
+                         "reconstruct it first: reconstructParMesh -constant, then reconstructPar");
       throw InputError(mesh.string(), "there is no mesh of OpenFOAM",
                        "give the file of a mesh, or the folder of a case, and make its mesh first");
     }
@@ -159,10 +182,11 @@ class TriedCase final : public TrialSubject {
 
   void check_order(const std::string& name) const override {
     if (name == "auto" || name == kRenumberMesh || method_named(vertex_methods(), name)) return;
-    throw InvalidArgument(
-        fmt::format("--methods {}: cells have no such order; meshorder methods lists those for vertices, and "
-                    "{} is the one that it takes by itself",
-                    name, kRenumberMesh));
+    refuse_order(
+        name, name, vertex_methods(), kRenumberMesh,
+        fmt::format("cells have those that meshorder methods lists for vertices, and {}, the one that "
+                    "it takes by itself",
+                    kRenumberMesh));
   }
 
   bool make(TriedOrder& order, TrialFolder& folder, std::size_t number) const override {

@@ -7,9 +7,11 @@
 #include "trial_subject.hpp"
 #include "try_page.hpp"
 #include "try_report.hpp"
+#include "wording.hpp"
 #include <meshorder/error.hpp>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -37,12 +39,17 @@ struct TryArguments : Common, TrialOptions {
   OrderOptions ordering;
 };
 
+/// Throws if there is no program to try.
+void check_program(const TryArguments& arguments) {
+  if (!arguments.command.empty()) return;
+  const bool is_case = fs::is_directory(arguments.input) || fs::path(arguments.input).extension() == ".foam";
+  throw InvalidArgument(
+      fmt::format("there is no program to try: write it after --, as in meshorder try {} -- {}",
+                  in_shell(arguments.input), is_case ? "icoFoam" : "solver {}"));
+}
+
 /// Throws unless the command names the mesh; for a case this is not needed, as it runs in the case's folder.
 void check_command(const TrialOptions& options, const TrialSubject& subject) {
-  if (options.command.empty()) {
-    throw InvalidArgument(
-        "there is no program to try: write it after --, as in meshorder try mesh.msh -- solver {}");
-  }
   if (subject.name() != "." &&
       std::none_of(options.command.begin() + 1, options.command.end(), [](const std::string& word) {
         return word.find("{}") != std::string::npos || word.find("{stem}") != std::string::npos;
@@ -58,6 +65,7 @@ void check_command(const TrialOptions& options, const TrialSubject& subject) {
 
 void run(const TryArguments& arguments) {
   Console console(arguments);
+  check_program(arguments);
   const std::unique_ptr<TrialSubject> subject =
       trial_subject(arguments.input, {arguments.threads, arguments.ids, arguments.to_order});
   check_command(arguments, *subject);
@@ -116,8 +124,10 @@ void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
       ->delimiter(',')
       ->allow_extra_args(false);
   subcommand
-      .add_option("--budget", arguments.budget_seconds,
-                  "Seconds for all runs of the program; orders for which they do not suffice are left out")
+      .add_option(
+          "--budget", arguments.budget_seconds,
+          "Seconds for all runs of the program; orders for which they do not suffice are left out, those\n"
+          "of --methods only if each cannot run twice")
       ->check(positive())
       ->capture_default_str();
   subcommand.add_option("--timeout", arguments.timeout_seconds, "Seconds after which a run counts as failed")
@@ -133,7 +143,8 @@ void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
       ->capture_default_str();
   subcommand
       .add_option("--count", arguments.count,
-                  "Regular expression for a number that is shown for each order, such as iterations")
+                  "Regular expression for a number that is shown for each order, such as iterations; a note\n"
+                  "says where it grows by a tenth or more")
       ->type_name("REGEX");
   subcommand
       .add_option("--same", arguments.same,
@@ -144,11 +155,13 @@ void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
       .add_option(
           "--same-file", arguments.same_file,
           "The same for a file that the program writes, compared word by word: {out} or a path in its\n"
-          "folder. Only for files that do not depend on the order of the mesh")
+          "folder, such as {stem}.dat. Only for files that do not depend on the order of the mesh")
       ->type_name("FILE");
   subcommand
-      .add_option("--tolerance", arguments.tolerance,
-                  "Relative difference up to which numbers count as the same")
+      .add_option(
+          "--tolerance", arguments.tolerance,
+          "Relative difference up to which numbers count as the same; so do those that differ by less\n"
+          "than 1e-12 of the largest one that is compared")
       ->check(positive())
       ->capture_default_str();
   subcommand
@@ -181,7 +194,7 @@ void add_try(CLI::App& subcommand) {
       "Examples:\n"
       "  meshorder try wing.su2 -- SU2_CFD wing.cfg {}\n"
       "  meshorder try cavity -- icoFoam\n"
-      "  meshorder try beam.inp --same 'energy = (\\S+)' -- ccx {stem}\n"
+      "  meshorder try beam.inp --same-file {stem}.dat --tolerance 1e-3 -- ccx {stem}\n"
       "  meshorder try part.msh --methods auto,rcm --time 'solve: (.*) s' -- ./solver --mesh={} --out={out}");
   const auto arguments = std::make_shared<TryArguments>();
   subcommand

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "try_page.hpp"
 
-#include "base/median.hpp"
 #include "base/text.hpp"
+#include "try_finding.hpp"
 #include "wording.hpp"
 
 #include <fmt/format.h>
@@ -41,10 +41,6 @@ code {{ overflow-wrap: anywhere; }}
 .wide {{ overflow-x: auto; }}
 </style>
 )";
-
-std::string time_of(const TrialReport& report, const TriedOrder& order) {
-  return is_in_seconds(report) ? duration(median(order.times)) : fmt::format("{:.4g}", median(order.times));
-}
 
 /// Returns a bar: the time of an order as a share of the longest, with its interval.
 std::string track(const TimeRatio& speedup, double longest) {
@@ -90,14 +86,14 @@ std::string trial_page(const TrialReport& report, const std::string& input) {
     page += fmt::format(
         "<td class=\"bar\">{}<td class=\"number\">{}<td class=\"number\">{:.2f}×<td class=\"soft\">{} "
         "runs{}\n",
-        track(speedup, longest), time_of(report, order), speedup.ratio, order.times.size(),
+        track(speedup, longest), time_in_words(report, i), speedup.ratio, order.times.size(),
         order.count >= 0 ? fmt::format(", count {:.6g}", order.count) : "");
   }
   page += "</table></div>\n";
   page += fmt::format(
-      "<p>{}; medians. The line on a bar is the 95 % interval of its ratio to the mesh's own order. Orders "
-      "with "
-      "few runs were dropped early.</p>\n",
+      "<p>{}; median in the mesh's own order, divided by the ratio of paired runs in others. The line on a "
+      "bar "
+      "is its 95 % interval. Orders with few runs were dropped early.</p>\n",
       report.time == "cpu"    ? "Processor time of the program and of all that it starts"
       : report.time == "wall" ? "Time by the clock"
                               : "What the program prints as its time");

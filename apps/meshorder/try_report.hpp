@@ -9,7 +9,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,17 +35,17 @@ struct TrialReport {
   std::vector<TriedOrder> orders;
   PairedTrials trials{0};
   std::vector<std::string> left_out;  ///< names of orders for which there was no time
-  double run_seconds = 0;             ///< of all runs, by the clock
+  double budget_seconds = 0;
+  double run_seconds = 0;  ///< of all runs, by the clock
 };
 
-/// Returns whether times are in seconds, as opposed to a number that the program prints.
-bool is_in_seconds(const TrialReport& report);
+/// Returns the time of an order that was run: of the mesh's own the median, of another one this median
+/// divided by its ratio. The ratio is of runs in the same round, so that times of rounds when the machine was
+/// slower are not compared with those of other rounds.
+double time_of(const TrialReport& report, std::size_t order);
 
-/// Returns whether the best order is faster than the mesh's own.
-bool is_faster(const TrialReport& report);
-
-/// Returns the result of the trial in one sentence.
-std::string trial_in_words(const TrialReport& report);
+/// Returns the time of an order in words: "2.7 s", or a number that the program prints.
+std::string time_in_words(const TrialReport& report, std::size_t order);
 
 /// Prints the sentence and a table of the orders.
 void print_trial(const Console& console, const TrialReport& report);

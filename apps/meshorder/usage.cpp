@@ -66,6 +66,17 @@ std::optional<std::string> line_with_output(const CLI::App& command) {
   return in_shell(name) + " -o " + in_shell(ordered_name(name));
 }
 
+/// Returns what is wrong if words after the mesh of `try` are not options: the program comes after --.
+std::optional<std::string> program_without_mark(const Place& place, const std::vector<std::string>& words) {
+  if (place.command->get_name() != "try" || words.empty() || words.front().starts_with('-'))
+    return std::nullopt;
+  const CLI::Option* const mesh = place.command->get_option_no_throw("MESH");
+  std::string line = place.words;
+  if (mesh != nullptr && !mesh->empty()) line += " " + in_shell(mesh->results().front());
+  return "unexpected argument '" + words.front() + "': -- has to stand before the program; write " + line +
+         " -- " + in_shell(words.front()) + " …";
+}
+
 }  // namespace
 
 std::vector<std::string> with_words_as_options(std::vector<std::string> arguments) {
@@ -113,6 +124,7 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error) {
   const Place place = place_of(app);
   const std::string help = "see " + place.words + " --help";
   const std::vector<std::string> words = app.remaining(true);
+  if (std::optional<std::string> fault = program_without_mark(place, words)) return *std::move(fault);
   const std::string option = unknown_option(words);
   if (!option.empty()) {
     const std::vector<std::string> known = options_of(*place.command);
