@@ -1,7 +1,9 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """What orders are worth to a function of the caller's: synthetic times, results, and bad arguments."""
 
+import itertools
 import json
+import time
 import typing
 
 import meshorder
@@ -52,20 +54,94 @@ def test_a_gain_is_found_and_the_matrix_in_that_order_returned():
 
 
 @pytest.mark.parametrize(
-    "gain, verdict, words", [(1, "tie", "by more than 1.5 %"), (0.8, "slower", "original order")]
+    "gain, verdict, words",
+    [
+        (1, "tie", "tie: no order tried is faster by more than 1.5 %; in rcm "),
+        (0.8, "slower", "slower: fastest in the original order; in rcm 0.8"),
+    ],
 )
 def test_no_gain_is_called_none(gain, verdict, words):
     given = lattice(30, 20, 9)
     trial = meshorder.try_orders(given, Solver(gain, 0.002), ["rcm"], time=lambda seconds: seconds)
     assert trial.verdict == verdict
     assert trial.ordered is given
-    assert words in str(trial)
+    assert str(trial).startswith(words) and "× as fast (" in str(trial)
+    assert trial.needed_budget is None
 
 
 def test_the_budget_ends_what_is_not_decided():
     trial = tried(Solver(1, 0.2), ["rcm"], 0.05)
     assert trial.verdict == "undecided"
-    assert "vary" in str(trial)
+    assert trial.interval and trial.needed_budget == pytest.approx(0.2)
+    assert str(trial).startswith("undecided: the times vary too much to say; in rcm ")
+    assert "budget=0.2 halves the range" in str(trial)
+
+
+class Sleeper:
+    """Takes 30 ms, and returns for each run the next number, at last always the same."""
+
+    def __init__(self, *numbers):
+        self.numbers = list(numbers)
+
+    def __call__(self, matrix):
+        time.sleep(0.03)
+        return self.numbers.pop(0) if len(self.numbers) > 1 else self.numbers[0]
+
+
+@pytest.mark.parametrize("budget", [0.05, 0.15])
+def test_too_few_runs_are_no_finding(graph, budget):
+    trial = meshorder.try_orders(graph, Sleeper(1), budget=budget)
+    assert trial.verdict == "undecided" and trial.interval is None
+    assert trial.left_out and trial.needed_budget and trial.needed_budget > 0.5
+    assert str(trial).startswith(f"undecided: too few runs to say; raise budget to {trial.needed_budget:g}\n")
+    assert f"no time for {', '.join(trial.left_out)}: give a larger budget" in str(trial)
+    assert json.loads(json.dumps(trial.as_dict()))["needed_budget"] == trial.needed_budget
+
+
+def test_an_order_whose_results_differ_gives_its_place_to_others(graph):
+    trial = meshorder.try_orders(graph, Sleeper(1, 2, 1), budget=0.4, tolerance=1e-6)
+    _, first, second = trial.orders
+    assert first.fault == "the results differ: 2 instead of 1"
+    assert second.fault is None and second.runs > 0 and trial.left_out
+    assert "a larger tolerance allows larger differences" in str(trial)
+
+
+def test_orders_that_the_caller_names_share_the_budget(graph):
+    trial = meshorder.try_orders(graph, Sleeper(1), ["auto", "bfs", "scrambled", "rcm"], budget=0.65)
+    assert trial.left_out == [] and {"bfs", "scrambled"} <= {order.name for order in trial.orders}
+
+
+def test_times_agree_with_ratios():
+    """Each run takes less than the one before."""
+    times = iter(1 / n for n in range(10, 1000))
+    trial = meshorder.try_orders(
+        lattice(30, 20, 9), lambda a: next(times), ["rcm", "scrambled", "bfs"], budget=1, time=lambda seconds: seconds
+    )
+    original, *others = trial.orders
+    assert {order.runs for order in others} != {original.runs}
+    for order in others:
+        assert order.time and order.ratio
+        assert order.time * order.ratio == pytest.approx(original.time)
+
+
+def test_sums_that_are_zero_but_for_rounding_agree(graph):
+    def results(zero):
+        return itertools.chain([[2e-14, -102.0]], itertools.repeat([zero, -102.0]))
+
+    near, far = results(-8e-14), results(-2e-10)
+    assert meshorder.try_orders(graph, lambda a: next(near), ["rcm"], budget=0.05, tolerance=1e-9).best == "rcm"
+    with pytest.raises(InvalidArgument, match="no other order; in rcm the results differ"):
+        meshorder.try_orders(graph, lambda a: next(far), ["rcm"], budget=0.05, tolerance=1e-9)
+
+
+def test_an_interval_that_is_shown_as_one_decides_nothing():
+    noise = [-0.02, -0.01, 0, 0, 0.01, 0.02]
+    width = np.log(_try._speedup_of(noise).high)
+    for log, verdict in ((0.0004, "undecided"), (0.002, "faster"), (-0.0004, "undecided"), (-0.002, "slower")):
+        trials = _try._PairedTrials(1)
+        for disturbance in noise:
+            trials.add_round({0: np.exp(log + np.copysign(width, log) + disturbance), 1: 1.0})
+        assert trials.verdict == verdict
 
 
 def test_meshes_come_as_reorder_returns_them():
@@ -86,8 +162,8 @@ def test_meshes_come_as_reorder_returns_them():
 
 
 def test_processor_time_and_the_clock_count(graph):
-    for time in ("cpu", "wall"):
-        trial = meshorder.try_orders(graph, lambda a: (a @ a).sum(), ["rcm"], budget=0.2, time=time)
+    for clock in ("cpu", "wall"):
+        trial = meshorder.try_orders(graph, lambda a: (a @ a).sum(), ["rcm"], budget=0.2, time=clock)
         assert (trial.orders[0].time or 0) > 0
 
 

@@ -29,7 +29,11 @@ _TAIL = 0.003
 _TRIMMED = 0.2
 _BETWEEN_CHECKS = 1.2
 _LEAST_SPREAD = 0.003
+_LEAST_DISTANCE = 0.001
 _LEAST_TIME = 1e-6
+
+# differences below this share of the largest number are rounding
+_ROUNDING = 1e-12
 
 # runs of the best order: a first run, rounds to choose among the orders, and pairs; then runs of each order
 _RUNS_OF_BEST = 15
@@ -142,9 +146,9 @@ class _PairedTrials:
         found = _speedup_of(self.logs[self.left[0]])
         if found.low > 1 / (1 + _TIE) and found.high < 1 + _TIE:
             self.verdict = "tie"
-        elif found.low > 1 and found.ratio > 1 + _TIE:
+        elif found.low >= 1 + _LEAST_DISTANCE and found.ratio > 1 + _TIE:
             self.verdict = "faster"
-        elif found.high < 1 and found.ratio < 1 / (1 + _TIE):
+        elif found.high <= 1 - _LEAST_DISTANCE and found.ratio < 1 / (1 + _TIE):
             self.verdict = "slower"
 
 
@@ -154,8 +158,9 @@ class TriedOrder:
 
     Attributes:
         name: "original", or the name of the order: "rcm", "hilbert/hilbert"; for "auto" the name of its choice.
-        time: the median of its runs, in seconds or as returned by ``time``; None if no run counts.
-        ratio: speedup over the original order; None if no run counts.
+        time: in seconds or as returned by ``time``: of the original order the median of its runs, of another one this
+            median divided by ``ratio``; None if no run counts.
+        ratio: speedup over the original order, from runs of the same rounds; None if no run counts.
         interval: lowest and highest ratio of a 95 % interval; None for fewer than six runs.
         runs: number of runs that count.
         order_seconds: seconds to make the order.
@@ -177,14 +182,16 @@ class Trial:
 
     Attributes:
         verdict: "faster": the function runs faster in ``best``; "slower": it runs slower in every other order
-            than in the original one; "tie": no order changes its time by more than 1.5 %; "undecided": no order makes it
-            faster by more than its times vary.
+            than in the original one; "tie": no order changes its time by more than 1.5 %; "undecided": its times vary too
+            much, or were too few, to say.
         best: name of the best order besides the original one; None if there is no other.
         ratio: speedup in that order; 1 if there is none.
         interval: a 95 % interval of the ratio, None for fewer than six runs.
         orders: the orders that were tried, the original one first.
         ordered: the mesh or matrix in the best order if the verdict is "faster", else the one that was given.
         left_out: names of orders for which the budget left no time.
+        needed_budget: seconds that an undecided trial needs for as many runs as all its orders take, or, if there is an
+            interval, for one of half the width; None for other trials.
     """
 
     verdict: str
@@ -194,10 +201,12 @@ class Trial:
     orders: list[TriedOrder]
     ordered: Any = field(repr=False, compare=False)
     left_out: list[str]
+    needed_budget: float | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """Returns everything but ``ordered``, ready for JSON."""
-        result = {name: getattr(self, name) for name in ("verdict", "best", "ratio", "interval", "left_out")}
+        names = ("verdict", "best", "ratio", "interval", "left_out", "needed_budget")
+        result = {name: getattr(self, name) for name in names}
         return {**result, "orders": [dict(vars(tried)) for tried in self.orders]}
 
     def __str__(self) -> str:
@@ -209,19 +218,26 @@ class Trial:
             rows.append(
                 f"{tried.name:<20} {tried.time:>10.4g} {tried.ratio:>7.3f} {_range(tried.interval):>13} {tried.runs:>5}"
             )
+        if self.left_out:
+            rows.append(f"no time for {', '.join(self.left_out)}: give a larger budget")
+        if any(tried.fault for tried in self.orders):
+            rows.append("orders whose results differ are left out: a larger tolerance allows larger differences")
         return "\n".join([self._sentence(), "", *rows])
 
     def _sentence(self) -> str:
         if self.best is None:
             return "no order was tried but the original one"
         interval = _range(self.interval)
-        found = f"{self.best}, {self.ratio:.3f}×" + (f" ({interval})" if interval else "")
         if self.verdict == "faster":
             return f"{self.ratio:.2f}× faster ({interval}) in {self.best}"
+        if not interval:
+            return f"undecided: too few runs to say; raise budget to {self.needed_budget:.6g}"
+        found = f"in {self.best} {self.ratio:.3f}× as fast ({interval})"
         if self.verdict == "slower":
-            return f"fastest in the original order; the best other one is {found}"
-        by = "1.5 %" if self.verdict == "tie" else "the times vary"
-        return f"no order tried is faster by more than {by}; the best one is {found}"
+            return f"slower: fastest in the original order; {found}"
+        if self.verdict == "tie":
+            return f"tie: no order tried is faster by more than {100 * _TIE:g} %; {found}"
+        return f"undecided: the times vary too much to say; {found}, and budget={self.needed_budget:.6g} halves the range"
 
 
 def _range(interval: tuple[float, float] | None) -> str:
@@ -279,7 +295,9 @@ class _Runner:
         found = np.asarray(result, dtype=float)
         if found.shape != self._first.shape:
             return f"the results differ: shape {found.shape} instead of {self._first.shape}"
-        wrong = ~np.isclose(found, self._first, rtol=self._tolerance, atol=0, equal_nan=True)
+        finite = self._first[np.isfinite(self._first)]
+        floor = _ROUNDING * np.abs(finite).max(initial=0)
+        wrong = ~np.isclose(found, self._first, rtol=self._tolerance, atol=floor, equal_nan=True)
         if not wrong.any():
             return None
         return f"the results differ: {found[wrong].flat[0]:.6g} instead of {self._first[wrong].flat[0]:.6g}"
@@ -306,28 +324,51 @@ def _ordered(given: Any, name: str, options: dict[str, Any]) -> tuple[str, Any, 
     return shown if name == "auto" else name, moved, kept
 
 
-def _candidates(
-    given: Any, names: Sequence[str] | None, most: int, options: dict[str, Any]
+def _orders_that_fit(runs: float, named: Sequence[str] | None) -> int:
+    """Returns how many orders a budget of so many runs suffices for; those that the caller named share it."""
+    if named is not None and runs >= 2 * (len(named) + 1):
+        return len(named)
+    return max(1, int((min(runs, 1e6) - _RUNS_OF_BEST) / _RUNS_OF_EACH))
+
+
+def _candidate(
+    given: Any, name: str, others: Sequence[_Candidate], named: bool, options: dict[str, Any]
+) -> _Candidate | None:
+    """Returns an order to try; None if it moves nothing or is among the others."""
+    began = clocks.perf_counter()
+    try:
+        shown, ordered, kept = _ordered(given, name, options)
+    except InvalidArgument:
+        if named or name == "auto":
+            raise
+        return None  # a geometric order, for an object without coordinates
+    if kept or any(candidate.name == shown for candidate in others):
+        return None
+    return _Candidate(shown, ordered, clocks.perf_counter() - began)
+
+
+def _first_runs(
+    mesh: Any, methods: Sequence[str] | None, runner: _Runner, budget: float, options: dict[str, Any]
 ) -> tuple[list[_Candidate], list[str]]:
-    """Returns the orders to try, and the names of those for which there is no time."""
-    found: list[_Candidate] = []
+    """Runs the function once in each order; returns these, and the names of those for which there is no time.
+
+    Orders in which the results differ give their place to others.
+    """
+    original = _Candidate("original", mesh, 0.0)
+    runner.run(original)
+    most = _orders_that_fit(budget / max(original.last, _LEAST_TIME), methods)
+    candidates = [original]
     left_out: list[str] = []
-    for name in _DEFAULT if names is None else names:
-        if any(candidate.name == name for candidate in found):
+    for name in _DEFAULT if methods is None else methods:
+        if any(candidate.name == name for candidate in candidates[1:]):
             continue
-        if len(found) >= most:
+        sound = sum(candidate.fault is None for candidate in candidates[1:])
+        if sound >= most or (len(candidates) > 1 and runner.spent + original.last > budget):
             left_out.append(name)
-            continue
-        began = clocks.perf_counter()
-        try:
-            shown, ordered, kept = _ordered(given, name, options)
-        except InvalidArgument:
-            if names is not None or name == "auto":
-                raise
-            continue  # a geometric order, for an object without coordinates
-        if not kept and all(candidate.name != shown for candidate in found):
-            found.append(_Candidate(shown, ordered, clocks.perf_counter() - began))
-    return found, left_out
+        elif candidate := _candidate(mesh, name, candidates[1:], methods is not None, options):
+            candidates.append(candidate)
+            runner.run(candidate)
+    return candidates, left_out
 
 
 def try_orders(
@@ -344,13 +385,14 @@ def try_orders(
         mesh: a mesh that `reorder` takes, except for Gmsh's model, or a SciPy matrix.
         function: called with the mesh or matrix in one of the orders, of the type that `reorder` returns; must not change
             it.
-        methods: the orders to try: "rcm", or "rcm/lexmax" with a method for the elements. None: "auto", and hilbert,
-            rcm, spectral-fronts and hilbert-fronts where possible.
+        methods: the orders to try: "rcm", or "rcm/lexmax" with a method for the elements; they share the budget. None:
+            "auto", and hilbert, rcm, spectral-fronts and hilbert-fronts where possible.
         budget: seconds for all runs of the function.
         time: what is compared: "cpu", the processor time of this process; "wall", the time by the clock; or a function that
             returns a number > 0 for the result of ``function``.
-        tolerance: None, or the relative difference up to which the numbers that ``function`` returns must equal those of
-            its first run; an order in which they do not is excluded.
+        tolerance: None, by which results are not compared, or the relative difference up to which the numbers that
+            ``function`` returns must equal those of its first run; differences below 1e-12 of the largest number are
+            allowed as well. An order in which they differ more is excluded.
         **options: of the orders; see `Options`.
 
     Returns:
@@ -372,12 +414,15 @@ def try_orders(
     if not callable(function):
         raise InvalidArgument("function: expected a function that takes the mesh")
     runner = _Runner(function, time, tolerance)
-    original = _Candidate("original", mesh, 0.0)
-    runner.run(original)
-    most = max(1, int((min(budget / max(original.last, _LEAST_TIME), 1e6) - _RUNS_OF_BEST) / _RUNS_OF_EACH))
-    found, left_out = _candidates(mesh, methods, most, options)
-    candidates = [original, *found]
-    trials = _PairedTrials(len(found))
+    candidates, left_out = _first_runs(mesh, methods, runner, budget, options)
+    trials = _PairedTrials(len(candidates) - 1)
+    for number, candidate in enumerate(candidates):
+        candidate.times.clear()  # without the first runs
+        if candidate.fault:
+            trials.exclude(number)
+    if len(candidates) > 1 and not trials.left:
+        faults = "; ".join(f"in {candidate.name} {candidate.fault}" for candidate in candidates[1:])
+        raise InvalidArgument(f"the function has the same results in no other order; {faults}; give a larger tolerance")
 
     def run(number: int) -> float:
         taken = runner.run(candidates[number])
@@ -388,28 +433,38 @@ def try_orders(
             trials.exclude(number)
         return taken
 
-    for number in range(1, len(candidates)):
-        run(number)
-    for candidate in candidates:
-        candidate.times.clear()  # without the first runs
-    if found and not trials.left:
-        raise InvalidArgument(f"the function works in no other order; in {found[0].name} {found[0].fault}")
     while each := trials.next_round():
         if runner.spent + sum(candidates[number].last for number in each) > budget:
             break
         trials.add_round({number: run(number) for number in each})
-    return _result(candidates, trials, left_out)
+    return _result(candidates, trials, left_out, budget, runner.spent)
 
 
-def _result(candidates: list[_Candidate], trials: _PairedTrials, left_out: list[str]) -> Trial:
+def _rounded_up(seconds: float) -> float:
+    """Returns a number of seconds rounded up to two digits."""
+    unit = 10.0 ** (math.floor(math.log10(seconds)) - 1)
+    return math.ceil(seconds / unit) * unit
+
+
+def _needed_budget(candidates: list[_Candidate], left_out: list[str], budget: float, spent: float) -> float:
+    """Returns the budget that suffices for an interval: 1.25 times the seconds of as many runs as all orders take."""
+    runs = sum(1 + len(candidate.times) for candidate in candidates)
+    others = sum(candidate.fault is None for candidate in candidates[1:]) + len(left_out)
+    return _rounded_up(1.25 * max(budget, (_RUNS_OF_BEST + _RUNS_OF_EACH * others) * spent / runs))
+
+
+def _result(
+    candidates: list[_Candidate], trials: _PairedTrials, left_out: list[str], budget: float, spent: float
+) -> Trial:
     tried = []
+    own = statistics.median(candidates[0].times or [0.0])
     for number, candidate in enumerate(candidates):
         speedup = _speedup_of(trials.logs[number]) if number else _Speedup(1.0, 1.0, 1.0)
         timed = bool(candidate.times)
         tried.append(
             TriedOrder(
                 candidate.name,
-                statistics.median(candidate.times) if timed else None,
+                own / speedup.ratio if timed else None,
                 speedup.ratio if timed else None,
                 (speedup.low, speedup.high) if timed and speedup.high < math.inf else None,
                 len(candidate.times),
@@ -420,7 +475,9 @@ def _result(candidates: list[_Candidate], trials: _PairedTrials, left_out: list[
     best = trials.best()
     if best is None:
         return Trial("undecided", None, 1.0, None, tried, candidates[0].ordered, left_out)
+    interval = tried[best].interval
+    needed = None
+    if trials.verdict == "undecided":  # the width of an interval falls with the root of the number of runs
+        needed = _rounded_up(4 * budget) if interval else _needed_budget(candidates, left_out, budget, spent)
     ordered = candidates[best if trials.verdict == "faster" else 0].ordered
-    return Trial(
-        trials.verdict, tried[best].name, tried[best].ratio or 1.0, tried[best].interval, tried, ordered, left_out
-    )
+    return Trial(trials.verdict, tried[best].name, tried[best].ratio or 1.0, interval, tried, ordered, left_out, needed)
