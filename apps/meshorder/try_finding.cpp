@@ -29,8 +29,8 @@ bool is_interpreter(std::string_view name) {
 
 /// Returns a number of seconds rounded up to two digits.
 double rounded_up(double seconds) {
-  const double unit = std::pow(10, std::floor(std::log10(seconds)) - 1);
-  return std::ceil(seconds / unit) * unit;
+  const double scale = std::pow(10, 1 - std::floor(std::log10(seconds)));
+  return std::ceil(seconds * scale) / scale;
 }
 
 /// Returns "in rcm it is 1.02× as fast (0.97–1.07)".
@@ -71,7 +71,7 @@ std::string verdict_name(const TrialReport& report) {
 }
 
 std::string program_name(const std::vector<std::string>& command) {
-  const std::string program = fs::path(command.front()).filename().string();
+  std::string program = fs::path(command.front()).filename().string();
   if (!is_interpreter(program)) return program;
   for (auto word = command.begin() + 1; word != command.end(); ++word) {
     if (*word == "-c" || *word == "-e" || word->starts_with('{')) break;  // no script, but its text

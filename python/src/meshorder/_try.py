@@ -442,8 +442,8 @@ def try_orders(
 
 def _rounded_up(seconds: float) -> float:
     """Returns a number of seconds rounded up to two digits."""
-    unit = 10.0 ** (math.floor(math.log10(seconds)) - 1)
-    return math.ceil(seconds / unit) * unit
+    scale = 10.0 ** (1 - math.floor(math.log10(seconds)))
+    return math.ceil(seconds * scale) / scale
 
 
 def _needed_budget(candidates: list[_Candidate], left_out: list[str], budget: float, spent: float) -> float:
