@@ -218,7 +218,8 @@ void add_openfoam(Seeds& seeds) {
       {"points", file("vectorField", points)},
       {"faces", file("faceList",
                      "11(4(1 4 10 7) 4(0 6 9 3) 4(0 1 7 6) 4(3 9 10 4) 4(0 3 4 1) 4(6 7 10 9)\n"
-                     "4(2 5 11 8) 4(1 2 8 7) 4(4 10 11 5) 4(1 4 5 2) 4(7 8 11 10))")}};
+                     "4(2 5 11 8) 4(1 2 8 7) 4(4 10 11 5) 4(1 4 5 2) 4(7 8 11 10))")},
+      {"boundary", file("polyBoundaryMesh", "1(walls { type wall; nFaces 10; startFace 1; })")}};
   seeds.add("openfoam", input_of(nested));
   std::vector<MemoryFile> compact = nested;
   compact[3].bytes = file("faceCompactList",
@@ -229,6 +230,7 @@ void add_openfoam(Seeds& seeds) {
   std::vector<MemoryFile> uniform = nested;
   uniform[0].bytes = file("labelList", "3{0}");
   uniform[1].bytes = file("labelList", "0()");
+  uniform[4].bytes = file("polyBoundaryMesh", "1(walls { nFaces 3; startFace 0; })");
   seeds.add("openfoam", input_of(uniform));
 }
 

@@ -3,6 +3,7 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "io/format.hpp"
+#include "io/openfoam/cell_order.hpp"
 #include "io/stream/output_file.hpp"
 #include "lab.hpp"
 #include "lab/report/comparison/comparison_page.hpp"
@@ -217,6 +218,9 @@ bool is_study(const std::string& input) {
 FilePath results_of(const std::string& input) {
   if (!fs::is_directory(input)) return {input};
   const StudyFolder folder(input);
+  if (openfoam::is_case(input))
+    throw InputError(input, "is an OpenFOAM case, and reports are on meshes in files and on studies",
+                     "order its cells by meshorder openfoam " + input);
   if (!fs::exists(folder.results()))
     throw InputError(input, "holds no results.json",
                      "name the folder of a study that `meshorder reproduce` made, or mesh files");

@@ -75,7 +75,7 @@ class Case {
         region_(arguments.region),
         time_(arguments.time),
         parallel_(arguments.parallel) {
-    if (!is_folder(folder_)) throw InputError(folder_.string(), "no such folder", "give an OpenFOAM case");
+    if (!is_folder(folder_)) refuse_file(folder_);
     find_meshes();
   }
 
@@ -92,15 +92,18 @@ class Case {
   /// Returns a file to be written in the case.
   [[nodiscard]] FilePath output(const fs::path& file) const { return FilePath::in(folder_, file); }
 
-  /// Returns the command that moves the cells.
-  [[nodiscard]] std::string next() const {
+  /// Returns the command that moves the cells; before it, if the dictionary asks for another order, that it
+  /// must be changed.
+  [[nodiscard]] std::string next(bool keeps_other_dictionary) const {
     std::string command = "renumberMesh";
     if (parallel_) command = fmt::format("mpirun -np {} renumberMesh -parallel", meshes_.size());
     command += " -case " + in_shell(folder_.string());
     if (!region_.empty()) command += " -region " + in_shell(region_);
     if (!time_.empty()) command += " -time " + in_shell(time_);
     // renumberMesh looks for the dictionary in the case, and there in the region's folder
-    return command + " -overwrite -dict system/renumberMeshDict";
+    command += " -overwrite -dict system/renumberMeshDict";
+    if (!keeps_other_dictionary) return command;
+    return fmt::format("change {}, which asks for another order; then {}", dictionary().string(), command);
   }
 
   /// Returns warnings on a case with several times.
@@ -131,8 +134,27 @@ class Case {
     return (folder_ / mesh / (time_.empty() ? "constant" : time_) / region_).lexically_normal();
   }
 
-  static bool has_owners(const fs::path& poly_mesh) {
-    return fs::exists(poly_mesh / "owner") || fs::exists(poly_mesh / "owner.gz");
+  static bool has(const fs::path& poly_mesh, const std::string& file) {
+    return fs::exists(poly_mesh / file) || fs::exists(poly_mesh / (file + ".gz"));
+  }
+  static bool has_owners(const fs::path& poly_mesh) { return has(poly_mesh, "owner"); }
+
+  /// Throws InputError for a path that is no folder.
+  [[noreturn]] static void refuse_file(const fs::path& path) {
+    if (!fs::exists(path)) throw InputError(path.string(), "no such folder", "give an OpenFOAM case");
+    throw InputError(path.string(), "is a file, not an OpenFOAM case",
+                     "meshes in files are ordered by meshorder order " + in_shell(path.string()));
+  }
+
+  /// Throws InputError if a folder is within a case.
+  static void refuse_part(const fs::path& folder) {
+    const fs::path whole = fs::absolute(folder).lexically_normal();
+    for (fs::path outer = whole; outer != outer.parent_path(); outer = outer.parent_path()) {
+      if (!openfoam::is_case(outer)) continue;
+      const fs::path given = folder.is_absolute() ? outer : outer.lexically_proximate(fs::current_path());
+      throw InputError(folder.string(), "is a folder of an OpenFOAM case",
+                       "give the case: meshorder openfoam " + in_shell(given.string()));
+    }
   }
 
   void find_meshes() {
@@ -172,6 +194,8 @@ class Case {
   }
 
   [[noreturn]] void refuse_missing(const fs::path& poly_mesh) const {
+    if (has(poly_mesh, "neighbour") || has(poly_mesh, "faces")) openfoam::refuse_missing(poly_mesh / "owner");
+    if (!openfoam::is_case(folder_)) refuse_part(folder_);
     std::string remedy = "make the mesh first, for instance by blockMesh";
     std::vector<std::string> regions = folders_in(poly_mesh.parent_path());
     std::erase_if(regions, [&](const std::string& region) {
@@ -221,8 +245,9 @@ std::string no_better(GraphRef graph, const Permutation& order, const std::strin
 
 OrderedMesh ordered(const Case& meshes, const std::string& name, const OpenFoamArguments& arguments,
                     Notes& notes) {
-  const openfoam::PolyMesh mesh = openfoam::read_poly_mesh(
-      meshes.path(), meshes.poly_mesh(name), needs_centres(arguments.cells, arguments.ordering.workload));
+  const openfoam::PolyMesh mesh =
+      openfoam::read_poly_mesh(meshes.path(), meshes.poly_mesh(name),
+                               needs_centres(arguments.cells, arguments.ordering.workload), notes);
   OrderedMesh result;
   result.name = name;
   result.cells = mesh.graph.size();
@@ -362,8 +387,9 @@ void run(const OpenFoamArguments& arguments) {
     console.print("{:<10} {}", &file == written.data() ? "wrote" : "", file);
   }
   const bool to_be_moved = outputs && !all_stay(done);
+  const std::string next = to_be_moved ? meshes.next(outputs->keeps_other_dictionary()) : "";
   if (to_be_moved) {
-    console.print("{:<10} {}", "next", meshes.next());
+    console.print("{:<10} {}", "next", next);
     console.print("{:<10} run it once: a second run would move the cells again", "");
   } else if (outputs) {
     console.print("{:<10} nothing: all cells stay where they are", "next");
@@ -374,7 +400,7 @@ void run(const OpenFoamArguments& arguments) {
                       {"for", to_string(arguments.ordering.workload)},
                       {"meshes", list},
                       {"files", written},
-                      {"next", to_be_moved ? nlohmann::ordered_json(meshes.next()) : nullptr},
+                      {"next", to_be_moved ? nlohmann::ordered_json(next) : nullptr},
                       {"seconds", stopwatch.seconds()}});
 }
 

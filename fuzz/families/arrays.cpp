@@ -13,7 +13,7 @@
 namespace meshorder::fuzz {
 namespace {
 
-constexpr std::array<std::string_view, 3> kBesideOwner{"neighbour", "points", "faces"};
+constexpr std::array<std::string_view, 4> kBesideOwner{"neighbour", "points", "faces", "boundary"};
 
 void check_graph(const CsrGraph& graph) {
   for (const Index v : graph.neighbours) {
@@ -30,7 +30,8 @@ void check_openfoam(std::string_view /*family*/, Family::Bytes input) {
     scratch_file(std::string(name), bytes_of(files, name));
   }
   for (const bool with_centres : {false, true}) {
-    const auto mesh = accepted([&] { return openfoam::read_poly_mesh(folder, folder, with_centres); });
+    Notes notes;
+    const auto mesh = accepted([&] { return openfoam::read_poly_mesh(folder, folder, with_centres, notes); });
     if (mesh) check_graph(mesh->graph);
   }
 }

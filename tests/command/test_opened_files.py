@@ -239,6 +239,9 @@ def test_files_of_openfoam(command, tmp_path, plant):
     (tmp_path / "case" / "system").mkdir()
     for name, numbers in {"owner": "7(0 0 0 1 1 0 1)", "neighbour": "1(1)"}.items():
         (folder / name).write_text("FoamFile { version 2.0; format ascii; class labelList; object x; }\n" + numbers + "\n")
+    (folder / "boundary").write_text("FoamFile { class polyBoundaryMesh; }\n1(a { nFaces 6; startFace 1; })\n")
+    for name in ("points", "faces"):
+        (folder / name).write_text("unread")
     command.ok("openfoam", "case", "--cells", "fiedler")
     plant(folder / "owner")
     assert re.search(r"owner: (is a pipe|lies outside of the folder)", refused(command, "openfoam", "case", "--cells", "fiedler"))

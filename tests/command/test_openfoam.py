@@ -100,6 +100,10 @@ def test_a_users_dictionary_stays(command, case):
     assert len(done.stderr.splitlines()) == 1
     assert 'put `writeMaps false; method manual; manualCoeffs { dataFile "cellOrder"; }` into it' in done.stderr
     assert dictionary.read_text() == users
+    result = command.json("openfoam", "case")
+    assert result["next"] == (f"change case/system/renumberMeshDict, which asks for another order; then renumberMesh "
+                              "-case case -overwrite -dict system/renumberMeshDict")
+    assert "next       " + result["next"] in done.stdout
     assert command.ok("openfoam", "case", "--force").stderr == "" and dictionary.read_text() == own
     # one that asks for the order keeps its other settings
     users = own + "sortCoupledFaceCells true;\n"
@@ -224,8 +228,31 @@ def test_faults_leave_nothing_behind(command, case):
     shutil.rmtree(case / "system")
     assert "system" in command.fails("openfoam", "case")
     assert command.fails("openfoam", "none").endswith("none: no such folder; give an OpenFOAM case")
-    (case / "constant" / "polyMesh" / "owner").unlink()
+    (case / "system").mkdir()
+    for name in ("boundary", "points", "owner"):
+        (case / "constant" / "polyMesh" / name).unlink()
+        message = command.fails("openfoam", "case")
+        assert message.endswith(f"polyMesh/{name}: is missing, but a mesh of OpenFOAM needs it; restore it, or make the mesh again")
+    shutil.rmtree(case / "constant" / "polyMesh")
     assert command.fails("openfoam", "case").endswith("make the mesh first, for instance by blockMesh")
+
+
+def test_cases_that_contradict_themselves_are_refused(command, case):
+    mesh = case / "constant" / "polyMesh"
+    before = foam_cases.folder_files(case)
+    (mesh / "boundary").write_text((mesh / "boundary").read_text().replace("nFaces 148", "nFaces 147"))
+    assert "boundary: the patches have the faces" in command.fails("openfoam", "case")
+    assert foam_cases.folder_files(case) == before
+
+
+def test_other_paths_than_a_case(command, case, tmp_path):
+    for path in ("case/constant/polyMesh", "case/constant", "case/system"):
+        assert command.fails("openfoam", path) == (
+            f"meshorder: {path}: is a folder of an OpenFOAM case; give the case: meshorder openfoam case")
+    assert command.fails("report", "case").endswith("order its cells by meshorder openfoam case")
+    (tmp_path / "wing.su2").write_text("NDIME= 2\n")
+    assert command.fails("openfoam", "wing.su2").endswith(
+        "wing.su2: is a file, not an OpenFOAM case; meshes in files are ordered by meshorder order wing.su2")
 
 
 def test_more_processors_than_open_files(command, case):
@@ -242,7 +269,7 @@ def test_more_processors_than_open_files(command, case):
 def test_an_empty_processor_mesh_has_an_empty_map(command, case):
     empty = case / "processor0" / "constant" / "polyMesh"
     empty.mkdir(parents=True)
-    for name in ("owner", "neighbour"):
+    for name in ("owner", "neighbour", "points", "faces", "boundary"):
         (empty / name).write_text(foam_cases.header("labelList", name) + "0()\n")
     (mesh,) = command.json("openfoam", "case", "--parallel")["meshes"]
     assert mesh["cells"] == 0

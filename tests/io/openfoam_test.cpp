@@ -39,12 +39,17 @@ std::string file_of(std::string_view class_name, std::string_view body, std::str
   return header.append(";\n    object      it;\n}\n// * * * //\n\n").append(body);
 }
 
+std::string patches(std::string_view list) { return file_of("polyBoundaryMesh", list); }
+
 /// The files of a folder `polyMesh`.
 struct Files {
   std::string owner;
   std::string neighbour;
   std::string points;
   std::string faces;
+  std::string boundary = patches(
+      "2(empty { type empty; nFaces 0; startFace 0; }\nwalls\n{\n    type wall;\n    inGroups "
+      "1(wall);\n    nFaces 10;\n    startFace 1;\n})");
 };
 
 // two cubes side by side; the point at (x, y, z) is x + 3y + 6z
@@ -97,13 +102,21 @@ Files binary_files(std::string_view arch, std::endian order) {
           file_of("faceCompactList", list(begins) + "\n" + list(kFacePoints), "binary", arch)};
 }
 
-PolyMesh read(const Files& files) {
+PolyMesh read(const Files& files, Notes& notes) {
   const TemporaryFolder folder;
   (void)folder.file("owner", files.owner);
   (void)folder.file("neighbour", files.neighbour);
   (void)folder.file("points", files.points);
   (void)folder.file("faces", files.faces);
-  return read_poly_mesh(folder.path(), folder.path(), true);
+  (void)folder.file("boundary", files.boundary);
+  return read_poly_mesh(folder.path(), folder.path(), true, notes);
+}
+
+PolyMesh read(const Files& files) {
+  Notes notes;
+  PolyMesh mesh = read(files, notes);
+  EXPECT_THAT(notes, IsEmpty());
+  return mesh;
 }
 
 std::string fault_of(const Files& files) {
@@ -147,6 +160,7 @@ TEST(OpenFoam, ReadsOneCellAndNone) {
   Files files = text_files();
   files.owner = file_of("labelList", "6{0}");
   files.neighbour = file_of("labelList", "0()");
+  files.boundary = patches("1(walls { nFaces 6; startFace 0; })");
   files.faces =
       file_of("faceList", "6(4(0 6 9 3) 4(0 1 7 6) 4(3 9 10 4) 4(0 3 4 1) 4(6 7 10 9) 4(1 4 10 7))");
   PolyMesh mesh = read(files);
@@ -155,6 +169,7 @@ TEST(OpenFoam, ReadsOneCellAndNone) {
   EXPECT_THAT(mesh.centres, ElementsAre(Point{0.5, 0.5, 0.5}));
 
   files.owner = files.neighbour = file_of("labelList", "0");
+  files.boundary = patches("0()");
   files.points = file_of("vectorField", "0()");
   files.faces = file_of("faceList", "0()");
   mesh = read(files);
@@ -166,6 +181,7 @@ TEST(OpenFoam, CellsThatShareSeveralFacesAreJoinedOnce) {
   Files files = text_files();
   files.owner = file_of("labelList", "4(0 0 1 1)");
   files.neighbour = file_of("labelList", "2(1 1)");
+  files.boundary = patches("1(walls { nFaces 2; startFace 2; })");
   files.faces = file_of("faceList", "4(3(0 1 2) 3(1 2 3) 3(2 3 4) 3(3 4 5))");
   const PolyMesh mesh = read(files);
   EXPECT_EQ(mesh.internal_faces, 2);
@@ -188,9 +204,11 @@ TEST(OpenFoam, RefusesBrokenFilesWithTheirPlace) {
            {&Files::owner, with(good.owner, "0\n0\n0\n", "0\n1.5\n0\n"), "owner:15: the owner is '1.5'"},
            {&Files::owner, with(good.owner, "0\n0\n0\n", "0\n" + huge + "0\n0\n"),
             "a smaller number is needed"},
-           {&Files::owner, with(good.owner, "0\n0\n0\n", "2\n2\n2\n"), ""},
+           {&Files::owner, with(good.owner, "0\n0\n0\n", "2\n2\n2\n"),
+            "neighbour: face 0 has the owner 2 and the neighbour 1"},
            {&Files::owner, with(good.owner, "1\n1\n1\n1\n", "3\n3\n3\n3\n"), "cell 2 of 4 has no face"},
-           {&Files::owner, with(good.owner, "11\n(", "12\n("), "owner:25: the owner is ')'"},
+           {&Files::owner, with(good.owner, "11\n(", "12\n("),
+            "owner:25: the list of owners ends after 11; the count at the top says 12"},
            {&Files::owner, with(good.owner, "11\n(", "10\n("),
             "owner:24: expected ')' of the list of owners"},
            {&Files::owner, with(good.owner, "11\n(", "-11\n("), "owner:12: the number of owners is -11; it"},
@@ -209,6 +227,25 @@ TEST(OpenFoam, RefusesBrokenFilesWithTheirPlace) {
            {&Files::neighbour, file_of("labelList", "1(0)"), "face 0 has cell 0 on both sides"},
            {&Files::neighbour, file_of("labelList", "2(-1 1)"), "face 0 has no neighbour"},
            {&Files::neighbour, file_of("labelList", "12{1}"), "lists 12 faces"},
+           {&Files::owner, with(good.owner, "\n0\n0\n0\n", "\n1\n0\n0\n"), "face 0 has cell 1 on both sides"},
+           {&Files::owner, with(good.owner, "labelList", "faceList"),
+            "owner:7: the class is 'faceList'; this file has the class labelList"},
+           {&Files::owner, with(good.owner, "class       labelList;", ""), "the header names no class"},
+           {&Files::neighbour, with(good.neighbour, "labelList", "vectorField"), "neighbour:7: the class is"},
+           {&Files::owner, with(good.owner, "ascii", "binary"),
+            "the header says `format binary`, but the numbers are text; correct `format`"},
+           {&Files::boundary, patches("1(walls { nFaces 9; startFace 1; })"),
+            "boundary: the patches have the faces 1 to 9, the mesh 1 to 10"},
+           {&Files::boundary, patches("1(walls { nFaces 10;\nstartFace 2; })"),
+            "boundary:13: the patch 'walls' begins at face 2, but face 1 is next"},
+           {&Files::boundary, patches("2(a { nFaces 5; startFace 1; } b { nFaces 5; startFace 5; })"),
+            "the patch 'b' begins at face 5, but face 6 is next"},
+           {&Files::boundary, patches("1(walls { inner { nFaces 10; } startFace 1; })"),
+            "the patch 'walls' has no number as nFaces"},
+           {&Files::boundary, patches("1(walls { nFaces 10; startFace -1; })"), "has no number as startFace"},
+           {&Files::boundary, patches("walls { nFaces 10; startFace 1; }"), "expected a list of patches"},
+           {&Files::boundary, patches("1(walls nFaces 10;)"), "expected '{' after the patch 'walls'"},
+           {&Files::boundary, patches("1(walls { nFaces 10;"), "the file ends within the list of patches"},
            {&Files::points, with(good.points, "(1 0 0)", "(nan 0 0)"), "points:15: a coordinate is 'nan'"},
            {&Files::points, with(good.points, "(1 0 0)", "(1e999 0 0)"),
             "points:15: a coordinate is '1e999'"},
@@ -231,12 +268,54 @@ TEST(OpenFoam, RefusesBrokenFilesWithTheirPlace) {
        }) {
     Files files = good;
     files.*file = content;
-    if (expected.empty()) {
-      (void)read(files);
-    } else {
-      EXPECT_THAT(fault_of(files), HasSubstr(expected)) << content;
+    EXPECT_THAT(fault_of(files), HasSubstr(expected)) << content;
+  }
+}
+
+TEST(OpenFoam, RefusesOwnersWithHigherNumbersThanNeighbours) {
+  Files files = text_files();
+  files.owner = file_of("labelList", "11(1 0 0 0 0 0 1 1 1 1 1)");
+  files.neighbour = file_of("labelList", "1(0)");
+  EXPECT_THAT(fault_of(files),
+              HasSubstr("neighbour: face 0 has the owner 1 and the neighbour 0; the owner of"));
+}
+
+TEST(OpenFoam, RefusesMissingFiles) {
+  for (const std::string name : {"owner", "neighbour", "points", "faces", "boundary"}) {
+    const TemporaryFolder folder;
+    for (const std::string other : {"owner", "neighbour", "points", "faces", "boundary"}) {
+      if (other != name) (void)folder.file(other, "unread");
+    }
+    Notes notes;
+    try {
+      (void)read_poly_mesh(folder.path(), folder.path(), false, notes);
+      ADD_FAILURE() << name;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(name + ": is missing"));
     }
   }
+}
+
+TEST(OpenFoam, NotesCountsOfAHeaderThatAreOthers) {
+  const auto notes_with = [](const std::string& note) {
+    Files files = text_files();
+    files.owner = with(files.owner, "nPoints:12; {", note);
+    Notes notes;
+    (void)read(files, notes);
+    return notes;
+  };
+  EXPECT_THAT(notes_with("nPoints:12  nCells:2  nFaces:11  nInternalFaces: 1"), IsEmpty());
+  EXPECT_THAT(notes_with("nCells: many nFaces:"), IsEmpty());
+  EXPECT_THAT(notes_with("nCells:3 nFaces:11 nInternalFaces:2"),
+              ElementsAre(HasSubstr(
+                  "owner: the counts in the header are those of another mesh: nCells is 3, the files "
+                  "have 2, nInternalFaces is 2, the files have 1; run checkMesh")));
+}
+
+TEST(OpenFoam, BoundariesThatReferElsewhereAreNotChecked) {
+  Files files = text_files();
+  files.boundary = patches("(walls { nFaces $n; startFace 1; })");
+  expect_two_cubes(read(files));
 }
 
 TEST(OpenFoam, RefusesBrokenBinaryFilesWithTheirByte) {
@@ -245,6 +324,9 @@ TEST(OpenFoam, RefusesBrokenBinaryFilesWithTheirByte) {
   files.owner[files.owner.find("11\n(") + 4 + 3] = '\x7f';  // the highest byte of the first owner
   EXPECT_THAT(fault_of(files), HasSubstr("owner: byte " + std::to_string(good.owner.find("11\n(") + 4) +
                                          ": the owner is 2130706432"));
+  files = good;
+  files.owner = with(good.owner, "binary", "ascii");
+  EXPECT_THAT(fault_of(files), HasSubstr("the header says `format ascii`, but the numbers are binary"));
   files = good;
   files.owner = with(good.owner, "label=32", "label=64");
   EXPECT_THAT(fault_of(files), HasSubstr("bytes follow"));

@@ -20,16 +20,21 @@ namespace {
 constexpr std::int64_t kMostAlike = 1 << 20;
 
 constexpr std::string_view kMarks = "(){};";
+constexpr std::string_view kFormatRemedy = "correct `format` in the header, or write the file anew";
 
 bool is_space(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 bool is_mark(char c) { return kMarks.find(c) != std::string_view::npos; }
 /// Returns whether this character ends a number or word; a slash may begin a comment.
 bool is_end(char c) { return is_space(c) || is_mark(c) || c == '/'; }
 
+/// Returns whether this character is none of a text file of numbers.
+bool is_no_text(char c) { return !is_space(c) && (c < ' ' || c > '~'); }
+
+FilePath compressed(const FilePath& path) { return path.beside(path.path().filename().string() + ".gz"); }
+
 /// Returns the file of that path if it exists, else its compressed form.
 FilePath existing(const FilePath& path) {
-  const FilePath compressed = path.beside(path.path().filename().string() + ".gz");
-  return path.exists() || !compressed.exists() ? path : compressed;
+  return path.exists() || !compressed(path).exists() ? path : compressed(path);
 }
 
 }  // namespace
@@ -41,10 +46,23 @@ FoamFile::FoamFile(const FilePath& path) {
   read_header();
 }
 
+bool FoamFile::exists(const FilePath& path) { return path.exists() || compressed(path).exists(); }
+
+std::int64_t FoamFile::line_at(std::size_t position) const {
+  return 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(position), '\n');
+}
+
 void FoamFile::fail(const std::string& what, const std::string& remedy) const {
   if (binary_) throw InputError(Location{file_, 0, static_cast<std::int64_t>(position_)}, what, remedy);
-  const auto here = text_.begin() + static_cast<std::ptrdiff_t>(position_);
-  throw InputError(Location{file_, 1 + std::count(text_.begin(), here, '\n'), -1}, what, remedy);
+  throw InputError(Location{file_, line_at(position_), -1}, what, remedy);
+}
+
+void FoamFile::require_class(std::string_view class_name) const {
+  if (class_ == class_name) return;
+  throw InputError(
+      Location{file_, line_at(class_end_), -1},
+      class_.empty() ? "the header names no class" : fmt::format("the class is '{}'", shown(class_)),
+      fmt::format("this file has the class {}: it may be another one under its name", class_name));
 }
 
 // ---- words
@@ -121,7 +139,11 @@ void FoamFile::read_header() {
     if (key == "}") --depth;
     if (depth != 1 || is_mark(key.front()) || at('{')) continue;
     const std::string_view value = token();
-    if (key == "class") class_ = value;
+    if (key == "note") note_ = value;
+    if (key == "class") {
+      class_ = value;
+      class_end_ = position_;
+    }
     if (key == "arch") read_arch(value);
     if (key == "format") {
       if (value != "ascii" && value != "binary") {
@@ -149,8 +171,11 @@ void FoamFile::fail_number(std::string_view what, std::string_view needed) {
   skip_blanks();
   if (position_ >= text_.size()) fail(fmt::format("the file ends before {}", what), "it may be cut short");
   const std::string_view rest = std::string_view(text_).substr(position_);
-  fail(fmt::format("{} is '{}'", what, shown(rest.substr(0, rest.find_first_of(" \n\t\r")))),
-       fmt::format("{} is needed", needed));
+  const std::string_view word = rest.substr(0, rest.find_first_of(" \n\t\r"));
+  if (std::any_of(word.begin(), word.end(), is_no_text)) {
+    fail("the header says `format ascii`, but the numbers are binary", std::string(kFormatRemedy));
+  }
+  fail(fmt::format("{} is '{}'", what, shown(word)), fmt::format("{} is needed", needed));
 }
 
 template <class T>
@@ -223,11 +248,18 @@ Index FoamFile::checked(std::int64_t label, std::string_view what, std::int64_t 
 
 // ---- lists
 
+void FoamFile::refuse_text() const {
+  const auto first = text_.begin() + static_cast<std::ptrdiff_t>(position_);
+  if (!binary_ || std::any_of(first, text_.end(), is_no_text)) return;
+  fail("the header says `format binary`, but the numbers are text", std::string(kFormatRemedy));
+}
+
 std::int64_t FoamFile::size(std::string_view what, std::int64_t bytes_each) {
   const std::string of = fmt::format("the number of {}", what);
   const std::int64_t size = integer(of);
   if (size < 0) fail(fmt::format("{} is {}", of, size), "it cannot be negative");
   if (size > kMaxIndex) fail(fmt::format("{} is {}", of, size), "at most 2147483647 are possible");
+  if (size > 0) refuse_text();
   const std::size_t after = position_;
   // the last entry of a text file may lack what separates it from the next
   if (!at('{') && size > 0 && size > (bytes_left() + 1) / bytes_each) {
@@ -258,7 +290,12 @@ void FoamFile::read_labels(std::vector<Index>& labels, std::string_view what, st
   if (count == 0 && !at('(')) return;  // in a binary file, an empty list is its size alone
   expect('(', list);
   labels.reserve(static_cast<std::size_t>(count));
-  for (std::int64_t k = 0; k < count; ++k) labels.push_back(checked(label(of), of, least, limit));
+  for (std::int64_t k = 0; k < count; ++k) {
+    if (!binary_ && at(')')) {
+      fail(fmt::format("{} ends after {}", list, k), fmt::format("the count at the top says {}", count));
+    }
+    labels.push_back(checked(label(of), of, least, limit));
+  }
   expect(')', list);
 }
 

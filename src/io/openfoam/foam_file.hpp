@@ -29,9 +29,17 @@ class FoamFile {
   /// @throws InputError for a file that is missing, unreadable or without a header
   explicit FoamFile(const FilePath& path);
 
+  /// Returns whether there is a file of that path, or of that path with ".gz".
+  [[nodiscard]] static bool exists(const FilePath& path);
+
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
   /// Returns the value of `class` in the header; empty if there is none.
   [[nodiscard]] const std::string& class_name() const noexcept { return class_; }
+
+  /// Returns the value of `note` in the header; empty if there is none.
+  [[nodiscard]] const std::string& note() const noexcept { return note_; }
+  /// Throws an InputError, at its line, if `class` in the header has another value.
+  void require_class(std::string_view class_name) const;
 
   /// Throws an InputError at the current line or byte.
   [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;
@@ -64,6 +72,7 @@ class FoamFile {
   [[nodiscard]] bool at(char mark);
   bool take(char mark);
   void expect(char mark, std::string_view what);
+  [[nodiscard]] std::int64_t line_at(std::size_t position) const;
   [[nodiscard]] std::int64_t bytes_left() const noexcept {
     return static_cast<std::int64_t>(text_.size() - position_);
   }
@@ -71,6 +80,8 @@ class FoamFile {
   /// Takes the next word if it is a number that T holds.
   template <class T>
   std::errc take_number(T& value);
+  /// Throws an InputError if the list that follows is text in a file whose header says `format binary`.
+  void refuse_text() const;
   /// Throws an InputError on the next word, which is no such number.
   [[noreturn]] void fail_number(std::string_view what, std::string_view needed);
   std::int64_t integer(std::string_view what);
@@ -89,6 +100,8 @@ class FoamFile {
   std::string text_;
   std::size_t position_ = 0;
   std::string class_;
+  std::size_t class_end_ = 0;  // its place in the file
+  std::string note_;
   bool binary_ = false;
   std::endian order_ = std::endian::little;  // of binary numbers
   int label_bytes_ = 4;

@@ -5,6 +5,7 @@
 #include "io/openfoam/poly_mesh.hpp"
 
 #include "base/point.hpp"
+#include "io/openfoam/boundary.hpp"
 #include "io/openfoam/foam_file.hpp"
 #include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
@@ -12,6 +13,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -50,13 +53,51 @@ struct MeshFolder {
   [[nodiscard]] FilePath file(std::string_view name) const { return FilePath::in(of_case, path / name); }
 };
 
-Sides read_sides(const MeshFolder& folder) {
+void require_files(const MeshFolder& folder) {
+  for (const std::string_view name : {"owner", "neighbour", "points", "faces", "boundary"}) {
+    if (!FoamFile::exists(folder.file(name))) refuse_missing(folder.path / name);
+  }
+}
+
+/// Returns the number after a key in a header's note, such as "nPoints:882  nCells:400"; none without the
+/// key.
+std::optional<std::int64_t> count_in(std::string_view note, std::string_view key) {
+  std::size_t at = note.find(key);
+  if (at == std::string_view::npos) return std::nullopt;
+  at = note.find_first_not_of(": ", at + key.size());
+  if (at == std::string_view::npos) return std::nullopt;
+  std::int64_t count = 0;
+  const bool is_number =
+      std::from_chars(note.data() + at, note.data() + note.size(), count).ec == std::errc{};
+  return is_number ? std::optional(count) : std::nullopt;
+}
+
+/// Notes counts of a header that are not those of the mesh.
+void compare_counts(const FoamFile& file, const Sides& sides, Notes& notes) {
+  const std::array<std::pair<std::string_view, std::int64_t>, 3> found{
+      {{"nCells", sides.cells},
+       {"nFaces", std::ssize(sides.owner)},
+       {"nInternalFaces", std::ssize(sides.neighbour)}}};
+  std::string others;
+  for (const auto& [key, count] : found) {
+    const auto said = count_in(file.note(), key);
+    if (!said || *said == count) continue;
+    others += fmt::format("{}{} is {}, the files have {}", others.empty() ? "" : ", ", key, *said, count);
+  }
+  if (others.empty()) return;
+  notes.push_back(fmt::format("{}: the counts in the header are those of another mesh: {}; run checkMesh",
+                              file.file(), others));
+}
+
+Sides read_sides(const MeshFolder& folder, Notes& notes) {
   Sides sides;
   FoamFile owner(folder.file("owner"));
+  owner.require_class("labelList");
   // every cell has a face, so that there are no more cells than faces
   owner.read_labels(sides.owner, "owner", 0, std::nullopt);
   const auto faces = static_cast<std::int64_t>(sides.owner.size());
   FoamFile neighbour(folder.file("neighbour"));
+  neighbour.require_class("labelList");
   neighbour.read_labels(sides.neighbour, "neighbour", -1, faces);
   // old versions list all faces and give those at the boundary a −1
   while (!sides.neighbour.empty() && sides.neighbour.back() < 0) sides.neighbour.pop_back();
@@ -77,10 +118,16 @@ Sides read_sides(const MeshFolder& folder) {
           fmt::format("face {} has {}", f, b < 0 ? "no neighbour" : fmt::format("cell {} on both sides", a)),
           "internal faces come first and are between two cells");
     }
+    if (b < a) {
+      throw InputError(neighbour.file(),
+                       fmt::format("face {} has the owner {} and the neighbour {}", f, a, b),
+                       "the owner of an internal face is the cell of the lower number; run checkMesh");
+    }
     last = std::max(last, b);
   }
   sides.cells = last + 1;
   require_faces(sides, folder.path);
+  for (const FoamFile* file : {&owner, &neighbour}) compare_counts(*file, sides, notes);
   return sides;
 }
 
@@ -194,11 +241,18 @@ class CentreReader {
 
 }  // namespace
 
-PolyMesh read_poly_mesh(const fs::path& of_case, const fs::path& folder, bool with_centres) {
+void refuse_missing(const fs::path& file) {
+  throw InputError(file.string(), "is missing, but a mesh of OpenFOAM needs it",
+                   "restore it, or make the mesh again");
+}
+
+PolyMesh read_poly_mesh(const fs::path& of_case, const fs::path& folder, bool with_centres, Notes& notes) {
   const FilePath path(folder);
   const ReadScope scope(path);
   const MeshFolder files{of_case, folder};
-  const Sides sides = read_sides(files);
+  require_files(files);
+  const Sides sides = read_sides(files, notes);
+  check_boundary(files.file("boundary"), std::ssize(sides.owner), std::ssize(sides.neighbour));
   PolyMesh mesh;
   mesh.internal_faces = index_size(sides.neighbour);
   if (with_centres) mesh.centres = CentreReader(files, sides).read();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "graph/csr_graph.hpp"
+#include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
 
 #include <filesystem>
@@ -16,13 +17,20 @@ struct PolyMesh {
   std::vector<Point> centres;  ///< of each cell the mean of its faces' centres; empty unless asked for
 };
 
-/// Reads the files `owner` and `neighbour` in the folder `polyMesh` of a case and, for the centres, `points`
-/// and `faces`: text or binary, each also as `.gz`. They must lie below the case's folder.
+/// Throws the InputError for a file of a mesh that does not exist.
+[[noreturn]] void refuse_missing(const std::filesystem::path& file);
+
+/// Reads the files `owner`, `neighbour` and `boundary` in the folder `polyMesh` of a case and, for the
+/// centres, `points` and `faces`: text or binary, each also as `.gz`. They must lie below the case's folder.
+/// Two cells may share several faces, and faces need not be sorted by their cells. Notes counts in the
+/// headers that differ from what the files hold.
 ///
-/// @throws InputError for a file that is missing or faulty, with its line or byte, and for a cell without
-///         faces; a mesh without any cell is returned as it is
+/// @throws InputError for any of the five files that is missing, for one that is faulty, with its line, byte
+/// or
+///         face, for a cell without faces, an internal face whose owner has not the lower number, and patches
+///         that do not cover the faces of the boundary; a mesh without any cell is returned as it is
 /// @note O(faces · log faces of a cell); about 30 bytes a face besides the files' own size.
 PolyMesh read_poly_mesh(const std::filesystem::path& of_case, const std::filesystem::path& folder,
-                        bool with_centres);
+                        bool with_centres, Notes& notes);
 
 }  // namespace meshorder::openfoam
