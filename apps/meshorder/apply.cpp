@@ -8,6 +8,7 @@
 #include "io/stream/output_file.hpp"
 #include "maps.hpp"
 #include "mesh/reorder.hpp"
+#include "mesh_files.hpp"
 #include "progress.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
@@ -60,9 +61,7 @@ void run(const ApplyArguments& arguments) {
     if (!maps.cell_ids.empty()) mesh.cell_ids = maps.cell_ids;
   }
 
-  if (arguments.keeping.dimension >= 0) {
-    (void)keep_cells(mesh, {.dimension = arguments.keeping.dimension, .notes = &notes});
-  }
+  (void)keep_wanted(mesh, arguments.input, arguments.keeping.dimension, notes);
 
   progress.stage("writing " + arguments.output, 0.5, 1);
   write_mesh(mesh, arguments.output, {.strict = arguments.keeping.strict, .notes = &notes});

@@ -304,7 +304,9 @@ void print_verdict(const Console& console, const InfoArguments& arguments, const
     return;
   }
   const char* const without_advice =
-      !found.has_elements ? "nothing to compute on: it has no elements"
+      !found.has_elements && found.stored != nullptr
+          ? "nothing to gain: no entry joins two rows, so that every order is as good"
+      : !found.has_elements ? "nothing to compute on: it has no elements"
       : fits_in_first_cache(found.graph)
           ? "nothing to gain: its data fit in a processor's first cache, in any order"
           : "too large to be judged unasked; --measure runs the kernels, and "

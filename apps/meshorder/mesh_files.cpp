@@ -8,6 +8,7 @@
 #include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
 #include "matrix_points.hpp"
+#include "wording.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -35,15 +36,22 @@ void check_can_write(const MeshFiles& files) {
   if (!files.maps.empty()) check_can_write_maps(files.maps);
 }
 
+std::vector<Index> keep_wanted(Mesh& mesh, const std::string& input, int dimension, Notes& notes) {
+  if (dimension < 0) return all_cells(mesh);
+  try {
+    return keep_cells(mesh, {.dimension = dimension, .notes = &notes});
+  } catch (const InvalidArgument& fault) {
+    throw InputError(input, fault.what(), "it has " + cells_in_words(mesh));
+  }
+}
+
 MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t bytes_of_entry) {
   MeshToOrder result;
   Mesh& mesh = result.mesh;
   mesh = read_to_work_on(files.input, notes, bytes_of_entry);
   const Format& format = output_format_of(files.output, mesh.format);
   const Index cells_read = mesh.cell_count();
-  const int dimension = files.keeping.dimension;
-  const std::vector<Index> wanted =
-      dimension < 0 ? all_cells(mesh) : keep_cells(mesh, {.dimension = dimension, .notes = &notes});
+  const std::vector<Index> wanted = keep_wanted(mesh, files.input, files.keeping.dimension, notes);
   const std::vector<Index> held = files.keeping.strict ? all_cells(mesh) : cells_for(mesh, format, notes);
   require_held_cells(mesh, held, files.output, format);  // fail before the work
   keep_cells_at(mesh, held, notes);

@@ -50,6 +50,10 @@ inline constexpr std::uint64_t kBytesToMeasure = 100;
 /// Throws, before the work, if the output or its maps cannot be written.
 void check_can_write(const MeshFiles& files);
 
+/// Keeps the cells of one dimension, or all for −1; returns their positions before. Throws InputError for the
+/// file `input` if there are none.
+std::vector<Index> keep_wanted(Mesh& mesh, const std::string& input, int dimension, Notes& notes);
+
 /// Reads a mesh with the cells that the output can hold. Throws Error for a faulty file, and for cells that
 /// the output would have to hold but cannot.
 ///

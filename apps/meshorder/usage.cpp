@@ -56,14 +56,16 @@ std::string unknown_option(const std::vector<std::string>& words) {
   return "";
 }
 
-/// Returns the words after `order` if a mesh but no output is named: "part.msh -o ordered-part.msh".
-std::optional<std::string> line_with_output(const CLI::App& command) {
+/// Returns the words after `order` if a mesh but no output is named: "part.msh -o ordered-part.msh", or with
+/// the only one of `words`, those that are left over, as the output.
+std::optional<std::string> line_with_output(const CLI::App& command, const std::vector<std::string>& words) {
   const CLI::Option* const mesh = command.get_option_no_throw("MESH");
   const CLI::Option* const output = command.get_option_no_throw("--output");
   if (command.get_name() != "order" || mesh == nullptr || output == nullptr) return std::nullopt;
   if (mesh->results().size() != 1 || mesh->results().front().empty() || !output->empty()) return std::nullopt;
   const std::string& name = mesh->results().front();
-  return in_shell(name) + " -o " + in_shell(ordered_name(name));
+  const bool names_output = words.size() == 1 && !words.front().empty() && !words.front().starts_with('-');
+  return in_shell(name) + " -o " + in_shell(names_output ? words.front() : ordered_name(name));
 }
 
 /// Returns what is wrong if words after the mesh of `try` are not options: the program comes after --.
@@ -135,7 +137,7 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error) {
     return "unknown option '" + option + "'" + (nearest.empty() ? "; " : nearest + " ") + help;
   }
   const bool lacks_something = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
-  if (const auto line = line_with_output(*place.command); lacks_something && line)
+  if (const auto line = line_with_output(*place.command, words); lacks_something && line)
     return "there is no output; write " + place.words + " " + *line;
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !words.empty())
     return "unexpected argument '" + words.front() + "'; " + help;

@@ -40,7 +40,11 @@ std::vector<std::pair<std::string, Index>> type_counts(const Mesh& mesh) {
   return result;
 }
 
+/// Returns the plural of a type's name: "tetrahedra", "tetrahedra of 10 vertices" for "tetrahedron10".
 std::string plural(const std::string& type) {
+  const std::size_t end = type.find_last_not_of("0123456789") + 1;
+  if (end < type.size())
+    return fmt::format("{} of {} vertices", plural(type.substr(0, end)), type.substr(end));
   const std::map<std::string, std::string> irregular{{"tetrahedron", "tetrahedra"},
                                                      {"hexahedron", "hexahedra"},
                                                      {"polyhedron", "polyhedra"},
@@ -99,7 +103,10 @@ nlohmann::ordered_json cells_by_type(const Mesh& mesh) {
 std::string cells_in_words(const Mesh& mesh) {
   return join(type_counts(mesh), [](const auto& entry) {
     const auto& [type, count] = entry;
-    return with_commas(count) + " " + (count == 1 ? type : plural(type));
+    const std::size_t end = type.find_last_not_of("0123456789") + 1;
+    const std::string one =
+        type.substr(0, end) + (end < type.size() ? " of " + type.substr(end) + " vertices" : "");
+    return with_commas(count) + " " + (count == 1 ? one : plural(type));
   });
 }
 

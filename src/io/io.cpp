@@ -9,6 +9,7 @@
 #include "io/stream/read_limits.hpp"
 #include "mesh/degenerate.hpp"
 #include "mesh/reorder.hpp"
+#include "mesh/stored_matrix.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
 
@@ -81,6 +82,14 @@ Mesh read_together(const FilePath& path, const Format& format, Notes& notes) {
   }
 }
 
+/// Throws the InputError for a file without cells.
+[[noreturn]] void refuse_empty(const FilePath& path, const Mesh& mesh) {
+  const StoredMatrix* const stored = stored_matrix(mesh);
+  if (stored == nullptr) throw InputError(path.string(), "has no cells", "a mesh needs at least one");
+  if (stored->is_graph) throw InputError(path.string(), "has no edges", "a graph needs at least one");
+  throw InputError(path.string(), "has no entries", "a matrix needs at least one");
+}
+
 /// @param stored  bytes of a file in memory before decompression; 0 if it was not compressed, or is on disk
 Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions& options,
                   std::uint64_t stored = 0) {
@@ -91,7 +100,7 @@ Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions&
     if (stored > 0) count_file(path, stored);
     Mesh mesh = read_together(path, format, notes);
     mesh.format = format.key();
-    if (mesh.cell_count() == 0) throw InputError(path.string(), "has no cells", "a mesh needs at least one");
+    if (mesh.cell_count() == 0) refuse_empty(path, mesh);
     try {
       check_mesh(mesh);
     } catch (const InvalidArgument& fault) {

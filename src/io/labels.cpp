@@ -1,9 +1,19 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/labels.hpp"
 
+#include "base/text.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
 
+<<<<<<< HEAD
+=======
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <string>
+>>>>>>> a901790b (io: bring markers back under their names, note dead references, name likely faults)
 #include <type_traits>
 
 namespace meshorder {
@@ -35,6 +45,16 @@ void note_arrays_beside_cell_labels(const Mesh& mesh, std::string_view format, N
   for (const DataArray& array : mesh.data) {
     if (&array != labels) note_array_unsupported(array, format, notes);
   }
+}
+
+void note_number_markers(const Mesh& mesh, std::string_view what, Notes& notes) {
+  const Labels labels = mesh.format == "su2" ? labels_of(mesh, Association::cells) : Labels{};
+  std::set<std::int64_t> numbers(labels.values.begin(), labels.values.end());
+  numbers.erase(0);
+  if (numbers.empty()) return;
+  const std::string names = join(numbers, [](std::int64_t number) { return fmt::format("'{}'", number); });
+  notes.push_back(numbers.size() == 1 ? fmt::format("the marker {} is written as {}", names, what)
+                                      : fmt::format("the markers {} are written as {}", names, what));
 }
 
 Values label_values(std::vector<std::int64_t> labels) {

@@ -133,6 +133,7 @@ def test_json_holds_the_version_and_the_warnings(command, mesh, line):
     ("compare mesh.node --methods rcm/lexmx", "unknown element order 'lexmx'; did you mean 'lexmax'?"),
     ("order mesh.node -o a.vtu --for spring", "unknown workload 'spring'; did you mean 'springs'?"),
     ("order mesh.node -o a.vkt", "a.vkt: unknown extension '.vkt'; did you mean '.vtk'?"),
+    ("order mesh.node new.node", "there is no output; write meshorder order mesh.node -o new.node"),
     ("order mesh.node", "there is no output; write meshorder order mesh.node -o ordered-mesh.node"),
     ("order 'a b.msh.gz'", "there is no output; write meshorder order 'a b.msh.gz' -o 'ordered-a b.msh'"),
     ("order", "MESH is required; see meshorder order --help"),

@@ -143,3 +143,11 @@ def test_strict_refuses_what_the_output_cannot_hold(command, tmp_path):
     command.ok("order", "a.msh", "-o", "b.msh", "--strict", "--maps", "m")
     assert "Vega cannot hold" in command.fails("apply", "m", "a.msh", "-o", "b.veg", "--strict")
     assert not (tmp_path / "b.veg").exists() and not (tmp_path / "b.mesh").exists()
+
+
+def test_a_dimension_that_a_mesh_does_not_have_is_named_with_the_file(command, tmp_path):
+    cells_in_gmsh(tmp_path / "a.msh", dimensions=(1, 3))
+    expected = "a.msh: the mesh has no surfaces; it has 12 tetrahedra, 2 lines"
+    assert expected in command.fails("order", "a.msh", "-o", "b.msh", "--only", "surface")
+    command.ok("order", "a.msh", "-o", "b.msh", "--maps", "m")
+    assert expected in command.fails("apply", "m", "a.msh", "-o", "c.msh", "--only", "surface")

@@ -1,7 +1,10 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """SU2's meshes, as meshio reads and writes them."""
+import re
+
 import meshio
 import numpy
+import pytest
 
 
 def cells_of(mesh, kind):
@@ -171,3 +174,55 @@ def test_groups_of_the_boundary_go_to_su2_and_back(command, tmp_path):
     before = groups_of_version_2(MSH)
     assert set(before) == {"inlet", "wall"}
     assert groups_of_version_4((tmp_path / "c.msh").read_text()) == before
+
+
+PLATE = """NDIME= 2
+NELEM= 2
+5 0 1 2
+5 1 3 2
+NPOIN= 4
+0 0
+1 0
+0 4
+1 1
+NMARK= 2
+MARKER_TAG= {}
+MARKER_ELEMS= 1
+3 0 1
+MARKER_TAG= {}
+MARKER_ELEMS= 1
+3 1 3
+"""
+
+
+def markers_of(path):
+    """The number of elements of each marker."""
+    tags = re.findall(r"MARKER_TAG= (.*)\nMARKER_ELEMS= (\d+)", path.read_text())
+    return {tag: int(count) for tag, count in tags}
+
+
+@pytest.mark.parametrize("names", [("inlet", "outlet"), ("7", "9"), ("7", "wall")])
+@pytest.mark.parametrize("extension", ["xdmf", "cgns", "msh", "vtu"])
+def test_markers_come_back_under_their_names(command, tmp_path, names, extension):
+    (tmp_path / "a.su2").write_text(PLATE.format(*names))
+    command.ok("order", "a.su2", "-o", f"b.{extension}")
+    command.ok("order", f"b.{extension}", "-o", "c.su2")
+    assert markers_of(tmp_path / "c.su2") == dict.fromkeys(names, 1)
+
+
+def test_a_grid_of_xdmf_that_was_added_stays_when_the_file_is_ordered_again(command, tmp_path):
+    (tmp_path / "a.su2").write_text(PLATE.format("inlet", "7"))
+    command.ok("order", "a.su2", "-o", "b.xdmf")
+    command.ok("order", "b.xdmf", "-o", "c.xdmf", "--vertices", "scrambled", "--elements", "scrambled")
+    command.ok("order", "c.xdmf", "-o", "d.su2")
+    assert markers_of(tmp_path / "d.su2") == {"inlet": 1, "7": 1}
+
+
+def test_markers_whose_names_are_numbers_are_named_where_they_change(command, tmp_path):
+    (tmp_path / "a.su2").write_text(PLATE.format("7", "9"))
+    note = "the markers '7', '9' are written as "
+    assert note + "labels of their sections, without boundary" in command.fails("order", "a.su2", "-o", "b.cgns", "--strict")
+    assert note + "groups of the names label_N" in command.fails("order", "a.su2", "-o", "b.med", "--strict")
+    command.ok("order", "a.su2", "-o", "b.inp")
+    deck = (tmp_path / "b.inp").read_text()
+    assert "ELSET=label_7" in deck and "ELSET=label_9" in deck and "label_0" not in deck

@@ -417,10 +417,9 @@ TEST(Abaqus, SaysWhichElementsAreNoCells) {
   const TemporaryFolder folder;
   const std::string nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n";
   const std::string users = nodes + "*USER ELEMENT,TYPE=US3,NODES=3\n*ELEMENT,TYPE=US3,ELSET=E\n1,1,2,3\n";
-  EXPECT_THAT(
-      test::read_error(folder.file("a.inp", users)),
-      HasSubstr("a.inp: its only elements are of types that are no cells here (US3, line 6); nothing can "
-                "be reordered"));
+  EXPECT_THAT(test::read_error(folder.file("a.inp", users)),
+              HasSubstr("a.inp: its only elements are of types that are no cells here (US3, line 6); correct "
+                        "TYPE= if it is misspelt; C3D4,"));
   std::string many = users;
   for (const char* type : {"D", "U1", "U2"}) many += "*ELEMENT,TYPE=" + std::string(type) + "\n7,1,2\n";
   EXPECT_THAT(test::read_error(folder.file("b.inp", many)),
@@ -693,6 +692,27 @@ TEST(Abaqus, NotesMembersThatDoNotExist) {
   EXPECT_THAT(notes[1], HasSubstr("the set 'nobody', which does not exist"));
 }
 
+TEST(Abaqus, NotesWhatCardsNameButTheDeckDoesNotHave) {
+  Notes notes;
+  (void)read_deck(
+      std::string(kDeck) +
+          "\n*CLOAD\n4999, 1, 5.\nTIPP, 1, 5.\ntipp, 2, 5.\nENDS, 1, 2.\n*SURFACE, NAME=s\nNOBODY, S1\n"
+          "*SURFACE, NAME=t, COMBINE=UNION\ns, top\n*DLOAD\n, GRAV, 9.81, 0, 0, 1\n",
+      &notes);
+  EXPECT_THAT(
+      notes,
+      ElementsAre(HasSubstr(": *CLOAD names one number that the deck does not have, the first is 4999"),
+                  HasSubstr(": *CLOAD names the node set 'TIPP', which the deck does not have"),
+                  HasSubstr(": *SURFACE names the element set 'NOBODY', which the deck does not")));
+}
+
+TEST(Abaqus, SuggestsTheKeywordThatAMisspeltOneIsNear) {
+  Notes notes;
+  (void)read_deck(std::string(kDeck) + "\n*CLOD\n1, 1, 5.\n*USER ELEMENT\n1, 2\n", &notes);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_THAT(notes[0], HasSubstr("; did you mean '*CLOAD'?), *USER ELEMENT (line "));
+}
+
 TEST(Abaqus, RefusesBrokenFiles) {
   const auto changed = [](std::string_view old, std::string_view fresh) {
     return with(std::string(kDeck), old, fresh);
@@ -720,7 +740,9 @@ TEST(Abaqus, RefusesBrokenFiles) {
        {"no such node", changed("12, 1, 2, 6, 5", "12, 1, 2, 6, 55"),
         line_of("12, 1, 2, 6, 5") + "a node of the element is 55, which no *NODE has"},
        {"too few nodes", changed("12, 1, 2, 6, 5", "12, 1, 2, 6"),
-        line_of("13, 5, 6, 10, 9") + "element 12 has more than the 4 nodes of S4"},
+        line_of("12, 1, 2, 6, 5") +
+            "element 12 has 3 nodes on its line, but S4 has 4; TYPE=S4 of its *ELEMENT"},
+       {"unknown type", "*NODE\n1, 0\n*ELEMENT, TYPE=C3D9\n1, 1\n", "(C3D9, line 3); correct TYPE= if it is"},
        {"cut element", changed("13, 5, 6, 10, 9", "13, 5, 6"),
         line_of("*Element, type=C3D6") + "element 13 has 2 of the 4 nodes of S4"},
        {"no type", changed("type=C3D6", "typ=C3D6"), line_of("*Element, type=C3D6") + "*ELEMENT has no TYPE"},

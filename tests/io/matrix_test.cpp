@@ -153,7 +153,7 @@ TEST(MatrixMarket, RefusesBrokenFiles) {
                    {"column 5", with(file, "3 3 7", "3 5 7"), ":8: a column is 5; 1 to 4"},
                    {"word", with(file, "3 3 7", "3 3 x"), ":8: a value is 'x'"},
                    {"four numbers", with(file, "3 3 7", "3 3 7 1"), ":8: the line of an entry has too many"},
-                   {"none", head + "3 3 0\n", "has no cells"},
+                   {"none", head + "3 3 0\n", "has no entries; a matrix needs at least one"},
                    {"no number of rows", head + "x 3 0\n", ":2: the number of rows is 'x'"},
                    {"cut", head, "unexpected end of file"},
                });
@@ -240,6 +240,7 @@ TEST(MetisGraph, RefusesBrokenFiles) {
           {"edges", with(file, "4 2 1", "4 3 1"), "promises 3 edges, but the lists name 4"},
           {"more lines", with(file, "4 2 1", "3 2 1"), ":6: more than 3 lines"},
           {"cut", with(file, "6 7 8\n", ""), "only 3 of 4 lines"},
+          {"cut at the end", "4 3\n2\n1 3\n2 4\n", "a.graph:4: only 3 of 4 lines"},
           {"itself", with(file, "2 30", "1 30"), ":3: the vertex names itself"},
           {"range", with(file, "2 30", "5 30"), ":3: a neighbour is 5; 1 to 4"},
           {"one side", with(file, "5 6 2 40", "5 6 1 40"), ":4: vertex 2 names 3, which does not"},
@@ -249,7 +250,7 @@ TEST(MetisGraph, RefusesBrokenFiles) {
           {"zero", with(file, "2 30", "2 0"), ":3: the weight of an edge is 0"},
           {"twice", "2 2\n2 2\n1 1\n", ":2: the vertex names 2 twice"},
           {"word", with(file, "2 30", "x 30"), ":3: a neighbour is 'x'"},
-          {"no edges", "2 0\n\n\n", "has no cells"},
+          {"no edges", "2 0\n\n\n", "has no edges; a graph needs at least one"},
       });
 }
 

@@ -333,7 +333,12 @@ TEST(Su2, RefusesBrokenFiles) {
           {"a triangle as marker", with(file, "3 0 1\n", "5 0 1 2\n"),
            ":18: an element of type 5 in MARKER_ELEMS="},
           {"no node", with(file, "5 1 2 3 1", "5 1 2"), ":5: the line ends before a node"},
-          {"two numbers more", with(file, "5 1 2 3 1", "5 1 2 3 1 1"), ":5: the line has too many numbers"},
+          {"two numbers more", with(file, "5 1 2 3 1", "5 1 2 3 1 1"),
+           ":5: an element of type 5 (triangle) has 3 nodes, but 5 numbers follow the type; the type may be "
+           "wrong: 9 is a "
+           "quad of 4 nodes"},
+          {"far too many numbers", with(file, "5 1 2 3 1", "5 1 2 3 1 1 1 1"),
+           "has 3 nodes, but 7 numbers follow the type; after the nodes one number may follow"},
           {"node", with(file, "9 3 2 5 4 2", "9 3 2 6 4 2"), ":6: a node of the element is 6; 0 to 5"},
           {"negative node", with(file, "5 1 2 3 1", "5 1 -2 3 1"), ":5: a node of the element is -2"},
           {"node of a marker", with(file, "3 2 5\n", "3 2 6\n"), ":24: a node of the element is 6; 0 to 5"},

@@ -4,6 +4,7 @@
 // "Input deck format".
 #include "io/abaqus/cards.hpp"
 
+#include "base/suggestion.hpp"
 #include "base/text.hpp"
 
 #include <algorithm>
@@ -407,6 +408,36 @@ bool has_other_file(const Card& card) { return card.has("INPUT") || card.has("FI
 
 std::optional<std::vector<Reference>> references(const Card& card, std::string_view lines) {
   return ReferenceFinder(card, lines).find();
+}
+
+std::vector<NamedSet> named_sets(const Card& card, std::string_view lines) {
+  constexpr std::array<std::string_view, 9> kKeywords{"BOUNDARY", "CFLUX",   "CLOAD",   "DFLUX",      "DLOAD",
+                                                      "FILM",     "RADIATE", "SURFACE", "TEMPERATURE"};
+  const bool is_of_surfaces = card.has("COMBINE") || card.has("CROP");
+  const bool is_known = std::find(kKeywords.begin(), kKeywords.end(), card.keyword) != kKeywords.end();
+  const auto fields = is_known && !is_of_surfaces ? fields_of(card) : std::nullopt;
+  if (!fields || fields->empty()) return {};
+  const Association association = fields->front() == 'n' ? Association::vertices : Association::cells;
+  std::vector<NamedSet> sets;
+  for (std::size_t begin = keyword_lines(lines).size(); begin < lines.size();) {
+    const std::string_view line = first_line(lines.substr(begin));
+    begin += line.size();
+    if (is_comment_line(line)) continue;
+    std::string_view rest = without_end(line);
+    const std::string_view field = without_quotes(next_field(rest));
+    const bool is_name = !field.empty() && std::isdigit(static_cast<unsigned char>(field.front())) == 0;
+    if (is_name && number_of(field) == 0) sets.push_back({association, field});
+  }
+  return sets;
+}
+
+std::string suggested_keyword(const Card& card) {
+  std::vector<std::string> names{"EQUATION", "INITIALCONDITIONS", "ORIENTATION", "SURFACE"};
+  for (const Layout& layout : kLayouts) names.emplace_back(layout.keyword);
+  names.insert(names.end(), kPlain.begin(), kPlain.end());
+  if (std::find(names.begin(), names.end(), card.keyword) != names.end()) return {};
+  for (std::string& name : names) name.insert(0, "*");
+  return suggestion("*" + card.keyword, names);
 }
 
 bool depends_on_numbers(const Card& card) {

@@ -68,6 +68,19 @@ bool has_other_file(const Card& card);
 /// if the card is not known.
 std::optional<std::vector<Reference>> references(const Card& card, std::string_view lines);
 
+/// The name of a set in the first field of a line. Valid as long as the lines.
+struct NamedSet {
+  Association association;
+  std::string_view name;
+};
+
+/// Returns the sets of nodes or elements that the lines of a load, a boundary condition or a surface name;
+/// none for other cards, whose names may be of something else.
+std::vector<NamedSet> named_sets(const Card& card, std::string_view lines);
+
+/// Returns "; did you mean *CLOAD?" for a keyword that is spelt almost like a known one; else "".
+std::string suggested_keyword(const Card& card);
+
 /// Returns whether a card, given with its lines, pairs the nodes of several sets in the order of their
 /// numbers: first with first, and so on. New numbers would pair other nodes.
 bool pairs_sets(const Card& card, std::string_view lines);

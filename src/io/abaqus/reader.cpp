@@ -135,6 +135,7 @@ class DeckReader {
 
   Section& begin_section(Part part, std::string text, std::int64_t line) {
     lines_of_sections_.push_back(line);
+    files_of_sections_.push_back(file_number());
     Section& section = deck_->sections.emplace_back();
     section.part = part;
     section.text = std::move(text);
@@ -409,7 +410,9 @@ class DeckReader {
     const auto nodes = static_cast<std::size_t>(kind.nodes);
     std::array<Index, kMostNodes> cell{};
     const Offset first = mesh_.cells.offsets.back();
-    bool may_have_more = true;  // else a node is missing, and this is the next element
+    const std::int64_t first_line = lines_.at().line();
+    std::size_t on_first_line = 0;  // nodes
+    bool may_have_more = true;      // else a node is missing, and this is the next element
     for (std::size_t given = 0;;) {
       const bool goes_on = line.ends_with(',');
       while (!line.empty()) {
@@ -419,8 +422,10 @@ class DeckReader {
           continue;
         }
         if (given == nodes && !may_have_more) {
-          lines_.at().fail(fmt::format("element {} has more than the {} nodes of {}", number, nodes, type),
-                           "remove them or give its type");
+          lines_.fail(first_line,
+                      fmt::format("element {} has {} nodes on its line, but {} has {}", number, on_first_line,
+                                  type, nodes),
+                      fmt::format("TYPE={} of its *ELEMENT, or the line, is wrong", type));
         }
         if (given == nodes) {  // CalculiX does not read the rest of the line
           deck_->more_of_elements.emplace(mesh_.cell_count(), fmt::format(", {}", line));
@@ -437,6 +442,7 @@ class DeckReader {
       }
       (void)lines_.take();
       if (given == nodes) break;
+      if (may_have_more) on_first_line = given;
       may_have_more = goes_on;
       if (!peek_data(line, comments)) {
         lines_.at().fail(fmt::format("element {} has {} of the {} nodes of {}", number, given, nodes, type),
@@ -513,7 +519,7 @@ class DeckReader {
         throw InputError(lines_.at().file(),
                          fmt::format("its only elements are of types that are no cells here ({})",
                                      join(other_types_, std::string_view("; "))),
-                         "nothing can be reordered");
+                         "correct TYPE= if it is misspelt; C3D4, C3D8, C3D10, S3, S4 and the like are cells");
       }
       throw InputError(lines_.at().file(), "has no *ELEMENT", no_mesh());
     }
@@ -527,6 +533,7 @@ class DeckReader {
     deck_->sets = mesh_.sets;
     list_contents();
     find_unknown_cards();
+    find_dead_references();
     if (!lines_.included().empty()) {
       notes_.push_back(
           fmt::format("included files are part of the deck from here on: {}", join(lines_.included())));
@@ -588,10 +595,38 @@ class DeckReader {
                                return deck_->nodes.find(number) >= 0 || deck_->elements.find(number) >= 0;
                              });
       if (names_any) {
-        deck_->unknown.push_back(fmt::format("{} (line {})", card.title, lines_of_sections_[i]));
+        deck_->unknown.push_back(
+            fmt::format("{} (line {}{})", card.title, lines_of_sections_[i], suggested_keyword(card)));
       }
     }
     note_kept_numbers(deck_->unknown, notes_);
+  }
+
+  /// Notes the nodes, elements and sets that cards name but the deck does not have.
+  void find_dead_references() {
+    for (std::size_t i = 0; i < deck_->sections.size(); ++i) {
+      const Section& section = deck_->sections[i];
+      if (section.part != Part::text || !is_keyword(trimmed(section.text))) continue;
+      const Card card = parse_card(section.text);
+      if (card.keyword == "NSET" || card.keyword == "ELSET" || card.keyword == "ELEMENT") continue;
+      const std::string which =
+          fmt::format("{}:{}: {} names", files_[static_cast<std::size_t>(files_of_sections_[i])],
+                      lines_of_sections_[i], card.title);
+      std::vector<std::int64_t> missing;
+      for (const Reference& reference : references(card, section.text).value_or(std::vector<Reference>{})) {
+        const bool of_nodes = reference.association == Association::vertices;
+        const bool is_there = (of_nodes ? deck_->nodes : deck_->elements).find(reference.number) >= 0 ||
+                              (!of_nodes && other_elements_.contains(reference.number));
+        if (!is_there) missing.push_back(reference.number);
+      }
+      if (!missing.empty()) notes_.push_back(note_of_missing(which, missing));
+      std::set<std::string> named;
+      for (const auto& [association, name] : named_sets(card, section.text)) {
+        if (sets_.knows(association, name) || !named.insert(capitals(name)).second) continue;
+        notes_.push_back(fmt::format("{} the {} '{}', which the deck does not have", which,
+                                     name_of_sets(association), shown(name)));
+      }
+    }
   }
 
   DeckLines lines_;
@@ -600,11 +635,12 @@ class DeckReader {
   std::shared_ptr<Deck> deck_ = std::make_shared<Deck>();
   SetReader sets_;
   std::vector<std::int64_t> lines_of_sections_;
+  std::vector<std::int32_t> files_of_sections_;  // positions in files_
   std::vector<UnknownNode> unknown_nodes_;
-  std::vector<NodeLine> node_lines_;                 // buffer for regular lines
-  std::vector<ElementLine> element_lines_;           // likewise
-  std::vector<Index> element_nodes_;                 // their vertices, in the order of cells
-  std::vector<std::string> files_;                   // those that unknown_nodes_ refers to
+  std::vector<NodeLine> node_lines_;        // buffer for regular lines
+  std::vector<ElementLine> element_lines_;  // likewise
+  std::vector<Index> element_nodes_;        // their vertices, in the order of cells
+  std::vector<std::string> files_;          // those that unknown_nodes_ and files_of_sections_ refer to
   std::unordered_set<std::int64_t> other_elements_;  // numbers of elements that are not cells
   std::vector<std::string> other_types_;             // the first of their types, for a message
   std::vector<std::string> types_;

@@ -13,13 +13,16 @@
 #include <utility>
 
 namespace meshorder::abaqus {
-namespace {
 
 std::string_view name_of_sets(Association association) {
   return association == Association::vertices ? "node set" : "element set";
 }
 
-}  // namespace
+std::string note_of_missing(std::string_view which, const std::vector<std::int64_t>& numbers) {
+  return fmt::format("{} {} that the deck does not have, the first is {}", which,
+                     numbers.size() == 1 ? "one number" : fmt::format("{} numbers", numbers.size()),
+                     numbers.front());
+}
 
 /// Drops repeated members of sets of vertices or cells before they take much memory.
 class SetReader::Repeats {
@@ -66,6 +69,15 @@ const EntitySet* SetReader::find(Association association, const Addition& from, 
   if (const EntitySet* const set = at(false, name)) return set;
   const std::size_t dot = name.find('.');  // "PART-1-1.SET"
   return dot == std::string_view::npos ? nullptr : at(false, name.substr(dot + 1));
+}
+
+bool SetReader::knows(Association association, std::string_view name) const {
+  const auto is_key = [&](std::string_view key) {
+    return places_.contains(Key{association, false, capitals(key)}) ||
+           places_.contains(Key{association, true, capitals(key)});
+  };
+  const std::size_t dot = name.find('.');  // "PART-1-1.SET"
+  return is_key(name) || (dot != std::string_view::npos && is_key(name.substr(dot + 1)));
 }
 
 void SetReader::add_block(Association association, std::string_view name, Index first, Index count) {
@@ -129,14 +141,13 @@ void SetReader::add_members(const Addition& addition, const IdMap& items,
   if (addition.count > 0) claim(static_cast<std::size_t>(addition.count));
   std::vector<Index> members(static_cast<std::size_t>(addition.count));
   std::iota(members.begin(), members.end(), addition.first);
-  std::int64_t missing = 0;
-  Index first_missing = 0;
+  std::vector<std::int64_t> missing;
   for (const Index number : addition.numbers) {
     const Index item = items.find(number);
     if (item >= 0) {
       members.push_back(item);
-    } else if (!others.contains(number) && missing++ == 0) {
-      first_missing = number;
+    } else if (!others.contains(number)) {
+      missing.push_back(number);
     }
   }
   EntitySet& set = sets_[addition.set];
@@ -166,11 +177,7 @@ void SetReader::add_members(const Addition& addition, const IdMap& items,
 
   const std::string which = fmt::format("{}:{}: the {} '{}' names", addition.place.file, addition.place.line,
                                         name_of_sets(addition.association), set.name);
-  if (missing > 0) {
-    notes.push_back(fmt::format("{} {} that the deck does not have, the first is {}", which,
-                                missing == 1 ? "one number" : fmt::format("{} numbers", missing),
-                                first_missing));
-  }
+  if (!missing.empty()) notes.push_back(note_of_missing(which, missing));
   for (const std::string& name : unknown) {
     notes.push_back(fmt::format("{} the set '{}', which does not exist before it", which, shown(name)));
   }

@@ -17,6 +17,12 @@
 
 namespace meshorder::abaqus {
 
+/// Returns "node set" or "element set".
+std::string_view name_of_sets(Association association);
+
+/// Returns "… one number that the deck does not have, the first is 7": `which` ends in "names".
+std::string note_of_missing(std::string_view which, const std::vector<std::int64_t>& numbers);
+
 /// Reads the node and element sets of a deck: collects what cards add to them, then finds their members.
 class SetReader {
  public:
@@ -35,6 +41,9 @@ class SetReader {
   void begin_card(Association association, const Card& card, Place place);
   /// Adds a data line of the last card; returns the fault of the line, an empty text if it has none.
   std::string add_line(std::string_view line);
+
+  /// Returns whether cards so far add to a set of that name, of the part or of the assembly.
+  [[nodiscard]] bool knows(Association association, std::string_view name) const;
 
   /// Returns the sets with their members. Notes names and numbers that do not exist. `others`: numbers of
   /// elements that are not cells; sets may name them but do not get them.

@@ -67,9 +67,11 @@ class PlainWriter {
   void add_sets_of_labels(std::vector<EntitySet>& sets) {
     const Labels labels = labels_of(mesh_, Association::cells);
     if (!labels.any()) return;
+    const bool are_markers = mesh_.format == "su2";  // 0 is none of SU2's
     std::map<std::int64_t, EntitySet> by_label;
     for (Index c = 0; c < mesh_.cell_count(); ++c) {
-      if (labels.given[c]) by_label[labels.values[c]].members.push_back(c);
+      if (labels.given[c] && (labels.values[c] != 0 || !are_markers))
+        by_label[labels.values[c]].members.push_back(c);
     }
     for (auto& [label, set] : by_label) {
       set.name = fmt::format("label_{}", label);

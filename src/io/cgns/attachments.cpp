@@ -465,6 +465,10 @@ class AttachmentReader {
       labels_.resize(reading_.mesh.cells.shapes.size(), 0);
       const auto first = labels_.begin() + zone().first_cells[k];
       std::fill(first, first + zone().cell_counts[k], numbers.front());
+      const ElementType* const type = element_type(section.type);
+      if (type != nullptr && section.name == name_of_label(*type, numbers.front())) {
+        label_sections_.insert(zone().sections[k]);
+      }
     }
   }
 
@@ -530,7 +534,8 @@ class AttachmentReader {
         if (owner.cell_counts[k] < section.count) continue;
         const auto begin = is_named.begin() + first;
         if (std::all_of(begin, begin + section.count, [](bool named) { return named; }) ||
-            dimension(reading_.mesh.cells.shapes[first]) == metadata_.cell_dimension) {
+            dimension(reading_.mesh.cells.shapes[first]) == metadata_.cell_dimension ||
+            label_sections_.contains(owner.sections[k])) {
           continue;
         }
         PointList list{.zone = section.zone, .association = Association::cells};
@@ -583,6 +588,7 @@ class AttachmentReader {
   std::vector<FoundSet> sets_;
   NameNumbers numbers_;
   std::vector<std::int64_t> labels_;
+  std::set<int> label_sections_;  // which have no name but that of their label
 };
 
 }  // namespace

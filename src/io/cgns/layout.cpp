@@ -157,8 +157,8 @@ class Layout {
       const auto named = names.find(first);
       const bool is_boundary = dimension(key.shape) < metadata_->cell_dimension;
       const std::string name = is_boundary && named != names.end() ? named->second
-                               : division.by_labels ? fmt::format("{}_{}", type.name, key.label)
-                                                    : std::string(type.name);
+                               : division.by_labels                ? name_of_label(type, key.label)
+                                                                   : std::string(type.name);
       add_section(zone, node_names.take(name, ignored), type, first, end - first);
       if (metadata_->has_labels) zone.children.back().children.push_back(label_node(key.label));
     }
@@ -493,6 +493,10 @@ class Addition {
 };
 
 }  // namespace
+
+std::string name_of_label(const ElementType& type, std::int64_t label) {
+  return fmt::format("{}_{}", type.name, label);
+}
 
 std::shared_ptr<Metadata> layout_of(const Mesh& mesh) { return Layout(mesh).make(); }
 

@@ -5,6 +5,7 @@
 #include "io/cgns/cgns.hpp"
 #include "io/cgns/cgns_library.hpp"
 #include "io/cgns/filler.hpp"
+#include "io/labels.hpp"
 #include "io/named_parts.hpp"
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
@@ -311,6 +312,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   } else {
     metadata = layout_of(mesh);
     note_metadata_unsupported(mesh, "CGNS", notes);
+    note_number_markers(mesh, "labels of their sections, without boundary conditions", notes);
   }
   add_missing(mesh, *metadata, notes);
   note_ids_unsupported(mesh, "CGNS", notes);

@@ -81,6 +81,7 @@ class GraphReader {
 
   void read_header() {
     while (skip_comments() && trimmed(in_.peek_line()).empty()) (void)in_.raw_line();
+    line_of_header_ = in_.line();
     const auto vertices = in_.integer<std::int64_t>("the number of vertices");
     const auto edges = in_.integer<std::int64_t>("the number of edges");
     if (!in_.at_line_end()) read_kinds(in_.word("the kinds of weights"));
@@ -123,8 +124,9 @@ class GraphReader {
 
   void read_vertex(Index v) {
     if (!skip_comments()) {
-      in_.fail(fmt::format("only {} of {} lines of vertices", v, mesh_.vertex_count()),
-               "the file is cut short");
+      throw InputError(Location{in_.file(), lines_.empty() ? line_of_header_ : lines_.back(), -1},
+                       fmt::format("only {} of {} lines of vertices", v, mesh_.vertex_count()),
+                       "the file is cut short, or the count in its first line is wrong");
     }
     lines_.push_back(in_.line());
     if (has_sizes_) sizes_.push_back(number("the size of a vertex", 0));
@@ -193,6 +195,7 @@ class GraphReader {
   bool has_weights_ = false;
   bool has_sizes_ = false;
   std::vector<std::int64_t> lines_;  // of each vertex, in the file
+  std::int64_t line_of_header_ = 1;
   std::vector<std::int64_t> sizes_;
   std::vector<std::int64_t> vertex_weights_;
   std::vector<Offset> offsets_{0};

@@ -214,6 +214,9 @@ class FamilyWriter {
     for (const auto& [label, of_label] : members) {
       combinations.add(fmt::format("{}_{}", kLabel, label), of_label);
     }
+    if (association_ == Association::cells) {
+      note_number_markers(writing_.mesh, "groups of the names label_N", writing_.notes);
+    }
   }
 
   /// Returns an unused name for a group, without blanks at its end: the file pads names with blanks.

@@ -208,12 +208,31 @@ class Su2Reader {
     if (in_.at_line_end()) in_.fail("the line ends before " + std::string(what), "it may be cut short");
   }
 
-  /// Takes the number at the end of the line, if there is one.
-  void take_number(std::int64_t place, bool& numbered) {
+  /// Takes the number at the end of an element's line, if there is one.
+  void take_number(const ElementKind& kind, std::int64_t place, bool& numbered) {
     if (in_.at_line_end()) return;
     if (in_.integer<std::int64_t>("the number at the end of the line") != place) has_other_numbers_ = true;
     numbered = true;
-    if (!in_.at_line_end()) in_.fail("the line has too many numbers", "one number may follow");
+    if (!in_.at_line_end()) refuse_nodes(kind);
+  }
+
+  /// Fails on a line with more numbers than its type has nodes; one has been taken beyond these.
+  [[noreturn]] void refuse_nodes(const ElementKind& kind) const {
+    int numbers = kind.nodes + 1;
+    std::string_view rest = in_.peek_line();
+    rest = rest.substr(0, rest.find(kComment));
+    while (!next_word(rest).empty()) ++numbers;
+    const auto likely =
+        std::find_if(kElementKinds.begin(), kElementKinds.end(), [&](const ElementKind& other) {
+          return dimension(other.shape) == dimension(kind.shape) &&
+                 (other.nodes == numbers || other.nodes == numbers - 1);
+        });
+    in_.fail(fmt::format("an element of type {} ({}) has {} nodes, but {} numbers follow the type", kind.type,
+                         to_string(kind.shape), kind.nodes, numbers),
+             likely == kElementKinds.end()
+                 ? "after the nodes one number may follow"
+                 : fmt::format("the type may be wrong: {} is a {} of {} nodes", likely->type,
+                               to_string(likely->shape), likely->nodes));
   }
 
   /// Takes what follows the coordinates of a point, which SU2 does not read.
@@ -260,7 +279,7 @@ class Su2Reader {
       const auto nodes = static_cast<std::size_t>(kind->nodes);
       for (std::size_t k = 0; k < nodes; ++k) cell[k] = node();
       cells.push_back(kind->shape, {cell.data(), nodes});
-      take_number(c, numbered);
+      take_number(*kind, c, numbered);
     }
     end_items(count);
   }

@@ -41,6 +41,14 @@ std::size_t hash_of(const std::vector<Index>& vertices) {
   return hash;
 }
 
+/// Returns whether `layout_of` added a Grid.
+bool is_added(pugi::xml_node grid) {
+  for (const pugi::xml_node information : grid.children("Information")) {
+    if (information.attribute("Name").value() == kAdded) return true;
+  }
+  return false;
+}
+
 /// Returns a key of a Topology's cells: Topologies may read one array as cells of different types.
 std::string key_of_cells(pugi::xml_node topology, const DataPlace& place, int base) {
   const TopologyType* const type = topology_type(attribute(topology, "TopologyType", "Type"));
@@ -259,7 +267,8 @@ int TopologyReader::part_of(const GridElement& grid, pugi::xml_node topology, Pi
   } else {
     rows = append(topology, std::move(piece));
   }
-  if (number > 0) part.set = reading_.add_set_of_grid(part.name, rows);
+  if (number > 0 && part.has_own_cells && is_added(grid.element)) part.below = below_of(part.name);
+  if (number > 0 && part.below == 0) part.set = reading_.add_set_of_grid(part.name, rows);
   reading_.layout->parts.push_back(part);
   reading_.rows.push_back(std::move(rows));
   return number;

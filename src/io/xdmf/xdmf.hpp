@@ -55,7 +55,9 @@ bool holds(const Mesh& mesh, Shape shape, int vertices);
 /// The cells of one Topology.
 struct Part {
   std::string name;           ///< of its Grid
-  std::string set;            ///< set of its cells, in the order of the file; empty for the first part
+  std::string set;            ///< set of its cells, in the order of the file; empty for the first part, and
+                              ///< for a Grid that `layout_of` added
+  int below = 0;              ///< of such a Grid: the highest dimension of cells minus that of its cells
   bool has_own_cells = true;  ///< false: its cells are those of parts before it
   bool is_ascending = true;   ///< whether its cells are in the order of the mesh
   std::size_t grid = 0;       ///< number of its Grid; see `Document::number`
@@ -96,6 +98,12 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 /// Returns the layout of a file for a mesh from another format: a Grid for the cells of the highest
 /// dimension, and one for those of each lower dimension.
 Layout layout_of(const Mesh& mesh, const FilePath& path);
+
+/// Marks the Grids that `layout_of` adds, an element `<Information Name=… />`: they are no sets of the
+/// user's.
+inline constexpr std::string_view kAdded = "cells of a lower dimension";
+/// Returns the value of `Part::below` for a Grid that `layout_of` added, by its name; 0 for any other name.
+int below_of(std::string_view grid);
 
 /// Returns the cells of each part, in the order of the file.
 std::vector<std::vector<Index>> cells_of_parts(const Mesh& mesh, const Layout& layout);
