@@ -5,15 +5,12 @@
 #include "io/unsupported.hpp"
 #include "mesh/values.hpp"
 
-<<<<<<< HEAD
-=======
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 #include <set>
 #include <string>
->>>>>>> a901790b (io: bring markers back under their names, note dead references, name likely faults)
 #include <type_traits>
 
 namespace meshorder {

@@ -4,7 +4,6 @@
 // "Input deck format".
 #include "io/abaqus/cards.hpp"
 
-#include "base/suggestion.hpp"
 #include "base/text.hpp"
 
 #include <algorithm>

@@ -65,20 +65,13 @@ Layout layout_of(const Mesh& mesh, const FilePath& path) {
   constexpr std::size_t kInt32 = 6;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto part = static_cast<int>(i);
-<<<<<<< HEAD
-    const std::string name(kGridNames[static_cast<std::size_t>(dimensions.front() - dimensions[i])]);
-    layout.parts.push_back({.name = name, .set = i == 0 ? "" : name, .grid = i});
-    layout.xml += fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\"><Topology TopologyType=\"\">", name);
-    add_item(Field::Role::connectivity, fmt::format("/{}/{}/topology", i == 0 ? "Mesh" : "MeshTags", name),
-=======
     const int below = dimensions.front() - dimensions[i];
     const std::string name(kGridNames[static_cast<std::size_t>(below)]);
     layout.parts.push_back({.name = name, .set = "", .below = below, .grid = i});
     layout.xml += fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\">", name);
     if (i > 0) layout.xml += fmt::format("<Information Name=\"{}\" Value=\"meshorder\"/>", kAdded);
     layout.xml += "<Topology TopologyType=\"\">";
-    add_item(Field::Role::topology, fmt::format("/{}/{}/topology", i == 0 ? "Mesh" : "MeshTags", name),
->>>>>>> a901790b (io: bring markers back under their names, note dead references, name likely faults)
+    add_item(Field::Role::connectivity, fmt::format("/{}/{}/topology", i == 0 ? "Mesh" : "MeshTags", name),
              kInt32, part);
     layout.xml +=
         fmt::format("</Topology><Geometry GeometryType=\"{}\">", mesh.dimension == 2 ? "XY" : "XYZ");
