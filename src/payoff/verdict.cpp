@@ -90,10 +90,11 @@ std::string runs_of(const Advice& advice, Workload workload) {
 /// Returns the verdict if the size of the gain is in doubt: it says only which order is faster.
 std::string in_doubt(const std::string& runs, const char* how, const std::string& on,
                      const std::string& command) {
+  const bool is_one = runs.ends_with(" runs");
   return fmt::format(
-      "as it is, {} {}{} than need be (measured here while the machine was busy: by how much is in doubt); "
+      "as it is, {} {}{} than {} could (measured here while the machine was busy: by how much is in doubt); "
       "`{}` mends it",
-      runs, how, on, command);
+      runs, how, on, is_one ? "it" : "they", command);
 }
 
 /// Returns the verdict on a matrix.
