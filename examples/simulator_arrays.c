@@ -6,8 +6,6 @@
 
 enum { VERTICES = 6, TETRAHEDRA = 3, SPRINGS = 12 };
 
-static const double x[3 * VERTICES] = {0, 0, 0, 2, 1, 0, 0, 1, 0, 3, 0, 1, 1, 0, 1, 2, 0, 0};
-
 /* Prints the reason of a failure. */
 static int failed(mo_status status) {
   if (status != MO_OK) fprintf(stderr, "%s\n", mo_last_error());
@@ -15,6 +13,7 @@ static int failed(mo_status status) {
 }
 
 int main(void) {
+  const double x[3 * VERTICES] = {0, 0, 0, 2, 1, 0, 0, 1, 0, 3, 0, 1, 1, 0, 1, 2, 0, 0};
   const int32_t offsets[TETRAHEDRA + 1] = {0, 4, 8, 12};
   int32_t moved_tetrahedra[4 * TETRAHEDRA];
   int32_t tetrahedra[4 * TETRAHEDRA] = {0, 2, 4, 5, 2, 4, 5, 1, 4, 5, 1, 3};
@@ -23,7 +22,7 @@ int main(void) {
   const double masses[VERTICES] = {1, 2, 3, 4, 5, 6};
   double moved_masses[VERTICES];
   int32_t new_to_old[VERTICES], old_to_new[VERTICES], cell_new_to_old[TETRAHEDRA], spring_new_to_old[SPRINGS];
-  int k;
+  int k = 0;
 
   const mo_in cell_offsets = {offsets, TETRAHEDRA + 1, MO_INT32};
   const mo_in cell_vertices = {tetrahedra, 4 * TETRAHEDRA, MO_INT32};

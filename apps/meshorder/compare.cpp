@@ -58,6 +58,7 @@ std::vector<std::string> names_of(const CompareArguments& arguments) {
 /// Returns the methods of the orders of these names.
 std::vector<MeshMethods> methods_of(const std::vector<std::string>& names) {
   std::vector<MeshMethods> methods;
+  methods.reserve(names.size());
   for (const std::string& name : names) methods.push_back(order_named(name));
   return methods;
 }
