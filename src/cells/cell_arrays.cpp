@@ -69,7 +69,7 @@ std::int64_t given_entry(const CellsView& view, std::size_t k) {
 /// begin at another base.
 std::string out_of_range(std::int64_t number, Offset n, int base) {
   if (n == 0) return ", but there are no vertices";
-  const std::string range = ", outside " + std::to_string(base) + " … " + std::to_string(n + base - 1);
+  std::string range = ", outside " + std::to_string(base) + " … " + std::to_string(n + base - 1);
   if (base == 0 && number == n) return range + "; if the numbers begin at 1, set the base to 1 or subtract 1";
   if (base == 1 && number == 0) return range + "; if the numbers begin at 0, set the base to 0";
   return range;

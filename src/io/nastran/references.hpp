@@ -1,14 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "io/stream/id_map.hpp"
-
-#include <cstdint>
-#include <vector>
-
 // Finds the fields in which cards that are neither nodes nor cells name nodes and elements.
 
 #include "io/nastran/card.hpp"
+#include "io/stream/id_map.hpp"
 #include <meshorder/mesh.hpp>
 
 #include <cstddef>
