@@ -92,6 +92,7 @@ std::vector<std::string> write_plans(Writing& writing, const std::string& prefix
   writing.write_integers(prefix + "_prop1", count, ids, {text_attribute("name", "ID")});
   for (std::size_t p = 0; p < properties.size(); ++p) {
     std::vector<std::int64_t> values;
+    values.reserve(plans.size());
     for (const Plan& plan : plans) values.push_back(plan.record != nullptr ? plan.record->properties[p] : 0);
     writing.write_integers(prefix + "_prop" + std::to_string(p + 2), count, values,
                            {text_attribute("name", properties[p])});
