@@ -64,7 +64,7 @@ class XdmfWithData final : public SplitFile {
 
  private:
   template <class Work>
-  std::string with_writer(const std::string& document, const Work& work) const {
+  [[nodiscard]] std::string with_writer(const std::string& document, const Work& work) const {
     const hdf5::Session session;
     const Mesh none;
     Notes ignored;
