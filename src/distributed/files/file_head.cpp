@@ -33,7 +33,7 @@ bool is_hdf5(const std::string& path) {
 /// Returns the head of a file whose parts are in an HDF5 file; nothing if their bytes overlap.
 std::optional<FileHead> head_of(FileFacts::Kind kind, FileLayout layout, const std::string& path) {
   FileHead head;
-  static_cast<FileSizes&>(head.facts) = layout;
+  static_cast<FileSizes&>(head.facts) = static_cast<const FileSizes&>(layout);
   head.facts.kind = kind;
   head.facts.bytes = static_cast<Offset>(std::filesystem::file_size(path));
   head.parts = std::move(layout.parts);

@@ -111,17 +111,15 @@ class VtkHdfReader {
     const std::string group = data_group(association);
     read_roles(association);
     const std::int64_t rows = association == Association::vertices ? all_.points : all_.cells;
-    for (const std::string& name : file_.names(group)) {
+    return std::ranges::all_of(file_.names(group), [&](const std::string& name) {
       const std::string path = path_in(group, name);
       if (!file_.number_type(path)) return false;
       const hdf5::DatasetInfo info = file_.info(path);
       const Index components = components_of(path, info);
       check_count(path, info.shape.empty() ? 1 : static_cast<std::int64_t>(info.shape.front()), association,
                   rows);
-      if (!add({.association = association, .components = components, .rows = rows}, path, name))
-        return false;
-    }
-    return true;
+      return add({.association = association, .components = components, .rows = rows}, path, name);
+    });
   }
 
   // ---- kind and counts

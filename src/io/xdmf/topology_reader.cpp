@@ -43,10 +43,7 @@ std::size_t hash_of(const std::vector<Index>& vertices) {
 
 /// Returns whether `layout_of` added a Grid.
 bool is_added(pugi::xml_node grid) {
-  for (const pugi::xml_node information : grid.children("Information")) {
-    if (information.attribute("Name").value() == kAdded) return true;
-  }
-  return false;
+  return !grid.find_child_by_attribute("Information", "Name", kAdded.data()).empty();
 }
 
 /// Returns a key of a Topology's cells: Topologies may read one array as cells of different types.
