@@ -24,19 +24,22 @@ namespace {
 constexpr std::size_t kLongestLine = 10'000;
 constexpr std::string_view kSeparators = " \t\r\n,;";
 
-/// Calls `use` with each line of these files, cut after `kLongestLine` characters.
+/// Calls `use` with each line of a text, cut after `kLongestLine` characters.
 template <class Use>
-void for_each_line(const std::vector<std::filesystem::path>& files, Use use) {
-  for (const std::filesystem::path& file : files) {
-    const InputFile opened(file);
-    const std::string text = opened.size() > 0 ? FilePath(file).read() : std::string();
-    std::string_view rest = text;
-    while (!rest.empty()) {
-      const std::size_t end = std::min(rest.find('\n'), rest.size());
-      use(rest.substr(0, std::min(end, kLongestLine)));
-      rest.remove_prefix(std::min(end + 1, rest.size()));
-    }
+void for_each_line(std::string_view text, Use use) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    use(text.substr(0, std::min(end, kLongestLine)));
+    text.remove_prefix(std::min(end + 1, text.size()));
   }
+}
+
+/// Returns the end of a file: at most `most` bytes.
+std::string end_of(const std::filesystem::path& file, std::uint64_t most) {
+  const InputFile opened(file);
+  std::string tail(std::min(most, opened.size()), '\0');
+  tail.resize(opened.read_at(opened.size() - tail.size(), tail));
+  return tail;
 }
 
 /// Returns whether a line begins with the word "error", after blanks and marks such as "*" or "[", and is not
@@ -114,7 +117,7 @@ PrintedNumbers::PrintedNumbers(std::string option, std::string pattern)
 
 std::vector<double> PrintedNumbers::find(const std::vector<std::filesystem::path>& files) const {
   std::vector<double> numbers;
-  for_each_line(files, [&](std::string_view line) {
+  const auto find_in = [&](std::string_view line) {
     const char* const end = line.data() + line.size();
     for (std::cregex_iterator match(line.data(), end, expression_), last; match != last; ++match) {
       const std::string captured = (*match)[expression_.mark_count()].str();
@@ -124,7 +127,10 @@ std::vector<double> PrintedNumbers::find(const std::vector<std::filesystem::path
             fmt::format("{} {}: it captures '{}', which is no number", option_, pattern_, captured));
       numbers.push_back(*number);
     }
-  });
+  };
+  for (const std::filesystem::path& file : files) {
+    if (InputFile(file).size() > 0) for_each_line(FilePath(file).read(), find_in);
+  }
   if (numbers.empty())
     throw InvalidArgument(fmt::format("{} {}: no line that the program printed matches", option_, pattern_));
   return numbers;
@@ -163,18 +169,19 @@ std::vector<std::filesystem::path> printed_files(const std::filesystem::path& lo
 }
 
 std::string error_line(const std::filesystem::path& log) {
+  constexpr std::uint64_t kLooksAt = std::uint64_t{1}
+                                     << 24;  // bytes of each file: a program may print far more
   std::string result;
-  for_each_line(printed_files(log), [&](std::string_view line) {
-    if (begins_with_error(line)) result = shown_line(line);
-  });
+  for (const std::filesystem::path& file : printed_files(log)) {
+    for_each_line(end_of(file, kLooksAt), [&](std::string_view line) {
+      if (begins_with_error(line)) result = shown_line(line);
+    });
+  }
   return result;
 }
 
 std::string last_line(const std::filesystem::path& file) {
-  constexpr std::uint64_t kTail = 4096;
-  const InputFile opened(file);
-  std::string tail(std::min(kTail, opened.size()), '\0');
-  tail.resize(opened.read_at(opened.size() - tail.size(), tail));
+  std::string tail = end_of(file, 4096);
   const std::size_t last = tail.find_last_not_of(" \t\r\n");
   if (last == std::string::npos) return {};
   tail.resize(last + 1);
