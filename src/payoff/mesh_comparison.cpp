@@ -19,6 +19,10 @@ namespace {
 /// takes a few seconds, and 13 bytes for each line that a kernel touches.
 constexpr Offset kQuickReuse = 2'000'000;
 
+void begin_stage(const MeshComparisonOptions& options, const std::string& stage, double from, double to) {
+  if (options.begins) options.begins(stage, from, to);
+}
+
 MeshMethods taken(const MeshOrder& order) { return {order.vertices.method.name, order.cells.method.name}; }
 
 /// Returns the methods, the mesh's own order first, each once.
@@ -41,8 +45,8 @@ void add_orders(MeshComparison& comparison, const Mesh& mesh, const KernelInput&
   for (const MeshMethods& asked : methods) {
     if (options.only_new && asked == by_auto) continue;
     const double from = 0.05 + share * static_cast<double>(comparison.orders.size());
-    options.begins("ordering by " + asked.vertices + (input.is_matrix() ? "" : "/" + asked.elements), from,
-                   from + share);
+    begin_stage(options, "ordering by " + asked.vertices + (input.is_matrix() ? "" : "/" + asked.elements),
+                from, from + share);
     const Stopwatch stopwatch;
     ComparedMeshOrder c{
         .asked = asked,
@@ -104,7 +108,7 @@ MeshComparison compare_orders(const Mesh& mesh, const MeshComparisonOptions& opt
   const double graph_seconds = building_graph.seconds();
   const KernelInput input(mesh, graph);
   add_orders(result, mesh, input, graph_seconds, options);
-  options.begins("running kernels", 0.4, 1);
+  begin_stage(options, "running kernels", 0.4, 1);
   const Band band = ideal_band(input.simplices(), graph);
   result.band_span = edge_span(band.graph, Permutation::identity(band.graph.size()));
   std::vector<int> thread_counts{1};

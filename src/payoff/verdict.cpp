@@ -87,14 +87,14 @@ std::string runs_of(const Advice& advice, Workload workload) {
   return k < kKernels.size() ? fmt::format("the {} kernel runs", kKernelTitles[k]) : "the kernels run";
 }
 
-/// Returns the verdict if the size of the gain is in doubt: it says only which order is faster.
-std::string in_doubt(const std::string& runs, const char* how, const std::string& on,
+/// Returns the verdict if the size of the gain is in doubt: it says only which order is faster. `slower` is
+/// "products take longer", `than` "they could".
+std::string in_doubt(const std::string& slower, const std::string& on, const char* than,
                      const std::string& command) {
-  const bool is_one = runs.ends_with(" runs");
   return fmt::format(
-      "as it is, {} {}{} than {} could (measured here while the machine was busy: by how much is in doubt); "
+      "as it is, {}{} than {} (measured here while the machine was busy: by how much is in doubt); "
       "`{}` mends it",
-      runs, how, on, is_one ? "it" : "they", command);
+      slower, on, than, command);
 }
 
 /// Returns the verdict on a matrix.
@@ -110,7 +110,7 @@ std::string of_products(const Advice& advice) {
   }
   const Candidate& candidate = advice.candidates[product.candidate];
   if (is_vague(advice, 0, product.factor))
-    return in_doubt("products take", "longer", on, command_for(candidate, true));
+    return in_doubt("products take longer", on, "they could", command_for(candidate, true));
   return fmt::format(
       "as it is, products take {:.1f}× as long{} as they could{}; `{}` takes {} and pays after {}",
       product.factor, on, measured ? " (measured here)" : " (predicted" + of_machine + ")",
@@ -205,8 +205,8 @@ std::string to_string(const Advice& advice) {
   const double steps = steps_to_pay(advice, *taken);
   const double factor = advice.as_is.costs.best_known()[k] / candidate.costs.best_known()[k];
   if (is_vague(advice, k, factor)) {
-    return in_doubt(fmt::format("the {} kernel runs", kKernelTitles[k]), "slower", on_threads(advice.threads),
-                    command_for(candidate));
+    return in_doubt(fmt::format("the {} kernel runs slower", kKernelTitles[k]), on_threads(advice.threads),
+                    "it could", command_for(candidate));
   }
   const std::string pays = steps > 0 ? times(steps, "time step") : runs_to_pay(advice, candidate, k);
   return fmt::format(
