@@ -160,9 +160,9 @@ class CellsView {
   /// Cells of one type.
   ///
   /// @param shape              shape of every cell
-  /// @param vertices_per_cell  vertices of every cell, as many as a cell of this shape can have: 4 for
-  /// linear,
-  ///                           10 for quadratic tetrahedra
+  /// @param vertices_per_cell  vertices of every cell,
+  ///                           as many as a cell of this shape can have:
+  ///                           4 for linear, 10 for quadratic tetrahedra
   /// @param vertices           vertices_per_cell numbers for each cell; may be a range of std::array<integer,
   ///                           …>
   /// @param base               number of the first vertex, 0 or 1
