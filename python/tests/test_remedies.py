@@ -78,7 +78,7 @@ MISTAKES = {
     ),
     "edges that name no node": (lambda: meshorder.order(EDGES - 1), "edge_index: there is no node -1"),
     "a list of methods": (
-        lambda: meshorder.order(MATRIX, ["rcm"]),
+        lambda: meshorder.order(MATRIX, ["rcm"]),  # type: ignore[arg-type]
         "method: expected the name of one of meshorder.methods(), not ['rcm']",
     ),
     "no coordinates": (
@@ -90,7 +90,7 @@ MISTAKES = {
         "weights: expected a number for each entry, not a matrix; pass its .data",
     ),
     "an array for an order": (
-        lambda: meshorder.quality(MATRIX, np.arange(60)),
+        lambda: meshorder.quality(MATRIX, np.arange(60)),  # type: ignore[arg-type]
         "order: expected an Order or Permutation, not ndarray; Permutation(new_to_old=array) makes one",
     ),
     "a permutation without a direction": (
