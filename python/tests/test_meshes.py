@@ -153,12 +153,26 @@ def test_comparison_and_advice(mesh):
     assert all(candidate.measured and not candidate.predicted for candidate in tuned)
     assert meshorder.advise(mesh, measure=True, kernels="tuned", budget=0).as_is.measured
     with pytest.raises(InvalidArgument, match="tuned kernels are not predicted"):
-        meshorder.advise(mesh, kernels="tuned")
+        meshorder.advise(mesh, measure=False, kernels="tuned")
     with pytest.raises(InvalidArgument, match="known are plain, tuned"):
         meshorder.compare(mesh, kernels="fast")
     with pytest.raises(InvalidArgument, match="zen"):
         meshorder.compare(mesh, machine="zen9")
     assert str(advice) == advice.verdict and set(advice.kernels) == {"spmv", "element", "assembly", "springs"}
+
+
+def test_advice_measures_what_runs_within_seconds(mesh, monkeypatch):
+    def is_measured(given, **options):
+        as_is = meshorder.advise(given, **options).as_is
+        assert bool(as_is.measured) != bool(as_is.predicted)
+        return bool(as_is.measured)
+
+    monkeypatch.delenv("MESHORDER_MACHINE", raising=False)
+    path = sp.eye_array(1_000_002, k=1, format="csr")  # two corners for each of its entries
+    assert is_measured(mesh) and is_measured(path[:1000, :1000]) and not is_measured(path)
+    assert not is_measured(mesh, measure=False) and not is_measured(mesh, machine="this")
+    monkeypatch.setenv("MESHORDER_MACHINE", "zen3")
+    assert not is_measured(mesh)
 
 
 def test_a_matrix_is_judged_by_its_own_product(tmp_path):

@@ -184,6 +184,13 @@ class Comparison(Sequence[Candidate]):
         return _plots.candidates(self._candidates, self._kernels, axes)
 
 
+def _runs_quickly(handle: Any, machine: str) -> bool:
+    """Returns whether the kernels of a mesh or matrix run within seconds on the machine that the times are for."""
+    most_corners = 2_000_000  # of half a million tetrahedra, or of a million entries
+    named = machine or os.environ.get("MESHORDER_MACHINE", "")
+    return handle.connectivity.size <= most_corners and (not named or not machine and named == "this")
+
+
 def _handle_of(given: Any) -> Any:
     """Returns the library's form of the mesh or matrix that `advise` and `compare` were given."""
     is_path = isinstance(given, (str, os.PathLike))
@@ -245,9 +252,9 @@ def calibrate(seconds: float = 16, *, keep: bool = True, **options: Any) -> Cali
 def advise(
     mesh: Any,
     *,
-    measure: bool = False,
+    measure: bool | None = None,
     kernels: str = "plain",
-    budget: float = 10,
+    budget: float | None = None,
     machine: str = "",
     all_threads: bool = False,
     **options: Any,
@@ -258,11 +265,13 @@ def advise(
         mesh: the path of a file; a mesh that `reorder` takes, with lines, surfaces or volumes; or a matrix or graph of
             SciPy, networkx or PyTorch: its product with a vector is the only kernel then, "spmv".
         measure: True runs the kernels on this machine; False predicts their times by reuse distances and a cost model.
+            None: they are run if that takes a few seconds, up to half a million tetrahedra or a matrix of a million
+            entries; for larger ones, and for a named machine, their times are predicted.
         kernels: "plain": as in most programs, one simple loop; "tuned": as in the simulators of
             ``meshorder simulate``, which prefetch, work on blocks, and run alike in all good orders; these
             can only be measured.
-        budget: with ``measure``, seconds ≥ 0 from the start of the call: a round of measurements begins only if it would
-            end in time, but two are run.
+        budget: seconds ≥ 0 from the start of the call: a round of measurements begins only if it would end in time, but
+            two are run. None: 10 with ``measure=True``, else 2.
         machine: the machine to predict for: "this" machine, as `calibrate` measured it, else its caches with the costs of
             "zen3", which are part of the library; or "zen3". Empty: the environment variable MESHORDER_MACHINE names it,
             else "this".
@@ -281,12 +290,15 @@ def advise(
         Stopped: ``progress`` returned False.
 
     Example:
-        The verdict of a mesh in a file, by measurement::
+        The verdict of a mesh in a file::
 
-            print(meshorder.advise("dragon.msh", measure=True))
+            print(meshorder.advise("dragon.msh"))
     """
     with prepared(options) as given:
-        made = _handle_of(mesh).advise([], not measure, measure, kernels, budget, machine, all_threads, given)
+        handle = _handle_of(mesh)
+        measured = _runs_quickly(handle, machine) if measure is None else measure
+        seconds = (10 if measure else 2) if budget is None else budget
+        made = handle.advise([], not measured, measured, kernels, seconds, machine, all_threads, given)
     verdict, as_is, candidates, best_of, doubt, predicted_for, threads = made
     return Advice(
         verdict,
