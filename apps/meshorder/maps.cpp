@@ -5,6 +5,7 @@
 #include "base/index.hpp"
 #include "io/kept_cells.hpp"
 #include "io/npy.hpp"
+#include "mesh/stored_matrix.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -172,10 +173,14 @@ void require_order(const Identity& identity, const Maps& maps, const Mesh& mesh,
     throw InputError(mesh_path, "is in the new order already, by " + path,
                      "give --inverse to restore the old order");
   if (!start) return;
-  throw InputError(mesh_path,
-                   goal ? "is not the mesh that the maps were written for, by " + path
-                        : "is not in the order that the maps start from, by " + path,
-                   "give the maps that were written with this mesh");
+  throw InputError(
+      mesh_path,
+      goal ? "is not the mesh that the maps were written for, by " + path
+           : "is not in the order that the maps start from, by " + path,
+      stored_matrix(mesh) == nullptr
+          ? "give the maps that were written with this mesh"
+          : "give the maps that were written with this file; the same entries in another sequence "
+            "count as another matrix");
 }
 
 }  // namespace

@@ -50,6 +50,15 @@ def test_the_permutation_is_applied_to_rows_and_columns(command, tmp_path, field
     assert "a grid" in (tmp_path / "b.mtx").read_text()
 
 
+def test_maps_hold_for_the_sequence_of_a_matrix_s_entries(command, tmp_path):
+    scipy.io.mmwrite(tmp_path / "a.mtx", grid(20))
+    lines = (tmp_path / "a.mtx").read_text().splitlines(keepends=True)
+    (tmp_path / "b.mtx").write_text("".join([*lines[:3], *reversed(lines[3:])]))
+    command.ok("order", "a.mtx", "-o", "c.mtx", "--maps", "m")
+    assert "the same entries in another sequence count as another matrix" in command.fails("apply", "m", "b.mtx", "-o", "d.mtx")
+    assert not (tmp_path / "d.mtx").exists()
+
+
 def test_a_matrix_without_coordinates_is_not_ordered_by_them(command, tmp_path):
     scipy.io.mmwrite(tmp_path / "a.mtx", grid(20))
     result = command.json("order", "a.mtx", "-o", "b.mtx")
