@@ -10,6 +10,7 @@
 
 #include <optional>
 #include <span>
+#include <string_view>
 
 namespace meshorder {
 
@@ -23,6 +24,11 @@ class Neighbourhood : public Polymorphic {
   [[nodiscard]] virtual double span_log2(std::span<const Index> place_of) const = 0;
   /// Returns the largest `span_log2` at which an order is still kept.
   [[nodiscard]] virtual double most_span(double fresh, double slack) const { return fresh * (1 + slack); }
+  /// The reasons of an update: `span_log2` exceeds `most_span`, or it does not.
+  [[nodiscard]] virtual std::string_view too_far() const {
+    return "neighbours have come apart: mean log2 span";
+  }
+  [[nodiscard]] virtual std::string_view near_enough() const { return "neighbours are as near"; }
   /// Returns the neighbours of the given vertices, which must ascend.
   [[nodiscard]] virtual NeighbourRows rows_of(std::span<const Index> vertices) const = 0;
   /// Orders the vertices by that method.
@@ -77,6 +83,12 @@ class PointNeighbourhood : public Neighbourhood {
   [[nodiscard]] double span_log2(std::span<const Index> place_of) const override;
   /// Returns `fresh` plus `slack` times log₂ n, since `fresh` is 0 for the order along the curve itself.
   [[nodiscard]] double most_span(double fresh, double slack) const override;
+  [[nodiscard]] std::string_view too_far() const override {
+    return "points have left their places on the curve: mean log2 distance";
+  }
+  [[nodiscard]] std::string_view near_enough() const override {
+    return "points are as near their places on the curve";
+  }
   [[nodiscard]] NeighbourRows rows_of(std::span<const Index> vertices) const override;
   [[nodiscard]] Order order_by(std::string_view method, const OrderOptions& options) override;
 

@@ -92,7 +92,7 @@ class Reorderer::Inside {
     update.reason = is_first ? "this is the first order" : reason_to_renew(hood, next, carried_span);
     if (update.reason.empty()) {
       keep(update, std::move(carried), carried_span);
-      update.reason = "neighbours are as near as in the last fresh order";
+      update.reason = std::string(hood.near_enough()) + " as in the last fresh order";
     } else {
       renew(update, hood, next, is_first, std::move(carried), carried_span);
     }
@@ -164,8 +164,8 @@ class Reorderer::Inside {
   [[nodiscard]] std::string reason_to_renew(const Neighbourhood& hood, const ReordererState& memory,
                                             double span) const {
     if (span > hood.most_span(memory.fresh_span, options_.slack)) {
-      return "neighbours have come apart: mean log2 span " + in_words(span) + ", " +
-             in_words(memory.fresh_span) + " in the last fresh order";
+      return std::string(hood.too_far()) + " " + in_words(span) + ", " + in_words(memory.fresh_span) +
+             " in the last fresh order";
     }
     if (memory.since < interval(memory)) return "";
     return std::to_string(memory.since) + " updates have passed since the last fresh order";

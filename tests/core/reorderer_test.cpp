@@ -29,6 +29,7 @@ namespace {
 using test::refusal;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 /// A square of points joined to those that are near, of which some come and go: what a caller keeps, in the
 /// places that the last update gave.
@@ -112,6 +113,17 @@ TEST(Reorderer, OrdersFirstAndMovesNothingWhileNothingChanges) {
     EXPECT_EQ(next.added + next.removed, 0);
     EXPECT_THAT(next.reason, HasSubstr("as near as in the last fresh order"));
   }
+}
+
+TEST(Reorderer, SpeaksOfPlacesOnTheCurveWhereOnlyPointsAreKnown) {
+  Cloud cloud(800);
+  Reorderer reorderer({.method = "hilbert", .slack = 0.1});
+  cloud.follow(reorderer.update(PointsView(cloud.points())));
+  EXPECT_EQ(reorderer.update(PointsView(cloud.points())).reason,
+            "points are as near their places on the curve as in the last fresh order");
+  cloud.stir(0.5);
+  EXPECT_THAT(reorderer.update(PointsView(cloud.points())).reason,
+              StartsWith("points have left their places on the curve: mean log2 distance "));
 }
 
 TEST(Reorderer, LooksForABetterOrderLessAndLessOftenWhereThereIsNone) {
