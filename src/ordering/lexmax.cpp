@@ -84,7 +84,8 @@ Order lexmax_elements(const ElementInput& input, const OrderOptions&) {
                                                               rest(b).end());
     return order < 0 || (order == 0 && a.item < b.item);
   };
-  return {Permutation::from_new_to_old(sorted_items(buckets, largest_rank, before)), {}};
+  const auto sort = [&](std::span<Entry> entries) { std::ranges::sort(entries, before); };
+  return {Permutation::from_new_to_old(sorted_items(buckets, largest_rank, sort)), {}};
 }
 
 }  // namespace meshorder

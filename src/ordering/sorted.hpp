@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -32,12 +33,13 @@ void sort_distinct(std::vector<T>& values) {
   }
 }
 
-/// Returns the items of all entries, bucket after bucket, by ascending key. Entries of one key are sorted by
-/// `before`, under which no two are equal. On all threads. O(entries · log entries of a key).
+/// Returns the items of all entries, bucket after bucket, by ascending key. On all threads.
+/// O(entries) and the sorts.
 ///
-/// @param key  the same as for the buckets
-template <class Entry, class Key, class Before>
-std::vector<Index> sorted_items(const Buckets<Entry>& buckets, const Key& key, const Before& before) {
+/// @param key   the same as for the buckets
+/// @param sort  `sort(entries)` sorts the entries of one key, a `std::span<Entry>` of two or more
+template <class Entry, class Key, class Sort>
+std::vector<Index> sorted_items(const Buckets<Entry>& buckets, const Key& key, const Sort& sort) {
   std::vector<Index> items(std::size_t(buckets.start(buckets.size())));
   parallel_loop(buckets.size(), [&](Index bucket) {
     const std::vector<Offset> starts = buckets.key_starts(bucket, key);
@@ -48,8 +50,7 @@ std::vector<Index> sorted_items(const Buckets<Entry>& buckets, const Key& key, c
     });
     for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
       if (starts[k + 1] - starts[k] < 2) continue;
-      std::sort(entries.begin() + (starts[k] - starts.front()),
-                entries.begin() + (starts[k + 1] - starts.front()), before);
+      sort(std::span(entries).subspan(starts[k] - starts.front(), starts[k + 1] - starts[k]));
     }
     std::ranges::transform(entries, items.begin() + starts.front(), &Entry::item);
   });
@@ -74,11 +75,13 @@ Permutation sorted_by(Index n, const ValueOf& value_of, Index places, const Plac
     for (Index i = begin; i < end; ++i) entries[i - begin] = {value_of(i), i};
     return [entries = std::move(entries)](const auto& call) { std::ranges::for_each(entries, call); };
   };
-  const auto before = [](const Entry& a, const Entry& b) {
-    return a.value < b.value || (a.value == b.value && a.item < b.item);
+  const auto sort = [](std::span<Entry> entries) {
+    std::ranges::sort(entries, [](const Entry& a, const Entry& b) {
+      return a.value < b.value || (a.value == b.value && a.item < b.item);
+    });
   };
   return Permutation::from_new_to_old(
-      sorted_items(Buckets<Entry>(n, kPart, places, entries_of, place), place, before));
+      sorted_items(Buckets<Entry>(n, kPart, places, entries_of, place), place, sort));
 }
 
 }  // namespace meshorder

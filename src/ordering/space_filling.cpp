@@ -244,33 +244,64 @@ std::uint64_t hilbert_key(const std::array<std::uint32_t, 3>& x, int axes, int b
 
 namespace {
 
-/// Sorts points by the number that `key(cell, lattice)` gives each along the curve.
+constexpr int kFirstBits = 30;  // of a point's number along a curve; few points share them
+
+/// Sorts points by the number that `key(cell, axes, scales)` gives each along a curve, ties by place. The
+/// numbers of the first scales come first: only points that share them need all. O(n) where few do.
 template <class Key>
 Permutation sorted_along(const PointsView& points, const Key& key) {
-  const Lattice lattice = lattice_of(points);
+  constexpr Index kPart = 65536;  // points taken by a thread at a time
+  struct Entry {
+    std::uint32_t number;  ///< its first bits
+    Index item;
+  };
   const Index n = index_size(points);
-  // the first bits of the key, enough to distinguish most points
-  const int bits = std::min(static_cast<int>(std::bit_width(static_cast<unsigned>(n))) + 1, 30);
-  const int shift = std::max(lattice.axes() * lattice.bits() - bits, 0);
-  return sorted_by(
-      n, [&](Index i) { return key(lattice.cell_of(point_at(points, i)), lattice); }, Index{1} << bits,
-      [shift](std::uint64_t number) { return static_cast<Index>(number >> static_cast<unsigned>(shift)); });
+  const Lattice lattice = lattice_of(points);
+  const int axes = lattice.axes();
+  const int first_scales = std::min(lattice.bits(), kFirstBits / std::max(axes, 1));
+  const auto number_of = [&](Index i, int scales) {
+    std::array<std::uint32_t, 3> cell = lattice.cell_of(point_at(points, i));
+    for (std::uint32_t& x : cell) x >>= static_cast<unsigned>(lattice.bits() - scales);
+    return key(cell, axes, scales);
+  };
+  const auto entries_of = [&](Index /*part*/, Index begin, Index end) {
+    std::vector<Entry> entries(std::size_t(end - begin));
+    for (Index i = begin; i < end; ++i)
+      entries[i - begin] = {static_cast<std::uint32_t>(number_of(i, first_scales)), i};
+    return [entries = std::move(entries)](const auto& call) { std::ranges::for_each(entries, call); };
+  };
+
+  const int bits = std::min(axes * first_scales, static_cast<int>(std::bit_width(std::uint32_t(n))) + 1);
+  const int shift = axes * first_scales - bits;
+  const auto place = [shift](const Entry& entry) {
+    return static_cast<Index>(entry.number >> static_cast<unsigned>(shift));
+  };
+  const auto sort_equal = [&](std::span<Entry> entries) {
+    std::vector<std::pair<std::uint64_t, Index>> whole;
+    whole.reserve(entries.size());
+    for (const Entry& entry : entries) whole.emplace_back(number_of(entry.item, lattice.bits()), entry.item);
+    std::ranges::sort(whole);
+    for (std::size_t k = 0; k < entries.size(); ++k) entries[k].item = whole[k].second;
+  };
+  const auto sort = [&](std::span<Entry> entries) {
+    std::ranges::sort(entries, {}, &Entry::number);
+    for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
+      while (end < entries.size() && entries[end].number == entries[begin].number) ++end;
+      if (end - begin > 1) sort_equal(entries.subspan(begin, end - begin));
+    }
+  };
+  return Permutation::from_new_to_old(
+      sorted_items(Buckets<Entry>(n, kPart, Index{1} << bits, entries_of, place), place, sort));
 }
 
-Permutation along_hilbert_curve(const PointsView& points) {
-  return sorted_along(points, [](const auto& cell, const Lattice& lattice) {
-    return hilbert_key(cell, lattice.axes(), lattice.bits());
-  });
-}
+Permutation along_hilbert_curve(const PointsView& points) { return sorted_along(points, hilbert_key); }
 
 }  // namespace
 
 Order morton_vertices(const VertexInput& input, const OrderOptions&) {
   check_points(input.points, static_cast<std::size_t>(input.graph.size()), "morton");
-  return {
-      sorted_along(input.points, [](const auto& cell,
-                                    const Lattice& lattice) { return interleaved(cell, lattice.axes()); }),
-      {}};
+  const auto number = [](const auto& cell, int axes, int /*scales*/) { return interleaved(cell, axes); };
+  return {sorted_along(input.points, number), {}};
 }
 
 Order hilbert_vertices(const VertexInput& input, const OrderOptions&) {

@@ -188,6 +188,30 @@ TEST(SpaceFilling, OfEqualPointsKeepsTheirOrder) {
     EXPECT_TRUE(order_of(method, points).is_identity()) << method;
 }
 
+TEST(SpaceFilling, ComparesWholeNumbersOfPointsThatAreNear) {
+  for (const int axes : {2, 3}) {
+    std::mt19937_64 random(3);
+    std::vector<Point> points{{0, 0, 0}, {1, 1, axes == 3 ? 1.0 : 0.0}};
+    for (int k = 0; k < 600; ++k) {
+      const double scale = std::ldexp(1.0, -k % 24);  // in clusters around a corner, some points in one cell
+      const auto at = [&] { return scale * (0.5 + static_cast<double>(random() % 64) / 128); };
+      points.push_back({at(), at(), axes == 3 ? at() : 0});
+    }
+    const Lattice lattice = lattice_of(points);
+    const auto cell = [&](Index i) { return lattice.cell_of(points[i]); };
+    const auto sorted_by = [&](const auto& number) {
+      std::vector<Index> sequence(points.size());
+      std::iota(sequence.begin(), sequence.end(), 0);
+      std::ranges::stable_sort(sequence, {}, number);
+      return sequence;
+    };
+    EXPECT_EQ(order_of("hilbert", points).new_to_old(),
+              sorted_by([&](Index i) { return hilbert_key(cell(i), lattice.axes(), lattice.bits()); }));
+    EXPECT_EQ(order_of("morton", points).new_to_old(),
+              sorted_by([&](Index i) { return interleaved(cell(i), lattice.axes()); }));
+  }
+}
+
 TEST(SpaceFilling, LatticeCoversTheBox) {
   const std::vector<Point> points{{-1, 2, 0}, {3, 2.5, 0}, {1, 2.25, 0}};
   const Lattice lattice = lattice_of(PointsView(points));
