@@ -39,6 +39,9 @@ struct Format {
   /// lie below the diagonal, and edges of a graph, which are sorted. Call it after vertices have moved.
   /// Returns the permutation of cells that it applied. Null: the format has no such cells.
   Permutation (*settle_cells)(Mesh&) = nullptr;
+  /// Returns a group for each cell, numbered by first appearance. Cells of a group have the same statements
+  /// before them in a file, and stay together unless other groups are asked for. Null: there are none.
+  std::vector<Index> (*together)(const Mesh&) = nullptr;
   bool single_file = true;  ///< whether a mesh is one file; several files do not fit one stream
   int first_number = 0;     ///< number of the first vertex and the first cell of a mesh without ids
   /// Returns this number of vertices or cells for a mesh that came from the format. Null: it is the same in

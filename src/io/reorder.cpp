@@ -6,6 +6,7 @@
 #include "base/parallel.hpp"
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"
+#include "ordering/order_cells.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -72,6 +73,14 @@ std::vector<std::int64_t> in_new_order(const IndexView& numbers, const Permutati
   return moved;
 }
 
+/// Returns an order of cells in which those of each group are together, as far as they may change places.
+Permutation with_groups_together(const Mesh& mesh, const Permutation& cells,
+                                 const std::vector<Index>& groups) {
+  std::vector<Index> in_order(cells.new_to_old().begin(), cells.new_to_old().end());
+  std::ranges::stable_sort(in_order, {}, [&](Index cell) { return groups[cell]; });
+  return permutation_within_classes(slot_classes(cell_arrays(mesh)), std::move(in_order));
+}
+
 }  // namespace
 
 Permutation arrange_cells(Mesh& mesh, const Format& to) {
@@ -124,10 +133,13 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGr
         of_arranged.order.cell_groups = groups;
       }
       MeshOrder order = compute_reordering(mesh, *graph, of_arranged);
+      const Format* const to = format_to_write(mesh, options.format);
+      const bool has_groups = !options.group_by.empty() || !options.order.cell_groups.empty();
+      if (to != nullptr && to->together != nullptr && !has_groups && !order.cells.permutation.is_identity())
+        order.cells.permutation = with_groups_together(mesh, order.cells.permutation, to->together(mesh));
       move_with_ids(mesh, order.vertices.permutation, order.cells.permutation, options.ids);
       order.cells.permutation = arranged.then(order.cells.permutation);
-      if (const Format* const to = format_to_write(mesh, options.format);
-          to != nullptr && to->settle_cells != nullptr)
+      if (to != nullptr && to->settle_cells != nullptr)
         order.cells.permutation = order.cells.permutation.then(to->settle_cells(mesh));
       return order;
     } catch (...) {

@@ -4,12 +4,18 @@
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <sstream>
 
 namespace meshorder {
 namespace {
 
 using namespace test;
+using testing::ElementsAre;
+using testing::StartsWith;
 
 constexpr std::string_view kHouseWithRoof = R"(# a house
 # with a roof
@@ -100,6 +106,36 @@ TEST(Obj, StatesChangeWhereTheyChangeInTheNewOrder) {
   EXPECT_EQ(content_of(folder.path() / "b.obj"),
             "v 0 1 0\nv 1 0 0\nv 0 0 0\nvt 0 0\nvt 1 1\nusemtl b\nf 3/1 2/1 1/2\nf 1/2 3/2 2/1\nusemtl a\nf "
             "2 1 3\n");
+}
+
+TEST(Obj, FacesOfEqualStatementsStayTogether) {
+  std::string text;
+  for (int v = 0; v < 60; ++v)
+    text += "v " + std::to_string(v * 7 % 60) + " 0 0\nv 0 " + std::to_string(v) + " 1\n";
+  text += "f 1 2 3\nusemtl red\n";
+  for (int f = 0; f < 100; ++f) {
+    if (f == 30) text += "g lid\n";
+    if (f == 60) text += "usemtl blue\n";
+    const int v = f * 37 % 117 + 1;
+    text += fmt::format("f {} {} {}\n", v, v + 1, v + 3);
+  }
+  const TemporaryFolder folder;
+  const auto statements_by = [&](const ReorderOptions& options) {
+    Mesh mesh = read_mesh(folder.file("a.obj", text));
+    EXPECT_FALSE(reorder(mesh, options).cells.permutation.is_identity());
+    write_mesh(mesh, folder.path() / "b.obj");
+    std::vector<std::string> statements;
+    std::istringstream lines(content_of(folder.path() / "b.obj"));
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("v ") && (!line.starts_with("f ") || statements.empty()))
+        statements.push_back(line);
+    }
+    return statements;
+  };
+  EXPECT_THAT(statements_by({.methods = {"scrambled", "scrambled"}}),
+              ElementsAre(StartsWith("f "), "usemtl red", "g lid", "usemtl blue"));
+  EXPECT_GT(statements_by({.methods = {"scrambled", "lexmax"}, .group_by = "sets"}).size(), 10)
+      << "other groups were asked for";
 }
 
 TEST(Obj, TakesNegativeIndicesContinuedLinesAndIndicesAhead) {

@@ -3,6 +3,7 @@
 // Wavefront OBJ, as "Object Files (.obj)", appendix B1 of the Advanced Visualizer manual, gives it
 // (https://paulbourke.net/dataformats/obj/): polygons, lines and points with texture coordinates and normals
 // of their corners, groups, materials and other states. Free-form curves and surfaces are not read.
+#include "base/checksum.hpp"
 #include "io/all_formats.hpp"
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <set>
+#include <unordered_map>
 
 namespace meshorder {
 namespace {
@@ -316,8 +318,37 @@ class ObjWriter {
 
 void write_obj(const Mesh& mesh, const FilePath& path, Notes& notes) { ObjWriter(mesh, path, notes).write(); }
 
+/// Returns the groups of cells with the same states and sets, see `Format::together`. O(cells + members).
+std::vector<Index> cells_of_equal_statements(const Mesh& mesh) {
+  std::vector<Checksum> statements(mesh.cells.shapes.size());
+  for (const obj::State& state : kStates) {
+    const DataArray* const array = find_array(mesh, state.array, Association::cells);
+    const std::vector<std::int32_t> values =
+        array != nullptr ? cell_integers(*array) : std::vector<std::int32_t>{};
+    for (std::size_t c = 0; c < values.size(); ++c) statements[c].add(values[c]);
+  }
+  for (std::size_t s = 0; s < mesh.sets.size(); ++s) {
+    if (mesh.sets[s].association != Association::cells) continue;
+    for (const Index cell : mesh.sets[s].members) statements[cell].add(s);
+  }
+  std::unordered_map<std::uint64_t, Index> group_of;
+  std::vector<Index> groups;
+  groups.reserve(statements.size());
+  for (const Checksum& of_cell : statements)
+    groups.push_back(group_of.try_emplace(of_cell.value(), index_size(group_of)).first->second);
+  return groups;
+}
+
 }  // namespace
 
-Format obj_format() { return {"OBJ", {".obj"}, false, obj::read, write_obj, obj_holds}; }
+Format obj_format() {
+  return {.name = "OBJ",
+          .extensions = {".obj"},
+          .groups_cells_by_type = false,
+          .read = obj::read,
+          .write = write_obj,
+          .holds = obj_holds,
+          .together = cells_of_equal_statements};
+}
 
 }  // namespace meshorder
