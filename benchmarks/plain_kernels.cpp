@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // plain_kernels MESH [METHOD,METHOD… [rounds]]: times kernels as simple programs write them, without
 // prefetches (src/kernels/plain.hpp, plain_programs.hpp), on a tetrahedral mesh in several orders. Elements
-// and edges are sorted by their largest vertex; `springs*` has edges by their smaller end. NAME=@FILE.npy
-// takes the order of the vertices from a file, which has the old place of each new one. A mesh grid-N that is
-// no file is made: a lattice in random order.
+// and edges are sorted by their largest vertex; for `springs*` edges are sorted by their smaller end.
+// NAME=@FILE.npy takes the order of the vertices from a file, which has the old place of each new one. If the
+// mesh is grid-N and no such file exists, it is a lattice in random order.
 //
 // All orders share one memory, which each fills before its turn, so that all have the same pages. Each round
 // has another sequence of orders. A kernel runs alternately in the order and, in separate memory, in the

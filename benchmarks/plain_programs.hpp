@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <span>
 
-// Loops of other programs, written as those of kernels/plain.hpp. Residuals and messages are added to the
-// values in the output array.
+// Loops of other programs, written like those of kernels/plain.hpp. Functions add residuals and messages to
+// the values in the output array.
 namespace meshorder::plain {
 
 /// Computes y = A x for a matrix of 3×3 blocks, each stored row by row.

@@ -164,11 +164,11 @@ MO_API mo_status mo_order_mesh(const mo_in* cell_offsets, const mo_in* cell_vert
                                mo_result* cell_result);
 
 /**
- * Orders edges by the larger place of their two ends, then by the smaller one. A loop over them then touches
- * new vertices nearly in their order. The function does not change `ends`.
+ * Orders edges by the larger place of their two ends, then by the smaller one. A loop over them then reaches
+ * the vertices nearly in their new order. The function does not change `ends`.
  *
- * @param ends               2 for each edge, from `base` on. They are old numbers: call this function before
- *                           you renumber them. For ends that are renumbered already, pass the identity
+ * @param ends               2 for each edge, from `base` on: old numbers, so call this function before you
+ *                           renumber them. If they are renumbered already, pass the identity
  *                           (base, base + 1, ...) as `vertex_new_to_old`
  * @param vertex_new_to_old  the order of the vertices, a bijection from `base` on
  * @param base               0 or 1

@@ -219,7 +219,7 @@ FilePath results_of(const std::string& input) {
   if (!fs::is_directory(input)) return {input};
   const StudyFolder folder(input);
   if (openfoam::is_case(input))
-    throw InputError(input, "is an OpenFOAM case, and reports are on meshes in files and on studies",
+    throw InputError(input, "is an OpenFOAM case, but a report is on mesh files or on studies",
                      "order its cells by meshorder openfoam " + input);
   if (!fs::exists(folder.results()))
     throw InputError(input, "holds no results.json",

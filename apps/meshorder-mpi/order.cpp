@@ -85,7 +85,7 @@ std::optional<FileSlices> slices_of(const Communicator& communicator, const Argu
   return slices;
 }
 
-/// Returns an Exodus file if all ranks can read it: if only pieces, perhaps with maps, are written.
+/// Returns an Exodus file if all ranks can read it: in runs that write only pieces, perhaps with maps.
 std::optional<ExodusSlices> exodus_slices_of(const Communicator& communicator, const Arguments& arguments) {
   if (!arguments.output.empty() || needs_root(arguments)) return std::nullopt;
   std::optional<ExodusSlices> slices = ExodusSlices::open(communicator, arguments.input);

@@ -63,8 +63,8 @@ std::vector<MeshMethods> methods_of(const std::vector<std::string>& names) {
   return methods;
 }
 
-/// Returns the methods of a matrix: of its rows only, as entries keep their places in the file. By default,
-/// those that need points are among them only if it has coordinates.
+/// Returns the methods for the rows of a matrix; its entries keep their places in the file. By default, these
+/// include methods that need points only if the matrix has coordinates.
 std::vector<MeshMethods> methods_of_matrix(const Mesh& mesh, const CompareArguments& arguments) {
   std::vector<std::string> names = arguments.methods;
   for (const std::string& name : names) {

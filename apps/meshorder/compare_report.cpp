@@ -38,7 +38,7 @@ std::string label(const ComparisonReport& report, std::size_t i) {
   return order_in_words(methods, report.is_matrix()) + (by_auto ? " (auto)" : "");
 }
 
-/// Returns the answer in a sentence; an empty text if there is no order but the file's own.
+/// Returns the answer in a sentence; an empty text if the file's own order is the only one.
 std::string sentence_on(const ComparisonReport& report, const Advice& advice, Workload told) {
   if (!advice.candidates.empty()) return comparison_in_words(advice, told);
   return report.auto_keeps ? "auto keeps the file's own order" : "";
@@ -119,7 +119,7 @@ void print_speedups(const Console& console, const ComparisonReport& comparison, 
   }
 }
 
-/// Returns the beginning of a row: both methods or, for a matrix, which has no elements, that of its rows.
+/// Returns the beginning of a row: both methods, or only the first for a matrix, which has no elements.
 std::string row_head(const ComparisonReport& comparison, const std::string& vertices,
                      const std::string& elements) {
   return comparison.is_matrix() ? fmt::format("{:<15}", vertices)
@@ -325,7 +325,7 @@ nlohmann::ordered_json to_json(const ComparisonReport& comparison) {
     }
     methods.push_back(method);
     if (i > 0 || !comparison.auto_keeps) continue;
-    method["vertices"] = comparison.auto_keeps->vertices;  // an entry for each name of the one order
+    method["vertices"] = comparison.auto_keeps->vertices;  // the same order, named by `auto`
     method["elements"] = comparison.auto_keeps->elements;
     methods.push_back(method);
   }

@@ -19,7 +19,7 @@ struct ComparisonReport : MeshComparison {
   std::string size = {};                       ///< in words
   Caches caches = {};                          ///< caches for which misses are predicted
   std::vector<GpuLayout> gpu_layouts = {};     ///< for which additions on a graphics processor are counted
-  std::vector<std::vector<GpuCost>> gpu = {};  ///< of each order in each of these layouts; empty without any
+  std::vector<std::vector<GpuCost>> gpu = {};  ///< of each order in each layout; empty without layouts
 };
 
 /// Prints the best order, the command that makes it, and the speedup of each order over the file's

@@ -144,7 +144,7 @@ class Reading {
     limit.rlim_cur = std::min({limit.rlim_cur, hard, seconds + used_seconds});
     work->seconds = static_cast<std::uint32_t>(std::min<rlim_t>(limit.rlim_cur, seconds));
     (void)::setrlimit(RLIMIT_CPU, &limit);
-    // a damaged heap may also make it wait for ever; time during which the process is stopped does not count
+    // with a damaged heap, a library may also wait for ever; time while the process is stopped does not count
     seconds_to_wait = static_cast<int>(kWaiting * work->seconds);
     (void)std::signal(SIGCONT, wait_anew);
     wait_anew(SIGCONT);

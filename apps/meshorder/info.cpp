@@ -58,7 +58,7 @@ struct InfoArguments : Common {
 
 /// Seconds from the start of the command to the end of --measure, for up to about 300 thousand vertices.
 constexpr double kMeasureWithin = 3.8;
-/// The same without --measure; then the largest number of simplices, or of a matrix's entries, for which
+/// The same without --measure, and the largest number of simplices, or of entries of a matrix, for which
 /// kernels run within that time.
 constexpr double kMeasureQuicklyWithin = 0.7;
 constexpr Offset kMaxQuick = 250'000;
@@ -305,7 +305,7 @@ void print_verdict(const Console& console, const InfoArguments& arguments, const
   }
   const char* const without_advice =
       !found.has_elements && found.stored != nullptr
-          ? "nothing to gain: no entry joins two rows, so that every order is as good"
+          ? "nothing to gain: no entry joins two rows, so every order is equally good"
       : !found.has_elements ? "nothing to compute on: it has no elements"
       : fits_in_first_cache(found.graph)
           ? "nothing to gain: its data fit in a processor's first cache, in any order"

@@ -92,8 +92,8 @@ class Case {
   /// Returns a file to be written in the case.
   [[nodiscard]] FilePath output(const fs::path& file) const { return FilePath::in(folder_, file); }
 
-  /// Returns the command that moves the cells; before it, if the dictionary asks for another order, that it
-  /// must be changed.
+  /// Returns the command that moves the cells. If the dictionary asks for another order, the text first says
+  /// to change it.
   [[nodiscard]] std::string next(bool keeps_other_dictionary) const {
     std::string command = "renumberMesh";
     if (parallel_) command = fmt::format("mpirun -np {} renumberMesh -parallel", meshes_.size());
@@ -143,7 +143,7 @@ class Case {
   [[noreturn]] static void refuse_file(const fs::path& path) {
     if (!fs::exists(path)) throw InputError(path.string(), "no such folder", "give an OpenFOAM case");
     throw InputError(path.string(), "is a file, not an OpenFOAM case",
-                     "meshes in files are ordered by meshorder order " + in_shell(path.string()));
+                     "order a mesh file by meshorder order " + in_shell(path.string()));
   }
 
   /// Throws InputError if a folder is within a case.
@@ -269,7 +269,7 @@ OrderedMesh ordered(const Case& meshes, const std::string& name, const OpenFoamA
   return result;
 }
 
-/// The files to be written: the maps, and the dictionary unless there is one.
+/// The files to be written: the maps, and the dictionary unless an existing one stays.
 class Outputs {
  public:
   /// Throws, before the work, if the files cannot be written.
@@ -287,7 +287,7 @@ class Outputs {
     }
   }
 
-  /// Returns whether there is a dictionary for another order, which stays.
+  /// Returns whether the case keeps its dictionary although that asks for another order.
   [[nodiscard]] bool keeps_other_dictionary() const noexcept { return keeps_other_; }
 
   /// Writes all files, or none; returns their paths.

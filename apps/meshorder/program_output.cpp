@@ -42,8 +42,8 @@ std::string end_of(const std::filesystem::path& file, std::uint64_t most) {
   return tail;
 }
 
-/// Returns whether a line begins with the word "error", after blanks and marks such as "*" or "[", and is not
-/// a result: "error = 1e-9", "error condition (0=good, 1=bad) = 0".
+/// Returns whether a line reports an error: it begins with the word "error", after blanks and marks such as
+/// "*" or "[". Results do not count: "error = 1e-9", "error condition (0=good, 1=bad) = 0".
 bool begins_with_error(std::string_view line) {
   constexpr std::string_view kMarks = " \t*-#[";
   constexpr std::string_view kError = "error";
@@ -56,10 +56,10 @@ bool begins_with_error(std::string_view line) {
   return !number_of(trimmed(line.substr(line.find_last_of("=:") + 1)));
 }
 
-/// How far two numbers of an output may be apart.
+/// The allowed difference of two numbers of an output: the larger of two limits.
 struct Closeness {
   double tolerance = 0;  ///< relative to the larger one
-  double floor = 0;      ///< absolute: sums that are zero but for rounding differ by as much
+  double floor = 0;      ///< absolute, for sums that would be zero without rounding
 
   [[nodiscard]] bool agree(double a, double b) const {
     return a == b || (std::isnan(a) && std::isnan(b)) ||
@@ -67,13 +67,13 @@ struct Closeness {
   }
 };
 
-/// Returns the difference that is allowed in an output in which the largest number is `largest`.
+/// Returns the allowed difference for an output whose largest number is `largest`.
 Closeness closeness(double tolerance, double largest) {
   constexpr double kRounding = 1e-12;
   return {.tolerance = tolerance, .floor = kRounding * largest};
 }
 
-/// Returns the larger one of `largest` and the magnitude of a number, if that is finite.
+/// Returns the larger of `largest` and the magnitude of a number; `largest` if the number is not finite.
 double larger(double largest, double number) {
   return std::isfinite(number) ? std::max(largest, std::abs(number)) : largest;
 }
@@ -87,7 +87,7 @@ std::regex compiled(const std::string& option, const std::string& pattern) {
   }
 }
 
-/// Returns a line as messages show it: without blanks at its ends, and at most 300 bytes of it.
+/// Returns a line as messages show it: without blanks at its ends, cut to 300 bytes.
 std::string shown_line(std::string_view line) {
   constexpr std::size_t kMost = 300;
   if (line.ends_with('\r')) line.remove_suffix(1);

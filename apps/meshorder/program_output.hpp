@@ -32,19 +32,19 @@ class PrintedNumbers {
   std::regex expression_;
 };
 
-/// Returns where two lists of numbers disagree by more than the relative tolerance and by more than 1e-12
-/// times the largest magnitude in `expected`; empty if they do not.
+/// Returns where two lists of numbers disagree: by more than the relative tolerance, and by more than 1e-12
+/// times the largest magnitude in `expected`. Empty if they agree.
 std::string difference(const std::vector<double>& expected, const std::vector<double>& found,
                        double tolerance);
 
-/// Returns where two texts differ, word by word: numbers as in lists of them, others in any character.
+/// Returns where two texts differ, word by word: numbers by the same rule, other words in any character.
 std::string difference(std::string_view expected, std::string_view found, double tolerance);
 
-/// Returns the files with what a program printed on stdout and stderr; see TrialCommand::log.
+/// Returns the files that hold a program's stdout and stderr; see TrialCommand::log.
 std::vector<std::filesystem::path> printed_files(const std::filesystem::path& log);
 
-/// Returns the last line that a program printed and that begins with "error", in any case, after blanks, "*",
-/// "-", "#" or "["; empty if there is none. Cut to 300 bytes.
+/// Returns the last printed line that begins with "error", in any case, after blanks, "*", "-", "#" or "[";
+/// empty if there is none. Cut to 300 bytes.
 std::string error_line(const std::filesystem::path& log);
 
 /// Returns the last line of a file that is not blank, cut to 300 bytes.

@@ -9,8 +9,8 @@ namespace meshorder::command {
 /// later takes their place. Call it first.
 void occupy_closed_streams();
 
-/// Writes text to stdout. Throws CommandError if it cannot be written; if the reader of a pipe has closed
-/// it, drops the text instead.
+/// Writes text to stdout. Throws CommandError if this fails; if the reader of a pipe has closed it, drops the
+/// text instead.
 void write_stdout(std::string_view text);
 
 /// Writes the buffered text; throws likewise.

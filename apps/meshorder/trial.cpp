@@ -133,7 +133,7 @@ class Trial {
     }
   }
 
-  /// Returns what to change in a command that gives CalculiX a name with extension; it adds one by itself.
+  /// Returns the remedy for a command that gives CalculiX a name with extension: CalculiX adds its own.
   [[nodiscard]] std::string remedy() const {
     const bool is_calculix = fs::path(program_).filename().string().starts_with("ccx");
     if (!is_calculix || !std::ranges::count(options_.command, "{}")) return {};
@@ -151,8 +151,8 @@ class Trial {
       faults.push_back(fmt::format("in {}: {}", order->name, order->fault));
     const bool differ = std::any_of(orders.begin() + 1, orders.end(), std::mem_fn(&TriedOrder::is_different));
     throw InvalidArgument(fmt::format(
-        "{} {} no other order than the mesh's own; {}{}{}", program_name(options_.command),
-        differ ? "has the same results in" : "runs in", join(faults, std::string_view("; ")),
+        "{} {} only in the mesh's own order; {}{}{}", program_name(options_.command),
+        differ ? "gives the same results" : "runs", join(faults, std::string_view("; ")),
         differ
             ? fmt::format("; compare numbers that do not depend on the order, or give a --tolerance larger "
                           "than {:g}",
@@ -202,9 +202,8 @@ class Trial {
 
   // ---- orders
 
-  /// Makes the orders and runs the program once in each, as many as the budget allows. Orders that fail do
-  /// not count: others take their place. Orders that the user named share the budget, if it allows two runs
-  /// of each.
+  /// Makes as many orders as the budget allows and runs the program once in each. If an order fails, the next
+  /// one takes its place. Orders that the user named share the budget, if it allows two runs of each.
   void find_orders() {
     const bool are_named = !options_.methods.empty();
     const std::vector<std::string> names = are_named ? options_.methods : subject_.orders();

@@ -63,8 +63,8 @@ std::string find_program(const std::string& name);
 /// Interrupted.
 TrialRun run_program(const TrialCommand& command);
 
-/// Returns why a run failed: "exit status 3: *ERROR in readinput …", with the last line that names an error,
-/// or else the last one on stderr or stdout.
+/// Returns why a run failed: "exit status 3: *ERROR in readinput …". The line is the last one that reports an
+/// error, or else the last one on stderr or stdout.
 std::string failure_of(const TrialRun& run, const TrialCommand& command);
 
 }  // namespace meshorder::command

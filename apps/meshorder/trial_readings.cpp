@@ -47,7 +47,7 @@ std::string TrialReadings::read(TriedOrder& order, double& time) {
     found = difference(*numbers_, numbers, tolerance_);
   }
   if (!same_file_.empty() && found.empty()) {
-    const fs::path file = folder_.run() / same_file_;  // a path for outputs is absolute, and stays
+    const fs::path file = folder_.run() / same_file_;  // an absolute path stays
     if (!fs::is_regular_file(file))
       throw InvalidArgument(fmt::format("--same-file: the program writes no file {}",
                                         file.lexically_relative(folder_.run()).string()));

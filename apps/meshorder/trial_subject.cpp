@@ -28,8 +28,8 @@ constexpr std::array kOrdersOfMatrix{"auto", "rcm", "spectral-fronts"};
 constexpr const char* kRenumberMesh = "renumberMesh";
 constexpr std::array kOrdersOfCase{"auto", kRenumberMesh, "bfs", "fiedler", "hilbert"};
 
-/// Throws InvalidArgument for an order that does not exist, as `method` is neither one of these methods nor
-/// `also`. Proposes the one that is spelt almost like it, or else says `remedy`.
+/// Throws InvalidArgument for an unknown order: `method` is neither one of these methods nor `also`. Proposes
+/// the method that is spelt almost like it, or else `remedy`.
 [[noreturn]] void refuse_order(const std::string& order, const std::string& method,
                                const std::vector<MethodInfo>& methods, const std::string& also,
                                const std::string& remedy) {
@@ -136,7 +136,7 @@ class TriedMesh final : public TrialSubject {
   OrderingOptions options_;
 };
 
-/// Returns whether the folder of a case has pieces of it for several processes: processor0, processors4.
+/// Returns whether a case is decomposed for several processes: has folders processor0, processors4.
 bool is_decomposed(const fs::path& folder) {
   return std::ranges::any_of(fs::directory_iterator(folder), [](const fs::directory_entry& entry) {
     return entry.is_directory() && entry.path().filename().string().starts_with("processor");

@@ -126,8 +126,8 @@ void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
   subcommand
       .add_option(
           "--budget", arguments.budget_seconds,
-          "Seconds for all runs of the program; orders for which they do not suffice are left out, those\n"
-          "of --methods only if each cannot run twice")
+          "Seconds for all runs of the program. Without time for all orders, the last ones are left out;\n"
+          "those of --methods share the time if each can run twice")
       ->check(positive())
       ->capture_default_str();
   subcommand.add_option("--timeout", arguments.timeout_seconds, "Seconds after which a run counts as failed")
@@ -144,7 +144,7 @@ void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
   subcommand
       .add_option("--count", arguments.count,
                   "Regular expression for a number that is shown for each order, such as iterations; a note\n"
-                  "says where it grows by a tenth or more")
+                  "names the orders in which it grows by a tenth or more")
       ->type_name("REGEX");
   subcommand
       .add_option("--same", arguments.same,
@@ -160,8 +160,8 @@ void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
   subcommand
       .add_option(
           "--tolerance", arguments.tolerance,
-          "Relative difference up to which numbers count as the same; so do those that differ by less\n"
-          "than 1e-12 of the largest one that is compared")
+          "Relative difference up to which numbers count as the same; differences below 1e-12 of the\n"
+          "largest number compared never count")
       ->check(positive())
       ->capture_default_str();
   subcommand

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// runs of the best order: a first run, rounds to choose among the orders, and pairs; then runs of each order
+// runs of the best order (a first run, rounds that choose among the orders, pairs), and of each other order
 constexpr double kRunsOfBest = 15;
 constexpr double kRunsOfEach = 3;
 
@@ -74,7 +74,7 @@ std::string program_name(const std::vector<std::string>& command) {
   std::string program = fs::path(command.front()).filename().string();
   if (!is_interpreter(program)) return program;
   for (auto word = command.begin() + 1; word != command.end(); ++word) {
-    if (*word == "-c" || *word == "-e" || word->starts_with('{')) break;  // no script, but its text
+    if (*word == "-c" || *word == "-e" || word->starts_with('{')) break;  // a script's text, not its name
     if (!word->empty() && !word->starts_with('-')) return fs::path(*word).filename().string();
   }
   return program;

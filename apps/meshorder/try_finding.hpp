@@ -19,7 +19,7 @@ bool is_faster(const TrialReport& report);
 /// Returns "faster", "slower", "tie" or "undecided".
 std::string verdict_name(const TrialReport& report);
 
-/// Returns the name of a program for messages: of python, bash and other interpreters that of the script.
+/// Returns the name of a program for messages; for python, bash and other interpreters, that of the script.
 std::string program_name(const std::vector<std::string>& command);
 
 /// Returns "1.12", near 1 "1.003".
@@ -28,18 +28,18 @@ std::string ratio_in_words(double ratio);
 /// Returns "1.08–1.16", or "" if too few pairs were run.
 std::string interval_in_words(const TimeRatio& speedup);
 
-/// Returns the number of runs of the best order after which it has saved its cost; nothing if it saves no
+/// Returns the number of runs after which the best order has saved what it cost; nothing if it saves no
 /// seconds.
 std::optional<double> runs_to_pay(const TrialReport& report);
 
-/// Returns the number of orders besides the mesh's own that can be decided in so many runs, at least 1.
+/// Returns how many orders, besides the mesh's own, `runs` runs can decide among; at least 1.
 std::size_t orders_that_fit(double runs);
 
-/// Returns the budget, in seconds, that an undecided trial needs: for as many runs as all its orders take,
-/// or, if there is an interval, for one of half the width. Nothing for other trials.
+/// Returns the budget, in seconds, that an undecided trial needs for an interval, or, if it has one, to halve
+/// its width. Nothing for other trials.
 std::optional<double> needed_budget(const TrialReport& report);
 
-/// Returns the result of the trial in one sentence, which has the word of the verdict.
+/// Returns the result of the trial in one sentence, which contains the verdict.
 std::string trial_in_words(const TrialReport& report);
 
 }  // namespace meshorder::command

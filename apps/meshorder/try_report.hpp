@@ -39,9 +39,9 @@ struct TrialReport {
   double run_seconds = 0;  ///< of all runs, by the clock
 };
 
-/// Returns the time of an order that was run: of the mesh's own the median, of another one this median
-/// divided by its ratio. The ratio is of runs in the same round, so that times of rounds when the machine was
-/// slower are not compared with those of other rounds.
+/// Returns the time of an order that was run: for the mesh's own order the median, for another order this
+/// median divided by its ratio. Ratios compare runs of the same round, so rounds in which the machine was
+/// slower do not distort them.
 double time_of(const TrialReport& report, std::size_t order);
 
 /// Returns the time of an order in words: "2.7 s", or a number that the program prints.

@@ -56,8 +56,8 @@ std::string unknown_option(const std::vector<std::string>& words) {
   return "";
 }
 
-/// Returns the words after `order` if a mesh but no output is named: "part.msh -o ordered-part.msh", or with
-/// the only one of `words`, those that are left over, as the output.
+/// Returns the words to type after `order` if the user named a mesh but no output: "part.msh -o
+/// ordered-part.msh". If `words`, the superfluous arguments, are a single one, it is the output.
 std::optional<std::string> line_with_output(const CLI::App& command, const std::vector<std::string>& words) {
   const CLI::Option* const mesh = command.get_option_no_throw("MESH");
   const CLI::Option* const output = command.get_option_no_throw("--output");
@@ -68,14 +68,14 @@ std::optional<std::string> line_with_output(const CLI::App& command, const std::
   return in_shell(name) + " -o " + in_shell(names_output ? words.front() : ordered_name(name));
 }
 
-/// Returns what is wrong if words after the mesh of `try` are not options: the program comes after --.
+/// Returns the fault if the program of `try` comes without -- before it.
 std::optional<std::string> program_without_mark(const Place& place, const std::vector<std::string>& words) {
   if (place.command->get_name() != "try" || words.empty() || words.front().starts_with('-'))
     return std::nullopt;
   const CLI::Option* const mesh = place.command->get_option_no_throw("MESH");
   std::string line = place.words;
   if (mesh != nullptr && !mesh->empty()) line += " " + in_shell(mesh->results().front());
-  return "unexpected argument '" + words.front() + "': -- has to stand before the program; write " + line +
+  return "unexpected argument '" + words.front() + "': -- must come before the program; write " + line +
          " -- " + in_shell(words.front()) + " …";
 }
 

@@ -40,7 +40,7 @@ struct ReordererOptions {
   /// points alone), and moves nothing if the present numbering is as good.
   std::string method = "auto";
   /// Share, ≥ 0, by which `Update::span_log2` may exceed that of the last fresh order before a new order is
-  /// computed.
+  /// computed. For points alone, `span_log2` may exceed it by `slack` · log₂ n.
   double slack = 0.02;
   /// Seconds, ≥ 0: no new order is computed if the last one took longer.
   double budget_seconds = std::numeric_limits<double>::infinity();
@@ -78,8 +78,8 @@ struct Update {
 ///       more.
 class MESHORDER_API Reorderer {
  public:
-  /// @throws InvalidArgument for an unknown method, a negative or NaN slack or budget, and for groups or a
-  /// start
+  /// @throws InvalidArgument for an unknown method, a negative or NaN slack or budget, and if the options
+  ///         have groups or a start
   explicit Reorderer(ReordererOptions options = {});
   ~Reorderer();
   Reorderer(Reorderer&&) noexcept;

@@ -24,7 +24,7 @@ inline namespace v0_3 {
 ///
 /// @param points  n × 1, 2 or 3 of float or double: a matrix, map or block, not an unevaluated expression. It
 ///                must live as long as the view is used
-/// @throws InvalidArgument for another number of columns: transpose a matrix with a column for each point
+/// @throws InvalidArgument for another number of columns: transpose a matrix that has a column per point
 template <class Derived>
 [[nodiscard]] PointsView points_view(const Eigen::DenseBase<Derived>& points MESHORDER_LIFETIMEBOUND) {
   static_assert((Derived::Flags & Eigen::DirectAccessBit) != 0, "evaluate the expression first: .eval()");
@@ -65,7 +65,7 @@ template <class Scalar, int Options, class StorageIndex>
 
 namespace detail {
 
-/// Returns the shape of cells that are given without one; see `order_mesh`.
+/// Returns the shape that the number of columns implies; see `order_mesh`.
 template <class V, class F>
 Shape shape_by_columns(const Eigen::DenseBase<V>& points, const Eigen::DenseBase<F>& cells) {
   switch (cells.cols()) {
@@ -79,7 +79,7 @@ Shape shape_by_columns(const Eigen::DenseBase<V>& points, const Eigen::DenseBase
       if (cells.size() == 0) throw InvalidArgument("cells: F is empty");
       throw InvalidArgument(
           "cells: " + std::to_string(cells.rows()) + " × " + std::to_string(cells.cols()) +
-          " numbers; F has a row for each cell. Name the shape of cells that have not 2 to 4 vertices");
+          " numbers; F has a row for each cell. Name the shape of cells with 1 or more than 4 vertices");
   }
 }
 
@@ -105,11 +105,11 @@ template <class V, class F, std::same_as<Shape> S>
                     methods, options);
 }
 
-/// The same where the number of F's columns says the shape: 2 for lines, 3 for triangles, 4 for tetrahedra.
+/// The same with the shape from the number of F's columns: 2 for lines, 3 for triangles, 4 for tetrahedra.
 /// Four columns are quads if V has fewer than three columns. For quads in space, name the shape.
 ///
 /// @throws InvalidArgument also for other numbers of columns: name the shape, or transpose an F that has a
-///         column for each cell
+///         column per cell
 template <class V, class F>
 [[nodiscard]] MeshOrder order_mesh(const Eigen::DenseBase<V>& points, const Eigen::DenseBase<F>& cells,
                                    const MeshMethods& methods = {}, const OrderOptions& options = {}) {
@@ -159,7 +159,7 @@ MeshOrder reorder(Eigen::PlainObjectBase<V>& points, Eigen::PlainObjectBase<F>& 
   return order;
 }
 
-/// The same where the number of F's columns says the shape, as for `order_mesh`.
+/// The same with the shape from the number of F's columns, as for `order_mesh`.
 template <class V, class F>
 MeshOrder reorder(Eigen::PlainObjectBase<V>& points, Eigen::PlainObjectBase<F>& cells,
                   const MeshMethods& methods = {}, const OrderOptions& options = {}) {

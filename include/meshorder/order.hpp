@@ -98,17 +98,16 @@ MESHORDER_API Order order_elements(const CellsView& cells, const Permutation& ve
 /// Orders a list of edges by the larger place of their two ends, then by the smaller one, then by number:
 /// `lexmax` for edges.
 ///
-/// A loop over the edges then reaches new vertices nearly in their order, whatever method ordered the
-/// vertices. Do not sort by the smaller end: in orders along curves springs then take up to 1.5 times as
-/// long.
+/// A loop over the edges then reaches the vertices nearly in their new order, whichever method ordered them.
+/// Do not sort by the smaller end: springs then take up to 1.5 times as long in orders along curves.
 ///
 /// @param ends      2 m numbers in 0 … n − 1: the ends of one edge after another. They are old numbers, so
-///                  call this function before `vertices.renumber(ends)`. For ends that are renumbered
-///                  already, pass `Permutation::identity(n)` as `vertices`
+///                  call this function before `vertices.renumber(ends)`. If they are renumbered already,
+///                  pass `Permutation::identity(n)` as `vertices`
 /// @param vertices  order of the n vertices
 /// @param run       threads, progress
-/// @return permutation of the m edges. The function does not change `ends`: move them by the result, and
-///         renumber them by `vertices`
+/// @return permutation of the m edges. The function does not change `ends`: move them by this permutation,
+///         then renumber them by `vertices`
 /// @throws InvalidArgument for an odd number of ends, and ends out of range
 /// @note O(m log m). As deterministic as `order_vertices`.
 MESHORDER_API Permutation order_edges(const IndexView& ends, const Permutation& vertices,

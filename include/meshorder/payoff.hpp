@@ -113,7 +113,7 @@ struct Advice {
 
 /// Options of `advise` and `compare`.
 struct PayoffOptions {
-  /// The candidates; empty: those that `auto` takes for all kernels, and for springs if that differs.
+  /// The candidates; empty: the choice of `auto` for all kernels and, if another, its choice for springs.
   std::vector<MeshMethods> methods = {};
   bool predict = true;  ///< gives the same times on every run
   /// The machine to predict for: one whose costs are part of the library ("zen3"), or "this": the stored

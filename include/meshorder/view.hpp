@@ -142,7 +142,7 @@ class PointsView {
 /// Cells of one type, one after another.
 struct CellBlock {
   Shape shape = Shape::vertex;
-  int vertices_per_cell = 0;  ///< as many as a cell of this shape can have: 4, 10, … for tetrahedra
+  int vertices_per_cell = 0;  ///< a usual number for this shape: 4, 10, … for tetrahedra
   IndexView vertices = {};    ///< vertices_per_cell for each cell
 };
 
@@ -160,9 +160,8 @@ class CellsView {
   /// Cells of one type.
   ///
   /// @param shape              shape of every cell
-  /// @param vertices_per_cell  vertices of every cell,
-  ///                           as many as a cell of this shape can have:
-  ///                           4 for linear, 10 for quadratic tetrahedra
+  /// @param vertices_per_cell  vertices of every cell, a usual number for this shape: 4 for linear, 10 for
+  ///                           quadratic tetrahedra
   /// @param vertices           vertices_per_cell numbers for each cell; may be a range of std::array<integer,
   ///                           …>
   /// @param base               number of the first vertex, 0 or 1
@@ -254,7 +253,7 @@ class CellsView {
 struct MeshView {
   PointsView points = {};  ///< one for each vertex, or none
   CellsView cells = {};
-  std::size_t vertex_count = 0;  ///< 0: as many as there are points; else the same, where there are points
+  std::size_t vertex_count = 0;  ///< 0: the number of points; if there are points, no other number
 };
 
 }  // namespace v0_3

@@ -107,7 +107,7 @@ class LocalSteps {
   LocalElements<Real> elements_;
   std::vector<OwnedBatches> shares_;
   std::vector<Offset> first_copies_;  ///< of each share: its first copy; its copies are consecutive
-  std::vector<Offset> copies_;        ///< of each batch: one of its copies
+  std::vector<Offset> copies_;        ///< one copy of each batch
   AlignedVector<Real> duals_;
   std::vector<double> residuals_;  ///< of each copy: primal and magnitude
 };

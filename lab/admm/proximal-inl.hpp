@@ -22,8 +22,8 @@ template <class Lanes, class Law>
 struct InvariantSteps {
   using Value = typename Lanes::Value;
   Value p[3];
-  Value e[3];  ///< of S
-  Value f[3];  ///< of S − γ I
+  Value e[3];  ///< the symmetric functions of S
+  Value f[3];  ///< the symmetric functions of S − γ I
   StressFactors<Lanes> factors;
 
   HWY_INLINE bool solve(const Law& law) {

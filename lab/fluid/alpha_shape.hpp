@@ -16,7 +16,7 @@ namespace meshorder {
 struct FluidMesh {
   std::vector<Index> corners;       ///< 4 of each tetrahedron, positively oriented
   double flat = 0;                  ///< m³; smaller tetrahedra join vertices but are not integrated
-  std::vector<std::uint8_t> alone;  ///< whether a particle has no tetrahedron but flat ones
+  std::vector<std::uint8_t> alone;  ///< whether a particle has only flat tetrahedra, or none
   std::vector<std::uint8_t> free;   ///< whether a particle is alone or lies on the free surface
 
   [[nodiscard]] CellsView view() const { return CellsView::uniform(Shape::tetrahedron, 4, corners); }
@@ -26,8 +26,8 @@ struct FluidMesh {
 };
 
 /// Returns the alpha shape (Edelsbrunner, Mücke 1994) of a triangulation: the tetrahedra whose circumscribed
-/// sphere is smaller than 1.35 spacings. A face between it and the outside is free unless all its corners lie
-/// on one wall. Tetrahedra smaller than 0.003 cubic spacings are flat. O(tetrahedra).
+/// sphere has a radius below 1.35 spacings. A face between the shape and the outside is free unless all its
+/// corners lie on one wall. Tetrahedra smaller than 0.003 cubic spacings are flat. O(tetrahedra).
 FluidMesh alpha_shape(const Triangulation& triangulation, std::span<const Point> points,
                       std::span<const Walls> walls, double spacing);
 

@@ -27,9 +27,9 @@ struct ScalarSystem {
 /// Assembles K and M. O(tetrahedra).
 ScalarSystem assemble(const FluidMesh& mesh, std::span<const Point> points);
 
-/// Solves (α K + β M) x = b by conjugate gradients with the diagonal as preconditioner, x the start and the
-/// result. Where `held` is not 0, x stays as it is and counts as given. `tolerance` is on ‖b − A x‖ / ‖b‖.
-/// The same bits for any number of threads.
+/// Solves (α K + β M) x = b by conjugate gradients with the diagonal as preconditioner; x is the start and
+/// becomes the result. Where `held` is not 0, x is given and stays. `tolerance` limits ‖b − A x‖ / ‖b‖. The
+/// same bits for any number of threads.
 SolveReport solve(const ScalarSystem& system, double alpha, double beta, std::span<const std::uint8_t> held,
                   std::span<const double> b, std::span<double> x, const SolveOptions& options);
 

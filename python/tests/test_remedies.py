@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What users get wrong first: each message names the fault and what to do."""
+"""The first mistakes of users: each message names the fault and the remedy."""
 
 import re
 
@@ -33,7 +33,7 @@ MISTAKES = {
         lambda: meshorder.order_mesh(POINTS, {"triangle": TETRAHEDRA}),
         "cells of type triangle: each row has 4 vertices, expected 3; cells of another kind need its name, as in 'triangle6'",
     ),
-    "cells of a number of vertices that is not theirs": (
+    "cells with a wrong number of vertices": (
         lambda: meshorder.order_mesh(POINTS, {"tetra10": TETRAHEDRA}),
         "cells of type tetra10: each row has 4 vertices, expected 10; cells of another kind need its name, as in 'triangle6'",
     ),
@@ -43,11 +43,11 @@ MISTAKES = {
     ),
     "cells of an unknown width": (
         lambda: meshorder.order_mesh(POINTS, np.zeros((60, 5), int)),
-        "cells: 5 vertices each: they may be of several types; name it, as in {'triangle6': cells}",
+        "cells: 5 vertices each: this does not say the type; name it, as in {'triangle6': cells}",
     ),
     "transposed points": (
         lambda: meshorder.order_mesh(POINTS.T, TETRAHEDRA),
-        "points: expected a row of 1 to 3 coordinates for each, not the shape (3, 60); pass the transpose, .T",
+        "points: expected rows of 1 to 3 coordinates, not the shape (3, 60); pass the transpose, .T",
     ),
     "data of another size": (
         lambda: meshorder.reorder(with_data(point_data={"u": np.zeros(59)})),
@@ -59,7 +59,7 @@ MISTAKES = {
     ),
     "a mask for a set": (
         lambda: meshorder.reorder(with_data(point_sets={"s": POINTS[:, 0] > 0.5})),
-        "set 's': expected integers, not bool; np.flatnonzero makes them of a mask",
+        "set 's': expected integers, not bool; np.flatnonzero makes indices of a mask",
     ),
     "the path of a matrix": (
         lambda: meshorder.order("a.mtx"),
@@ -95,7 +95,7 @@ MISTAKES = {
     ),
     "a permutation without a direction": (
         lambda: meshorder.Permutation(np.arange(60)),
-        "Permutation: which direction? Permutation(new_to_old=p) is for a[p], else old_to_new=p",
+        "Permutation: which direction? Pass new_to_old=p if a[p] has the new order, else old_to_new=p",
     ),
     "another axis": (
         lambda: meshorder.Permutation.identity(60).move(np.zeros((1, 60))),
@@ -144,7 +144,7 @@ def test_misspelt_options_get_a_suggestion(call, message):
 
 def test_results_name_what_their_permutations_have():
     order = meshorder.order(MATRIX)
-    with pytest.raises(AttributeError, match=r"an Order has no 'move', its permutation has: \.permutation\.move"):
+    with pytest.raises(AttributeError, match=r"an Order has no 'move'; use \.permutation\.move"):
         order.move(np.zeros(60))
     with pytest.raises(TypeError, match="which direction"):
         np.zeros(60)[order]

@@ -65,8 +65,8 @@ std::int64_t given_entry(const CellsView& view, std::size_t k) {
   return block->vertices[k];
 }
 
-/// Returns the fault of a number that is none of `n` vertices from `base` on, with a remedy for numbers that
-/// begin at another base.
+/// Returns the fault of a number outside base … base + n − 1, with a remedy if the numbers seem to begin at
+/// another base.
 std::string out_of_range(std::int64_t number, Offset n, int base) {
   if (n == 0) return ", but there are no vertices";
   std::string range = ", outside " + std::to_string(base) + " … " + std::to_string(n + base - 1);
@@ -119,8 +119,8 @@ void check_corners(const CellArrays& cells) {
   }
 }
 
-/// Throws InvalidArgument for the first block whose cells have a number of vertices that is not usual for
-/// their shape. Mixed cells, which may be those of a file, are not looked at.
+/// Throws InvalidArgument for the first block whose cells have an unusual number of vertices for their shape.
+/// Does not check mixed cells, which may come from a file.
 void check_widths(const CellsView& view) {
   constexpr std::size_t kNamed = 6;
   const std::span<const CellBlock> blocks = view.block_list();

@@ -48,9 +48,9 @@ std::optional<Shape> shape_of_vtk_type(int type);
 /// @throws InvalidArgument if both are given and differ, or if there are cells and neither is given
 std::size_t vertex_count_of(const MeshView& mesh);
 
-/// Converts a view of cells, and checks it unless `check` is none: sizes that match, ascending offsets, known
-/// VTK types, as many vertices as the shape has corners, in blocks a number of them that is one of
-/// `cell_widths`, vertices in range.
+/// Converts a view of cells, and checks it unless `check` is none: sizes match, offsets ascend, VTK types are
+/// known, cells have at least as many vertices as their shape has corners, cells of blocks one of the numbers
+/// in `cell_widths`, vertices are in range.
 ///
 /// @throws InvalidArgument for the first fault, with the cell that has it
 /// @throws TooLarge for more than 2,147,483,647 vertices or cells

@@ -6,12 +6,12 @@ namespace {
 
 constexpr int kHighestOrder = 10;
 
-/// Adds what a number of vertices becomes in prisms over that many: one to ten layers more.
+/// Adds the numbers of vertices of prisms whose base has `base` vertices: 2 to 11 layers of them.
 void add_prisms(int base, std::set<int>& widths) {
   for (int p = 1; p <= kHighestOrder; ++p) widths.insert((p + 1) * base);
 }
 
-/// Adds the numbers of vertices of cells that have the order `p`, in one direction at least.
+/// Adds the numbers of vertices of cells that have the order `p` in at least one direction.
 void add_order(Shape shape, int p, std::set<int>& widths) {
   const int triangle = (p + 1) * (p + 2) / 2;
   switch (shape) {
@@ -41,7 +41,7 @@ void add_order(Shape shape, int p, std::set<int>& widths) {
   }
 }
 
-/// Returns those of cells that are of no order, for example with one more vertex inside.
+/// Returns other numbers of vertices in use, for example those of cells with one more vertex inside.
 std::set<int> others(Shape shape) {
   switch (shape) {
     case Shape::vertex:

@@ -7,9 +7,9 @@
 
 namespace meshorder {
 
-/// Returns the numbers of vertices that cells of a shape have: those of complete cells up to order 10, those
-/// of cells whose vertices are all on edges, and a few others that programs use. Empty for shapes with any
-/// number of vertices, which include lines. O(1).
+/// Returns the usual numbers of vertices of a shape: complete cells up to order 10, cells whose vertices are
+/// all on edges, and a few others that programs use. Empty for shapes that take any number of vertices, such
+/// as lines. O(1).
 std::set<int> cell_widths(Shape shape);
 
 }  // namespace meshorder

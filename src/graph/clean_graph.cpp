@@ -69,7 +69,7 @@ OwnedGraph cleaned_rows(OwnedGraph rows) {
   return rows;
 }
 
-/// Returns a copy without loops of a graph whose rows ascend and have no repeats.
+/// Copies a graph without its loops; its rows must ascend without repeats.
 OwnedGraph without_loops(const GraphArrays& graph) {
   constexpr Index kRows = 4096;  // copied by a thread at a time
   OwnedGraph copy;

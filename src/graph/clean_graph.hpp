@@ -30,7 +30,7 @@ GraphArrays clean_graph(const GraphView& graph, Check check, Symmetry symmetry);
 
 /// Returns a clean copy; the argument may have loops, repeats and unsorted rows, its numbers are in range.
 /// Weights of repeats are added in ascending order, so that both rows of an edge get the same bits. O(n +
-/// entries · log degree); O(n · log degree + entries) where rows ascend.
+/// entries · log degree); O(n · log degree + entries) if rows ascend.
 ///
 /// @param findings  of the graph
 OwnedGraph cleaned_copy(const GraphArrays& graph, const GraphFindings& findings);

@@ -24,15 +24,15 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31U);
 }
 
-/// A number that differs from run to run. Nobody can then make a file whose asymmetric entries add up to
-/// zero.
+/// Returns a number that differs from run to run, so nobody can make a file whose asymmetric entries add up
+/// to zero.
 std::uint64_t secret() {
   static const auto number =
       static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
   return number;
 }
 
-/// Returns an odd number that looks random: a product of two is not zero modulo 2⁶⁴.
+/// Returns an odd number that looks random; the product of two odd numbers is not zero modulo 2⁶⁴.
 std::uint64_t odd_number_of(std::uint32_t v, std::uint64_t seed) {
   const std::uint64_t x = (v + seed) * 0x9e3779b97f4a7c15U;
   return (x ^ (x >> 32U)) * 0xbf58476d1ce4e5b9U | 1U;

@@ -21,12 +21,12 @@ struct FilePart {
   Association association = Association::vertices;  ///< whether a row is that of a vertex or of a cell
   std::uint8_t type = 0;                            ///< number type: index of an alternative of Values
   Index components = 1;                             ///< numbers of a row
-  std::int64_t rows = 0;                            ///< those of the connectivity are single vertices
+  std::int64_t rows = 0;                            ///< for the connectivity: number of vertices in it
   std::size_t number = 0;                           ///< place of its name in the layout
-  std::int64_t at = 0;      ///< first byte in the file, of the words (sizes) before the values if it has any
+  std::int64_t at = 0;      ///< first byte in the file: of the words (sizes) before the values, if any
   std::int64_t stored = 0;  ///< bytes in the file, including those words
   std::int64_t blocks = 0;  ///< number of compressed blocks; 0: not compressed
-  std::int64_t block = 0;   ///< uncompressed bytes of a block; the last block has the rest
+  std::int64_t block = 0;   ///< uncompressed bytes of a block; the last one may be smaller
 
   /// Returns the bytes of a row, uncompressed.
   [[nodiscard]] std::int64_t row_size() const { return components * size_of_type(type); }
@@ -44,13 +44,13 @@ struct FileSizes {
   std::int64_t nodes = 0;       ///< of each cell
 };
 
-/// A file as a list of parts, for code that reads and writes it by its bytes.
+/// A file as a list of parts, for code that reads and writes their bytes directly.
 struct FileLayout : FileSizes {
   std::vector<FilePart> parts;
   std::vector<std::string> names;  ///< of the parts, by their numbers
 };
 
-/// A mesh in two files: a document, and the data that it names. Makes new ones.
+/// Makes the two files of a mesh: a document, and the data that it names.
 class SplitFile : public Polymorphic {
  public:
   /// Returns the path of the data that belong to a new document.
@@ -66,10 +66,10 @@ class SplitFile : public Polymorphic {
   [[nodiscard]] virtual std::string write_without_values(const std::string& document, const std::string& data,
                                                          std::uint64_t checksum) const = 0;
 
-  /// Returns the first byte of each part, by its number, in data of `write_without_values`.
+  /// Returns the first byte of each part, by its number, in data that `write_without_values` made.
   ///
   /// @param name  of the data in messages
-  /// @throws InputError if they cannot be read, or a part has no room
+  /// @throws InputError if the data cannot be read, or lack space for a part
   [[nodiscard]] virtual std::vector<std::int64_t> places_in(const std::string& data,
                                                             const std::string& name) const = 0;
 };

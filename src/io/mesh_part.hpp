@@ -40,7 +40,7 @@ struct MeshPart {
   };
   /// A list of the file that may name a member twice.
   struct List {
-    std::string set;  ///< the set that is made of it, as messages name it
+    std::string set;  ///< name in messages of the set that is made of the list
     Index size;       ///< length of the list, for the whole mesh
     Index kept;       ///< members in this part, each counted once
   };

@@ -18,7 +18,7 @@ void note_set_unsupported(const EntitySet& set, std::string_view format, Notes& 
 /// Notes "the set 'fixed' of vertices is not written: it has no members".
 void note_set_empty(const EntitySet& set, Notes& notes);
 
-/// Returns the word for `missing_value` of these values.
+/// Returns `missing_value` of these values as text.
 inline const char* missing_word(const Values& values) { return values.index() <= 1 ? "NaN" : "0"; }
 
 /// Notes "the array 'stress' is given for some cells; the others get NaN".

@@ -12,8 +12,8 @@
 // show what an order of a mesh is worth to most users. The other kernels in this folder are tuned, and run
 // about equally fast in all good orders.
 //
-// Arrays of positions and forces hold x, y, z of each vertex side by side. Forces and matrix entries are
-// added to the values in the output array.
+// Arrays of positions and forces hold x, y, z of each vertex side by side. Functions add forces and matrix
+// entries to the values in the output array.
 namespace meshorder::plain {
 
 /// The vertices that a thread adds to: all of them, or a range. When threads share a loop over elements or

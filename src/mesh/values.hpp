@@ -21,7 +21,7 @@ inline std::size_t size_of(const Values& values) {
   return std::visit([](const auto& numbers) { return numbers.size(); }, values);
 }
 
-/// Calls `work` with a list of numbers, not of texts. Returns its result; without a call, `Result()`.
+/// Calls `work` with the list if it holds numbers, and returns the result; for texts, returns `Result()`.
 template <class OfValues, class Work>
 auto with_numbers(OfValues&& values, const Work& work) {
   using Result = decltype(work(std::get<std::vector<double>>(values)));
@@ -36,7 +36,7 @@ auto with_numbers(OfValues&& values, const Work& work) {
       values);
 }
 
-/// The same for a list of integers alone.
+/// The same for integers only.
 template <class OfValues, class Work>
 auto with_integers(OfValues&& values, const Work& work) {
   using Result = decltype(work(std::get<std::vector<std::int64_t>>(values)));
@@ -73,24 +73,24 @@ inline Index item_count(const Mesh& mesh, Association association) {
   return association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
 }
 
-/// Returns the row in an array of each of `count` vertices or cells, −1 for none; no rows for a dense array,
-/// whose row i is that of vertex or cell i. O(count).
+/// Returns for each of `count` vertices or cells its row in the array, −1 for none. Returns an empty list for
+/// a dense array, in which vertex or cell i has row i. O(count).
 std::vector<Index> rows_by_item(const DataArray& array, Index count);
 
 /// Returns the given rows of an array's values, `components` values each. O(returned values).
 Values rows_of_values(const Values& values, Index components, std::span<const Index> rows);
 
-/// Makes an array dense if it has a row for each of `count` vertices or cells. Its indices are distinct.
+/// Makes an array dense if it has a row for each of `count` vertices or cells; its indices must be distinct.
 /// O(values).
 void make_dense(DataArray& array, Index count);
 
 /// Appends values of the same type. O(values).
 void append_values(Values& values, Values more);
 
-/// Returns numbers as real ones; nothing for texts. O(values).
+/// Converts numbers to double; returns nothing for texts. O(values).
 std::vector<double> as_reals(const Values& values);
 
-/// Returns what stands for a missing value: NaN, or 0 for integers.
+/// Returns the number that is written for a missing value: NaN, or 0 for integers.
 template <class Number>
 Number missing_value() {
   if constexpr (std::is_floating_point_v<Number>) return std::numeric_limits<Number>::quiet_NaN();
@@ -107,7 +107,7 @@ inline Values values_of_type(std::size_t type) {
   return result;
 }
 
-/// Returns values of the number type with that index, which `fill` puts into an empty vector.
+/// Returns values of the number type with that index: calls `fill` with an empty vector of them.
 template <class Fill>
 Values values_of_type(std::size_t type, const Fill& fill) {
   Values values = values_of_type(type);

@@ -15,7 +15,7 @@ constexpr Index kLinesBefore = 3;
 constexpr Index kRecent = 32;         // first touches
 constexpr Index kWindow = 4096;       // rows
 constexpr Index kWindowsForOne = 16;  // step between windows of small graphs
-constexpr Index kWindows = 8;         // number of windows of large graphs, or one more
+constexpr Index kWindows = 8;         // number of windows of large graphs, at times one more
 
 /// Counts the first touches of lines, and how many of them are jumps, window by window.
 class FirstTouches {

@@ -44,8 +44,8 @@ Offset factor_entries(GraphRef graph, const Permutation& order);
 /// consecutive lines. On such meshes this share explains how fast plain products and springs run in different
 /// orders; numbers of cache misses do not.
 ///
-/// `sampled_jump_share` estimates it from windows of 4,096 rows: one window in 16, but at most 9 windows,
-/// evenly spread.
+/// `sampled_jump_share` estimates the share from evenly spread windows of 4,096 rows: one window in 16, but
+/// at most 9 windows.
 ///
 /// @return 0 for breadth-first orders of meshes, about 1 for random orders; 0 for a graph without vertices
 /// @note O(n + edges).

@@ -11,18 +11,18 @@ namespace meshorder {
 /// A synthetic mesh of the same size whose natural order streams: its kernel times are a reference.
 struct Band {
   Mesh mesh;
-  CsrGraph graph;  ///< to be passed to KernelInput as the mesh's vertex graph
+  CsrGraph graph;  ///< pass it to KernelInput as the vertex graph of the mesh
 };
 
 /// Returns the ideal streaming problem of a mesh's size, with as many vertices, edges and simplices as the
 /// mesh. Vertex i is joined to i ± 1 … i ± k. Each simplex has its vertices among i … i + k, ascending; all
 /// combinations occur, so that simplices use every edge as those of a mesh do. Every kernel reads and writes
-/// memory front to back and finds reused data in the first cache. It is a reference for the orders of the
-/// mesh, which cannot be that good for a body of two or three dimensions.
+/// memory front to back and finds reused data in the first cache. The problem is a reference for the orders
+/// of the mesh, which cannot be as good if the body has two or three dimensions.
 ///
-/// The counts are exact, except that a degenerate mesh gets the edges that its simplices need. As many
-/// vertices as in the mesh have no neighbours; they come last. The points lie on a helix, so that no simplex
-/// is flat. O(n + edges + cells).
+/// The counts are exact, except that a degenerate mesh gets the edges that its simplices need. The number of
+/// vertices without neighbours is that of the mesh; they come last. The points lie on a helix, so that no
+/// simplex is flat. O(n + edges + cells).
 ///
 /// @param simplices  that the mesh is cut into
 /// @param graph      its vertex graph

@@ -77,9 +77,9 @@ class KernelBench : public Polymorphic {
   [[nodiscard]] virtual double redundancy() const = 0;
 };
 
-/// Prepares the kernels of a mesh (see kernels_of): of a matrix the product with exactly its entries. Keeps
+/// Prepares the kernels of a mesh (see kernels_of); for a matrix, the product with exactly its entries. Keeps
 /// no reference to the input. O(size of the mesh · log degree). Throws InvalidArgument for tuned kernels of a
-/// matrix, which has no 3×3 blocks or elements that they work on.
+/// matrix: they need 3×3 blocks or elements.
 std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const KernelInput& input, int threads = 1);
 
 /// The same for a mesh in its own order; throws as `KernelInput`, too.

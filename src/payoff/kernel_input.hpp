@@ -13,8 +13,8 @@
 
 namespace meshorder {
 
-/// What the kernels of a mesh or matrix work on, in one order. The mesh is cut into simplices once; other
-/// orders of it are moved, not made again.
+/// The data of the kernels of a mesh or matrix, in one order. Cuts the mesh into simplices once; for other
+/// orders it moves these simplices.
 class KernelInput {
  public:
   /// The input in the mesh's own order. Refers to the mesh and its vertex graph, which must not change.
@@ -30,7 +30,7 @@ class KernelInput {
   [[nodiscard]] SimplicesRef simplices() const noexcept { return simplices_; }
   /// Returns the entries of a matrix; nothing for a mesh.
   [[nodiscard]] const EntryPattern& pattern() const noexcept { return pattern_; }
-  /// Returns the seconds that `moved` took for points and simplices, or entries: what a program spends, too.
+  /// Returns the seconds that `moved` took for points and simplices, or entries. A program spends these, too.
   [[nodiscard]] double seconds_to_move() const noexcept { return seconds_to_move_; }
 
  private:
@@ -42,7 +42,7 @@ class KernelInput {
   CellSimplices simplices_;
   EntryPattern pattern_;
   double seconds_to_move_ = 0;
-  // of an input that was moved; of a matrix, which has no elements, only the graph
+  // set in an input that was moved; for a matrix, which has no elements, only the graph
   std::vector<Point> own_points_;
   std::unique_ptr<const CsrGraph> own_graph_;
 };

@@ -15,8 +15,8 @@
 namespace meshorder {
 namespace {
 
-/// Largest number of simplices for which the reuse of all cache lines is computed without being requested: it
-/// takes a few seconds, and 13 bytes for each line that a kernel touches.
+/// Up to this number of simplices, `reuse` alone requests the reuse of all cache lines: computing it takes a
+/// few seconds, and 13 bytes for each line that a kernel touches.
 constexpr Offset kQuickReuse = 2'000'000;
 
 void begin_stage(const MeshComparisonOptions& options, const std::string& stage, double from, double to) {
@@ -25,7 +25,7 @@ void begin_stage(const MeshComparisonOptions& options, const std::string& stage,
 
 MeshMethods taken(const MeshOrder& order) { return {order.vertices.method.name, order.cells.method.name}; }
 
-/// Returns the methods, the mesh's own order first, each once.
+/// Returns the methods without repeats, the mesh's own order first.
 std::vector<MeshMethods> each_once(const std::vector<MeshMethods>& methods) {
   std::vector<MeshMethods> result{{"original", "original"}};
   for (const MeshMethods& one : methods) {
@@ -34,7 +34,7 @@ std::vector<MeshMethods> each_once(const std::vector<MeshMethods>& methods) {
   return result;
 }
 
-/// Computes the orders. One of `auto` that keeps the mesh's own order is no second one.
+/// Computes the orders. If `auto` keeps the mesh's own order, adds no second order for it.
 void add_orders(MeshComparison& comparison, const Mesh& mesh, const KernelInput& input, double graph_seconds,
                 const MeshComparisonOptions& options) {
   const bool adds_reuse =

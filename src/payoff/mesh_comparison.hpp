@@ -19,15 +19,15 @@ namespace meshorder {
 /// Options of `compare_orders`.
 struct MeshComparisonOptions {
   std::vector<MeshMethods> methods = {};  ///< orders besides the mesh's own
-  bool only_new = false;                  ///< leave out later methods that equal the choice of `auto`
+  bool only_new = false;                  ///< leave out methods after `auto` that equal its choice
   OrderOptions ordering = {};
   KernelSet kernels = KernelSet::plain;
   int threads = 1;  ///< the kernels run on one thread and, if there are more, on all of them
   double budget_seconds = TimingOptions{}.budget_seconds;  ///< for all runs of kernels
-  bool reuse = false;           ///< compute `reuse`, unless the mesh has more than two million simplices
-  bool reuse_of_large = false;  ///< … also then
-  bool iterations = false;      ///< and `iterations` where `reuse` is computed
-  /// Called as a stage begins, which is the share `from` … `to` of the whole.
+  bool reuse = false;           ///< compute `reuse` if the mesh has at most two million simplices
+  bool reuse_of_large = false;  ///< compute it for larger meshes, too
+  bool iterations = false;      ///< where `reuse` is computed, compute `iterations`, too
+  /// Called at the beginning of a stage; the stage is the share `from` … `to` of the whole.
   std::function<void(const std::string& stage, double from, double to)> begins = {};
 };
 
@@ -55,7 +55,7 @@ struct MeshComparison {
   KernelSet kernel_set = KernelSet::plain;
   Workload workload = Workload::all;           ///< what the orders optimise
   std::vector<ComparedMeshOrder> orders;       ///< the mesh's own first
-  std::optional<MeshMethods> auto_keeps = {};  ///< the methods of an `auto` that is the first order, too
+  std::optional<MeshMethods> auto_keeps = {};  ///< the methods that `auto` chose if it kept the first order
   EdgeSpan band_span;
   std::vector<KernelTable> kernels;                ///< on one thread, then on several
   std::span<const Kernel> kernels_run = kKernels;  ///< see kernels_of; only products for a matrix
@@ -63,13 +63,13 @@ struct MeshComparison {
   [[nodiscard]] bool is_matrix() const noexcept { return kernels_run.size() < kKernels.size(); }
 };
 
-/// Computes the mesh's own order and others, each once, and times the kernels in all of them and on the band,
-/// in interleaved rounds. The mesh is cut into simplices and its graph is built once.
+/// Computes the mesh's own order and others, each once. Times the kernels in all of them and on the band, in
+/// interleaved rounds. Cuts the mesh into simplices once, and builds its graph once.
 ///
 /// @throws as `compute_reordering` and `prepare_kernels`
 MeshComparison compare_orders(const Mesh& mesh, const MeshComparisonOptions& options);
 
-/// Returns the times on the largest number of threads as advice on the mesh: the other orders are candidates.
+/// Returns advice on the mesh from the times on most threads; the other orders are candidates.
 Advice advice_of(const MeshComparison& comparison);
 
 }  // namespace meshorder

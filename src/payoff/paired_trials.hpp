@@ -39,7 +39,7 @@ TimeRatio time_ratio_of(std::vector<double> log_ratios);
 /// more than twice the standard error. At most half of the candidates are left after round 3, a quarter after
 /// round 4, an eighth after round 6 …. Once one is left, the file's own order and this one run in turns.
 /// After 6, 7, 8, 9, 10, 12, 14 … pairs their interval is checked. It decides if it lies within a tie, or if
-/// it is 0.001 away from 1 at least and the ratio is no tie.
+/// it is at least 0.001 away from 1 and the ratio is no tie.
 ///
 /// Simulated trials, 4,000 of each kind, had log-normal times, one in twenty disturbed by up to a half. Of
 /// five equal orders at most 5 % of the trials found one faster or slower, at spreads up to 5 % and budgets

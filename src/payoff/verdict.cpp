@@ -87,12 +87,12 @@ std::string runs_of(const Advice& advice, Workload workload) {
   return k < kKernels.size() ? fmt::format("the {} kernel runs", kKernelTitles[k]) : "the kernels run";
 }
 
-/// Returns the verdict if the size of the gain is in doubt: it says only which order is faster. `slower` is
-/// "products take longer", `than` "they could".
+/// Returns the verdict if the size of the gain is in doubt. It says only which order is faster, by the words
+/// `slower`, "products take longer", and `than`, "they could".
 std::string in_doubt(const std::string& slower, const std::string& on, const char* than,
                      const std::string& command) {
   return fmt::format(
-      "as it is, {}{} than {} (measured here while the machine was busy: by how much is in doubt); "
+      "as it is, {}{} than {} (measured here while the machine was busy: the amount is in doubt); "
       "`{}` mends it",
       slower, on, than, command);
 }
@@ -171,7 +171,7 @@ std::string comparison_in_words(const Advice& advice, Workload workload) {
   const std::string order = order_in_words(candidate, advice.is_matrix);
   if (is_vague(advice, told, factor)) {
     return fmt::format(
-        "{} faster{} in {} than in the file's own order (measured while the machine was busy: by how much is "
+        "{} faster{} in {} than in the file's own order (measured while the machine was busy: the amount is "
         "in doubt)",
         runs, on_threads(advice.threads), order);
   }

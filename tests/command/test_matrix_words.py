@@ -330,4 +330,4 @@ def test_a_matrix_is_no_scenario(command, cube):
 def test_a_diagonal_matrix_has_nothing_to_gain(command, tmp_path):
     (tmp_path / "a.mtx").write_text("%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1\n2 2 1\n")
     text = command.ok("info", "a.mtx").stdout
-    assert text.startswith("a.mtx: nothing to gain: no entry joins two rows, so that every order is as good\n")
+    assert text.startswith("a.mtx: nothing to gain: no entry joins two rows, so every order is equally good\n")

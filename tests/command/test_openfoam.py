@@ -241,7 +241,7 @@ def test_cases_that_contradict_themselves_are_refused(command, case):
     mesh = case / "constant" / "polyMesh"
     before = foam_cases.folder_files(case)
     (mesh / "boundary").write_text((mesh / "boundary").read_text().replace("nFaces 148", "nFaces 147"))
-    assert "boundary: the patches have the faces" in command.fails("openfoam", "case")
+    assert "boundary: the patches cover the faces" in command.fails("openfoam", "case")
     assert foam_cases.folder_files(case) == before
 
 
@@ -252,7 +252,7 @@ def test_other_paths_than_a_case(command, case, tmp_path):
     assert command.fails("report", "case").endswith("order its cells by meshorder openfoam case")
     (tmp_path / "wing.su2").write_text("NDIME= 2\n")
     assert command.fails("openfoam", "wing.su2").endswith(
-        "wing.su2: is a file, not an OpenFOAM case; meshes in files are ordered by meshorder order wing.su2")
+        "wing.su2: is a file, not an OpenFOAM case; order a mesh file by meshorder order wing.su2")
 
 
 def test_more_processors_than_open_files(command, case):

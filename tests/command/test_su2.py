@@ -222,7 +222,7 @@ def test_markers_whose_names_are_numbers_are_named_where_they_change(command, tm
     (tmp_path / "a.su2").write_text(PLATE.format("7", "9"))
     note = "the markers '7', '9' are written as "
     assert note + "labels of their sections, without boundary" in command.fails("order", "a.su2", "-o", "b.cgns", "--strict")
-    assert note + "groups of the names label_N" in command.fails("order", "a.su2", "-o", "b.med", "--strict")
+    assert note + "groups named label_N" in command.fails("order", "a.su2", "-o", "b.med", "--strict")
     command.ok("order", "a.su2", "-o", "b.inp")
     deck = (tmp_path / "b.inp").read_text()
     assert "ELSET=label_7" in deck and "ELSET=label_9" in deck and "label_0" not in deck

@@ -48,7 +48,7 @@ TEST(Eigen, FourColumnsAreQuadsInThePlane) {
   const Strip strip;
   const Eigen::MatrixXd plane = strip.points.leftCols(2);
   const MeshMethods by_facets{.vertices = "original", .elements = "fiedler-facet"};
-  // in a row of quads each shares an edge with the next; tetrahedra of these corners share no face
+  // each quad of a row shares an edge with the next; tetrahedra with these corners would share no face
   EXPECT_EQ(order_mesh(plane, strip.squares, by_facets).cells.fiedler.size(), 1U);
   EXPECT_EQ(order_mesh(strip.points, strip.squares, by_facets).cells.fiedler.size(), 6U);
   EXPECT_EQ(order_mesh(strip.points, strip.squares, Shape::quad, by_facets).cells.fiedler.size(), 1U);

@@ -265,7 +265,7 @@ TEST(Comparison, NamesTheBestOrderOfAllKernelsOrOfOne) {
   EXPECT_EQ(
       comparison_in_words(advice, Workload::all),
       "the kernels run faster in hilbert than in the file's own order (measured while the machine was busy: "
-      "by how much is in doubt)");
+      "the amount is in doubt)");
   EXPECT_EQ(certain_gain(advice), std::nullopt);
 }
 

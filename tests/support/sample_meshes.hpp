@@ -27,7 +27,7 @@ Mesh mixed_mesh();
 /// Types of cells, as (shape, vertices per cell).
 using CellTypes = std::vector<std::pair<Shape, int>>;
 
-/// The types that a format must carry: all linear and second-order ones, and both with `more` after them.
+/// The types that a format must support: all linear ones, all second-order ones, and both followed by `more`.
 CellTypes linear_types();
 CellTypes quadratic_types();
 CellTypes common_types(const CellTypes& more = {});

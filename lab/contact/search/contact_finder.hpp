@@ -28,7 +28,7 @@ struct ContactOptions {
 /// The depth of a body in obstacles and in itself.
 struct Penetration {
   double into_obstacles = 0.0;  ///< the deepest surface vertex, m
-  double into_itself = 0.0;     ///< the deepest, in the rest shape, m
+  double into_itself = 0.0;     ///< the deepest surface vertex, measured in the rest shape, m
   Index vertices_in_itself = 0;
 };
 

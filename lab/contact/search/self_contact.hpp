@@ -11,9 +11,9 @@
 
 namespace meshorder {
 
-/// Contact of a body's surface with the body itself (McAdams et al. 2011; Overby et al. 2017): a vertex of
-/// the surface that is inside a tetrahedron has a place in the rest shape, and must get out where the
-/// surface is nearest to that place.
+/// Contact of a body's surface with the body itself (McAdams et al. 2011; Overby et al. 2017). A vertex of
+/// the surface that is inside a tetrahedron has a place in the rest shape. It must leave through the point of
+/// the surface that is nearest to that place.
 class SelfContact {
  public:
   SelfContact(const Simplices& simplices, std::span<const Point> points, const BodySurface& surface);

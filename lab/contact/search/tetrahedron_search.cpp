@@ -19,7 +19,7 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kBranchesAtOnce = 16;  // and clusters in a task
+constexpr Index kBranchesAtOnce = 16;  // branches, or clusters, in a task
 constexpr Index kLeavesAtOnce = 256;
 
 /// The tetrahedra that are not flat at `points`, with corners in the sequence that gives a positive volume

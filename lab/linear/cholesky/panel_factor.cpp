@@ -47,7 +47,7 @@ class Builder {
   const Ldl& ldl_;
   std::vector<Index> number_;    ///< of each column of L: its number in the factor
   std::vector<Index> columns_;   ///< of each of these numbers: the column of L
-  std::vector<Index> place_of_;  ///< of some columns
+  std::vector<Index> place_of_;  ///< of some columns: row in the panel, or slot in the task
   PanelFactor<Real> factor_;
   Offset rows_ = 0, values_ = 0;  ///< in all panels so far
   Index filled_ = 0;              ///< panels

@@ -15,7 +15,7 @@ struct PredictionError {
   double of_nine_tenths = 0;  ///< the smallest that nine tenths of the errors do not exceed
   double largest = 0;
   int pairs = 0;             ///< of orders of a mesh whose measured times differ by more than 10 %
-  int pairs_told_right = 0;  ///< of these, those whose faster order was predicted
+  int pairs_told_right = 0;  ///< pairs whose faster order was predicted
 };
 
 /// Returns the error of the predictions of `kKernels[kernel]`. O(orders² · meshes).

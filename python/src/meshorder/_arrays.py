@@ -44,7 +44,7 @@ def integers(values: Any, name: str, rank: int | None = 1) -> NDArray[Any]:
     if array.dtype.kind not in "iu":
         if array.size == 0:
             return np.zeros(array.shape, dtype=np.int32)
-        remedy = "; np.flatnonzero makes them of a mask" if array.dtype == bool else ""
+        remedy = "; np.flatnonzero makes indices of a mask" if array.dtype == bool else ""
         raise InvalidArgument(f"{name}: expected integers, not {array.dtype}{remedy}")
     dtype = array.dtype.newbyteorder("=") if array.dtype.itemsize >= 4 else np.dtype(np.int32)
     return _native(array, dtype)
@@ -70,7 +70,7 @@ def points(values: Any, name: str = "points") -> NDArray[Any]:
         if array.ndim in (1, 2) and len(array) == 0:
             return np.zeros((0, 3))
         remedy = "; pass the transpose, .T" if array.ndim == 2 and 1 <= len(array) <= 3 else ""
-        raise InvalidArgument(f"{name}: expected a row of 1 to 3 coordinates for each, not the shape {array.shape}{remedy}")
+        raise InvalidArgument(f"{name}: expected rows of 1 to 3 coordinates, not the shape {array.shape}{remedy}")
     if array.dtype not in (np.float32, np.float64) or not array.dtype.isnative:
         if array.dtype.kind not in "fiu":
             raise InvalidArgument(f"{name}: expected real numbers, not {array.dtype}")

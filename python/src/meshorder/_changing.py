@@ -72,7 +72,7 @@ class Reorderer:
     Args:
         method: "auto", which chooses as `order` does for the first mesh, or the name of one of `methods`.
         slack: the share, ≥ 0, by which ``span_log2`` may exceed that of the last fresh order before a new one is computed;
-            for points alone, ``span_log2`` may reach ``slack`` · log₂ n.
+            for points alone, ``span_log2`` may exceed it by ``slack`` · log₂ n.
         budget: seconds, ≥ 0: no new order is computed if the last one took longer; None: no limit.
         **options: see `Options`; but not ``progress``, ``start``, ``groups`` and ``cell_groups``.
 

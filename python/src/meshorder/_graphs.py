@@ -82,7 +82,7 @@ class Order:
 
     def __getattr__(self, name: str) -> NoReturn:
         if not name.startswith("_") and hasattr(Permutation, name):
-            raise AttributeError(f"an Order has no {name!r}, its permutation has: .permutation.{name}")
+            raise AttributeError(f"an Order has no {name!r}; use .permutation.{name}")
         raise AttributeError(f"'Order' object has no attribute {name!r}")
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NoReturn:
@@ -221,7 +221,7 @@ def graph_arrays(graph: Any, mirror: bool = False) -> tuple[NDArray[Any], NDArra
 
     Args:
         graph: the graph.
-        mirror: True: the directed edges of an edge_index are taken in both directions.
+        mirror: True: each directed edge of an edge_index counts in both directions.
 
     Returns:
         The two arrays, and for each entry the place of its weight among those given: an array of places, or all in order.

@@ -24,7 +24,7 @@ from ._permutation import Permutation
 SHAPES: tuple[str, ...] = _core.shapes
 _SHAPE_OF = {name: name for name in SHAPES} | {"tetra": "tetrahedron", "hexa": "hexahedron", "prism": "wedge"}
 _ORDERS = range(1, 11)
-#: numbers of vertices of the cells that a name without a number can mean: complete ones, and usual others
+#: the numbers of vertices that a name without a number can mean: those of complete cells, and usual others
 _WIDTHS = {
     "line": {p + 1 for p in _ORDERS},
     "triangle": {(p + 1) * (p + 2) // 2 for p in _ORDERS} | {7},
@@ -112,7 +112,7 @@ def cell_arrays(cells: Any, dimension: int) -> Any:
     width = vertices.shape[1]
     name = _SIMPLEX.get(width) if width != 4 else "tetrahedron" if dimension == 3 else "quad"
     if name is None or (dimension < 3 and width > 4):
-        remedy = f"they may be of several types; name it, as in {{'triangle6': cells}}"
+        remedy = f"this does not say the type; name it, as in {{'triangle6': cells}}"
         if len(vertices) in {4, *_SIMPLEX}:
             remedy = "is the array transposed? A row for each cell is expected"
         raise InvalidArgument(f"cells: {width} vertices each: {remedy}")

@@ -64,8 +64,8 @@ def order_edges(edges: Any, vertices: Permutation) -> Permutation:
     A loop over them then touches new vertices nearly in their order, whatever method ordered the vertices.
 
     Args:
-        edges: one row of two vertex numbers for each edge. They are old numbers; for edges that ``renumber`` has changed
-            already, pass the permutation that moves nothing as ``vertices``.
+        edges: one row of two old vertex numbers for each edge. If ``renumber`` has changed them already, pass the
+            permutation that moves nothing as ``vertices``.
         vertices: the order of the vertices.
 
     Returns:

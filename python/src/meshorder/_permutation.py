@@ -48,7 +48,7 @@ class Permutation:
 
     def __init__(self, *unnamed: Any, old_to_new: Any = None, new_to_old: Any = None) -> None:
         if unnamed:
-            raise InvalidArgument("Permutation: which direction? Permutation(new_to_old=p) is for a[p], else old_to_new=p")
+            raise InvalidArgument("Permutation: which direction? Pass new_to_old=p if a[p] has the new order, else old_to_new=p")
         if (old_to_new is None) == (new_to_old is None):
             given = "none" if old_to_new is None else "both"
             raise InvalidArgument(f"Permutation: expected exactly one of old_to_new and new_to_old, not {given}")

@@ -32,7 +32,7 @@ _LEAST_SPREAD = 0.003
 _LEAST_DISTANCE = 0.001
 _LEAST_TIME = 1e-6
 
-# differences below this share of the largest number are rounding
+# differences below this share of the largest number count as rounding
 _ROUNDING = 1e-12
 
 # runs of the best order: a first run, rounds to choose among the orders, and pairs; then runs of each order
@@ -158,8 +158,8 @@ class TriedOrder:
 
     Attributes:
         name: "original", or the name of the order: "rcm", "hilbert/hilbert"; for "auto" the name of its choice.
-        time: in seconds or as returned by ``time``: of the original order the median of its runs, of another one this
-            median divided by ``ratio``; None if no run counts.
+        time: in seconds or as returned by ``time``: for the original order the median of its runs, for another order
+            this median divided by ``ratio``; None if no run counts.
         ratio: speedup over the original order, from runs of the same rounds; None if no run counts.
         interval: lowest and highest ratio of a 95 % interval; None for fewer than six runs.
         runs: number of runs that count.
@@ -182,7 +182,7 @@ class Trial:
 
     Attributes:
         verdict: "faster": the function runs faster in ``best``; "slower": it runs slower in every other order
-            than in the original one; "tie": no order changes its time by more than 1.5 %; "undecided": its times vary too
+            than in the original one; "tie": in ``best`` its time differs by at most 1.5 %; "undecided": its times vary too
             much, or were too few, to say.
         best: name of the best order besides the original one; None if there is no other.
         ratio: speedup in that order; 1 if there is none.
@@ -190,8 +190,8 @@ class Trial:
         orders: the orders that were tried, the original one first.
         ordered: the mesh or matrix in the best order if the verdict is "faster", else the one that was given.
         left_out: names of orders for which the budget left no time.
-        needed_budget: seconds that an undecided trial needs for as many runs as all its orders take, or, if there is an
-            interval, for one of half the width; None for other trials.
+        needed_budget: the budget in seconds that an undecided trial needs for an interval, or, if there is one, to halve
+            its width; None for other trials.
     """
 
     verdict: str
@@ -325,7 +325,7 @@ def _ordered(given: Any, name: str, options: dict[str, Any]) -> tuple[str, Any, 
 
 
 def _orders_that_fit(runs: float, named: Sequence[str] | None) -> int:
-    """Returns how many orders a budget of so many runs suffices for; those that the caller named share it."""
+    """Returns for how many orders a budget of so many runs suffices; orders that the caller named share it."""
     if named is not None and runs >= 2 * (len(named) + 1):
         return len(named)
     return max(1, int((min(runs, 1e6) - _RUNS_OF_BEST) / _RUNS_OF_EACH))
@@ -334,7 +334,7 @@ def _orders_that_fit(runs: float, named: Sequence[str] | None) -> int:
 def _candidate(
     given: Any, name: str, others: Sequence[_Candidate], named: bool, options: dict[str, Any]
 ) -> _Candidate | None:
-    """Returns an order to try; None if it moves nothing or is among the others."""
+    """Returns an order to try; None if it moves nothing or the others contain it."""
     began = clocks.perf_counter()
     try:
         shown, ordered, kept = _ordered(given, name, options)
@@ -350,9 +350,9 @@ def _candidate(
 def _first_runs(
     mesh: Any, methods: Sequence[str] | None, runner: _Runner, budget: float, options: dict[str, Any]
 ) -> tuple[list[_Candidate], list[str]]:
-    """Runs the function once in each order; returns these, and the names of those for which there is no time.
+    """Runs the function once in each order; returns these orders, and the names of those for which there is no time.
 
-    Orders in which the results differ give their place to others.
+    Orders with different results give their place to others.
     """
     original = _Candidate("original", mesh, 0.0)
     runner.run(original)
@@ -390,9 +390,9 @@ def try_orders(
         budget: seconds for all runs of the function.
         time: what is compared: "cpu", the processor time of this process; "wall", the time by the clock; or a function that
             returns a number > 0 for the result of ``function``.
-        tolerance: None, by which results are not compared, or the relative difference up to which the numbers that
-            ``function`` returns must equal those of its first run; differences below 1e-12 of the largest number are
-            allowed as well. An order in which they differ more is excluded.
+        tolerance: None: results are not compared. Else the relative difference that is allowed between the numbers that
+            ``function`` returns and those of its first run; differences below 1e-12 of the largest number are allowed,
+            too. An order in which they differ more is excluded.
         **options: of the orders; see `Options`.
 
     Returns:
@@ -422,7 +422,7 @@ def try_orders(
             trials.exclude(number)
     if len(candidates) > 1 and not trials.left:
         faults = "; ".join(f"in {candidate.name} {candidate.fault}" for candidate in candidates[1:])
-        raise InvalidArgument(f"the function has the same results in no other order; {faults}; give a larger tolerance")
+        raise InvalidArgument(f"the results are the same only in the original order; {faults}; give a larger tolerance")
 
     def run(number: int) -> float:
         taken = runner.run(candidates[number])
@@ -447,7 +447,7 @@ def _rounded_up(seconds: float) -> float:
 
 
 def _needed_budget(candidates: list[_Candidate], left_out: list[str], budget: float, spent: float) -> float:
-    """Returns the budget that suffices for an interval: 1.25 times the seconds of as many runs as all orders take."""
+    """Returns the budget that suffices for an interval: 1.25 times the seconds of the runs that all orders need."""
     runs = sum(1 + len(candidate.times) for candidate in candidates)
     others = sum(candidate.fault is None for candidate in candidates[1:]) + len(left_out)
     return _rounded_up(1.25 * max(budget, (_RUNS_OF_BEST + _RUNS_OF_EACH * others) * spent / runs))

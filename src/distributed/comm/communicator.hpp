@@ -55,9 +55,10 @@ struct Parcels {
   }
 };
 
-/// Returns values in parcels, those of a rank in their sequence. O(values + ranks), besides the functions.
+/// Returns values in parcels, one for each rank, which keep the sequence of the values. O(values + ranks),
+/// besides the functions.
 ///
-/// @param rank_of   returns the rank of value k, in two passes over all
+/// @param rank_of   returns the rank of value k; called twice for each value
 /// @param value_of  returns value k
 template <class RankOf, class ValueOf>
 [[nodiscard]] auto parcels_by_rank(std::size_t count, int ranks, const RankOf& rank_of,
@@ -130,7 +131,7 @@ class Communicator {
   /// Throws as `exchange`.
   ///
   /// @param at_root  ignored on other ranks
-  /// @param starts   ranks + 1, ascending; on other ranks only their number counts
+  /// @param starts   ranks + 1, ascending; on other ranks only the size counts
   template <class T>
   [[nodiscard]] std::vector<T> scattered_from_root(const std::vector<T>& at_root,
                                                    const std::vector<Offset>& starts) const {

@@ -71,8 +71,9 @@ std::uint64_t AppendedArrays::place_bytes(const vtk::VtuElement& element, const 
   return size;
 }
 
-/// Finds the blocks of a compressed array by the words before them: the number of blocks, the bytes of each,
-/// those of the last if they differ, and the compressed bytes of each. Returns the uncompressed size.
+/// Finds the blocks of a compressed array. The words before them are: the number of blocks, the bytes of a
+/// block, those of the last one if they differ, and the compressed bytes of each. Returns the uncompressed
+/// size.
 std::uint64_t AppendedArrays::place_blocks(const vtk::VtuElement& element, const std::string& what,
                                            FilePart& part, std::vector<Offset>& bounds) {
   const std::vector<std::uint64_t> head = words(element, what, 3);

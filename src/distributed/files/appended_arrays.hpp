@@ -12,7 +12,7 @@
 
 namespace meshorder::distributed {
 
-/// Finds arrays in the raw appended data of a .vtu file by the words before them.
+/// Finds arrays in the raw appended data of a .vtu file. Words before each array give its size.
 class AppendedArrays {
  public:
   /// @param path        of the file

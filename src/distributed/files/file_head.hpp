@@ -16,7 +16,7 @@ namespace meshorder::distributed {
 
 /// Facts on a .vtu, .vtkhdf or .xdmf file that all ranks have.
 struct FileFacts : FileSizes {
-  /// A .vtkhdf file is an HDF5 file, an .xdmf file has one. Their arrays have no words before them.
+  /// A .vtkhdf file is an HDF5 file, an .xdmf file names one. No words come before their arrays.
   enum class Kind : std::uint8_t { vtu, vtkhdf, xdmf };
 
   Kind kind = Kind::vtu;
@@ -25,12 +25,12 @@ struct FileFacts : FileSizes {
   VtuEncoding encoding;
 };
 
-/// The description of a file: from the XML of a .vtu file and the words before its arrays; or from libhdf5,
-/// of a .vtkhdf file or of the HDF5 file of an .xdmf file.
+/// The description of a file. For a .vtu file it comes from the XML and the words before the arrays; for a
+/// .vtkhdf file, and for the HDF5 file of an .xdmf file, from libhdf5.
 struct FileHead {
   FileFacts facts;
   std::vector<FilePart> parts;     ///< sorted by their place in the file
-  std::vector<std::string> names;  ///< of the parts, by their numbers, as messages have them
+  std::vector<std::string> names;  ///< of the parts in messages, by their numbers
   std::vector<std::vector<Offset>>
       blocks;  ///< of each part, by number: first byte of each block, then the end of the last
   VtuXml xml;
@@ -42,8 +42,8 @@ struct FileHead {
 /// Returns whether the name of a file is that of an XDMF file.
 [[nodiscard]] bool is_xdmf(const std::string& path);
 
-/// Reads the head of a file. Returns nothing unless it is of one of these kinds, and its arrays can be read
-/// directly:
+/// Reads the head of a file whose arrays can be read directly. Returns nothing for a file of any other kind
+/// than these:
 /// - a .vtu file of one piece with raw appended data in this machine's byte order, with a compression that
 ///   this build supports. O(size of the XML + blocks);
 /// - a .vtkhdf file of one partition, without chunks, another byte order, texts on points or cells, or more
@@ -58,7 +58,7 @@ struct FileHead {
 /// As `read_head`, for .vtu files.
 [[nodiscard]] std::optional<FileHead> read_vtu_head(const std::string& path, int ranks);
 
-/// Sorts parts by their first bytes. Returns whether all are within a file of so many bytes and no two
+/// Sorts parts by their first bytes. Returns whether all of them lie within a file of `bytes` bytes and none
 /// overlap. O(n log n).
 [[nodiscard]] bool sort_by_bytes(std::vector<FilePart>& parts, Offset bytes);
 

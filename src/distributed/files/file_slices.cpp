@@ -60,7 +60,8 @@ class NewPlaces {
   std::vector<std::pair<Offset, Offset>> moves_;  ///< ascending
 };
 
-/// Returns, on all ranks, the checksum with which the writer of whole meshes marks both files of XDMF.
+/// Returns, on all ranks, the checksum that marks both files of XDMF; the writer of whole meshes gives the
+/// same.
 std::uint64_t checksum_of_xdmf(const Communicator& communicator, GlobalIndex vertices, const FilePart& part,
                                const std::vector<std::byte>& points, const Rows& cells) {
   Checksum sum;

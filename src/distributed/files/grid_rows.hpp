@@ -25,7 +25,7 @@ struct GridRows {
 
   // only at the root
   std::string xml;     ///< a .vtu file of one piece, of which only the arrays' elements are used
-  std::string fields;  ///< its <FieldData> with all values inline, if `xml` has it otherwise; else empty
+  std::string fields;  ///< its <FieldData> with all values inline; empty if `xml` has them inline
   std::vector<std::string> texts;
 };
 

@@ -48,11 +48,11 @@ class MovedPart {
   /// just the places.
   [[nodiscard]] const std::vector<std::int64_t>* ids(Association association) const;
 
-  /// Returns the points and cells of this rank's places, with the node order of a Mesh. Every rank has to
-  /// call it. O(size of the slice).
+  /// Returns the points and cells in this rank's range of new places, with the node order of a Mesh. Every
+  /// rank has to call it. O(size of the slice).
   [[nodiscard]] MeshSlice slice() const;
-  /// Returns the cells of this rank's places, with the new numbers of their vertices. Every rank has to call
-  /// it. O(entries).
+  /// Returns the cells in this rank's range of new places, with the new numbers of their vertices. Every rank
+  /// has to call it. O(entries).
   ///
   /// @param cells  of the part; freed early
   [[nodiscard]] Rows moved_cells(Rows cells) const;

@@ -18,8 +18,9 @@ struct VtuElement;
 
 namespace meshorder::distributed {
 
-/// An array of the pieces: a part of each without a place. The number is that of rows and texts: the place
-/// among the arrays of the mesh's file. Texts have the type of their places in the list of texts.
+/// An array of the pieces: a part whose place in each piece is not known yet. For rows and texts, `number` is
+/// the place among the arrays of the mesh's file. For texts, `type` is that of their places in the list of
+/// texts.
 struct PieceArray : FilePart {
   enum class Source : std::uint8_t {
     rows,          ///< an array of numbers of the mesh
@@ -73,8 +74,8 @@ class PieceSchema {
  private:
   void add_roles(const vtk::VtuElement& section, Association association);
   [[nodiscard]] std::string opening(const char* type) const;
-  /// Returns a section, by its number, in lines with this indent; `element(tag, array, k)` returns the
-  /// element of the k-th array.
+  /// Returns the lines of a section, given by its number, with this indent; `element(tag, array, k)` returns
+  /// the element of the k-th array.
   template <class Element>
   [[nodiscard]] std::string section_text(std::size_t section, std::string_view indent,
                                          std::string_view prefix, const Element& element) const;

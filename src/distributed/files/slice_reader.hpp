@@ -17,7 +17,8 @@
 
 namespace meshorder::distributed {
 
-/// Reads a file by its head, each rank its range of the rows. Every rank has to call all functions.
+/// Reads a file as its head describes it: each rank reads its range of the rows. Every rank has to call all
+/// functions.
 class SliceReader {
  public:
   /// @param communicator  like `path` and `head`, it must outlive this object
@@ -58,10 +59,10 @@ class MovedFile {
   [[nodiscard]] const SliceReader& reader() const noexcept { return reader_; }
   /// Returns the new place of each cell of the slice.
   [[nodiscard]] const std::vector<GlobalIndex>& new_cells() const noexcept { return new_cells_; }
-  /// Returns the cells of this rank's places, with the new numbers of their vertices. Reads them at the first
-  /// call.
+  /// Returns the cells in this rank's range of new places, with the new numbers of their vertices. Reads them
+  /// at the first call.
   [[nodiscard]] Rows& cells();
-  /// Returns the rows of a part that are in this rank's places.
+  /// Returns the rows of a part in this rank's range of new places.
   [[nodiscard]] std::vector<std::byte> rows(const FilePart& part);
 
  private:

@@ -150,7 +150,7 @@ class HeadReader {
     return true;
   }
 
-  /// Returns whether an array that belongs to no part begins within a part.
+  /// Returns whether an array that is no part begins inside a part.
   [[nodiscard]] bool begins_within() const {
     const std::vector<Offset> offsets = head_.xml.offsets();
     return std::any_of(offsets.begin(), offsets.end(), [&](Offset offset) {

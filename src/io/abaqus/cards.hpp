@@ -74,8 +74,8 @@ struct NamedSet {
   std::string_view name;
 };
 
-/// Returns the sets of nodes or elements that the lines of a load, a boundary condition or a surface name;
-/// none for other cards, whose names may be of something else.
+/// Returns the sets of nodes or elements that the lines of a load, a boundary condition or a surface name.
+/// Other cards may name something else: none for them.
 std::vector<NamedSet> named_sets(const Card& card, std::string_view lines);
 
 /// Returns "; did you mean *CLOAD?" for a keyword that is spelt almost like a known one; else "".

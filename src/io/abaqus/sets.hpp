@@ -42,7 +42,7 @@ class SetReader {
   /// Adds a data line of the last card; returns the fault of the line, an empty text if it has none.
   std::string add_line(std::string_view line);
 
-  /// Returns whether cards so far add to a set of that name, of the part or of the assembly.
+  /// Returns whether cards so far define or extend a set of that name, in the part or in the assembly.
   [[nodiscard]] bool knows(Association association, std::string_view name) const;
 
   /// Returns the sets with their members. Notes names and numbers that do not exist. `others`: numbers of

@@ -318,8 +318,8 @@ class AttachmentReader {
     }
   }
 
-  /// Reads the holes of a zone. Several ranges become one, or a list: CGNS allows one list or several ranges,
-  /// and in a new order some of the ranges may be lists.
+  /// Reads the holes of a zone. CGNS allows one list or several ranges, and in a new order some of the ranges
+  /// may become lists. So several ranges are joined to one range, or to a list.
   void read_holes(Node& node, const std::string& path) {
     const Association association = location_of(node, Association::vertices);
     const auto is_list = [](const Node& child) {

@@ -185,8 +185,8 @@ struct Metadata final : FormatMetadata {
 /// Name of the node with the label of a section's cells, and name of the array with the zone of each cell.
 inline constexpr std::string_view kSectionLabel = "label";
 inline constexpr std::string_view kZone = "zone";
-/// Returns the name of a section that `layout_of` makes for cells of a type and label: it is no set of the
-/// user's.
+/// Returns the name of the section that `layout_of` makes for cells of a type and label. Readers do not take
+/// it for a set.
 std::string name_of_label(const ElementType& type, std::int64_t label);
 /// Name of a section's node with values of its cells. It is for cells of lower dimensions, as solutions hold
 /// only values of cells of the base's dimension.

@@ -25,8 +25,8 @@ bool move_places(std::vector<Index>& places, std::span<const Index> moves);
 /// False if there are no ids. O(n), O(n log n) if they are far apart.
 bool can_be_numbers(std::span<const std::int64_t> ids, std::int64_t largest, std::int64_t smallest = 1);
 
-/// The number of each vertex or cell in a new file: its id if all ids can be numbers, else its position after
-/// `first`. The ids must outlive this object.
+/// The number of each vertex or cell in a new file: its id if all ids can be numbers, else `first` plus its
+/// position. The ids must outlive this object.
 class NewNumbers {
  public:
   NewNumbers(std::span<const std::int64_t> ids, std::int64_t largest, std::int64_t smallest = 1,
@@ -105,9 +105,10 @@ std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
 void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes,
                     std::int64_t smallest = 1);
 
-/// Returns whether all nodes and elements keep the numbers of their deck. Throws InputError if they do not
-/// and new ones are not valid: from 1, or the least in the file, to `largest`, or the greatest in the file,
-/// each only once; or if there are `unknown` cards: they may name items by number, so no number can change.
+/// Returns whether all nodes and elements keep the numbers of their deck. If not, throws InputError
+/// - if new numbers are not valid, that is, repeat or lie outside 1 (or the least in the file) … `largest`
+///   (or the greatest in the file);
+/// - if there are `unknown` cards: they may name items by number, so no number can change.
 /// Time as `can_be_numbers`.
 bool keep_numbers(const FileNumbers& nodes, const FileNumbers& elements, std::int64_t largest,
                   const std::vector<std::string>& unknown, const FilePath& path);

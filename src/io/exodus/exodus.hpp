@@ -90,7 +90,7 @@ struct BlockRecord {
 struct SetRecord {
   std::int64_t id = 0;
   std::string name;
-  std::string in_mesh;  ///< name of the mesh's set; for a side set, of the array, empty if without sides
+  std::string in_mesh;  ///< name of the mesh's set; for side sets, of its array (empty: no sides)
   NcType type = kInt;
   NcType factor_type = kDouble;
   int factor_width = 0;           ///< side sets: the largest number of factors of a side

@@ -39,7 +39,7 @@ constexpr std::size_t kBuffer = std::size_t{1} << 18;
 constexpr std::array<NcType, 10> kTypesOfValues{NC_DOUBLE, NC_FLOAT, NC_BYTE, NC_UBYTE, NC_SHORT,
                                                 NC_USHORT, NC_INT,   NC_UINT, NC_INT64, NC_UINT64};
 
-/// Returns the alternative of Values for a type; that of texts for types without numbers.
+/// Returns the alternative of Values for a type; the one of texts if the type is not numeric.
 std::size_t alternative_of(NcType type) {
   return static_cast<std::size_t>(std::find(kTypesOfValues.begin(), kTypesOfValues.end(), type) -
                                   kTypesOfValues.begin());

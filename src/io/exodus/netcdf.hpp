@@ -50,7 +50,7 @@ struct Attribute {
 /// Returns an attribute that is a text.
 Attribute text_attribute(std::string name, std::string text);
 
-/// Returns an attribute that is a number; `type` is that of Number.
+/// Returns an attribute with one number; `type` must match Number.
 template <class Number>
 Attribute number_attribute(std::string name, NcType type, Number value) {
   Attribute attribute{std::move(name), type, 1, std::string(sizeof(value), '\0')};

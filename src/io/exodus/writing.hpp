@@ -74,8 +74,9 @@ To number_as(const From& value) {
   }
 }
 
-/// Declares the status, ids and properties of blocks or sets. `prefix` begins the names of the variables,
-/// `count` is their dimension; `is_full(plan)` returns whether a plan has members. Returns the names.
+/// Declares the status, ids and properties of blocks or sets. The names of the variables begin with `prefix`,
+/// `count` is their dimension; `is_full(plan)` returns whether a plan has members. Returns the names of the
+/// blocks or sets.
 template <class Plan, class IsFull>
 std::vector<std::string> write_plans(Writing& writing, const std::string& prefix, const std::string& count,
                                      const std::vector<Plan>& plans,
@@ -121,8 +122,8 @@ inline std::vector<std::string> names_of(const Columns& columns) {
   return names;
 }
 
-/// Returns one component of an array for `count` vertices or cells from `first` on; `missing` for those
-/// without a row. `table`: see `rows_by_item`.
+/// Returns one component of an array for `count` vertices or cells from `first` on; `missing` if one has no
+/// row. `table`: see `rows_by_item`.
 template <class Number>
 std::vector<Number> column(const DataArray& array, Index component, const std::vector<Index>& table,
                            Index first, Index count, Number missing) {

@@ -53,7 +53,7 @@ std::span<const int> vtk_order(Shape shape, int nodes);
 // ---- names of the arrays that keep data of Gmsh's files
 
 inline constexpr std::string_view kCellEntity = "gmsh:geometrical";    ///< tag of each cell's entity
-inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< if it differs from the cell's own
+inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< where it is not that of the cell
 inline constexpr std::string_view kCellType = "gmsh:type";  ///< if shape and count do not determine it
 inline constexpr std::string_view kCellPartitions = "gmsh:partitions";  ///< 2.2: tags from the third on
 inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.2: if it differs among cells

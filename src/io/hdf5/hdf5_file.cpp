@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kCoreStep = std::size_t{1} << 20;  // growth of a file in memory, in bytes
 
-/// Returns properties for access to links or datasets that follows no link to another file.
+/// Returns access properties for links or datasets; with them HDF5 follows no link to another file.
 Handle access_within_file(hid_t kind) {
   Handle access(H5Pcreate(kind), H5Pclose);
   const auto refuse = [](const char* /*file*/, const char* /*group*/, const char* /*target*/,

@@ -56,7 +56,7 @@ Handle new_creation() {
   return creation;
 }
 
-/// Makes a dataset, and the groups around it.
+/// Makes a dataset, and the groups that contain it.
 Handle new_dataset(hid_t file, const std::string& path, hid_t type, const std::vector<std::uint64_t>& shape,
                    const Handle& creation) {
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);

@@ -127,7 +127,7 @@ class Combinations {
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return all_.size(); }
-  /// Returns the family that the items of a combination had, with the groups that were added to them.
+  /// Returns the old family of the items of a combination, with the groups that these items have gained.
   [[nodiscard]] Family family_of(std::size_t combination) const {
     Family result{all_[combination].family};
     for (std::size_t c = combination; all_[c].without_last != kNone; c = all_[c].without_last) {
@@ -215,7 +215,7 @@ class FamilyWriter {
       combinations.add(fmt::format("{}_{}", kLabel, label), of_label);
     }
     if (association_ == Association::cells) {
-      note_number_markers(writing_.mesh, "groups of the names label_N", writing_.notes);
+      note_number_markers(writing_.mesh, "groups named label_N", writing_.notes);
     }
   }
 

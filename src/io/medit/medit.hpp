@@ -108,7 +108,7 @@ struct RowKind {
 
 inline constexpr std::array kRowKinds{
     RowKind{"SubDomainFromMesh", ".t.."},  // BAMG's: 3, a triangle of the domain, orientation, reference
-    RowKind{"SubDomain", ".t.."},          // in a geometry 2 and an edge, as in the next
+    RowKind{"SubDomain", ".t.."},          // in a file of geometry: 2, an edge, …, as in the next line
     RowKind{"SubDomainFromGeom", ".e.."},
     RowKind{"TangentAtEdges", "e..."},
     RowKind{"CrackedEdges", "ee"},

@@ -39,8 +39,8 @@ class BoundaryReader {
     }
     if (next == faces) return;
     throw InputError(file_.file(),
-                     fmt::format("the patches have the faces {} to {}, the mesh {} to {}", internal_faces,
-                                 next - 1, internal_faces, faces - 1),
+                     fmt::format("the patches cover the faces {} to {} of {} to {}", internal_faces, next - 1,
+                                 internal_faces, faces - 1),
                      kRemedy);
   }
 
@@ -64,7 +64,7 @@ class BoundaryReader {
     Patch patch{.name = word()};
     if (patch.name == ")") return std::nullopt;
     if (word() != "{") file_.fail(fmt::format("expected '{{' after the patch '{}'", patch.name), kRemedy);
-    int depth = 1;  // of braces: only outside of inner ones are the numbers those of the patch
+    int depth = 1;  // of braces: deeper ones contain other entries than those of the patch
     while (depth > 0) {
       const std::string key = word();
       if (key == "{") ++depth;
@@ -85,7 +85,8 @@ class BoundaryReader {
     return is_number && value >= 0 ? std::optional(value) : std::nullopt;
   }
 
-  /// Returns the number of faces of a patch; throws InputError if it has faces and does not begin at `next`.
+  /// Returns the number of faces of a patch. Throws InputError if a patch with faces does not begin at
+  /// `next`.
   [[nodiscard]] std::int64_t checked(const Patch& patch, std::int64_t next) const {
     if (!patch.faces || !patch.first) {
       file_.fail(

@@ -27,7 +27,7 @@ bool is_mark(char c) { return kMarks.find(c) != std::string_view::npos; }
 /// Returns whether this character ends a number or word; a slash may begin a comment.
 bool is_end(char c) { return is_space(c) || is_mark(c) || c == '/'; }
 
-/// Returns whether this character is none of a text file of numbers.
+/// Returns whether this character cannot occur in a text file of numbers.
 bool is_no_text(char c) { return !is_space(c) && (c < ' ' || c > '~'); }
 
 FilePath compressed(const FilePath& path) { return path.beside(path.path().filename().string() + ".gz"); }
@@ -62,7 +62,7 @@ void FoamFile::require_class(std::string_view class_name) const {
   throw InputError(
       Location{file_, line_at(class_end_), -1},
       class_.empty() ? "the header names no class" : fmt::format("the class is '{}'", shown(class_)),
-      fmt::format("this file has the class {}: it may be another one under its name", class_name));
+      fmt::format("{} is expected: this may be another file under that name", class_name));
 }
 
 // ---- words

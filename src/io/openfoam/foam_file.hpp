@@ -38,7 +38,7 @@ class FoamFile {
 
   /// Returns the value of `note` in the header; empty if there is none.
   [[nodiscard]] const std::string& note() const noexcept { return note_; }
-  /// Throws an InputError, at its line, if `class` in the header has another value.
+  /// Throws an InputError with the line of `class` in the header if that has another value.
   void require_class(std::string_view class_name) const;
 
   /// Throws an InputError at the current line or byte.

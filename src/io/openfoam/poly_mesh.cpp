@@ -59,8 +59,8 @@ void require_files(const MeshFolder& folder) {
   }
 }
 
-/// Returns the number after a key in a header's note, such as "nPoints:882  nCells:400"; none without the
-/// key.
+/// Returns the number after a key in a header's note, such as "nPoints:882  nCells:400"; none if the key is
+/// missing.
 std::optional<std::int64_t> count_in(std::string_view note, std::string_view key) {
   std::size_t at = note.find(key);
   if (at == std::string_view::npos) return std::nullopt;
@@ -72,7 +72,7 @@ std::optional<std::int64_t> count_in(std::string_view note, std::string_view key
   return is_number ? std::optional(count) : std::nullopt;
 }
 
-/// Notes counts of a header that are not those of the mesh.
+/// Notes the counts in a header that differ from those of the mesh.
 void compare_counts(const FoamFile& file, const Sides& sides, Notes& notes) {
   const std::array<std::pair<std::string_view, std::int64_t>, 3> found{
       {{"nCells", sides.cells},
@@ -93,7 +93,7 @@ Sides read_sides(const MeshFolder& folder, Notes& notes) {
   Sides sides;
   FoamFile owner(folder.file("owner"));
   owner.require_class("labelList");
-  // every cell has a face, so that there are no more cells than faces
+  // every cell has a face, so there are at most as many cells as faces
   owner.read_labels(sides.owner, "owner", 0, std::nullopt);
   const auto faces = static_cast<std::int64_t>(sides.owner.size());
   FoamFile neighbour(folder.file("neighbour"));
@@ -121,7 +121,7 @@ Sides read_sides(const MeshFolder& folder, Notes& notes) {
     if (b < a) {
       throw InputError(neighbour.file(),
                        fmt::format("face {} has the owner {} and the neighbour {}", f, a, b),
-                       "the owner of an internal face is the cell of the lower number; run checkMesh");
+                       "the owner of an internal face is the cell with the lower number; run checkMesh");
     }
     last = std::max(last, b);
   }

@@ -17,18 +17,17 @@ struct PolyMesh {
   std::vector<Point> centres;  ///< of each cell the mean of its faces' centres; empty unless asked for
 };
 
-/// Throws the InputError for a file of a mesh that does not exist.
+/// Throws InputError for a missing file of a mesh.
 [[noreturn]] void refuse_missing(const std::filesystem::path& file);
 
 /// Reads the files `owner`, `neighbour` and `boundary` in the folder `polyMesh` of a case and, for the
 /// centres, `points` and `faces`: text or binary, each also as `.gz`. They must lie below the case's folder.
 /// Two cells may share several faces, and faces need not be sorted by their cells. Notes counts in the
-/// headers that differ from what the files hold.
+/// headers that differ from the files. Accepts a mesh without any cell.
 ///
-/// @throws InputError for any of the five files that is missing, for one that is faulty, with its line, byte
-/// or
-///         face, for a cell without faces, an internal face whose owner has not the lower number, and patches
-///         that do not cover the faces of the boundary; a mesh without any cell is returned as it is
+/// @throws InputError if one of the five files is missing; if one is faulty, with its line, byte or face; if
+///         a cell has no face, the owner of an internal face does not have the lower number, or patches do
+///         not cover the faces of the boundary
 /// @note O(faces · log faces of a cell); about 30 bytes a face besides the files' own size.
 PolyMesh read_poly_mesh(const std::filesystem::path& of_case, const std::filesystem::path& folder,
                         bool with_centres, Notes& notes);

@@ -13,7 +13,7 @@
 namespace meshorder {
 
 /// Marks a folder that this process has locked by other means, as long as this object lives: `FolderLocks`
-/// skips it, as it would wait for its own process.
+/// skips the folder, since otherwise the process would wait for itself.
 class HeldFolder {
  public:
   /// @param descriptor  of the open folder

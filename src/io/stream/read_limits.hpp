@@ -53,7 +53,7 @@ class ReadScope {
   ReadScope* outer_;
 };
 
-/// Counts a file that was read among those of the mesh; counts it as a claim if it was read before.
+/// Counts a file that was read as part of the mesh. Reading it again counts as a claim.
 void count_file(const FilePath& file, std::uint64_t bytes);
 
 /// Number of copies of claimed data that may be in memory at the same time: in the reader, in the mesh, in

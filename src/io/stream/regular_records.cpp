@@ -24,7 +24,7 @@ struct Part {
   std::int64_t records = 0;
   bool has_other_ends = false;  ///< lines that end in CR alone, which are not counted
 
-  // once it is read
+  // set when the part has been read
   std::int64_t first_line = 0;
   std::int64_t first_record = 0;
   bool is_regular = false;

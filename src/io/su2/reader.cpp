@@ -216,7 +216,7 @@ class Su2Reader {
     if (!in_.at_line_end()) refuse_nodes(kind);
   }
 
-  /// Fails on a line with more numbers than its type has nodes; one has been taken beyond these.
+  /// Fails on a line with more numbers than its type has nodes; one number too many has been taken.
   [[noreturn]] void refuse_nodes(const ElementKind& kind) const {
     int numbers = kind.nodes + 1;
     std::string_view rest = in_.peek_line();
@@ -235,7 +235,7 @@ class Su2Reader {
                                to_string(likely->shape), likely->nodes));
   }
 
-  /// Takes what follows the coordinates of a point, which SU2 does not read.
+  /// Takes the numbers after the coordinates of a point; SU2 does not read them.
   void take_numbers_behind_point(Index v) {
     if (in_.at_line_end()) return;
     std::int64_t number = -1;

@@ -103,7 +103,7 @@ struct Markers {
     const std::string plain = plain_name(set.name, "%=");
     std::string name(trimmed(plain));
     if (name.empty()) name = kUnmarked;
-    if (name == "SEND_RECEIVE") name += '_';  // SU2's own, of the parts of a mesh
+    if (name == "SEND_RECEIVE") name += '_';  // in SU2 this name has another meaning: parts of a mesh
     name = names.take(name);
     if (name != set.name) notes.push_back(fmt::format("the set '{}' is the marker '{}'", set.name, name));
     if (name.find_first_of(" \t") != std::string::npos) {

@@ -116,7 +116,7 @@ struct Numbers {
     values.push_back(parse_real(scanner, word, what));
   }
 
-  /// Returns whether all were written as integers and fit 32 bits.
+  /// Returns whether all values were written as integers and are below 2·10⁹ in size.
   [[nodiscard]] bool are_integers() const {
     return integers && std::all_of(values.begin(), values.end(), [](double x) { return std::abs(x) < 2e9; });
   }

@@ -219,7 +219,7 @@ struct WriteContext {
   const Metadata& metadata;
   Layout layout;
   bool own_ids;     // the ids came from TetGen's files; others are not written
-  bool vertex_ids;  // those of vertices are written
+  bool vertex_ids;  // the ids of vertices are written
   Labels vertex_labels;
   Labels cell_labels;
 
@@ -282,7 +282,7 @@ void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes&
   write_cells(out, file, from, {}, marked);
 }
 
-/// Returns a line with a checksum of the mesh, its order and its data: meshes that differ hardly share it.
+/// Returns a line with a checksum of the mesh, its order and its data; different meshes hardly ever share it.
 std::string mark_of(const WriteContext& from) {
   Checksum sum;
   Notes ignored;  // writing the files gives the same notes

@@ -272,7 +272,7 @@ class VegaWriter {
   std::vector<Section> sections_;
   std::vector<EntitySet> label_sets_;
   DistinctNames set_names_;
-  std::map<const EntitySet*, std::string> names_;  ///< under which sets are written
+  std::map<const EntitySet*, std::string> names_;  ///< the name that each set gets in the file
 };
 
 std::string vega_conflict(const Mesh& mesh) {

@@ -66,7 +66,8 @@ class PieceJoiner {
     });
   }
 
-  /// Clears kOfAnotherPiece in vtkGhostType for the rows that stayed; removes the array if it is 0 then.
+  /// Clears kOfAnotherPiece in vtkGhostType for the rows that stayed; removes the array if that leaves only
+  /// 0.
   void forget_other_pieces(Association association) {
     bool says_more = false;
     for (DataArray& array : pieces_.arrays) {

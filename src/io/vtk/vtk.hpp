@@ -216,8 +216,8 @@ void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& ty
 
 // ---- reading
 
-/// Appends points from their coordinates, three for each. Throws `not_finite(k)` for the k-th of them, from 0
-/// on, with a coordinate that is not finite. Integers are converted; texts make no points. O(points).
+/// Appends points from their coordinates, three for each. If a coordinate of the k-th new point, from 0 on,
+/// is not finite, throws `not_finite(k)`. Integers are converted; texts make no points. O(points).
 void add_points(std::vector<Point>& points, const Values& coordinates,
                 const std::function<InputError(std::size_t k)>& not_finite);
 

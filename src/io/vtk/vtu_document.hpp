@@ -18,7 +18,7 @@ namespace meshorder::vtk {
 
 inline constexpr std::string_view kXmlBlanks = " \t\r\n";
 
-/// Returns words before an array, such as its size, in the byte order of the file.
+/// Returns the words that precede an array, such as its size, in the byte order of the file.
 std::string vtu_words(const std::vector<std::uint64_t>& values, const VtuEncoding& encoding);
 
 /// An element of a .vtu file.
@@ -32,12 +32,12 @@ struct VtuElement {
 
   /// Returns the value of an attribute, or nullptr.
   [[nodiscard]] const std::string* attribute(std::string_view wanted) const;
-  /// Returns the value of an attribute; empty without it.
+  /// Returns the value of an attribute; empty if it is missing.
   [[nodiscard]] std::string_view text_of(std::string_view wanted) const {
     const std::string* const value = attribute(wanted);
     return value == nullptr ? std::string_view() : *value;
   }
-  /// Returns the index in Values of its number type; the number of alternatives for an unknown type.
+  /// Returns the index of its number type in Values; for an unknown type, the number of such indices.
   [[nodiscard]] std::size_t number_type() const {
     return static_cast<std::size_t>(std::find(kXmlTypeNames.begin(), kXmlTypeNames.end(), text_of("type")) -
                                     kXmlTypeNames.begin());

@@ -81,13 +81,13 @@ class VtkHdfReader {
 
   // ---- datasets by their places
 
-  /// Adds a dataset as a part of the file; returns false if its values cannot be read by their bytes.
+  /// Adds a dataset as a part of the file; returns false if the bytes of its values cannot be read directly.
   bool add(FilePart part, const std::string& path, const std::string& name) {
     const std::optional<std::uint64_t> place = file_.place_of_values(path);
     if (!place) return false;
     part.type = static_cast<std::uint8_t>(file_.info(path).alternative);
     part.at = static_cast<std::int64_t>(*place);
-    if (part.role == FilePart::Role::offsets) {  // the others are the ends of cells
+    if (part.role == FilePart::Role::offsets) {  // without the first, they are the ends of cells
       --part.rows;
       part.at += part.row_size();
     }

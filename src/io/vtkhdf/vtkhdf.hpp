@@ -38,16 +38,16 @@ struct Partition {
   std::int64_t entries = 0;  ///< of the connectivity
 };
 
-/// A file of one partition as a list of parts: first the arrays of points and of cells, then the mesh, with
-/// the ends of the cells as offsets.
+/// A file of one partition as a list of parts: first the arrays of points and of cells, then the mesh. The
+/// offsets are the ends of the cells.
 struct RawGrid {
   FileLayout layout;
   vtk::Metadata metadata;  ///< fields and roles
 };
 
 /// Finds the bytes of the values in a file on disk. Returns nothing if only libhdf5 can read the file, or if
-/// `read` would note something: for several partitions, chunks or another byte order, for texts on points or
-/// cells, and for contents that the format does not define. O(datasets + size of the fields).
+/// `read` would note something. This is so for several partitions, chunks or another byte order, texts on
+/// points or cells, and contents that the format does not define. O(datasets + size of the fields).
 ///
 /// @throws InputError as `read` for faults of counts and shapes; values are not looked at
 std::optional<RawGrid> find_raw(const FilePath& path);

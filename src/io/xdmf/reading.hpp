@@ -147,7 +147,7 @@ class ArrayReader {
   UniqueNames array_names_;
   std::map<std::pair<Association, std::string>, std::size_t> place_of_array_;
   std::vector<Pending> pending_;
-  std::vector<bool> labelled_;  ///< of cells
+  std::vector<bool> labelled_;  ///< whether each cell has a label
   /// Places in `pending_`, by key; none for those without values.
   std::map<std::string, std::optional<std::size_t>> known_arrays_;
   std::map<std::string, std::size_t> known_sets_;  ///< places of fields in the layout, by key

@@ -41,7 +41,7 @@ std::size_t hash_of(const std::vector<Index>& vertices) {
   return hash;
 }
 
-/// Returns whether `layout_of` added a Grid.
+/// Returns whether this Grid was added by `layout_of`.
 bool is_added(pugi::xml_node grid) {
   return !grid.find_child_by_attribute("Information", "Name", kAdded.data()).empty();
 }

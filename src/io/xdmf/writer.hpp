@@ -46,7 +46,7 @@ class Writer {
          Notes& notes);
   /// Writes the file and those that it names.
   void write();
-  /// See `SplitFile`; `mark` is that of its checksum.
+  /// See `SplitFile`; `mark` is the result of `mark_of` for its checksum.
   std::string write_without_values(const std::filesystem::path& data, const std::string& mark);
   /// Returns the new name of an HDF5 file of the old XML: it follows the name of the new .xdmf file.
   [[nodiscard]] std::string new_name(const std::string& old_name) const;

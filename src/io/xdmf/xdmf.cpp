@@ -29,7 +29,7 @@ std::string mark_of(std::uint64_t checksum) { return fmt::format("{:016x}", chec
 
 namespace {
 
-/// The files of a layout whose values are all in one HDF5 file.
+/// Makes the files of a layout that has all values in one HDF5 file.
 class XdmfWithData final : public SplitFile {
  public:
   explicit XdmfWithData(std::shared_ptr<const Layout> layout) : layout_(std::move(layout)) {}

@@ -57,7 +57,7 @@ struct Part {
   std::string name;           ///< of its Grid
   std::string set;            ///< set of its cells, in the order of the file; empty for the first part, and
                               ///< for a Grid that `layout_of` added
-  int below = 0;              ///< of such a Grid: the highest dimension of cells minus that of its cells
+  int below = 0;              ///< of such a Grid: highest dimension of cells minus dimension of its own
   bool has_own_cells = true;  ///< false: its cells are those of parts before it
   bool is_ascending = true;   ///< whether its cells are in the order of the mesh
   std::size_t grid = 0;       ///< number of its Grid; see `Document::number`
@@ -89,7 +89,7 @@ struct Layout final : FormatMetadata {
   [[nodiscard]] std::vector<std::string> contents() const override { return words; }
 };
 
-/// Returns what makes files of a layout whose values are all in one HDF5 file.
+/// Returns the maker of the files of a layout that has all values in one HDF5 file.
 std::shared_ptr<const SplitFile> with_data(std::shared_ptr<const Layout> layout);
 
 Mesh read(const FilePath& path, Notes& notes);
@@ -99,8 +99,8 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 /// dimension, and one for those of each lower dimension.
 Layout layout_of(const Mesh& mesh, const FilePath& path);
 
-/// Marks the Grids that `layout_of` adds, an element `<Information Name=… />`: they are no sets of the
-/// user's.
+/// Name of the element <Information> that marks a Grid which `layout_of` added: readers do not take it for a
+/// set.
 inline constexpr std::string_view kAdded = "cells of a lower dimension";
 /// Returns the value of `Part::below` for a Grid that `layout_of` added, by its name; 0 for any other name.
 int below_of(std::string_view grid);
