@@ -28,7 +28,8 @@ inline namespace v0_3 {
 template <class Derived>
 [[nodiscard]] PointsView points_view(const Eigen::DenseBase<Derived>& points MESHORDER_LIFETIMEBOUND) {
   static_assert((Derived::Flags & Eigen::DirectAccessBit) != 0, "evaluate the expression first: .eval()");
-  if (points.cols() < 1 || points.cols() > 3) {
+  if (points.cols() == 0) throw InvalidArgument("points: V is empty");
+  if (points.cols() > 3) {
     throw InvalidArgument("points: " + std::to_string(points.rows()) + " × " + std::to_string(points.cols()) +
                           " numbers; a row for each point and 1 to 3 columns are wanted");
   }
@@ -65,6 +66,15 @@ template <class Scalar, int Options, class StorageIndex>
 
 namespace detail {
 
+/// Returns a copy of vertex numbers, row by row.
+template <class F>
+auto row_by_row(const Eigen::DenseBase<F>& cells) {
+  using Number = typename F::Scalar;
+  static_assert(std::constructible_from<IndexView, const Number*, Eigen::Index>,
+                "F holds numbers of vertices, integers of 32 or 64 bits; V comes before F");
+  return Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>(cells);
+}
+
 /// Returns the shape that the number of columns implies; see `order_mesh`.
 template <class V, class F>
 Shape shape_by_columns(const Eigen::DenseBase<V>& points, const Eigen::DenseBase<F>& cells) {
@@ -98,7 +108,7 @@ template <class V, class F, std::same_as<Shape> S>
 [[nodiscard]] MeshOrder order_mesh(const Eigen::DenseBase<V>& points, const Eigen::DenseBase<F>& cells,
                                    S shape, const MeshMethods& methods = {},
                                    const OrderOptions& options = {}) {
-  const Eigen::Matrix<typename F::Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = cells;
+  const auto rows = detail::row_by_row(cells);
   return order_mesh({points_view(points),
                      CellsView::uniform(shape, static_cast<int>(rows.cols()), {rows.data(), rows.size()}),
                      static_cast<std::size_t>(points.rows())},
@@ -114,6 +124,23 @@ template <class V, class F>
 [[nodiscard]] MeshOrder order_mesh(const Eigen::DenseBase<V>& points, const Eigen::DenseBase<F>& cells,
                                    const MeshMethods& methods = {}, const OrderOptions& options = {}) {
   return order_mesh(points, cells, detail::shape_by_columns(points, cells), methods, options);
+}
+
+/// Orders edges by the larger new number of their ends, as `order_edges` does for a list of ends.
+///
+/// @param edges     E: m × 2 old numbers in 0 … n − 1, a row for each edge
+/// @param vertices  order of the n vertices
+/// @return permutation of the m edges: `move_rows` by it, then `renumber` by `vertices`
+/// @throws InvalidArgument for another number of columns, and as `order_edges`
+template <class E>
+[[nodiscard]] Permutation order_edges(const Eigen::DenseBase<E>& edges, const Permutation& vertices,
+                                      const Run& run = {}) {
+  if (edges.cols() != 2) {
+    throw InvalidArgument("edges: " + std::to_string(edges.rows()) + " × " + std::to_string(edges.cols()) +
+                          " numbers; E has a row for each edge, with its two ends");
+  }
+  const auto rows = detail::row_by_row(edges);
+  return order_edges(IndexView(rows.data(), rows.size()), vertices, run);
 }
 
 /// Moves the rows of a matrix or vector to their new places, for values of vertices or of cells.

@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <vector>
+
 namespace meshorder {
 namespace {
 
@@ -60,10 +63,26 @@ TEST(Eigen, EmptyBracesAreNoShape) {
             Strip::kSquares);
 }
 
+TEST(Eigen, OrdersTheRowsOfEdges) {
+  Eigen::MatrixXi edges(5, 2);
+  edges << 3, 4, 0, 4, 2, 1, 1, 0, 3, 2;
+  const Permutation vertices = Permutation::from_old_to_new({2, 0, 4, 1, 3});
+  std::vector<int> ends;
+  for (int e = 0; e < 5; ++e) ends.insert(ends.end(), {edges(e, 0), edges(e, 1)});
+  const Permutation order = order_edges(edges, vertices);
+  EXPECT_EQ(order, order_edges(ends, vertices));
+  EXPECT_EQ(
+      order_edges(Eigen::Matrix<std::int64_t, 5, 2, Eigen::RowMajor>(edges.cast<std::int64_t>()), vertices),
+      order);
+  EXPECT_THAT(refusal([&] { (void)order_edges(edges.transpose(), vertices); }),
+              HasSubstr("a row for each edge"));
+}
+
 TEST(Eigen, SaysThatThereAreNoCells) {
   Strip strip;
   strip.squares.resize(0, 0);
   EXPECT_EQ(refusal([&] { (void)reorder(strip.points, strip.squares); }), "cells: F is empty");
+  EXPECT_EQ(refusal([] { (void)points_view(Eigen::MatrixXd()); }), "points: V is empty");
 }
 
 }  // namespace
