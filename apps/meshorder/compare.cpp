@@ -132,6 +132,13 @@ void run(const CompareArguments& arguments) {
         "venv/bin/meshorder compare --gpu",
         2);
   }
+  if (arguments.ordering.workload == Workload::gpu && arguments.gpu_layouts.empty()) {
+    throw CommandError(
+        "--for gpu: the kernels run on this machine's processor; give --gpu-layout padded, too, to count "
+        "what "
+        "orders cost on a graphics processor",
+        2);
+  }
   Console console(arguments);
   std::vector<GpuLayout> layouts;
   for (const std::string& name : arguments.gpu_layouts) layouts.push_back(parse_gpu_layout(name));
@@ -148,7 +155,7 @@ void run(const CompareArguments& arguments) {
     throw CommandError(
         "--gpu-layout: a matrix or graph has no elements; `meshorder info --gpu` counts its products", 2);
   }
-  if (!layouts.empty() && !cost_of_additions(mesh, layouts.front())) {
+  if (!layouts.empty() && !counts_additions(mesh)) {
     throw CommandError(
         "--gpu-layout: additions are counted for elements with the same number of vertices, at most 255; "
         "this mesh has others or none, leave the option out",

@@ -101,6 +101,15 @@ double ratio_of_additions(std::span<const CountedKernel> additions) {
 /// Returns whether there is nothing to count.
 bool is_empty(const GpuReport& report) { return report.additions.empty() && report.products.empty(); }
 
+/// Returns whether the first card takes longer to launch each kernel than to touch its sectors.
+bool is_bound_by_launches(const GpuReport& report) {
+  const GpuCard& card = kCards.front();
+  const auto is_short = [&](const CountedKernel& kernel) {
+    return time_on(card, kernel.as_is) < 2 * card.launch_us;
+  };
+  return std::ranges::all_of(report.additions, is_short) && std::ranges::all_of(report.products, is_short);
+}
+
 bool has_times(const GpuReport& report) {
   return !report.additions.empty() && report.additions.front().as_is_us.has_value();
 }
@@ -118,12 +127,24 @@ Mesh in_order(const Mesh& mesh, const MeshOrder& order) {
   return moved;
 }
 
-std::optional<GpuCost> cost_of_additions(const Mesh& mesh, GpuLayout layout) {
+namespace {
+
+bool have_countable_size(const IncidenceRef& elements) {
   constexpr Offset kMostVertices = 255;  // of a cell in a patch of 256
+  const Offset width = common_size(elements);
+  return elements.size() > 0 && width > 0 && width <= kMostVertices;
+}
+
+}  // namespace
+
+bool counts_additions(const Mesh& mesh) {
+  return have_countable_size(CellSelection::elements(cell_arrays(mesh)).incidence());
+}
+
+std::optional<GpuCost> cost_of_additions(const Mesh& mesh, GpuLayout layout) {
   const CellSelection selected = CellSelection::elements(cell_arrays(mesh));
   const IncidenceRef elements = selected.incidence();
-  const Offset width = common_size(elements);
-  if (elements.size() == 0 || width == 0 || width > kMostVertices) return std::nullopt;
+  if (!have_countable_size(elements)) return std::nullopt;
   return gpu_cost(CellsView::mixed(elements.offsets, elements.vertices), mesh.points.size(), layout);
 }
 
@@ -160,8 +181,9 @@ GpuReport gpu_report(const Mesh& mesh, const CsrGraph& graph, const GpuCard* car
         "additions are not counted: not all elements have the same number of vertices, at most 255");
   }
   if (card != nullptr && !has_times(report)) {
-    report.notes.push_back(fmt::format("--card: no times, which are known of {} linear tetrahedra or more",
-                                       with_commas(kFewestTimed)));
+    report.notes.push_back(
+        fmt::format("--card: no times are shown; they are known for {} linear tetrahedra or more",
+                    with_commas(kFewestTimed)));
   }
   return report;
 }
@@ -180,7 +202,12 @@ std::string to_string(const GpuReport& report) {
   if (!report.additions.empty()) add("additions", ratio_of_additions(report.additions));
   if (!report.products.empty())
     add("products", sector_ratio(report.products.front().as_is, report.products.front().ordered));
-  return "there is a better order for a graphics processor" + (changes.empty() ? "" : ": " + join(changes));
+  std::string sentence = "there is a better order for a graphics processor";
+  if (!changes.empty()) sentence += ": " + join(changes);
+  if (is_bound_by_launches(report))
+    sentence +=
+        "; kernels gain little by it, since to launch them takes longer than the memory of so small a mesh";
+  return sentence;
 }
 
 void print_next(const Console& console, const GpuReport& report, const std::string& mesh) {

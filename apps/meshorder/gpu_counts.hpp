@@ -20,8 +20,11 @@ namespace meshorder::command {
 /// Returns the points and cells of a mesh, moved into an order. O(cells).
 Mesh in_order(const Mesh& mesh, const MeshOrder& order);
 
-/// Counts additions to the vertices of a mesh's elements, in its order. Returns nothing if there are no
-/// elements, if their numbers of vertices differ, or if these are more than patches can have.
+/// Returns whether a mesh has elements, all with the same number of vertices, and not more than patches can
+/// have. O(cells).
+bool counts_additions(const Mesh& mesh);
+
+/// Counts additions to the vertices of a mesh's elements, in its order; nothing unless `counts_additions`.
 std::optional<GpuCost> cost_of_additions(const Mesh& mesh, GpuLayout layout);
 
 /// Returns how many times fewer sectors a kernel touches in another order.

@@ -140,7 +140,7 @@ struct PayoffOptions {
 ///         less than `Advice::floor`, count as equal
 /// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for unknown types and
 ///         machines, if neither `predict` nor `measure` is true, for `predict` with tuned kernels, and for
-///         `predict` with `all_threads` if those costs are not known
+///         `predict` with `all_threads` if those costs are not known, and for `Workload::gpu`
 /// @note Time: that of the orders; to predict, about a second for each candidate and million tetrahedra; to
 ///       measure, the budget. Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex
 ///       of a tetrahedral mesh, and 2.5 KB a vertex more while it is measured. Stages of progress: those of

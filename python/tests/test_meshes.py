@@ -154,6 +154,8 @@ def test_comparison_and_advice(mesh):
     assert meshorder.advise(mesh, measure=True, kernels="tuned", budget=0).as_is.measured
     with pytest.raises(InvalidArgument, match="tuned kernels are not predicted"):
         meshorder.advise(mesh, measure=False, kernels="tuned")
+    with pytest.raises(InvalidArgument, match="gpu_cost and gpu_product_cost count"):
+        meshorder.advise(mesh, workload="gpu")
     with pytest.raises(InvalidArgument, match="known are plain, tuned"):
         meshorder.compare(mesh, kernels="fast")
     with pytest.raises(InvalidArgument, match="zen"):

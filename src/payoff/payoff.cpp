@@ -46,6 +46,11 @@ Advice advise_on(const PayoffOptions& options, const Make& make) {
     if (options.predict && options.kernels != KernelSet::plain) {
       throw InvalidArgument("advise: tuned kernels are not predicted; measure them");
     }
+    if (options.order.workload == Workload::gpu) {
+      throw InvalidArgument(
+          "advise: its kernels run on this machine's processor; gpu_cost and gpu_product_cost count what an "
+          "order costs on a graphics processor");
+    }
     const int threads = options.all_threads ? thread_count() : 1;
     const MachineChoice machine = choose_machine(options.machine, options.all_threads && options.predict);
     if (options.predict && machine.model.threads != threads) {

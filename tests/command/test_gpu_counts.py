@@ -27,6 +27,12 @@ def test_a_scrambled_grid_gets_the_line_that_orders_it(command, scrambled):
     assert reasons[0].startswith("rcm is no better: ") and reasons[1].startswith("lexmax is no better: ")
 
 
+def test_a_small_mesh_is_bound_by_launches(command, model):
+    command.ok("order", model("grid", "--size", "8"), "-o", "small.node", "--vertices", "scrambled", "--elements", "scrambled")
+    sentence = command.json("info", "small.node", "--gpu")["gpu"]["sentence"]
+    assert "better order" in sentence and sentence.endswith("takes longer than the memory of so small a mesh")
+
+
 @pytest.mark.parametrize("words", [("grid", "--size", "24"), ("torus", "--size", "20"), ("ball", "--size", "10")])
 def test_it_says_what_order_for_gpu_does(command, model, words):
     mesh = model(*words)
@@ -54,7 +60,7 @@ def test_counts_have_floors(command, scrambled):
 
 def test_times_are_for_a_card_and_many_tetrahedra_alone(command, model, scrambled):
     text = command.run("info", scrambled, "--gpu", "--card", "h100")
-    assert "--card: no times, which are known of 100,000 linear tetrahedra or more" in text.stderr
+    assert "--card: no times are shown; they are known for 100,000 linear tetrahedra or more" in text.stderr
     assert "ms:" not in text.stdout
     mesh = model("grid", "--size", "30")
     text = command.ok("info", mesh, "--gpu", "--card", "h100").stdout
@@ -122,6 +128,11 @@ def test_compare_counts_each_order(command, scrambled):
     row = next(row for row in text.splitlines() if row.startswith("rcm"))
     assert f"{own / rcm:.2f}*" in row
     assert "gpu: how many times fewer sectors" in text
+
+
+def test_kernels_of_a_processor_do_not_judge_for_gpus(command, scrambled):
+    line = command.fails("compare", scrambled, "--for", "gpu")
+    assert "run on this machine's processor" in line and "--gpu-layout padded" in line
 
 
 def test_other_layouts_are_refused(command, tmp_path):

@@ -284,8 +284,8 @@ def advise(
 
     Raises:
         InvalidArgument: a mesh without lines, surfaces and volumes, a matrix without entries off the diagonal, an unknown
-            machine or set of kernels, tuned kernels without measuring or for a matrix, a negative budget; a prediction for
-            all threads of a machine whose costs for these are not known.
+            machine or set of kernels, tuned kernels without measuring or for a matrix, ``workload="gpu"``, a negative
+            budget; a prediction for all threads of a machine whose costs for these are not known.
         InputError: the file cannot be read.
         Stopped: ``progress`` returned False.
 
