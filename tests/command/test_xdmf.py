@@ -560,7 +560,7 @@ def test_an_attribute_of_two_grids_with_other_cells_is_refused(command, tmp_path
 
 BROKEN = {
     "a <Xdmf> follows the <Xdmf> element": ("</Xdmf>", "</Xdmf>\n<Xdmf/>"),
-    "data file 'c.h5' is missing": ("a.h5:/Mesh/mesh/topology", "c.h5:/Mesh/mesh/topology"),
+    "data file 'c.h5' is missing; copy it to /": ("a.h5:/Mesh/mesh/topology", "c.h5:/Mesh/mesh/topology"),
     "the dataset '/Mesh/mesh/cells' is missing": ("a.h5:/Mesh/mesh/topology", "a.h5:/Mesh/mesh/cells"),
     "Dimensions is '48 5'": ('Dimensions="48 4"', 'Dimensions="48 5"'),
     "selects a part of a dataset": ("/Mesh/mesh/geometry<", "/Mesh/mesh/geometry|0 0|1 1|5 3<"),

@@ -165,7 +165,9 @@ struct Metadata final : FormatMetadata {
   bool packs_nodal = false;        ///< all nodal variables are in one variable, "vals_nod_var"
   bool has_node_numbers = false;   ///< the file has node_num_map, even if it is 1, 2, …
   bool has_element_numbers = false;
-  bool is_piece = false;  ///< piece of a decomposed mesh, whose communication maps have been left out
+  /// Name of the file if it is a piece of a decomposed mesh, whose communication maps have been left out;
+  /// else empty.
+  std::string piece;
   bool steps_unlimited = true;
   std::size_t steps = 0;
   std::vector<BlockRecord> blocks;

@@ -119,7 +119,7 @@ void leave_out_decomposition(Reading& reading) {
                    [&](const Variable& variable) { return is_one_of(variable.name, kCommunication); })) {
     return;
   }
-  reading.metadata->is_piece = true;
+  reading.metadata->piece = reading.file.name();
   for (const Variable& variable : variables) {
     const std::string& name = variable.name;
     const bool is_known = name == "nem_ftype" || name.ends_with("_global") || name.ends_with("_n_stat") ||
@@ -646,7 +646,7 @@ Header read_header(const FilePath& path) {
           reading.metadata->blocks,
           reading.block_ends,
           reading.take_names("name_elem_var", reading.file.count("num_elem_var")),
-          reading.metadata->is_piece};
+          !reading.metadata->piece.empty()};
 }
 
 MeshPart read_part(const FilePath& path, const MeshRanges& ranges, PartContent content, Notes& notes) {

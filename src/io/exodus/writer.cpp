@@ -464,9 +464,10 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
 /// Returns why a piece of a decomposed mesh cannot be written: its communication maps would become wrong.
 std::string conflict(const Mesh& mesh) {
   const Metadata* const own = own_metadata(mesh);
-  if (own == nullptr || !own->is_piece) return {};
-  return "Exodus has communication maps in a piece of a decomposed mesh, which orders make wrong: order the "
-         "whole mesh before it is decomposed";
+  if (own == nullptr || own->piece.empty()) return {};
+  return "Exodus cannot hold " + own->piece +
+         " in another order, as it is a piece of a decomposed mesh: order the whole mesh before it is "
+         "decomposed";
 }
 
 }  // namespace

@@ -226,8 +226,9 @@ FilePath DataReader::path_of(pugi::xml_node item, const std::string& name) const
                           kIncludeRemedy);
   }
   if (!path.is_file()) {
+    const char* const here = path.path().has_parent_path() ? "" : "./";
     throw document_.error(item, fmt::format("the data file '{}' is missing", name),
-                          fmt::format("it is looked for at {}", path.string()));
+                          fmt::format("copy it to {}{}", here, path.string()));
   }
   return path;
 }
