@@ -16,10 +16,13 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -38,6 +41,22 @@ int status_of(const meshorder::Error& error) {
 /// Prints why the command fails, on the first rank only; returns the status.
 int tell(const Communicator& communicator, const std::string& message, int status) {
   return communicator.is_root() ? report_failure(message, status) : status;
+}
+
+/// Options of `meshorder order` in one process without parts.
+constexpr std::array<std::string_view, 9> kOptionsOfOneProcess{"--elements",  "--group-by",    "--for",
+                                                               "--tolerance", "--measure",     "--predict",
+                                                               "--machine",   "--all-threads", "--timings"};
+
+/// Returns the fault if the arguments have an option that is known only where one process orders a mesh
+/// without parts.
+std::optional<std::string> option_of_one_process(const CLI::App& app) {
+  for (const std::string& word : app.remaining(true)) {
+    const std::string name = word.substr(0, word.find('='));
+    if (std::ranges::find(kOptionsOfOneProcess, name) == kOptionsOfOneProcess.end()) continue;
+    return "'" + name + "' is not known where parts are made or ranks run; leave it out";
+  }
+  return std::nullopt;
 }
 
 /// Runs the subcommand in the arguments, which are the same on all ranks; returns the exit status.
@@ -71,6 +90,7 @@ int run(const Communicator& communicator, std::vector<std::string> arguments) {
     if (meshorder::command::unknown_command(app))
       return tell(communicator, "several ranks run `order` only; start `" + first + "` without mpirun",
                   kBadInput);
+    if (const auto fault = option_of_one_process(app)) return tell(communicator, *fault, kBadInput);
     return tell(communicator, meshorder::command::usage_fault(app, error), kBadInput);
   }
   if (communicator.is_root()) meshorder::command::flush_stdout();

@@ -9,14 +9,19 @@
 #include "distributed/files/file_slices.hpp"
 #include "distributed/order/mesh_slice.hpp"
 #include "distributed/order/order.hpp"
+#include "matrix_points.hpp"
 #include "mesh/reorder.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "order_outputs.hpp"
+#include "ordering/method.hpp"
 #include "report.hpp"
 #include "sliced_maps.hpp"
 #include "whole_mesh.hpp"
 #include "wording.hpp"
+#include <meshorder/error.hpp>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -62,9 +67,39 @@ DistributedOptions options_of(const Arguments& arguments) {
   return options;
 }
 
-/// Returns whether rank 0 has to read and write: for --ids, --only and --strict.
+/// Returns whether rank 0 has to read and write: for --ids, --only, --strict and --points.
 bool needs_root(const Arguments& arguments) {
-  return arguments.ids != "renumber" || arguments.keeping.dimension >= 0 || arguments.keeping.strict;
+  return arguments.ids != "renumber" || arguments.keeping.dimension >= 0 || arguments.keeping.strict ||
+         !arguments.points.empty();
+}
+
+/// Throws SharedError for pieces of a run on one rank that does not say how many.
+void check_count_of_pieces(const Communicator& communicator, const Arguments& arguments) {
+  communicator.together([&] {
+    if (communicator.size() > 1 || arguments.parts > 0 || arguments.pieces.empty()) return;
+    throw InvalidArgument("--pieces: one process makes one piece; give --parts N, or start by mpirun -n N");
+  });
+}
+
+/// Throws SharedError if there are more parts than vertices.
+void check_parts(const Communicator& communicator, Index parts, GlobalIndex vertices) {
+  communicator.together([&] {
+    if (parts <= vertices) return;
+    throw InvalidArgument(fmt::format("--parts: the mesh has {} vertices, too few for {} parts",
+                                      with_commas(vertices), with_commas(parts)));
+  });
+}
+
+/// Throws SharedError if the root read a matrix without coordinates and an option names a method that goes by
+/// them.
+void require_points_of(const Communicator& communicator, const Mesh& mesh, const Arguments& arguments) {
+  communicator.at_root([&] {
+    if (needs_points(vertex_methods(), arguments.vertices))
+      require_coordinates(mesh, arguments.input, fmt::format("order '{}'", arguments.vertices),
+                          {"spectral", "fiedler", "rcm"});
+    if (arguments.partition == "hilbert")
+      require_coordinates(mesh, arguments.input, "partition 'hilbert'", {"ptscotch", "rsb"});
+  });
 }
 
 /// Returns the input if all ranks can read it, else nothing: for files of other kinds, for maps of
@@ -95,6 +130,7 @@ std::optional<ExodusSlices> exodus_slices_of(const Communicator& communicator, c
 
 void run(const Arguments& arguments, const Communicator& communicator) {
   const DistributedOptions options = options_of(arguments);
+  check_count_of_pieces(communicator, arguments);
   OrderOutputs outputs(communicator, arguments);
   const Stopwatch reading;
   Notes notes;
@@ -106,12 +142,14 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   if (!by_all) {
     whole = read_at_root(communicator, arguments.with_output(), parse<Ids>(arguments.ids), notes);
     outputs.check(whole.mesh);
+    require_points_of(communicator, whole.mesh, arguments);
   }
   distributed::MeshSlice slice = slices   ? slices->read(communicator)
                                  : exodus ? exodus->read(communicator)
                                           : distributed::scattered(communicator, whole.mesh);
   const GlobalIndex vertex_count = slice.vertices.size();
   const GlobalIndex cell_count = slice.cells.size();
+  check_parts(communicator, arguments.parts, vertex_count);
   MeshChecksums before;
   if (by_all && !arguments.maps.empty()) before = checksums_of(communicator, slice);
   const double read_seconds = reading.seconds();
@@ -123,7 +161,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   } else if (exodus) {
     outputs.write(*exodus, order, before, notes);
   } else {
-    move_at_root(communicator, whole, order, arguments, parse<Ids>(arguments.ids));
+    move_at_root(communicator, whole, order, arguments.with_output(), parse<Ids>(arguments.ids));
     outputs.write(whole, order, notes);
   }
   outputs.commit(notes);
@@ -138,7 +176,8 @@ void run(const Arguments& arguments, const Communicator& communicator) {
       notes.push_back(report.partition_reason + ": parts are ranges of Hilbert's curve");
     note_convergence(report.fiedler, "the vertices", notes);
     console.warn_of(notes);
-    print_report(console, options, report, peaks);
+    const StoredMatrix* const stored = stored_matrix(whole.mesh);
+    print_report(console, options, report, peaks, stored);
     const char* const by = by_all ? ", read and written by all ranks" : "";
     if (!arguments.output.empty()) console.print("{:<10} {}{}", "wrote", arguments.output, by);
     if (!arguments.pieces.empty()) {
@@ -153,7 +192,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
                                             : nlohmann::ordered_json(arguments.output)},
         {"files_by", by_all ? "all ranks" : "rank 0"},
         {"vertices", {{"count", vertex_count}, {"method", options.vertices}}},
-        {"cells", {{"count", cell_count}, {"method", "lexmax"}}}};
+        {"cells", {{"count", cell_count}, {"method", stored == nullptr ? "lexmax" : "original"}}}};
     result.update(to_json(options, report, peaks));
     result["fiedler"] = command::to_json(report.fiedler);
     result["maps"] = outputs.maps();
@@ -215,12 +254,15 @@ void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
 
 void add_distributed_order(CLI::App& subcommand, const Communicator& communicator) {
   subcommand.description(
-      "Reorder a mesh by all ranks: parts, each in an order of its own, numbered one after another, so\n"
-      "that parts that touch are near each other. A .vtu file of one piece with raw appended data,\n"
-      "compressed or not, a .vtkhdf file of one partition without chunks, and without --pieces an .xdmf\n"
-      "file of one mesh of one cell type with its .h5 file, without chunks, are read and written by all\n"
-      "ranks, and their maps, unless --ids, --only or --strict are given; so are the pieces of an Exodus\n"
-      "file without -o; others by rank 0.");
+      "Reorder a mesh by all ranks: cut it into parts, order each, and number them one after another, so\n"
+      "that parts that touch are near each other.\n"
+      "All ranks read the mesh and write the results if it is\n"
+      "- a .vtu file of one piece with raw appended data, compressed or not,\n"
+      "- a .vtkhdf file of one partition without chunks,\n"
+      "- without --pieces, an .xdmf file of one mesh of one cell type, with its .h5 file without chunks,\n"
+      "- with --pieces and without -o, an Exodus file.\n"
+      "Rank 0 reads and writes other files, and any file with --ids, --only, --strict or --points, or if\n"
+      "-o has another extension.");
   subcommand.footer(
       "Examples:\n"
       "  mpirun -n 4 meshorder order part.vtu -o ordered.vtu\n"
@@ -254,6 +296,7 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
           ->needs(pieces)
           ->capture_default_str();
   add_partition_options(subcommand, *arguments);
+  add_points_option(subcommand, arguments->points);
   add_moving_options(subcommand, *arguments, arguments->ids,
                      "; and the part of each vertex and\n"
                      "cell of the output, PREFIX.vertices.parts.npy and PREFIX.cells.parts.npy");

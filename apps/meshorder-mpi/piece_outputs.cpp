@@ -2,6 +2,7 @@
 #include "piece_outputs.hpp"
 
 #include "base/text.hpp"
+#include "io/format.hpp"
 #include "io/stream/file_path.hpp"
 #include "io/stream/system_fault.hpp"
 #include <meshorder/error.hpp>
@@ -31,6 +32,15 @@ bool is_name_of_piece(std::string_view file, std::string_view name) {
          file.find_first_not_of("0123456789", 1) == std::string_view::npos;
 }
 
+/// Returns whether a path has the extension of files of meshes.
+bool names_mesh_file(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  return std::ranges::any_of(all_formats(), [&](const Format& format) {
+    return std::ranges::any_of(format.extensions,
+                               [&](std::string_view known) { return same_but_for_case(known, extension); });
+  });
+}
+
 /// Returns the files that a .pvtu file names, as written in it; none if it does not exist.
 std::set<std::string> named_by(const fs::path& index) {
   constexpr std::string_view kAttribute = "Source=\"";
@@ -52,6 +62,11 @@ PieceOutputs::PieceOutputs(fs::path folder, std::string name)
     : folder_(std::move(folder)), name_(std::move(name)) {
   std::error_code code;
   if (!fs::exists(folder_, code)) {
+    if (names_mesh_file(folder_)) {
+      throw InputError(folder_.string(), "--pieces expects a folder and not a file",
+                       fmt::format("give a name such as {}; {}.pvtu in it lists the pieces",
+                                   fs::path(folder_).replace_extension().string(), name_));
+    }
     (void)OutputFile(folder_);  // throws if nothing can be made there
     return;
   }

@@ -18,8 +18,9 @@ class PieceOutputs {
   /// Checks, before the work, that the files can be written.
   ///
   /// @param folder  made by `open` if it does not exist; its parent has to exist
-  /// @throws InputError if the folder cannot be written, or holds a piece's file that no NAME.pvtu
-  ///         there lists, as it may be another program's
+  /// @throws InputError if the folder cannot be written or would have the name of a mesh's file, and if it
+  /// holds
+  ///         a piece's file that no NAME.pvtu there lists, as it may be another program's
   PieceOutputs(std::filesystem::path folder, std::string name);
   /// Removes the folder if `open` made it and it is empty.
   ~PieceOutputs();

@@ -38,20 +38,24 @@ std::int64_t peak_memory() {
 }
 
 void print_report(const Console& console, const DistributedOptions& options, const DistributedReport& report,
-                  const std::vector<std::int64_t>& peaks) {
+                  const std::vector<std::int64_t>& peaks, const StoredMatrix* stored) {
+  const bool is_matrix = stored != nullptr && !stored->is_graph;
   console.print(
-      "{:<10} {} by {}, {:.2f} % of the edges between them, largest {:.3f} of the mean by {}, {} ghosts",
+      "{:<10} {} by {}, {:.2f} % of the edges between them, largest {:.3f} of the mean by {}, {} neighbours "
+      "in other parts",
       "parts", report.parts, to_string(report.partitioner), 100 * share_of_edges(report), report.imbalance,
       to_string(options.balance), with_commas(report.ghosts));
   console.print(
-      "{:<10} {} {}, {} on the interfaces{}", "vertices", options.vertices,
+      "{:<10} {} {}, {} on the interfaces{}", is_matrix ? "rows" : "vertices", options.vertices,
       report.partitioner == distributed::Partitioner::order ? "of the whole mesh" : "in each part",
       with_commas(std::accumulate(report.interfaces.begin(), report.interfaces.end(), GlobalIndex{0})),
       options.interface_place == distributed::InterfacePlace::last ? ", after the others" : "");
-  console.print("{:<10} lexmax", "elements");
-  console.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}", "edge span",
-                report.before.mean, report.after.mean, with_commas(report.before.max),
-                with_commas(report.after.max), report.before.mean_log2, report.after.mean_log2);
+  if (stored == nullptr) console.print("{:<10} lexmax", "elements");
+  if (is_matrix) console.print("{:<10} keep their places in the file", "entries");
+  console.print("{:<10} mean {:.1f} → {:.1f}, largest {} → {}, mean log2 {:.2f} → {:.2f}",
+                stored != nullptr ? "distance" : "edge span", report.before.mean, report.after.mean,
+                with_commas(report.before.max), with_commas(report.after.max), report.before.mean_log2,
+                report.after.mean_log2);
   std::string stages;
   for (const auto& [stage, seconds] : report.seconds)
     stages += fmt::format("{}{} {}", stages.empty() ? "" : ", ", stage, duration(seconds));

@@ -3,6 +3,7 @@
 
 #include "console.hpp"
 #include "distributed/order/order.hpp"
+#include "mesh/stored_matrix.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -15,8 +16,11 @@ namespace meshorder::command {
 std::int64_t peak_memory();
 
 /// Prints the report on an order, without the files.
+///
+/// @param stored  null if the mesh is not a matrix
 void print_report(const Console& console, const distributed::DistributedOptions& options,
-                  const distributed::DistributedReport& report, const std::vector<std::int64_t>& peaks);
+                  const distributed::DistributedReport& report, const std::vector<std::int64_t>& peaks,
+                  const StoredMatrix* stored);
 
 /// Returns {"ranks", "parts", "partition", "edge_span", "memory_bytes", "seconds"}.
 nlohmann::ordered_json to_json(const distributed::DistributedOptions& options,

@@ -5,6 +5,7 @@
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
+#include "mesh/stored_matrix.hpp"
 #include "ordering/order_cells.hpp"
 #include "payoff/quantities.hpp"
 
@@ -56,9 +57,13 @@ void move_at_root(const Communicator& communicator, WholeMesh& whole,
   communicator.at_root([&] {
     whole.maps.vertices = Permutation::from_old_to_new(narrowed(vertices));
     const Permutation places =
-        permutation_within_classes(slot_classes(cell_arrays(whole.mesh)), narrowed(cells));
+        stored_matrix(whole.mesh) != nullptr
+            ? Permutation::identity(whole.mesh.cell_count())
+            : permutation_within_classes(slot_classes(cell_arrays(whole.mesh)), narrowed(cells));
     apply_reordering(whole.mesh, whole.maps.vertices, places, ids);
     whole.maps.cells = whole.arranged.then(places);
+    const Format& to = output_format_of(files.output, whole.mesh.format);
+    if (to.settle_cells != nullptr) whole.maps.cells = whole.maps.cells.then(to.settle_cells(whole.mesh));
     if (!files.maps.empty()) note_parts(whole.mesh, order.report.part_starts, whole.maps);
   });
 }

@@ -22,7 +22,10 @@ struct WholeMesh : MeshToOrder {
 [[nodiscard]] WholeMesh read_at_root(const distributed::Communicator& communicator, const MeshFiles& files,
                                      Ids ids, Notes& notes);
 
-/// Moves the mesh at the root into its new order and fills in its maps. Every rank has to call it.
+/// Moves the mesh at the root into its new order and fills in its maps. Entries of a matrix keep their
+/// places. Every rank has to call it.
+///
+/// @param files  as in `read_at_root`
 void move_at_root(const distributed::Communicator& communicator, WholeMesh& whole,
                   const distributed::DistributedOrder& order, const MeshFiles& files, Ids ids);
 

@@ -5,6 +5,7 @@
 #include "io/matrix/points.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "ordering/method.hpp"
+#include <meshorder/error.hpp>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -28,8 +29,8 @@ std::vector<std::string> named_files(const std::string& name) {
 void take_points(Mesh& mesh, const std::string& input, const std::string& points) {
   if (points.empty()) return;
   if (stored_matrix(mesh) == nullptr) {
-    throw CommandError(
-        fmt::format("--points is for matrices and graphs: {} is a mesh, which has its own", input), 2);
+    throw InvalidArgument(
+        fmt::format("--points is for matrices and graphs: {} is a mesh, which has its own", input));
   }
   RowPoints given = read_points(points, mesh.vertex_count());
   mesh.points = std::move(given.points);
@@ -40,15 +41,20 @@ void require_points(const Mesh& mesh, const std::string& input, const std::strin
                     const std::string& elements) {
   const bool by_vertices = needs_points(vertex_methods(), vertices);
   if (!by_vertices && !needs_points(element_methods(), elements)) return;
-  if (stored_matrix(mesh) == nullptr || has_places(mesh)) return;
   std::vector<std::string> others;
   for (const MethodInfo& method : vertex_methods()) {
     if (!method.needs_points) others.push_back(method.name);
   }
-  throw CommandError(fmt::format("{} has no coordinates, which the order '{}' goes by; give them by --points "
-                                 "FILE, or take one that needs none: {}",
-                                 input, by_vertices ? vertices : elements, join(others)),
-                     2);
+  require_coordinates(mesh, input, fmt::format("order '{}'", by_vertices ? vertices : elements), others);
+}
+
+void require_coordinates(const Mesh& mesh, const std::string& input, const std::string& by,
+                         const std::vector<std::string>& others) {
+  if (stored_matrix(mesh) == nullptr || has_places(mesh)) return;
+  throw InvalidArgument(
+      fmt::format("{} has no coordinates, which the {} goes by; give them by --points FILE, or "
+                  "take one that needs none: {}",
+                  input, by, join(others)));
 }
 
 }  // namespace meshorder::command

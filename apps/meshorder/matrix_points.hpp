@@ -16,12 +16,19 @@ void add_points_option(CLI::App& subcommand, std::string& points);
 std::vector<std::string> named_files(const std::string& name);
 
 /// Gives the rows of a matrix or graph the coordinates in a file (see `read_points`); does nothing for an
-/// empty name. Throws CommandError for a mesh, which has its own, and InputError for a faulty file.
+/// empty name. Throws InvalidArgument for a mesh, which has its own, and InputError for a faulty file.
 void take_points(Mesh& mesh, const std::string& input, const std::string& points);
 
-/// Throws CommandError if the mesh is a matrix or graph without coordinates and one of the methods needs
+/// Throws InvalidArgument if the mesh is a matrix or graph without coordinates and one of the methods needs
 /// them.
 void require_points(const Mesh& mesh, const std::string& input, const std::string& vertices,
                     const std::string& elements);
+
+/// Throws InvalidArgument if the mesh is a matrix or graph without coordinates.
+///
+/// @param by      what goes by them: "order 'hilbert'"
+/// @param others  what needs none
+void require_coordinates(const Mesh& mesh, const std::string& input, const std::string& by,
+                         const std::vector<std::string>& others);
 
 }  // namespace meshorder::command

@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -268,11 +269,11 @@ def test_small_meshes_are_cut_along_the_curve_with_a_note(tmp_path):
     (["order", "BALL", "-o", "full.vtu"], "full"),
     (["order", "BALL", "-o", "out.vtu", "--vertices", "original"], "'original' within parts"),
     (["order", "BALL", "-o", "out.vtu", "--partition", "metis"], "metis"),
-    (["order", "BALL", "-o", "out.vtu", "--partition", "order"], "--partition ptscotch"),
-    (["order", "BALL", "-o", "out.vtu", "--vertices", "fiedler", "--interface", "last"], "--partition ptscotch"),
-    (["order", "BALL", "-o", "out.vtu", "--vertices", "fiedler", "--balance", "cells"], "--partition ptscotch"),
+    (["order", "BALL", "-o", "out.vtu", "--partition", "order"], "partitions ptscotch"),
+    (["order", "BALL", "-o", "out.vtu", "--vertices", "fiedler", "--interface", "last"], "partitions ptscotch"),
+    (["order", "BALL", "-o", "out.vtu", "--vertices", "fiedler", "--balance", "cells"], "partitions ptscotch"),
     (["order", "BALL", "-o", "out.vtu", "--part", "2"], "unknown option '--part'"),
-    (["order", "BALL", "-o", "out.vtu", "--parts", "100000000"], "too few for 100000000 parts"),
+    (["order", "BALL", "-o", "out.vtu", "--parts", "100000000"], "vertices, too few for 100,000,000 parts"),
     (["order", "BALL", "-o", "out.vtu", "--maps", ""], "--maps: the value is empty"),
     (["info", "BALL"], "start `info` without mpirun"),
 ])
@@ -330,6 +331,67 @@ def test_one_rank_that_cannot_write_ends_all(tmp_path, ball, options, limited):
     assert time.monotonic() - began < 20
     assert done.returncode == 2 and len(own_lines(done)) == 1, done.stderr
     assert os.listdir(tmp_path) == [f"a.{kind}"]
+
+
+def test_options_of_one_process_are_named_as_such(tmp_path):
+    """Options of the serial command are known here, too, or the message says where they are known."""
+    helps = (subprocess.run([MESHORDER.with_name(program), "order", "--help"], capture_output=True, text=True, check=True)
+             for program in ("meshorder", "meshorder-mpi"))
+    of_order, of_ranks = (set(re.findall(r"^  (?:-.,)?(--[a-z-]+)", shown.stdout, re.MULTILINE)) for shown in helps)
+    for option in sorted(of_order - of_ranks):
+        done = launch(1, "order", tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", option, "value")
+        assert done.returncode == 2
+        assert own_lines(done) == [f"meshorder: '{option}' is not known where parts are made or ranks run; leave it out"]
+    assert {"--for", "--elements", "--group-by"} <= of_order - of_ranks
+
+
+def test_one_process_has_to_be_told_how_many_pieces(tmp_path, ball):
+    done = launch(1, "order", ball, "--pieces", tmp_path / "out")
+    assert done.returncode == 2 and "give --parts N, or start by mpirun -n N" in own_lines(done)[0]
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.fixture
+def matrix(tmp_path):
+    """A chain whose rows are in a poor order, as a matrix without coordinates."""
+    places = numpy.random.default_rng(1).permutation(400)
+    entries = [f"{max(a, b) + 1} {min(a, b) + 1} {k}.5\n" for k, (a, b) in enumerate(zip(places, places[1:]))]
+    (tmp_path / "a.mtx").write_text("%%MatrixMarket matrix coordinate real symmetric\n400 400 399\n" + "".join(entries))
+    return tmp_path / "a.mtx"
+
+
+@pytest.mark.parametrize("options, needs", [(["--vertices", "hilbert"], "the order 'hilbert'"),
+                                            (["--partition", "hilbert"], "the partition 'hilbert'")])
+def test_a_matrix_without_coordinates_has_no_geometric_order(tmp_path, matrix, options, needs):
+    done = launch(2, "order", matrix, "-o", tmp_path / "b.mtx", *options)
+    assert done.returncode == 2 and len(own_lines(done)) == 1
+    assert f"a.mtx has no coordinates, which {needs} goes by; give them by --points FILE" in own_lines(done)[0]
+    assert not (tmp_path / "b.mtx").exists()
+    numpy.savetxt(tmp_path / "points.txt", numpy.random.default_rng(2).random((400, 3)))
+    order(2, matrix, "-o", tmp_path / "b.mtx", "--points", tmp_path / "points.txt", *options)
+
+
+def test_a_matrix_is_spoken_of_as_by_one_process(tmp_path, matrix):
+    one = serial("order", matrix, "-o", tmp_path / "b.mtx", "--vertices", "spectral").stdout
+    done = order(2, matrix, "-o", tmp_path / "b.mtx", "--vertices", "spectral").stdout
+    for line in ("rows       spectral", "entries    keep their places in the file", "distance   mean "):
+        assert line in one and line in done
+    assert "elements" not in done
+    old, new = (numpy.loadtxt(name, skiprows=2)[:, 2] for name in (matrix, tmp_path / "b.mtx"))
+    assert (old == new).all()
+
+
+@pytest.mark.parametrize("name", ["a.mtx", "a.graph"])
+def test_maps_of_a_matrix_give_it_back(tmp_path, matrix, name):
+    if name == "a.graph":
+        ends = numpy.loadtxt(matrix, skiprows=2)[:, :2].astype(int)
+        rows = [sorted([*ends[ends[:, 0] == v, 1], *ends[ends[:, 1] == v, 0]]) for v in range(1, 401)]
+        (tmp_path / name).write_text("400 399\n" + "".join(" ".join(map(str, row)) + "\n" for row in rows))
+    kind = name[1:]
+    order(2, tmp_path / name, "-o", tmp_path / f"b{kind}", "--maps", tmp_path / "m")
+    serial("apply", tmp_path / "m", tmp_path / f"b{kind}", "-o", tmp_path / f"back{kind}", "--inverse")
+    serial("order", tmp_path / name, "-o", tmp_path / f"same{kind}", "--vertices", "original")
+    assert (tmp_path / f"back{kind}").read_bytes() == (tmp_path / f"same{kind}").read_bytes()
 
 
 def test_without_arguments_it_ends_as_one_process_does():

@@ -129,7 +129,7 @@ PartOrders in_one_order(const Communicator& communicator, const GlobalGraph& gra
 
 /// Throws InvalidArgument for options that do not apply to ranges of one order.
 void check_one_order(const DistributedOptions& options) {
-  const std::string remedy = "; take --partition ptscotch or hilbert, which orders each part";
+  const std::string remedy = "; the partitions ptscotch, hilbert and rsb order each part";
   if (options.vertices != "fiedler")
     throw InvalidArgument("the partition 'order' is of `fiedler` only, not of '" + options.vertices + "'" +
                           remedy);
