@@ -34,8 +34,8 @@ typedef struct mo_mpi_mesh {
   int64_t coordinate_count;     /**< length of points: 3 * vertex_count, 0 without points */
 } mo_mpi_mesh;
 
-/** Options of a call, the same on all ranks. `mo_mpi_options_init` fills in the defaults; a null pointer
- * means the defaults. */
+/** Options of a call. All but `threads` must be the same on all ranks: if they differ, all ranks return
+ * MO_INVALID_ARGUMENT. `mo_mpi_options_init` fills in the defaults; a null pointer means the defaults. */
 typedef struct mo_mpi_options {
   size_t struct_size;     /**< sizeof(mo_mpi_options) of the caller */
   const char* method;     /**< vertex method of a part; null: "spectral" */

@@ -22,10 +22,10 @@ struct RankMesh {
   std::span<const std::int64_t> cell_offsets = {};  ///< elements + 1, ascending from 0; none: no elements
   /// Numbers of the elements' vertices, whichever rank owns these.
   std::span<const std::int64_t> cell_vertices = {};
-  std::span<const double> points = {};  ///< x y z of each own vertex; or none on all ranks
+  std::span<const double> points = {};  ///< x y z of each own vertex, in the plane too; or none on all ranks
 };
 
-/// Options of a call; the same on all ranks.
+/// Options of a call. All but `threads` must be the same on all ranks.
 struct RankOptions {
   std::string method = "spectral";  ///< vertex method of a part, see `vertex_methods`
   /// How `order_parts` makes the parts: "ptscotch", "hilbert", "rsb" (recursive spectral bisection), or
@@ -98,8 +98,8 @@ inline void throw_unless_ok(mo_status status) {
 /// @param mesh          of this rank. Elements may be on several ranks (ghost layers); each rank orders all
 ///                      of its own
 /// @param options       the same on all ranks; `parts`, `partition` and `balance` are not used
-/// @throws Error on all ranks if one fails: for an unknown method, for vertex numbers that do not exist, or
-///         for a geometric method without coordinates
+/// @throws Error on all ranks if one fails: for an unknown method, for options that differ between ranks, for
+///         vertex numbers that do not exist, or for a geometric method without coordinates
 /// @note The same mesh on the same ranks gives the same order. Memory: O(sum of element sizes squared) for
 ///       the graph, and that of the method.
 inline RankOrder order_ranks(MPI_Comm communicator, const RankMesh& mesh, const RankOptions& options = {}) {

@@ -10,6 +10,7 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -57,7 +58,39 @@ mo_mpi_options default_mpi_options() {
   return options;
 }
 
-/// Returns the caller's options. Throws on all ranks if one is invalid or ranks ask for different `parts`.
+/// An option by its name, with its value as text.
+struct NamedOption {
+  const char* name;
+  std::string value;
+};
+
+/// Returns the options on which the order depends.
+std::array<NamedOption, 6> in_words(const DistributedOptions& options) {
+  return {
+      {{"method", options.vertices},
+       {"partition", std::string(to_string(options.partitioner))},
+       {"balance", std::string(to_string(options.balance))},
+       {"interface_last", options.interface_place == distributed::InterfacePlace::last ? "true" : "false"},
+       {"seed", std::to_string(options.order.seed)},
+       {"parts", std::to_string(options.parts)}}};
+}
+
+/// Throws on all ranks, which would wait for each other, if an option is not the same on all of them.
+void check_same_options(const Communicator& communicator, const DistributedOptions& options) {
+  const std::array<NamedOption, 6> own = in_words(options);
+  std::vector<std::string> values(own.size());
+  std::ranges::transform(own, values.begin(), &NamedOption::value);
+  const std::vector<std::string> at_root = communicator.broadcast(values);
+  communicator.together([&] {
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      require(own[k].value == at_root[k], std::string("options: ") + own[k].name + " is '" + own[k].value +
+                                              "', and on rank 0 '" + at_root[k] +
+                                              "'; all ranks must give the same options");
+    }
+  });
+}
+
+/// Returns the caller's options. Throws on all ranks if one is invalid or they are not the same.
 DistributedOptions options_of(const Communicator& communicator, const mo_mpi_options* given) {
   DistributedOptions options;
   communicator.together([&] {
@@ -76,11 +109,7 @@ DistributedOptions options_of(const Communicator& communicator, const mo_mpi_opt
     options.order.seed = all.seed;
     options.order.run.threads = all.threads;
   });
-  const std::vector<Index> parts = communicator.gathered(options.parts);
-  communicator.together([&] {
-    require(std::count(parts.begin(), parts.end(), parts.front()) == std::ssize(parts),
-            "options: the ranks want different numbers of parts");
-  });
+  check_same_options(communicator, options);
   return options;
 }
 
@@ -114,7 +143,7 @@ void copy_arrays(const mo_mpi_mesh& given, OwnedMesh& mesh) {
   const std::int64_t coordinates = given.points == nullptr ? 0 : 3 * given.vertex_count;
   require(given.coordinate_count == coordinates,
           "points: there are " + std::to_string(given.coordinate_count) + " coordinates instead of " +
-              std::to_string(coordinates));
+              std::to_string(coordinates) + "; each vertex needs x y z, with z = 0 in the plane");
   if (given.points == nullptr) return;
   mesh.points.resize(static_cast<std::size_t>(given.vertex_count));
   std::memcpy(mesh.points.data(), given.points, mesh.points.size() * sizeof(Point));

@@ -208,7 +208,7 @@ TEST(RankMeshes, AFaultOfOneRankIsToldOnAll) {
   expect_fault(mesh, "and cell_offsets end at");
   mesh = solver.view();
   mesh.points = mesh.points.first(mesh.points.size() - 1);
-  expect_fault(mesh, "coordinates instead of");
+  expect_fault(mesh, "each vertex needs x y z");
   mesh = solver.view();
   std::vector<double> points(mesh.points.begin(), mesh.points.end());
   points.back() = std::numeric_limits<double>::quiet_NaN();
@@ -222,12 +222,30 @@ TEST(RankMeshes, AFaultOfOneRankIsToldOnAll) {
   expect_error([&] { (void)order_parts(MPI_COMM_WORLD, solver.view(), {.partition = "rcb"}); },
                Code::invalid_argument, "rcb");
   if (last > 0) {
-    expect_error([&] { (void)order_parts(MPI_COMM_WORLD, solver.view(), {.parts = is_last ? 3 : 2}); },
-                 Code::invalid_argument, "different numbers of parts");
     mesh = solver.view();
     mesh.points = {};
     expect_fault(mesh, "some ranks have coordinates");
   }
+}
+
+TEST(RankOptions, ThatDifferBetweenRanksAreRefusedOnAll) {
+  const Solver solver(make_ball({.size = 4}));
+  if (solver.communicator.size() == 1) return;
+  const bool is_last = solver.communicator.rank() == solver.communicator.size() - 1;
+  const auto expect_refusal = [&](const RankOptions& others, const std::string& words) {
+    const RankOptions own = is_last ? others : RankOptions{};
+    expect_error([&] { (void)order_parts(MPI_COMM_WORLD, solver.view(), own); }, Code::invalid_argument,
+                 words);
+    expect_error([&] { (void)order_ranks(MPI_COMM_WORLD, solver.view(), own); }, Code::invalid_argument,
+                 words);
+  };
+  expect_refusal({.method = "rcm"}, "method is 'rcm', and on rank 0 'spectral'");
+  expect_refusal({.partition = "rsb"}, "partition is 'rsb'");
+  expect_refusal({.balance = "cells"}, "balance is 'cells'");
+  expect_refusal({.seed = 7}, "seed is '7', and on rank 0 '0'");
+  expect_refusal({.parts = 3}, "parts is '3'");
+  expect_refusal({.interface_last = true}, "interface_last is 'true'");
+  EXPECT_NO_THROW((void)order_parts(MPI_COMM_WORLD, solver.view(), {.threads = is_last ? 2 : 1}));
 }
 
 }  // namespace

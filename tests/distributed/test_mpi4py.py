@@ -107,6 +107,44 @@ for call in (lambda: meshorder.mpi.order_ranks(comm, own, wrong),
         assert said.count(words) == 2, words
 
 
+def refused(call, count=2):
+    """What all ranks say of a call that they refuse."""
+    said = ended_well(ranks(count, f"""
+try:
+    {call}
+except ValueError as error:
+    print(f"{{type(error).__name__}} {{error}}\\n", end="")
+""")).splitlines()
+    assert len(said) == count and all(line.startswith("InvalidArgument ") for line in said), said
+    return said[0]
+
+
+@pytest.mark.parametrize("option, words", [
+    ("partition=['hilbert', 'rsb'][comm.rank]", "partition is 'rsb', and on rank 0 'hilbert'"),
+    ("method=['rcm', 'bfs'][comm.rank]", "method is 'bfs', and on rank 0 'rcm'"),
+    ("balance=['vertices', 'cells'][comm.rank]", "balance is 'cells'"),
+    ("interface_last=comm.rank == 1", "interface_last is 'true'"),
+    ("seed=comm.rank", "seed is '1'"),
+    ("parts=2 + comm.rank", "parts is '3'"),
+])
+def test_options_that_differ_are_an_error_on_all_ranks(option, words):
+    said = refused(f"meshorder.mpi.order_parts(comm, own, triangles, places, {option})")
+    assert said.startswith("InvalidArgument rank 1: options: ") and words in said
+
+
+@pytest.mark.parametrize("call, words", [
+    ("order_ranks(comm, own, triangles.T)", "vertices each: is the array transposed? A row for each cell is expected"),
+    ("order_parts(comm, own, triangles.T, places)", "is the array transposed?"),
+    ("order_ranks(comm, triangles, own)", "vertex_count: expected a whole number, not an array of the shape ("),
+    ("order_ranks(comm.py2f(), own, triangles)", "communicator: expected one of mpi4py (comm.py2f() is for C), not int"),
+    ("order_ranks(None, own, triangles)", "communicator: expected one of mpi4py (comm.py2f() is for C), not NoneType"),
+    ("order_ranks(type('Comm', (), {'tompi4py': None})(), own, triangles)", "by .tompi4py()), not Comm"),
+    ("order_parts(comm, own, triangles, places, partition='order')", "the partitions ptscotch, hilbert and rsb order each part"),
+])
+def test_mistakes_are_told_in_a_line(call, words):
+    assert words in refused(f"meshorder.mpi.{call}")
+
+
 def test_a_missing_library_is_told():
     done = ranks(1, """
 try:

@@ -103,12 +103,18 @@ def prepared(options: Options | dict[str, Any]) -> Iterator[dict[str, Any]]:
     yield given
 
 
+def in_a_line(value: Any) -> str:
+    """Returns a value as a message shows it: of an array the shape."""
+    shape = getattr(value, "shape", ())
+    return f"an array of the shape {tuple(shape)}" if shape else repr(value)
+
+
 def whole(value: Any, most: int, name: str) -> int:
     """Returns an integer in 0 … ``most``; raises InvalidArgument for other values."""
     try:
         number = operator.index(value)
     except TypeError:
-        raise InvalidArgument(f"{name}: expected a whole number, not {value!r}") from None
+        raise InvalidArgument(f"{name}: expected a whole number, not {in_a_line(value)}") from None
     if not 0 <= number <= most:
         raise InvalidArgument(f"{name}: {number} is outside 0 … {most}")
     return number
@@ -118,7 +124,7 @@ def _real(value: Any, name: str) -> float:
     if not isinstance(value, (str, bytes)):
         with contextlib.suppress(TypeError, ValueError, OverflowError):
             return float(value)
-    raise InvalidArgument(f"{name}: expected a number, not {value!r}")
+    raise InvalidArgument(f"{name}: expected a number, not {in_a_line(value)}")
 
 
 @contextlib.contextmanager

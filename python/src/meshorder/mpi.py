@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _errors
 from ._arrays import integers
 from ._arrays import points as as_points
-from ._options import whole
+from ._options import in_a_line, whole
 
 __all__ = ["PartOrder", "RankOrder", "order_parts", "order_ranks"]
 
@@ -39,6 +39,8 @@ _KINDS = {1: _errors.InvalidArgument, 2: _errors.InputError, 3: _errors.TooLarge
           5: _errors.Stopped, 7: _errors.InternalError}  # fmt: skip
 _OUT_OF_MEMORY = 8
 _MOST_VERTICES = 2**63 - 1
+_FEW_CELLS = 27  # a transposed array has a row for each corner of a cell
+_MANY_CORNERS = 125
 _Prepared = TypeVar("_Prepared")
 
 
@@ -115,8 +117,18 @@ def _room_for(count: int) -> Numbers:
 
 def _text(value: Any, name: str) -> bytes:
     if not isinstance(value, str):
-        raise _errors.InvalidArgument(f"{name}: expected a text, not {value!r}")
+        raise _errors.InvalidArgument(f"{name}: expected a text, not {in_a_line(value)}")
     return value.encode()
+
+
+def _check_communicator(value: Any) -> None:
+    if hasattr(value, "allgather") and hasattr(value, "py2f"):
+        return
+    if hasattr(value, "tompi4py"):
+        remedy = "petsc4py's communicators become one by .tompi4py()"
+    else:
+        remedy = "comm.py2f() is for C"
+    raise _errors.InvalidArgument(f"communicator: expected one of mpi4py ({remedy}), not {type(value).__name__}")
 
 
 @dataclasses.dataclass
@@ -139,6 +151,10 @@ class _Arrays:
                     f"cells: expected m × k numbers, or (offsets, vertices), not the shape {rows.shape}"
                 )
             width = rows.shape[1] if rows.ndim == 2 else 0
+            if 0 < len(rows) <= _FEW_CELLS and width > _MANY_CORNERS:
+                raise _errors.InvalidArgument(
+                    f"cells: {width} vertices each: is the array transposed? A row for each cell is expected"
+                )
             offsets = width * np.arange(len(rows) + 1, dtype=np.int64)
             vertices = rows.reshape(-1)
         if offsets.size == 0 or offsets[-1] != vertices.size:
@@ -163,6 +179,7 @@ class _Arrays:
 
 def _on_all_ranks(communicator: Any, prepare: Callable[[], _Prepared]) -> _Prepared:
     """Returns the result of ``prepare`` on this rank. If one rank raises, all do, so that none waits for it."""
+    _check_communicator(communicator)
     prepared: _Prepared | None = None
     failure: Exception | None = None
     try:
@@ -202,10 +219,11 @@ def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
     Every rank must call this function, with the same ``method``, ``interface_last`` and ``seed``.
 
     Args:
-        communicator: mpi4py communicator of the ranks that share the mesh.
+        communicator: mpi4py communicator of the ranks that share the mesh; from petsc4py ``comm.tompi4py()``.
         vertex_count: number of vertices that this rank owns.
         cells: the elements that this rank has, as the numbers of their vertices across the ranks, whichever rank owns
-            them: m rows of k vertices, or ``(offsets, vertices)``. An element may be on several ranks.
+            them: m rows of k vertices, or ``(offsets, vertices)``. An element may be on several ranks. Elements of more
+            than 125 vertices need the second form where a rank has fewer than 28: else they are taken for transposed.
         points: coordinates of the rank's own vertices, ``vertex_count`` rows of one to three, on all ranks or on none.
             Geometric methods need them.
         method: name of a vertex method, but not "auto", "original" or "scrambled".
@@ -217,7 +235,8 @@ def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         New numbers of this rank's vertices, and the order of its elements.
 
     Raises:
-        InvalidArgument: an unknown method, wrong vertex numbers, missing coordinates, arrays of wrong shapes.
+        InvalidArgument: an unknown method, wrong vertex numbers, missing coordinates, arrays of wrong shapes, another
+            kind of communicator, and options that differ between ranks, but for ``threads``.
         Unavailable: the library ``libmeshorder_mpi`` was not found.
         Error: another failure.
 
@@ -247,7 +266,7 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
     must call this function, with the same options.
 
     Args:
-        communicator: mpi4py communicator of the ranks that share the mesh.
+        communicator: as for `order_ranks`.
         vertex_count: number of vertices that this rank owns.
         cells: the elements that this rank has, in a form that `order_ranks` takes; each element is on one rank only.
         points: coordinates of the rank's own vertices, ``vertex_count`` rows of one to three.
