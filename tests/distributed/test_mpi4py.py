@@ -145,6 +145,21 @@ def test_mistakes_are_told_in_a_line(call, words):
     assert words in refused(f"meshorder.mpi.{call}")
 
 
+def test_the_example_of_the_manual_moves_vertices_and_elements():
+    """The new elements join the same places as the old ones."""
+    page = (ROOT / "docs" / "scale.md").read_text()
+    example, = (block for block in page.split("```\n") if "meshorder.mpi.order_ranks(" in block)
+    ended_well(ranks(2, f"""
+own_vertices, tetrahedra, coordinates = own, triangles.copy(), places.copy()
+def joined(elements, points):
+    everywhere = numpy.concatenate(comm.allgather(points))
+    return sorted(sorted(map(tuple, everywhere[element].tolist())) for element in elements)
+before = joined(tetrahedra, coordinates)
+{example}
+assert (tetrahedra != triangles).any() and joined(tetrahedra, coordinates) == before
+"""))
+
+
 def test_a_missing_library_is_told():
     done = ranks(1, """
 try:
