@@ -194,7 +194,8 @@ enum {
  * @param options         options of its orders, or null; its arrays must be empty, and `progress` and `user`
  * must stay valid
  * @param slack           share, >= 0, by which the mean span of edges may exceed that of the last fresh
- * order before a new one is computed; usual: 0.02
+ * order before a new one is computed; for points alone, this many times log2 of their number
+ * is added to that of the last fresh order; usual: 0.02
  * @param budget_seconds  >= 0; no new order is computed if the last one took longer; infinity: no limit
  * @param reorderer       written; null after a failure
  */

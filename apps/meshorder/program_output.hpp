@@ -43,8 +43,8 @@ std::string difference(std::string_view expected, std::string_view found, double
 /// Returns the files that hold a program's stdout and stderr; see TrialCommand::log.
 std::vector<std::filesystem::path> printed_files(const std::filesystem::path& log);
 
-/// Returns the last printed line that begins with "error", in any case, after blanks, "*", "-", "#" or "[";
-/// empty if there is none. Cut to 300 bytes.
+/// Returns the last line that begins with "error", in any case, after blanks, "*", "-", "#" or "[": that of
+/// stderr, else of stdout, within the last 16 MiB of each. Empty if there is none. Cut to 300 bytes.
 std::string error_line(const std::filesystem::path& log);
 
 /// Returns the last line of a file that is not blank, cut to 300 bytes.

@@ -181,7 +181,7 @@ class Trial:
     """Result of `try_orders`.
 
     Attributes:
-        verdict: "faster": the function runs faster in ``best``; "slower": it runs slower in every other order
+        verdict: "faster": the function runs faster in ``best``; "slower": it runs slower in the best other order
             than in the original one; "tie": in ``best`` its time differs by at most 1.5 %; "undecided": its times vary too
             much, or were too few, to say.
         best: name of the best order besides the original one; None if there is no other.
@@ -191,7 +191,7 @@ class Trial:
         ordered: the mesh or matrix in the best order if the verdict is "faster", else the one that was given.
         left_out: names of orders for which the budget left no time.
         needed_budget: the budget in seconds that an undecided trial needs for an interval, or, if there is one, to halve
-            its width; None for other trials.
+            its width; None for other trials, and if no other order is left to try.
     """
 
     verdict: str

@@ -236,7 +236,7 @@ class Su2Reader {
   }
 
   /// Takes the numbers after the coordinates of a point; SU2 does not read them.
-  void take_numbers_behind_point(Index v) {
+  void take_numbers_after_point(Index v) {
     if (in_.at_line_end()) return;
     std::int64_t number = -1;
     if (in_.take_number(number) && in_.at_line_end()) {
@@ -320,7 +320,7 @@ class Su2Reader {
         }
         if (!std::isfinite(point[k])) in_.fail("a coordinate is not finite", "a finite number is needed");
       }
-      take_numbers_behind_point(v);
+      take_numbers_after_point(v);
     }
     end_items(count);
     if (largest_node_ >= count) {
