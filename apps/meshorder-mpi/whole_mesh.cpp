@@ -56,13 +56,15 @@ void move_at_root(const Communicator& communicator, WholeMesh& whole,
   const std::vector<GlobalIndex> cells = communicator.gathered_at_root(order.cells);
   communicator.at_root([&] {
     whole.maps.vertices = Permutation::from_old_to_new(narrowed(vertices));
+    const Format& to = output_format_of(files.output, whole.mesh.format);
     const Permutation places =
         stored_matrix(whole.mesh) != nullptr
             ? Permutation::identity(whole.mesh.cell_count())
-            : permutation_within_classes(slot_classes(cell_arrays(whole.mesh)), narrowed(cells));
+            : with_groups_together(
+                  whole.mesh,
+                  permutation_within_classes(slot_classes(cell_arrays(whole.mesh)), narrowed(cells)), to);
     apply_reordering(whole.mesh, whole.maps.vertices, places, ids);
     whole.maps.cells = whole.arranged.then(places);
-    const Format& to = output_format_of(files.output, whole.mesh.format);
     if (to.settle_cells != nullptr) whole.maps.cells = whole.maps.cells.then(to.settle_cells(whole.mesh));
     if (!files.maps.empty()) note_parts(whole.mesh, order.report.part_starts, whole.maps);
   });

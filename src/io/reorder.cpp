@@ -73,14 +73,6 @@ std::vector<std::int64_t> in_new_order(const IndexView& numbers, const Permutati
   return moved;
 }
 
-/// Returns an order of cells in which those of each group are together, as far as they may change places.
-Permutation with_groups_together(const Mesh& mesh, const Permutation& cells,
-                                 const std::vector<Index>& groups) {
-  std::vector<Index> in_order(cells.new_to_old().begin(), cells.new_to_old().end());
-  std::ranges::stable_sort(in_order, {}, [&](Index cell) { return groups[cell]; });
-  return permutation_within_classes(slot_classes(cell_arrays(mesh)), std::move(in_order));
-}
-
 }  // namespace
 
 Permutation arrange_cells(Mesh& mesh, const Format& to) {
@@ -93,6 +85,14 @@ Permutation arrange_cells(Mesh& mesh, const Format& to) {
   }
   mesh.cell_blocks.clear();
   return to.groups_cells_by_type ? group_cells_by_type(mesh) : Permutation::identity(mesh.cell_count());
+}
+
+Permutation with_groups_together(const Mesh& mesh, const Permutation& cells, const Format& to) {
+  if (to.together == nullptr) return cells;
+  const std::vector<Index> groups = to.together(mesh);
+  std::vector<Index> in_order(cells.new_to_old().begin(), cells.new_to_old().end());
+  std::ranges::stable_sort(in_order, {}, [&](Index cell) { return groups[cell]; });
+  return permutation_within_classes(slot_classes(cell_arrays(mesh)), std::move(in_order));
 }
 
 void check_holds_ids(const Format& format, Ids ids) {
@@ -135,8 +135,10 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGr
       MeshOrder order = compute_reordering(mesh, *graph, of_arranged);
       const Format* const to = format_to_write(mesh, options.format);
       const bool has_groups = !options.group_by.empty() || !options.order.cell_groups.empty();
-      if (to != nullptr && to->together != nullptr && !has_groups && !order.cells.permutation.is_identity())
-        order.cells.permutation = with_groups_together(mesh, order.cells.permutation, to->together(mesh));
+      const bool is_as_in_file =
+          to != nullptr && mesh.format == to->key() && order.cells.method.name == "original";
+      if (to != nullptr && !has_groups && !is_as_in_file)
+        order.cells.permutation = with_groups_together(mesh, order.cells.permutation, *to);
       move_with_ids(mesh, order.vertices.permutation, order.cells.permutation, options.ids);
       order.cells.permutation = arranged.then(order.cells.permutation);
       if (to != nullptr && to->settle_cells != nullptr)

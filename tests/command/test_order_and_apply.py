@@ -127,6 +127,44 @@ def write_boxes(folder):
     meshio.write(folder / "other.vtu", meshio.Mesh(points, [("tetra", other)]))
 
 
+def write_groups(path, side=14):
+    """A square of triangles in OBJ, in four groups, one after the other."""
+    rows, half = range(side), side // 2
+    lines = [f"v {x} {y} 0" for x in range(side + 1) for y in range(side + 1)]
+    for group in range(4):
+        lines.append(f"g part{group}")
+        for x, y in itertools.product(rows, rows):
+            if 2 * (x >= half) + (y >= half) == group:
+                a = x * (side + 1) + y + 1
+                lines += [f"f {a} {a + side + 1} {a + side + 2}", f"f {a} {a + side + 2} {a + 1}"]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def test_groups_of_obj_stay_together_also_in_meshes_from_other_files(command, tmp_path):
+    write_groups(tmp_path / "a.obj")
+
+    def groups(name):
+        return sum(line.startswith("g ") for line in (tmp_path / name).read_text().splitlines())
+
+    for elements in ("lexmax", "scrambled", "original"):
+        command.ok("order", "a.obj", "-o", "b.obj", "--vertices", "rcm", "--elements", elements)
+        assert groups("b.obj") == 4
+    command.ok("order", "a.obj", "-o", "a.msh", "--vertices", "rcm", "--elements", "lexmax")
+    for elements in ("lexmax", "original"):
+        command.ok("order", "a.msh", "-o", "c.obj", "--vertices", "original", "--elements", elements)
+        assert groups("c.obj") == 4
+
+
+def test_arrays_that_obj_does_not_hold_move_no_faces(command, tmp_path):
+    write_groups(tmp_path / "a.obj")
+    given = meshio.read(tmp_path / "a.obj")
+    for name in ("other", "smoothing", "object"):
+        values = numpy.arange(len(given.cells[0].data)) % 7
+        meshio.write(tmp_path / f"{name}.vtu", meshio.Mesh(given.points, [given.cells[0]], cell_data={name: [values]}))
+        command.ok("order", f"{name}.vtu", "-o", f"{name}.obj", "--vertices", "rcm", "--elements", "lexmax")
+        assert (tmp_path / f"{name}.obj").read_bytes() == (tmp_path / "other.obj").read_bytes()
+
+
 def test_files_do_not_hold_when_they_were_written(command, tmp_path):
     """CGNS alone does: its library puts the time into every node."""
     write_boxes(tmp_path)

@@ -320,9 +320,11 @@ void write_obj(const Mesh& mesh, const FilePath& path, Notes& notes) { ObjWriter
 
 /// Returns the groups of cells with the same states and sets, see `Format::together`. O(cells + members).
 std::vector<Index> cells_of_equal_statements(const Mesh& mesh) {
+  const bool is_native = dynamic_cast<const obj::Metadata*>(mesh.format_metadata.get()) != nullptr;
   std::vector<Checksum> statements(mesh.cells.shapes.size());
-  for (const obj::State& state : kStates) {
-    const DataArray* const array = find_array(mesh, state.array, Association::cells);
+  for (std::size_t i = 0; i < kStates.size(); ++i) {
+    if (!is_native && i != obj::kMaterial) continue;
+    const DataArray* const array = find_array(mesh, kStates[i].array, Association::cells);
     const std::vector<std::int32_t> values =
         array != nullptr ? cell_integers(*array) : std::vector<std::int32_t>{};
     for (std::size_t c = 0; c < values.size(); ++c) statements[c].add(values[c]);
