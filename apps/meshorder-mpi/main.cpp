@@ -60,7 +60,7 @@ std::optional<std::string> option_of_one_process(const CLI::App& app) {
 }
 
 /// Runs the subcommand in the arguments, which are the same on all ranks; returns the exit status.
-int run(const Communicator& communicator, std::vector<std::string> arguments) {
+int run(const Communicator& communicator, bool is_started_as_rank, std::vector<std::string> arguments) {
   CLI::App app;
   app.description(
       "What `meshorder` executes where mpirun or srun starts several of it: orders a mesh by all ranks.\n"
@@ -69,7 +69,7 @@ int run(const Communicator& communicator, std::vector<std::string> arguments) {
   app.set_version_flag("-V,--version", MESHORDER_VERSION);
   app.require_subcommand(1);
   app.formatter(meshorder::command::help_format());
-  meshorder::command::add_distributed_order(*app.add_subcommand("order"), communicator);
+  meshorder::command::add_distributed_order(*app.add_subcommand("order"), communicator, is_started_as_rank);
   meshorder::command::refuse_empty_values(app);
   if (arguments.empty()) {
     if (communicator.is_root()) meshorder::command::write_stderr(app.help());
@@ -126,13 +126,14 @@ int main(int argc, char** argv) {
   // read before MPI changes the environment
   const bool is_one_of_several = meshorder::command::is_one_of_several();
   const bool is_first_process = meshorder::command::is_first_process();
+  const bool is_started_as_rank = meshorder::command::is_started_as_rank();
   try {
     const meshorder::distributed::Session session(argc, argv);
     try {
       const Communicator communicator;
       if (communicator.size() == 1 && is_one_of_several) return tell_of_launcher(is_first_process);
       try {
-        return run(communicator, {argv + std::min(argc, 1), argv + argc});
+        return run(communicator, is_started_as_rank, {argv + std::min(argc, 1), argv + argc});
       } catch (const meshorder::distributed::SharedError& error) {
         return tell(communicator, error.what(), status_of(error));
       }

@@ -50,6 +50,7 @@ struct Arguments : Common, OrderFiles {
   std::string interface_place{to_string(distributed::InterfacePlace::mixed)};
   OrderOptions order;
   std::string ids = "renumber";
+  bool is_started_as_rank = false;
 };
 
 DistributedOptions options_of(const Arguments& arguments) {
@@ -73,10 +74,10 @@ bool needs_root(const Arguments& arguments) {
          !arguments.points.empty();
 }
 
-/// Throws SharedError for pieces of a run on one rank that does not say how many.
+/// Throws SharedError for pieces of a process that was started alone and does not say how many.
 void check_count_of_pieces(const Communicator& communicator, const Arguments& arguments) {
   communicator.together([&] {
-    if (communicator.size() > 1 || arguments.parts > 0 || arguments.pieces.empty()) return;
+    if (arguments.is_started_as_rank || arguments.parts > 0 || arguments.pieces.empty()) return;
     throw InvalidArgument("--pieces: one process makes one piece; give --parts N, or start by mpirun -n N");
   });
 }
@@ -172,11 +173,16 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   const std::vector<std::int64_t> peaks = communicator.gathered(peak_memory());
   communicator.at_root([&] {
     Console console(arguments);
-    if (!report.partition_reason.empty())
-      notes.push_back(report.partition_reason + ": parts are ranges of Hilbert's curve");
+    const StoredMatrix* const stored = stored_matrix(whole.mesh);
+    if (!report.partition_reason.empty()) {
+      const bool by_rows = stored != nullptr && !has_places(whole.mesh);
+      notes.push_back(
+          report.partition_reason +
+          (by_rows ? ": parts are ranges of the rows as they are; --partition rsb divides graphs of any size"
+                   : ": parts are ranges of Hilbert's curve"));
+    }
     note_convergence(report.fiedler, "the vertices", notes);
     console.warn_of(notes);
-    const StoredMatrix* const stored = stored_matrix(whole.mesh);
     print_report(console, options, report, peaks, stored);
     const char* const by = by_all ? ", read and written by all ranks" : "";
     if (!arguments.output.empty()) console.print("{:<10} {}{}", "wrote", arguments.output, by);
@@ -252,7 +258,7 @@ void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
 
 }  // namespace
 
-void add_distributed_order(CLI::App& subcommand, const Communicator& communicator) {
+void add_distributed_order(CLI::App& subcommand, const Communicator& communicator, bool is_started_as_rank) {
   subcommand.description(
       "Reorder a mesh by all ranks: cut it into parts, order each, and number them one after another, so\n"
       "that parts that touch are near each other.\n"
@@ -269,6 +275,7 @@ void add_distributed_order(CLI::App& subcommand, const Communicator& communicato
       "  mpirun -n 4 meshorder order part.msh -o ordered.vtu --parts 64 --maps part\n"
       "  mpirun -n 4 meshorder order part.vtu --pieces out --parts 64 --interface last");
   const auto arguments = std::make_shared<Arguments>();
+  arguments->is_started_as_rank = is_started_as_rank;
   subcommand.add_option("MESH", arguments->input, "Mesh file")->required();
   subcommand.add_option("-o,--output", arguments->output,
                         "File to write; may be the input, and may be left out with --pieces");

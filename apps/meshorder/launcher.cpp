@@ -23,6 +23,8 @@ const char* first_set(const Names& names) {
 
 }  // namespace
 
+bool is_started_as_rank() { return first_set(kSizes) != nullptr || first_set(kRanks) != nullptr; }
+
 bool is_one_of_several() {
   const char* const size = first_set(kSizes);
   // PMIx gives a process only its rank

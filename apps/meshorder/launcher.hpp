@@ -3,6 +3,9 @@
 
 namespace meshorder::command {
 
+/// Returns whether `mpirun` or `srun` started this process, according to environment variables.
+bool is_started_as_rank();
+
 /// Returns whether `mpirun` or `srun` started this process together with others, according to environment
 /// variables. Those of a batch script alone do not count.
 bool is_one_of_several();

@@ -345,6 +345,24 @@ def test_options_of_one_process_are_named_as_such(tmp_path):
     assert {"--for", "--elements", "--group-by"} <= of_order - of_ranks
 
 
+def test_parts_keep_the_groups_of_obj_together(tmp_path):
+    faces = [f"f {k + 1} {k + 2} {k + 22}" for k in range(400) if k % 21 < 20]
+    lines = [f"v {k % 21} {k // 21} 0" for k in range(441)]
+    for group in range(4):
+        lines += [f"g part{group}", *faces[group::4]]
+    (tmp_path / "a.obj").write_text("\n".join(lines) + "\n")
+    done = launch(1, "order", tmp_path / "a.obj", "-o", tmp_path / "b.obj", "--parts", "3")
+    assert done.returncode == 0, done.stderr
+    assert sum(line.startswith("g ") for line in (tmp_path / "b.obj").read_text().splitlines()) == 4
+
+
+def test_one_rank_started_by_mpirun_makes_one_piece(tmp_path, ball):
+    done = subprocess.run([*MPIRUN, "-n", "1", MESHORDER, "order", ball, "--pieces", tmp_path / "out"], env=environment(),
+                          capture_output=True, text=True, timeout=SECONDS, check=False)
+    assert done.returncode == 0, done.stderr
+    assert len(os.listdir(tmp_path / "out")) == 2
+
+
 def test_one_process_has_to_be_told_how_many_pieces(tmp_path, ball):
     done = launch(1, "order", ball, "--pieces", tmp_path / "out")
     assert done.returncode == 2 and "give --parts N, or start by mpirun -n N" in own_lines(done)[0]
