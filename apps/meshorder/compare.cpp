@@ -132,11 +132,11 @@ void run(const CompareArguments& arguments) {
         "venv/bin/meshorder compare --gpu",
         2);
   }
-  if (arguments.ordering.workload == Workload::gpu && arguments.gpu_layouts.empty()) {
+  if (arguments.ordering.workload == Workload::gpu) {
     throw CommandError(
-        "--for gpu: the kernels run on this machine's processor; give --gpu-layout padded, too, to count "
-        "what "
-        "orders cost on a graphics processor",
+        "--for gpu: the kernels run on this machine's processor; `meshorder info --gpu` counts for a "
+        "graphics "
+        "processor, and --gpu-layout padded counts the additions of each order",
         2);
   }
   Console console(arguments);
