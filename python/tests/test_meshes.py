@@ -170,7 +170,7 @@ def test_advice_measures_what_runs_within_seconds(mesh, monkeypatch):
         return bool(as_is.measured)
 
     monkeypatch.delenv("MESHORDER_MACHINE", raising=False)
-    path = sp.eye_array(1_000_002, k=1, format="csr")  # two corners for each of its entries
+    path = sp.eye(1_000_002, k=1, format="csr")  # two corners for each of its entries
     assert is_measured(mesh) and is_measured(path[:1000, :1000]) and not is_measured(path)
     assert not is_measured(mesh, measure=False) and not is_measured(mesh, machine="this")
     monkeypatch.setenv("MESHORDER_MACHINE", "zen3")
