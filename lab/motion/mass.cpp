@@ -47,8 +47,8 @@ MassMatrix mass_matrix(Mass kind, const RestShapes& rest, std::span<const double
 
 void multiply(const MassMatrix& mass, const BlockCsr& pattern, std::span<const double> x,
               std::span<double> y) {
-  constexpr Index kRows = 4096;  // in a chunk
-  for_each_chunk(pattern.size(), kRows, [&](Index, Index begin, Index end) {
+  constexpr Index kChunk = 4096;  // rows
+  for_each_chunk(pattern.size(), kChunk, [&](Index, Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
       double* const q = y.data() + Offset{3} * v;
       if (mass.blocks.empty()) {
