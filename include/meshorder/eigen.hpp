@@ -130,6 +130,7 @@ template <class V, class F>
 ///
 /// @param edges     E: m × 2 old numbers in 0 … n − 1, a row for each edge
 /// @param vertices  order of the n vertices
+/// @param run       threads, progress
 /// @return permutation of the m edges: `move_rows` by it, then `renumber` by `vertices`
 /// @throws InvalidArgument for another number of columns, and as `order_edges`
 template <class E>
