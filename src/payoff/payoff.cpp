@@ -48,7 +48,8 @@ Advice advise_on(const PayoffOptions& options, const Make& make) {
     }
     if (options.order.workload == Workload::gpu) {
       throw InvalidArgument(
-          "workload gpu: the kernels run on this machine's processor; gpu_cost and gpu_product_cost count what an "
+          "workload gpu: the kernels run on this machine's processor; gpu_cost and gpu_product_cost count "
+          "what an "
           "order costs on a graphics processor");
     }
     const int threads = options.all_threads ? thread_count() : 1;
