@@ -85,7 +85,7 @@ Permutation arrange_cells(Mesh& mesh, const Format& to);
 
 /// Returns an order of cells in which those of each group of `to.together` are together, as far as they may
 /// change places. O(cells · log cells).
-Permutation with_groups_together(const Mesh& mesh, const Permutation& cells, const Format& to);
+Permutation with_groups_together(const Mesh& mesh, Permutation cells, const Format& to);
 
 /// Throws InvalidArgument for `Ids::keep` if the format cannot hold ids.
 void check_holds_ids(const Format& format, Ids ids);

@@ -87,7 +87,7 @@ Permutation arrange_cells(Mesh& mesh, const Format& to) {
   return to.groups_cells_by_type ? group_cells_by_type(mesh) : Permutation::identity(mesh.cell_count());
 }
 
-Permutation with_groups_together(const Mesh& mesh, const Permutation& cells, const Format& to) {
+Permutation with_groups_together(const Mesh& mesh, Permutation cells, const Format& to) {
   if (to.together == nullptr) return cells;
   const std::vector<Index> groups = to.together(mesh);
   std::vector<Index> in_order(cells.new_to_old().begin(), cells.new_to_old().end());
@@ -138,7 +138,7 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGr
       const bool is_as_in_file =
           to != nullptr && mesh.format == to->key() && order.cells.method.name == "original";
       if (to != nullptr && !has_groups && !is_as_in_file)
-        order.cells.permutation = with_groups_together(mesh, order.cells.permutation, *to);
+        order.cells.permutation = with_groups_together(mesh, std::move(order.cells.permutation), *to);
       move_with_ids(mesh, order.vertices.permutation, order.cells.permutation, options.ids);
       order.cells.permutation = arranged.then(order.cells.permutation);
       if (to != nullptr && to->settle_cells != nullptr)
