@@ -25,12 +25,14 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace meshorder::command {
 namespace {
@@ -129,6 +131,68 @@ std::optional<ExodusSlices> exodus_slices_of(const Communicator& communicator, c
   return slices;
 }
 
+/// What a run did, for its report at the root.
+struct Finished {
+  const Arguments& arguments;
+  const DistributedOptions& options;
+  const distributed::DistributedReport& report;
+  const OrderOutputs& outputs;
+  const Mesh& whole;  ///< empty where all ranks have read the file
+  bool by_all;        ///< all ranks have read and written the files, not the root alone
+  GlobalIndex vertices;
+  GlobalIndex cells;
+  const std::vector<std::int64_t>& peaks;  ///< memory of each rank, in bytes
+};
+
+nlohmann::ordered_json json_of(const Finished& run) {
+  const Arguments& arguments = run.arguments;
+  const bool is_matrix = stored_matrix(run.whole) != nullptr;
+  nlohmann::ordered_json result{
+      {"input", arguments.input},
+      {"output",
+       arguments.output.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(arguments.output)},
+      {"files_by", run.by_all ? "all ranks" : "rank 0"},
+      {"vertices", {{"count", run.vertices}, {"method", run.options.vertices}}},
+      {"cells", {{"count", run.cells}, {"method", is_matrix ? "original" : "lexmax"}}}};
+  result.update(to_json(run.options, run.report, run.peaks));
+  result["fiedler"] = command::to_json(run.report.fiedler);
+  result["maps"] = run.outputs.maps();
+  if (!arguments.pieces.empty()) {
+    result["pieces"] = {{"file", run.outputs.pieces_file()},
+                        {"ghost_layers", arguments.ghosts},
+                        {"ghost_vertices", run.outputs.pieces().ghost_vertices},
+                        {"ghost_cells", run.outputs.pieces().ghost_cells}};
+  }
+  return result;
+}
+
+void print(const Finished& run, Notes notes) {
+  const Arguments& arguments = run.arguments;
+  const StoredMatrix* const stored = stored_matrix(run.whole);
+  Console console(arguments);
+  if (!run.report.partition_reason.empty()) {
+    const bool by_rows = stored != nullptr && !has_places(run.whole);
+    notes.push_back(
+        run.report.partition_reason +
+        (by_rows ? ": parts are ranges of the rows as they are; --partition rsb divides graphs of any size"
+                 : ": parts are ranges of Hilbert's curve"));
+  }
+  note_convergence(run.report.fiedler, "the vertices", notes);
+  console.warn_of(notes);
+  print_report(console, run.options, run.report, run.peaks, stored);
+  const char* const by = run.by_all ? ", read and written by all ranks" : "";
+  if (!arguments.output.empty()) console.print("{:<10} {}{}", "wrote", arguments.output, by);
+  if (!arguments.pieces.empty()) {
+    const distributed::PiecesReport& pieces = run.outputs.pieces();
+    console.print("{:<10} {}{}", "wrote", run.outputs.pieces_file(), by);
+    console.print("{:<10} {} pieces with {} ghost vertices and {} ghost cells in all", "", run.report.parts,
+                  with_commas(pieces.ghost_vertices), with_commas(pieces.ghost_cells));
+  }
+  for (const std::string& file : run.outputs.maps()) console.print("{:<10} {}", "", file);
+  console.print_json(json_of(run));
+  flush_stdout();
+}
+
 void run(const Arguments& arguments, const Communicator& communicator) {
   const DistributedOptions options = options_of(arguments);
   check_count_of_pieces(communicator, arguments);
@@ -167,49 +231,20 @@ void run(const Arguments& arguments, const Communicator& communicator) {
   }
   outputs.commit(notes);
 
-  distributed::DistributedReport& report = order.report;
-  report.seconds.insert(report.seconds.begin(), {"read", read_seconds});
-  report.seconds.emplace_back("write", writing.seconds());
+  order.report.seconds.insert(order.report.seconds.begin(), {"read", read_seconds});
+  order.report.seconds.emplace_back("write", writing.seconds());
   const std::vector<std::int64_t> peaks = communicator.gathered(peak_memory());
   communicator.at_root([&] {
-    Console console(arguments);
-    const StoredMatrix* const stored = stored_matrix(whole.mesh);
-    if (!report.partition_reason.empty()) {
-      const bool by_rows = stored != nullptr && !has_places(whole.mesh);
-      notes.push_back(
-          report.partition_reason +
-          (by_rows ? ": parts are ranges of the rows as they are; --partition rsb divides graphs of any size"
-                   : ": parts are ranges of Hilbert's curve"));
-    }
-    note_convergence(report.fiedler, "the vertices", notes);
-    console.warn_of(notes);
-    print_report(console, options, report, peaks, stored);
-    const char* const by = by_all ? ", read and written by all ranks" : "";
-    if (!arguments.output.empty()) console.print("{:<10} {}{}", "wrote", arguments.output, by);
-    if (!arguments.pieces.empty()) {
-      console.print("{:<10} {}{}", "wrote", outputs.pieces_file(), by);
-      console.print("{:<10} {} pieces with {} ghost vertices and {} ghost cells in all", "", report.parts,
-                    with_commas(outputs.pieces().ghost_vertices), with_commas(outputs.pieces().ghost_cells));
-    }
-    for (const std::string& file : outputs.maps()) console.print("{:<10} {}", "", file);
-    nlohmann::ordered_json result{
-        {"input", arguments.input},
-        {"output", arguments.output.empty() ? nlohmann::ordered_json(nullptr)
-                                            : nlohmann::ordered_json(arguments.output)},
-        {"files_by", by_all ? "all ranks" : "rank 0"},
-        {"vertices", {{"count", vertex_count}, {"method", options.vertices}}},
-        {"cells", {{"count", cell_count}, {"method", stored == nullptr ? "lexmax" : "original"}}}};
-    result.update(to_json(options, report, peaks));
-    result["fiedler"] = command::to_json(report.fiedler);
-    result["maps"] = outputs.maps();
-    if (!arguments.pieces.empty()) {
-      result["pieces"] = {{"file", outputs.pieces_file()},
-                          {"ghost_layers", arguments.ghosts},
-                          {"ghost_vertices", outputs.pieces().ghost_vertices},
-                          {"ghost_cells", outputs.pieces().ghost_cells}};
-    }
-    console.print_json(std::move(result));
-    flush_stdout();
+    print({.arguments = arguments,
+           .options = options,
+           .report = order.report,
+           .outputs = outputs,
+           .whole = whole.mesh,
+           .by_all = by_all,
+           .vertices = vertex_count,
+           .cells = cell_count,
+           .peaks = peaks},
+          std::move(notes));
   });
 }
 
