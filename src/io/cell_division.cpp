@@ -43,7 +43,7 @@ bool divide_by(const Mesh& mesh, const std::vector<std::int64_t>& values, CellDi
   std::tuple<std::int64_t, Shape, int> last;
   division.keys.clear();
   division.key_of_cell.resize(mesh.cells.shapes.size());
-  Index key = -1;  // neighbours are mostly of one key
+  Index key = -1;  // neighbouring cells mostly have the same key
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const std::tuple current{values.empty() ? 0 : values[c], mesh.cells.shapes[c],
                              mesh.cells.vertex_count(c)};

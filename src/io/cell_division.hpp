@@ -19,7 +19,7 @@ struct CellPart {
   std::int64_t label = 0;
 };
 
-/// Greatest number of blocks: labels or sets that give more do not divide cells.
+/// Maximum number of blocks. Labels or sets that would give more blocks do not divide the cells.
 inline constexpr std::size_t kMostBlocks = 10000;
 
 /// A division of cells into blocks: by label and type, by set and type, or by type alone.
@@ -30,7 +30,7 @@ struct CellDivision {
   std::vector<CellPart> keys;      ///< the blocks, in the order of their first cells; `first` is not used
 };
 
-/// What may divide cells into blocks besides their types and 32-bit labels.
+/// Divisors of cells into blocks besides their types and 32-bit labels.
 struct DividedBy {
   bool sets = false;         ///< sets of cells, if there are no labels to use
   bool wide_labels = false;  ///< labels of 64 bits
@@ -39,8 +39,8 @@ struct DividedBy {
 /// Returns the division of a mesh. O(cells · log blocks).
 CellDivision divide_cells(const Mesh& mesh, DividedBy divided_by);
 
-/// Returns the position of each cell when the blocks follow one another, those of the highest dimension
-/// first; `blocks` receives the first cell of each block. O(cells).
+/// Returns the position of each cell if the blocks follow one another, blocks of the highest dimension first;
+/// `blocks` receives the first cell of each block. O(cells).
 Permutation places_by_division(const CellDivision& division, std::vector<Index>& blocks);
 
 }  // namespace meshorder

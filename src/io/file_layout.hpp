@@ -13,17 +13,17 @@
 
 namespace meshorder {
 
-/// A part of a file: rows of numbers, what they are, and the bytes that hold them.
+/// A part of a file: rows of numbers, their meaning, and the bytes that hold them.
 struct FilePart {
   enum class Role : std::uint8_t { points, types, offsets, connectivity, data, members };
 
   Role role = Role::data;
-  Association association = Association::vertices;  ///< whether a row is that of a vertex or of a cell
+  Association association = Association::vertices;  ///< whether a row belongs to a vertex or to a cell
   std::uint8_t type = 0;                            ///< number type: index of an alternative of Values
   Index components = 1;                             ///< numbers of a row
   std::int64_t rows = 0;                            ///< for the connectivity: number of vertices in it
-  std::size_t number = 0;                           ///< place of its name in the layout
-  std::int64_t at = 0;      ///< first byte in the file: of the words (sizes) before the values, if any
+  std::size_t number = 0;                           ///< index of its name in FileLayout::names
+  std::int64_t at = 0;      ///< byte offset of the size words before the values, if any, else of the values
   std::int64_t stored = 0;  ///< bytes in the file, including those words
   std::int64_t blocks = 0;  ///< number of compressed blocks; 0: not compressed
   std::int64_t block = 0;   ///< uncompressed bytes of a block; the last one may be smaller
@@ -39,7 +39,7 @@ struct FileSizes {
   std::int64_t vertices = 0;
   std::int64_t cells = 0;
   std::int64_t entries = 0;  ///< length of the connectivity
-  // only of a file without types and offsets of cells
+  // only for a file without types and offsets of cells
   Shape shape = Shape::vertex;  ///< of all cells
   std::int64_t nodes = 0;       ///< of each cell
 };
@@ -47,7 +47,7 @@ struct FileSizes {
 /// A file as a list of parts, for code that reads and writes their bytes directly.
 struct FileLayout : FileSizes {
   std::vector<FilePart> parts;
-  std::vector<std::string> names;  ///< of the parts, by their numbers
+  std::vector<std::string> names;  ///< by FilePart::number
 };
 
 /// Makes the two files of a mesh: a document, and the data that it names.
@@ -66,9 +66,9 @@ class SplitFile : public Polymorphic {
   [[nodiscard]] virtual std::string write_without_values(const std::string& document, const std::string& data,
                                                          std::uint64_t checksum) const = 0;
 
-  /// Returns the first byte of each part, by its number, in data that `write_without_values` made.
+  /// Returns the byte offset of each part, by FilePart::number, in data that `write_without_values` made.
   ///
-  /// @param name  of the data in messages
+  /// @param name  name of the data in messages
   /// @throws InputError if the data cannot be read, or lack space for a part
   [[nodiscard]] virtual std::vector<std::int64_t> places_in(const std::string& data,
                                                             const std::string& name) const = 0;

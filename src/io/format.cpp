@@ -40,7 +40,7 @@ const std::vector<Format> kFormats{
     matrix_market_format(), metis_graph_format(),
 };
 
-/// A format of which this build lacks the library.
+/// A format whose library this build lacks.
 struct LackingFormat {
   std::string_view name;
   std::vector<std::string_view> extensions;  ///< with dot, lower case
@@ -85,7 +85,7 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-/// Returns whether the size is that of a binary STL file of as many triangles as its header says.
+/// Returns whether the size is that of a binary STL file with the number of triangles in its header.
 bool has_size_of_stl(std::string_view bytes) {
   constexpr std::size_t kHeader = 80;
   if (bytes.size() < kHeader + 4) return false;
@@ -96,7 +96,7 @@ bool has_size_of_stl(std::string_view bytes) {
   return bytes.size() == kHeader + 4 + 50 * triangles;
 }
 
-/// Returns whether a line can begin an SU2 file; `word` is its first word, `rest` what follows it.
+/// Returns whether a line can begin an SU2 file; `word` is its first word, `rest` the text after it.
 bool is_su2_keyword(std::string_view word, std::string_view rest) {
   constexpr std::array<std::string_view, 5> kKeywords{"NDIME", "NZONE", "IZONE", "NELEM", "NPOIN"};
   const std::size_t equals = word.find('=');
@@ -106,20 +106,20 @@ bool is_su2_keyword(std::string_view word, std::string_view rest) {
   });
 }
 
-/// Returns whether the bytes are a file of netCDF-3, or one of HDF5 with a name that Exodus gives.
+/// Returns whether the bytes are a netCDF-3 file, or an HDF5 file with a name that every Exodus file has.
 bool is_exodus(std::string_view bytes) {
   if (bytes.starts_with("CDF\x01") || bytes.starts_with("CDF\x02") || bytes.starts_with("CDF\x05"))
     return true;
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("num_el_blk") != std::string_view::npos;
 }
 
-/// Returns whether the bytes are a file of HDF5 with a name that MED gives.
+/// Returns whether the bytes are an HDF5 file with a name that MED files have.
 bool is_med(std::string_view bytes) {
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && (bytes.find("INFOS_GENERALES") != std::string_view::npos ||
                                                     bytes.find("ENS_MAA") != std::string_view::npos);
 }
 
-/// Returns whether the bytes are a file of HDF5 with the group that VTKHDF gives.
+/// Returns whether the bytes are an HDF5 file with the group of VTKHDF.
 bool is_vtkhdf(std::string_view bytes) {
   return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes.find("VTKHDF") != std::string_view::npos;
 }
@@ -175,8 +175,8 @@ bool is_bulk_data(std::string_view bytes) {
   return false;
 }
 
-/// Returns the name of the format whose files begin like this, or an empty text. Comments and empty lines
-/// before the first word are passed over.
+/// Returns the name of the format whose files begin like this, or an empty text. Skips comments and empty
+/// lines before the first word.
 std::string_view format_that_begins(std::string_view bytes) {
   if (is_cgns(bytes)) return "CGNS";
   if (is_exodus(bytes)) return "Exodus";

@@ -26,8 +26,8 @@ struct Format {
   bool groups_cells_by_type;                 ///< whether files keep the cells of a type together
   Mesh (*read)(const FilePath&, Notes&);
   void (*write)(const Mesh&, const FilePath&, Notes&);
-  /// Returns whether a file of this mesh can hold cells of this type so that other programs find them; for a
-  /// mesh that came from the format, so that meshorder's reader does. `write` gets no other cells.
+  /// Returns whether a file of this mesh can hold cells of this type in a form that other programs read. If
+  /// the mesh came from the format, it is enough that meshorder reads them. `write` gets no other cells.
   bool (*holds)(const Mesh& mesh, Shape shape, int vertices);
   /// Returns why cells whose types the format `holds` do not fit one file together: a clause that begins with
   /// the format's name, empty if they fit. Null: they always fit. `write` gets no mesh with a conflict.
@@ -35,22 +35,23 @@ struct Format {
   /// Returns the position in a file of each cell of a mesh from another format; `blocks` receives the first
   /// cell of each part that stays together. Null: `groups_cells_by_type` decides.
   Permutation (*places)(const Mesh&, std::vector<Index>& blocks) = nullptr;
-  /// Normalises cells whose form follows from the numbers of their vertices, such as matrix entries, which
-  /// lie below the diagonal, and edges of a graph, which are sorted. Call it after vertices have moved.
-  /// Returns the permutation of cells that it applied. Null: the format has no such cells.
+  /// Normalises cells whose form depends on the order of the vertices: moves the entries of a symmetric
+  /// matrix below the diagonal, sorts the edges of a graph. Call it after moving vertices. Returns the
+  /// permutation of cells that it applied. Null: the format has no such cells.
   Permutation (*settle_cells)(Mesh&) = nullptr;
-  /// Returns a group for each cell, numbered by first appearance. Cells of a group have the same statements
-  /// before them in a file, and stay together unless other groups are asked for. Null: there are none.
+  /// Returns a group for each cell, numbered by first appearance. The cells of a group have the same
+  /// statements before them in a file. They stay together unless the caller gives other groups. Null: no
+  /// groups.
   std::vector<Index> (*together)(const Mesh&) = nullptr;
   bool single_file = true;  ///< whether a mesh is one file; several files do not fit one stream
   int first_number = 0;     ///< number of the first vertex and the first cell of a mesh without ids
-  /// Returns this number of vertices or cells for a mesh that came from the format. Null: it is the same in
-  /// all files.
+  /// As `first_number`, for the vertices or the cells of a mesh that came from the format. Null:
+  /// `first_number` is right for all files.
   std::int64_t (*first_number_of)(const Mesh&, Association) = nullptr;
   bool holds_ids = true;          ///< whether files can give vertices and cells any numbers
-  std::string_view library = {};  ///< name of the library that parses the files; empty: none, meshorder does
-  /// Loads that library, which must happen before a process gives up its right to open files. Null: it is
-  /// linked, or there is none.
+  std::string_view library = {};  ///< name of the library that parses the files; empty: meshorder parses them
+  /// Loads that library. A process must call it before it gives up its right to open files. Null: the library
+  /// is linked, or there is none.
   void (*load_library)() = nullptr;
 
   /// Returns the name in lower case, as the public functions take it.
@@ -72,31 +73,32 @@ const Format& output_format_of(const std::filesystem::path& path);
 /// the name is unknown, and Unavailable as `format_of` does.
 const Format& format_named(std::string_view name);
 
-/// Guesses the format of a file from its bytes; returns null if it recognises none. It never recognises
-/// TetGen's files, which look like any other columns of numbers.
+/// Guesses the format of a file from its bytes; returns null if it recognises none. Never recognises TetGen's
+/// files: they look like any other columns of numbers.
 const Format* format_of_bytes(std::string_view bytes);
 
 /// Arranges the cells of a mesh as a file of the format `to` has them, before reordering and writing. A mesh
-/// that came from `to` stays as it is. Otherwise the mesh loses its blocks; cells are sorted by `to.places`
-/// or, if the format groups cells, by type, each type a block.
-/// Returns the applied permutation of cells. A reordering that is computed afterwards refers to the cells as
-/// the file has them.
+/// that came from `to` stays as it is. Otherwise cells are sorted by `to.places`, which also gives the
+/// blocks; without it, the mesh loses its blocks and, if the format groups cells, cells are sorted by type,
+/// each type a block.
+/// Returns the applied permutation of cells. A reordering that is computed afterwards refers to the cells in
+/// the order of the file.
 Permutation arrange_cells(Mesh& mesh, const Format& to);
 
-/// Returns an order of cells in which those of each group of `to.together` are together, as far as they may
-/// change places. O(cells · log cells).
+/// Returns an order of cells that puts the cells of each group of `to.together` together, except cells that
+/// cannot change places. O(cells · log cells).
 Permutation with_groups_together(const Mesh& mesh, Permutation cells, const Format& to);
 
 /// Throws InvalidArgument for `Ids::keep` if the format cannot hold ids.
 void check_holds_ids(const Format& format, Ids ids);
 
-/// Applies to a mesh what `reorder` returned for a mesh to be written in the format `to`. Call
-/// `check_holds_ids` first. Throws as the public `apply_reordering`.
+/// Applies permutations that `reorder` returned for a mesh in the format `to`. Call `check_holds_ids` first.
+/// Throws as the public `apply_reordering`.
 void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,
                       Ids ids);
 
-/// Undoes `apply_reordering` with these permutations in a mesh to be written in the format `to`. Throws as it
-/// does. Ids ascend afterwards.
+/// Undoes `apply_reordering` with these permutations for a mesh in the format `to`. Throws as
+/// `apply_reordering`. Ids change as for `Ids::renumber`.
 void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells);
 
 /// As the public `read_mesh`; a file that another file names must be in that file's folder or below.
@@ -106,8 +108,8 @@ Mesh read_mesh_from(const FilePath& path, const ReadOptions& options = {});
 /// in place.
 Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options);
 
-/// As the public function, for a valid mesh; `graph` is the vertex graph before reordering and receives it if
-/// it is empty.
+/// As the public function, for a valid mesh. `graph`: the vertex graph before reordering; if empty, it is
+/// computed and stored there.
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph>& graph);
 
 // Chooses between the two formats of the extension .inp, Abaqus decks and AVS UCD; says which formats have
@@ -121,14 +123,14 @@ const Format& format_of_file(const FilePath& path);
 /// came from it, else Abaqus.
 const Format& output_format_of(const std::filesystem::path& path, std::string_view of_mesh);
 
-/// Returns whether files of a format give vertices and cells numbers, by which other files may name them.
+/// Returns whether files of a format number vertices and cells. Other files may name them by these numbers.
 bool has_numbers(const Format& format);
 
 /// A format of other programs that meshorder does not read.
 struct OtherFormat {
   std::string_view extension;  ///< with dot, lower case
   std::string_view what;       ///< "holds VTK's PolyData"
-  std::string_view advice;     ///< how to make a mesh of it that meshorder reads
+  std::string_view advice;     ///< how to get a mesh that meshorder reads
 };
 
 /// Returns the format of files with this extension in lower case, null if it is not known.

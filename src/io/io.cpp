@@ -27,7 +27,7 @@
 namespace meshorder {
 namespace {
 
-/// The files of one mesh in memory: one to read and its companions, or those that were written.
+/// The files of one mesh in memory: the file to read and its companions, or the files that were written.
 class MemoryStore : public FileStore {
  public:
   MemoryStore() = default;
@@ -134,7 +134,8 @@ Mesh read_from_memory(std::string bytes, const ReadOptions& options) {
   return read_checked({name, store}, *format, options, is_as_stored ? 0 : stored);
 }
 
-/// Returns the new positions of all cells: `of_kept` gives those of the kept cells; the others come after.
+/// Returns the new positions of all cells. `of_kept`: positions of the kept cells; the other cells come
+/// after.
 Permutation places_of(const std::vector<Index>& kept, const Permutation& of_kept, Index count) {
   std::vector<Index> old_to_new(static_cast<std::size_t>(count), -1);
   for (Index k = 0; k < index_size(kept); ++k) old_to_new[kept[k]] = of_kept.old_to_new()[k];

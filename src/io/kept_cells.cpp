@@ -33,7 +33,7 @@ struct TypeCount {
 /// The types of some cells, in the order in which they first appear.
 struct TypeCounts {
   std::vector<TypeCount> types;
-  std::size_t last = 0;  ///< of the types: neighbours are mostly of one
+  std::size_t last = 0;  ///< index in `types`: neighbouring cells mostly have the same type
 
   void add(Shape shape, int vertices, Index count) {
     if (types.empty() || !types[last].is(shape, vertices)) {

@@ -16,8 +16,8 @@ namespace meshorder {
 /// Returns the positions of all cells: 0, 1, …
 std::vector<Index> all_cells(const Mesh& mesh);
 
-/// Returns the positions of the cells to be written in the format, ascending. If it cannot hold one of the
-/// highest dimension, these are all cells. Notes the cells left out, a line for each type. O(cells).
+/// Returns the positions of the cells to be written in the format, ascending: all cells if the format lacks a
+/// type of the highest dimension. Notes the cells left out, a line for each type. O(cells).
 std::vector<Index> cells_for(const Mesh& mesh, const Format& format, Notes& notes);
 
 /// Keeps the cells at these ascending positions with their arrays, sets, ids and blocks. Removes and notes
@@ -32,8 +32,8 @@ std::string fault_of_cells(const Mesh& mesh, const Format& format);
 std::string advice_on_formats(const Mesh& mesh);
 
 /// Throws InputError if a file of the format cannot hold the cells at the positions `kept`; the error has the
-/// text of `fault_of_cells` and that of `advice_on_formats`. O(cells); for a format with a `conflict` it
-/// copies the mesh, unless `kept` has all cells.
+/// texts of `fault_of_cells` and `advice_on_formats`. O(cells); for a format with a `conflict` it copies the
+/// mesh, unless `kept` has all cells.
 void require_held_cells(const Mesh& mesh, const std::vector<Index>& kept, const FilePath& path,
                         const Format& format);
 

@@ -5,9 +5,8 @@
 
 namespace meshorder {
 
-/// A shared library that is loaded when something in it is first needed: those of file formats load 40
-/// others, which would take half of the time that a small task takes. For objects with static storage
-/// duration.
+/// A shared library that is loaded on first use. The libraries of file formats load 40 others, which would
+/// take half of the time of a small task. For objects with static storage duration.
 class LoadedLibrary {
  public:
   /// @param name  as users know it: "HDF5"
@@ -18,7 +17,7 @@ class LoadedLibrary {
   void load() const { (void)handle(); }
 
   /// Returns the address of a function or variable. Throws Unavailable if the library is not found or lacks
-  /// it.
+  /// the symbol.
   [[nodiscard]] void* address_of(const char* symbol) const;
 
  private:
@@ -29,15 +28,15 @@ class LoadedLibrary {
   mutable std::atomic<void*> handle_{nullptr};
 };
 
-/// Something in a library, found when it is first needed.
+/// A symbol of a library, found on first use.
 class LoadedSymbol {
  public:
-  /// @param symbol  its name in the library
+  /// @param symbol  name of the symbol in the library
   constexpr LoadedSymbol(const LoadedLibrary& library, const char* symbol) noexcept
       : library_(library), symbol_(symbol) {}
 
  protected:
-  /// Returns its address. Throws Unavailable as `LoadedLibrary::address_of` does.
+  /// Returns the address of the symbol. Throws Unavailable as `LoadedLibrary::address_of` does.
   [[nodiscard]] void* address() const;
 
  private:
@@ -46,7 +45,7 @@ class LoadedSymbol {
   mutable std::atomic<void*> address_{nullptr};
 };
 
-/// A function of a library, to be called and passed on like it.
+/// A function of a library. Converts to a function pointer.
 template <class Function>
 class LoadedFunction : public LoadedSymbol {
  public:
@@ -55,7 +54,7 @@ class LoadedFunction : public LoadedSymbol {
   operator Function*() const { return reinterpret_cast<Function*>(address()); }
 };
 
-/// A variable of a library, to be read like it.
+/// A variable of a library. Converts to its value.
 template <class Value>
 class LoadedVariable : public LoadedSymbol {
  public:
@@ -67,7 +66,7 @@ class LoadedVariable : public LoadedSymbol {
 }  // namespace meshorder
 
 // Declares a function or a variable of the C library `library` in the enclosing namespace, where it hides the
-// library's own. Headers that turn the name into another by a macro are obeyed.
+// library's own declaration. If a header defines `name` as a macro for another name, that name is declared.
 // NOLINTBEGIN(bugprone-macro-parentheses): names are declared
 #define MESHORDER_LOADED_FUNCTION(library, name) MESHORDER_LOADED_FUNCTION_AS(library, name)
 #define MESHORDER_LOADED_FUNCTION_AS(library, name) \

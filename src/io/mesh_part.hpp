@@ -18,7 +18,7 @@ struct MeshRange {
 
   [[nodiscard]] Index size() const noexcept { return end - first; }
   [[nodiscard]] bool contains(Index number) const noexcept { return number >= first && number < end; }
-  /// Returns the common part of two ranges; an empty range within this one if there is none.
+  /// Returns the intersection of two ranges; if they do not overlap, an empty range within this one.
   [[nodiscard]] MeshRange common(MeshRange other) const {
     const Index begin = std::clamp(other.first, first, end);
     return {begin, std::clamp(other.end, begin, end)};
@@ -31,7 +31,7 @@ struct MeshRanges {
   MeshRange cells;
 };
 
-/// The part of a mesh in such ranges, for readers that give each process a part of a large mesh.
+/// The part of a mesh in two such ranges, for readers that give each process a part of a large mesh.
 struct MeshPart {
   /// Where the members of a set of `mesh` are in the file's list.
   struct SetRows {
@@ -40,7 +40,7 @@ struct MeshPart {
   };
   /// A list of the file that may name a member twice.
   struct List {
-    std::string set;  ///< name in messages of the set that is made of the list
+    std::string set;  ///< name, in messages, of the set made from the list
     Index size;       ///< length of the list, for the whole mesh
     Index kept;       ///< members in this part, each counted once
   };
@@ -59,11 +59,11 @@ struct MeshPart {
   std::vector<ArrayRows> arrays;  ///< of each array of the mesh
   std::vector<SetRows> sets;      ///< of each set of the mesh
   std::vector<List> lists;
-  std::string vertex_ids;  ///< what the file calls the vertex ids; empty if it has none
+  std::string vertex_ids;  ///< name of the vertex ids in the file; empty if it has none
   std::string cell_ids;
 };
 
-/// Returns the note that the ids called `name` in the file are left out, as they have `number` twice.
+/// Returns the note that the ids called `name` in the file are left out because they have `number` twice.
 inline std::string note_of_number_twice(const std::string& name, std::int64_t number) {
   return name + " is left out: it gives the number " + std::to_string(number) + " twice";
 }

@@ -19,7 +19,7 @@ class NameNumbers {
   /// Takes and returns the first of `wanted`, `numbered(2)`, `numbered(3)` … that is free.
   ///
   /// @param take  returns whether a name was free, and takes it
-  /// @note O(log names), besides `take`, also where all want the same name.
+  /// @note O(log names) and the cost of `take`, even if all calls want the same name.
   template <class Numbered, class Take>
   std::string free_name(const std::string& wanted, Numbered numbered, Take take) {
     if (take(wanted)) return wanted;
@@ -34,11 +34,11 @@ class NameNumbers {
   std::map<std::string, int> last_;  // last number given, by wanted name
 };
 
-/// Gives arrays or sets names that are unique among those of vertices or those of cells.
+/// Gives arrays or sets names that are unique on vertices or on cells.
 class UniqueNames {
  public:
-  /// Returns the wanted name, or "NAME (2)", "NAME (3)" and so on where it is taken. O(log names), also where
-  /// all want the same name.
+  /// Returns the wanted name or, if it is taken, "NAME (2)", "NAME (3)" and so on. O(log names), even if all
+  /// calls want the same name.
   std::string take(Association association, const std::string& wanted);
 
   [[nodiscard]] bool has(Association association, const std::string& name) const {
@@ -58,7 +58,7 @@ std::string add_named(Mesh& mesh, EntitySet set, UniqueNames& names);
 
 // Names of arrays and sets as a format can hold them.
 
-/// Returns the name with "_" in place of control characters and of those in `forbidden`. O(size).
+/// Returns the name with "_" in place of control characters and of the characters in `forbidden`. O(size).
 std::string plain_name(std::string_view name, std::string_view forbidden = {});
 
 /// Names that are unique in a file.
@@ -68,7 +68,7 @@ class DistinctNames {
   explicit DistinctNames(std::size_t longest = std::string::npos) : longest_(longest) {}
 
   /// Takes and returns a free name: the wanted one, cut to the longest size, with a number at its end if it
-  /// is taken. O(log names), also if all want the same name.
+  /// is taken. O(log names), even if all calls want the same name.
   std::string take(std::string_view wanted);
 
  private:

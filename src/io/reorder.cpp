@@ -32,7 +32,7 @@ std::int64_t first_number(const Mesh& mesh, Association of) {
   return own->first_number_of != nullptr ? own->first_number_of(mesh, of) : own->first_number;
 }
 
-/// Makes ids of the numbers that a file gives by position, so that they move with vertices and cells.
+/// Writes the numbers that a file gives by position into ids: they then move with vertices and cells.
 void write_down_ids(Mesh& mesh, bool of_vertices, bool of_cells) {
   if (of_vertices && mesh.vertex_ids.empty()) {
     mesh.vertex_ids.resize(mesh.points.size());

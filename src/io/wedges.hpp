@@ -8,8 +8,8 @@
 
 namespace meshorder {
 
-/// Returns the volume of the parallelepiped of three edges at the first corner of a cell. Its sign is that of
-/// the cell's volume if the cell is convex. Returns 0 for other cells than linear tetrahedra, pyramids,
+/// Returns the volume of the parallelepiped of three edges at the first corner of a cell. It has the sign of
+/// the cell's volume if the cell is convex. Returns 0 for cells other than linear tetrahedra, pyramids,
 /// wedges and hexahedra. O(1).
 double volume_at_first_corner(const std::vector<Point>& points, Shape shape, std::span<const Index> cell);
 
