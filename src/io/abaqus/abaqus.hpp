@@ -45,7 +45,7 @@ struct Deck {
   /// Cards that may name nodes or elements by number but are not understood: "*USER ELEMENT (line 12)". If
   /// there are any, all numbers must stay.
   std::vector<std::string> unknown;
-  std::vector<std::string> contents;  ///< what other formats lose
+  std::vector<std::string> contents;  ///< contents that other formats lose
 };
 
 /// A deck, and the positions of its nodes and elements in the mesh.

@@ -66,7 +66,7 @@ std::vector<Piece> pieces_of(std::string_view lines) {
   return pieces;
 }
 
-/// Returns `text` in capitals and without blanks, which CalculiX passes over in keywords.
+/// Returns `text` in capitals and without blanks. CalculiX ignores blanks in keywords.
 std::string compact(std::string_view text) {
   std::string result = capitals(text);
   std::erase_if(result, [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; });
@@ -85,8 +85,8 @@ std::string_view trimmed_of_ends(std::string_view text) {
 }
 
 /// Returns whether the line after a keyword line that ends with a comma has further parameters, as in Abaqus.
-/// It must begin with a parameter that has a value, or with one of those without value that change the data
-/// lines. All else is data (numbers, names of sets), as CalculiX does not continue keyword lines.
+/// It must begin with a parameter that has a value, or with a parameter without value that changes the data
+/// lines. All other lines are data (numbers, names of sets): CalculiX does not continue keyword lines.
 bool continues_keyword(std::string_view line) {
   constexpr std::array<std::string_view, 6> kWithoutValue{"GENERATE", "INTERNAL", "REMOVE",
                                                           "RIKS",     "TABULAR",  "UNSORTED"};
@@ -276,7 +276,7 @@ std::optional<std::string_view> fields_of(const Card& card) {
   return {};
 }
 
-/// Returns what the k-th field of a line is: n, e or -.
+/// Returns the meaning of the k-th field of a line: n, e or -.
 char field_at(std::string_view fields, std::size_t k) {
   const bool repeats = fields.ends_with('+');
   const std::size_t given = fields.size() - (repeats ? 1 : 0);

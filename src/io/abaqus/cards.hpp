@@ -32,9 +32,9 @@ struct Card {
   [[nodiscard]] std::string_view value(std::string_view name) const;
 };
 
-/// Returns the keyword line at the front and the lines that continue it. A line continues the one before if
-/// that ends with a comma and it holds parameters; comments and blank lines may lie between. A line of
-/// numbers or set names is data. O(bytes returned and skipped).
+/// Returns the keyword line at the front and the lines that continue it. A line of parameters continues the
+/// line before if that line ends with a comma; comments and blank lines may lie between. A line of numbers or
+/// set names is data. O(bytes returned and skipped).
 std::string_view keyword_lines(std::string_view lines);
 
 /// Returns the card of a keyword line and the lines that continue it.

@@ -15,7 +15,7 @@
 namespace meshorder::abaqus {
 namespace {
 
-/// What the digits in a type's name mean: the number of nodes, or for beams the interpolation.
+/// Meaning of the digits in a type's name: the number of nodes or, for beams, the interpolation.
 enum class Family : std::uint8_t { solid, surface, line, beam };
 
 /// The part of a type's name before the digits.

@@ -57,8 +57,8 @@ class DeckOutput {
   std::int64_t rounded_ = 0;
 };
 
-/// Returns the text of a number in at most 20 characters, as Abaqus and CalculiX read no more. It reads back
-/// to the same bits unless it had to be rounded.
+/// Returns the text of a number in at most 20 characters: Abaqus and CalculiX read no more. The text reads
+/// back to the same bits unless the number had to be rounded.
 std::string short_real(double value);
 
 /// Writes the sets under names that are valid in decks. Notes the names that change, and the sets without

@@ -403,7 +403,7 @@ class DeckReader {
     return count > 0;
   }
 
-  /// Reads an element and takes its lines: as many as it needs to have all nodes.
+  /// Reads an element from as many lines as its nodes need, and takes these lines.
   void read_element(ElementKind kind, const std::string& type, std::string_view line, std::string& comments) {
     const Index number = take_number(line, "the number of an element");
     add_number(deck_->elements, number, lines_.at().line(), "element");
@@ -412,7 +412,7 @@ class DeckReader {
     const Offset first = mesh_.cells.offsets.back();
     const std::int64_t first_line = lines_.at().line();
     std::size_t on_first_line = 0;  // nodes
-    bool may_have_more = true;      // else a node is missing, and this is the next element
+    bool may_have_more = true;      // false: the last line lacks a comma; this may be the next element
     for (std::size_t given = 0;;) {
       const bool goes_on = line.ends_with(',');
       while (!line.empty()) {
@@ -482,7 +482,7 @@ class DeckReader {
     }
   }
 
-  /// Remembers a type that `type_of` does not return for this kind, as other formats lose it.
+  /// Records a type that `type_of` does not return for this kind: other formats lose it.
   void note_type(const std::string& type, ElementKind kind) {
     const bool usual = type == type_of(kind, true) || type == type_of(kind, false);
     if (usual || std::find(types_.begin(), types_.end(), type) != types_.end()) return;
@@ -637,10 +637,10 @@ class DeckReader {
   std::vector<std::int64_t> lines_of_sections_;
   std::vector<std::int32_t> files_of_sections_;  // positions in files_
   std::vector<UnknownNode> unknown_nodes_;
-  std::vector<NodeLine> node_lines_;        // buffer for regular lines
-  std::vector<ElementLine> element_lines_;  // likewise
-  std::vector<Index> element_nodes_;        // their vertices, in the order of cells
-  std::vector<std::string> files_;          // those that unknown_nodes_ and files_of_sections_ refer to
+  std::vector<NodeLine> node_lines_;                 // buffer for regular lines
+  std::vector<ElementLine> element_lines_;           // likewise
+  std::vector<Index> element_nodes_;                 // their vertices, in the order of cells
+  std::vector<std::string> files_;                   // files of unknown_nodes_ and files_of_sections_
   std::unordered_set<std::int64_t> other_elements_;  // numbers of elements that are not cells
   std::vector<std::string> other_types_;             // the first of their types, for a message
   std::vector<std::string> types_;

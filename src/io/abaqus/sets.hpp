@@ -23,7 +23,7 @@ std::string_view name_of_sets(Association association);
 /// Returns "… one number that the deck does not have, the first is 7": `which` ends in "names".
 std::string note_of_missing(std::string_view which, const std::vector<std::int64_t>& numbers);
 
-/// Reads the node and element sets of a deck: collects what cards add to them, then finds their members.
+/// Reads the node and element sets of a deck: collects the additions of all cards, then finds the members.
 class SetReader {
  public:
   /// The position of a card in the deck.
@@ -32,7 +32,8 @@ class SetReader {
     std::int64_t line = 0;
   };
 
-  /// Sets whether the next cards belong to the assembly. Its sets may have the same names as the part's.
+  /// Sets whether the next cards belong to the assembly. A set of the assembly may have the name of a part's
+  /// set.
   void enter_assembly(bool inside) { in_assembly_ = inside; }
 
   /// Adds `count` nodes or elements of the file, from position `first` on, to the set of that name.
@@ -52,12 +53,12 @@ class SetReader {
                                  Notes& notes);
 
  private:
-  /// What one card adds to a set.
+  /// The addition of one card to a set.
   struct Addition {
     std::size_t set = 0;
     Association association = Association::vertices;
     bool in_assembly = false;
-    bool of_instance = false;  ///< its names and numbers are those of the part
+    bool of_instance = false;  ///< the addition's names and numbers belong to the part
     Place place = {};
     bool generate = false;
     Index first = 0;  ///< position of the block that `add_block` adds

@@ -67,7 +67,7 @@ class PlainWriter {
   void add_sets_of_labels(std::vector<EntitySet>& sets) {
     const Labels labels = labels_of(mesh_, Association::cells);
     if (!labels.any()) return;
-    const bool are_markers = mesh_.format == "su2";  // 0 is none of SU2's
+    const bool are_markers = mesh_.format == "su2";  // then label 0 is not a marker
     std::map<std::int64_t, EntitySet> by_label;
     for (Index c = 0; c < mesh_.cell_count(); ++c) {
       if (labels.given[c] && (labels.values[c] != 0 || !are_markers))

@@ -224,7 +224,7 @@ class AttachmentReader {
     const Association association = location_of(node, Association::vertices);
     const int list = read_own_list(node, association, path);
     if (node.label == "ZoneSubRegion_t") {
-      if (list < 0) {  // the list is that of a boundary condition or a connectivity
+      if (list < 0) {  // a boundary condition or a connectivity has the list
         has_named_part_ = has_named_part_ || has_data_of_list(node);
         return;
       }
@@ -517,7 +517,8 @@ class AttachmentReader {
     reading_.mesh.sets.push_back(std::move(set));
   }
 
-  /// Makes a set of each boundary section whose cells are not all in sets: some programs name boundaries so.
+  /// Makes a set of each boundary section whose cells are not all in sets: some programs name boundaries by
+  /// sections.
   void add_section_sets() {
     std::vector<bool> is_named(reading_.mesh.cells.shapes.size());
     std::set<std::string> names;
@@ -551,7 +552,7 @@ class AttachmentReader {
                                   .values = label_values(std::move(labels_))});
   }
 
-  // ---- what other formats lose
+  // ---- contents that other formats lose
 
   void count_lost() {
     std::map<std::string, int> labels;
@@ -588,7 +589,7 @@ class AttachmentReader {
   std::vector<FoundSet> sets_;
   NameNumbers numbers_;
   std::vector<std::int64_t> labels_;
-  std::set<int> label_sections_;  // which have no name but that of their label
+  std::set<int> label_sections_;  // sections named only by their labels
 };
 
 }  // namespace

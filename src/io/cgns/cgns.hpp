@@ -13,9 +13,8 @@
 // cell centres belong to the cells of the base's dimension. All other nodes are kept as they are.
 //
 // Polyhedra become tetrahedra, pyramids, wedges or hexahedra if their faces form one, else cells of the shape
-// polyhedron. A polygon becomes a cell if it is a face of fewer than two polyhedra,
-// or if a condition or a solution lists it; the others lie between two cells and are ordered by
-// these.
+// polyhedron. A polygon becomes a cell if it is a face of fewer than two polyhedra, or if a condition or a
+// solution lists it. The other polygons lie between two cells and follow the order of these cells.
 
 #include "io/cgns/tree.hpp"
 #include "io/format.hpp"
@@ -52,7 +51,7 @@ const ElementType* element_type_of(Shape shape, int nodes);
 /// Returns the place in the file of each vertex of a cell; empty if the file has the order of a Mesh.
 std::span<const int> file_order(Shape shape, int nodes);
 
-// ---- what a file has besides the mesh
+// ---- contents of a file besides the mesh
 
 /// A zone.
 struct Zone {
@@ -125,7 +124,7 @@ struct Parents {
   std::string number_type = "I4";
 };
 
-/// What the values of a node are, and where they are in the mesh.
+/// The meaning of a node's values, and their place in the mesh.
 struct Field {
   enum class Role : std::uint8_t {
     zone_size,
@@ -142,7 +141,7 @@ struct Field {
   int axis = 0;            ///< of a coordinate
   std::string type = {};   ///< type of values and coordinates in the file
   std::string array = {};  ///< name of the mesh's array
-  bool has_left = false;   ///< of values: the mesh has no such array any more
+  bool has_left = false;   ///< of values: the array is gone, or no longer fits its fields
   Index component = 0;     ///< of the array
   Association association = Association::vertices;
   int section = -1;  ///< section whose cells have the values, in their order; −1: see `list`
@@ -185,11 +184,11 @@ struct Metadata final : FormatMetadata {
 /// Name of the node with the label of a section's cells, and name of the array with the zone of each cell.
 inline constexpr std::string_view kSectionLabel = "label";
 inline constexpr std::string_view kZone = "zone";
-/// Returns the name of the section that `layout_of` makes for cells of a type and label. Readers do not take
-/// it for a set.
+/// Returns the name of the section that `layout_of` makes for cells of a type and label. Readers make no set
+/// of a section with this name.
 std::string name_of_label(const ElementType& type, std::int64_t label);
-/// Name of a section's node with values of its cells. It is for cells of lower dimensions, as solutions hold
-/// only values of cells of the base's dimension.
+/// Name of a section's node with values of its cells. For cells of lower dimensions: solutions only hold
+/// values of cells of the base's dimension.
 inline constexpr std::string_view kSectionValues = "CellValues";
 
 /// Returns the metadata of a mesh that was read from CGNS, null for other meshes.
@@ -199,8 +198,8 @@ const Metadata* own_metadata(const Mesh& mesh);
 /// Sets and arrays are left to `add_missing`.
 std::shared_ptr<Metadata> layout_of(const Mesh& mesh);
 
-/// Adds nodes to `metadata` for the arrays and sets that it has no fields or lists for. Notes those that CGNS
-/// has no place for.
+/// Adds nodes to `metadata` for the arrays and sets that have no fields or lists there. Notes the arrays and
+/// sets that CGNS has no place for.
 void add_missing(const Mesh& mesh, Metadata& metadata, Notes& notes);
 
 Mesh read(const FilePath& path, Notes& notes);

@@ -35,8 +35,8 @@ MESHORDER_CGNS_FUNCTION(cgio_release_id);
 
 namespace meshorder::cgns {
 
-/// Loads the CGNS library and HDF5, where this is put off until a file needs them. Throws Unavailable if one
-/// is not found.
+/// Loads the CGNS library and HDF5 in builds that load them on demand. Throws Unavailable if one is not
+/// found.
 inline void load_library() {
 #ifdef MESHORDER_CGNS_FILE
   kCgns.load();

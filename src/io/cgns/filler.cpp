@@ -126,7 +126,7 @@ std::int64_t Filler::number_of_cell(Index c) const {
 
 namespace {
 
-/// Writes numbers one by one into the values of a node; those not written are 0.
+/// Writes numbers one by one into the values of a node; numbers that are not written are 0.
 template <class Number>
 class NodeValues {
  public:
@@ -295,8 +295,8 @@ bool can_hold(std::string_view type, const Values& values) {
   return type == "R8";
 }
 
-/// Returns the type in which values are written: their type in the file if it can hold all of them, else a
-/// wider one.
+/// Returns the type in which values are written: the type in the file if it can hold all values, else a wider
+/// one.
 std::string written_type(const std::string& of_file, const Values& values) {
   if (can_hold(of_file, values)) return of_file;
   return !of_file.starts_with('R') && can_hold("I8", values) ? "I8" : "R8";

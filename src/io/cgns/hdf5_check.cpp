@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-// Checks a file of HDF5 before libcgns reads it, as libcgns trusts its lengths of names and sizes of data.
+// Checks an HDF5 file before libcgns reads it: libcgns trusts the file's lengths of names and sizes of data.
 
 namespace meshorder::cgns {
 namespace {

@@ -16,7 +16,7 @@
 #include <set>
 #include <utility>
 
-// Makes the nodes of a file: all for a mesh of another format, else those for new arrays and sets.
+// Makes the nodes of a file: all nodes for a mesh of another format, else nodes for new arrays and sets.
 
 namespace meshorder::cgns {
 namespace {
@@ -349,7 +349,7 @@ class Addition {
     }
   }
 
-  /// Adds values of cells of lower dimensions to the sections of which all cells have a value.
+  /// Adds values of cells of lower dimensions to sections in which every cell has a value.
   void add_to_sections(const DataArray& array, const std::vector<Index>& members) {
     std::map<int, Index> counts;
     for (const Index member : members) ++counts[metadata_.section_of_cell[member]];
@@ -461,8 +461,9 @@ class Addition {
     }
   }
 
-  /// Returns the name of the family for a part of that name, and adds the family unless there is one.
-  /// Programs identify the parts of a boundary by families. A zone of that name has it for itself.
+  /// Returns the name of the family for a boundary part of that name, and adds the family unless it exists.
+  /// Programs identify the parts of a boundary by families. The name gets a suffix if a zone has the same
+  /// name.
   std::string family_for(const std::string& name) {
     const bool is_of_zone =
         std::any_of(zones_.begin(), zones_.end(), [&](const Node* zone) { return zone->name == name; });

@@ -16,8 +16,8 @@ class CornersOfPolyhedra {
   CornersOfPolyhedra(const Metadata& metadata, Index vertex_count)
       : metadata_(metadata), polyhedron_with_(static_cast<std::size_t>(vertex_count), -1) {}
 
-  /// Returns whether the vertices of a cell are the corners of a polyhedron's faces, each once. To be called
-  /// only once for each polyhedron.
+  /// Returns whether the vertices of a cell are the corners of a polyhedron's faces, each once. Call it only
+  /// once for each polyhedron.
   bool are_those_of(std::span<const Index> cell, Index polyhedron) {
     std::size_t corners = 0;
     for (const Index face : metadata_.polyhedra->faces_of(polyhedron)) {

@@ -16,10 +16,10 @@ bool polyhedra_fit(const Mesh& mesh, const Metadata& metadata);
 
 /// The polygons and polyhedra of a file in their new order.
 ///
-/// Polygons that are cells have the order of their cells. The others lie between two cells: they keep their
-/// order in the section if the polyhedra did, else they are sorted by the lower, then by the higher cell.
-/// Places of cells in a section still hold cells, the other places the others. Polygons are left out if they
-/// are not cells and have no cell on either side.
+/// Polygons that are cells have the order of their cells. The others lie between two cells: if the polyhedra
+/// kept their order, these polygons keep theirs, else they are sorted by the lower, then by the higher cell.
+/// Each place in a section keeps its kind: a polygon that is a cell, or one between two cells. Polygons are
+/// left out if they are not cells and have no cell on either side.
 class PolyhedraOrder {
  public:
   /// `metadata` must outlive this object and fit its mesh, see `polyhedra_fit`. O(polygons · log polygons).

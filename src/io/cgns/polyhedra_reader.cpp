@@ -315,7 +315,7 @@ void PolyhedraReader::append_polyhedra(const FoundSection& found) {
   turn_by_volumes(first, found.path, contradictions, vote.sign_of_volumes());
 }
 
-/// Turns cells from `first` on inside out: those of volume < 0 if signs contradict, else all if `sign` < 0.
+/// Turns cells from `first` on inside out: cells of volume < 0 if signs contradict, else all if `sign` < 0.
 void PolyhedraReader::turn_by_volumes(Index first, const std::string& path, Index contradictions, int sign) {
   Mesh& mesh = reading_.mesh;
   if (contradictions > 0) {

@@ -370,7 +370,8 @@ class MeshReader {
   std::vector<Index> cell_;
 };
 
-/// Makes blocks of boundary elements that the file lists as ranges, so that these stay ranges.
+/// Makes a block of each range of boundary elements that the file lists: the range stays a range in a new
+/// order.
 void keep_ranges(Reading& reading) {
   Mesh& mesh = reading.mesh;
   std::vector<Index> starts = mesh.cell_blocks;
@@ -395,7 +396,7 @@ float version_of(const Node& node) {
   return version;
 }
 
-/// Fails for element types whose numbers have another meaning in version 3.0: those between PYRA_5 (12) and
+/// Fails for element types whose numbers had another meaning in version 3.0: those between PYRA_5 (12) and
 /// NGON_n (22).
 void refuse_types_of_version_30(const Reading& reading, const Node& node, const std::string& path) {
   std::int32_t type = 0;

@@ -111,7 +111,7 @@ class PolyhedraReader {
   std::vector<FoundSection>& sections_;
   Index first_polygon_ = 0;
   Index first_polyhedron_ = 0;
-  std::vector<std::uint8_t> uses_ = {};  ///< polyhedra that have each polygon as a face; 0 if it is listed
+  std::vector<std::uint8_t> uses_ = {};  ///< number of polyhedra with the polygon as a face; 0 if listed
 };
 
 /// Reads all nodes of the zones that refer to vertices or cells: solutions, boundary conditions and others.

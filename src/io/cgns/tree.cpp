@@ -179,7 +179,7 @@ class TreeReader {
 
   const CgioFile& file_;
   std::uint64_t bytes_;
-  bool compressed_;  ///< values may be compressed, so that the file's size does not bound them
+  bool compressed_;  ///< values may be compressed: the file's size does not bound them
   std::uint64_t nodes_left_;
 };
 

@@ -60,8 +60,8 @@ struct Tree {
 /// of an unknown type.
 Tree read_tree(const FilePath& path);
 
-/// Writes a file, which appears complete or not at all. `fill(node)` sets the type, dimensions and bytes of a
-/// node that has a `field`; it may change its name and label. It gets a copy without children.
+/// Writes a file, which appears complete or not at all. `fill` gets a copy, without children, of each node
+/// that has a `field`. It sets the type, dimensions and bytes of the copy, and may change its name and label.
 void write_tree(const Tree& tree, const FilePath& path, const std::function<void(Node&)>& fill);
 
 /// Throws InputError unless libcgns can read a file of HDF5 safely: each node is a group whose attributes

@@ -30,7 +30,7 @@ void move_positions(std::vector<Index>& positions, std::span<const Index> places
   }
 }
 
-/// Moves the values, one for each vertex or cell, to their new places; drops those with place −1.
+/// Moves the values, one for each vertex or cell, to their new places; drops values with place −1.
 std::vector<Index> moved_values(const std::vector<Index>& values, std::span<const Index> places) {
   std::vector<Index> result(values.size());
   Index kept = 0;
@@ -93,7 +93,7 @@ void take_sets(const Mesh& mesh, Metadata& metadata) {
       continue;
     }
     if (unique_members(list.members) == set->members) continue;
-    // only members of the list's zone, as a condition belongs to one zone
+    // only members of the list's zone: a condition belongs to one zone
     list.members.clear();
     for (const Index member : set->members) {
       const Index zone = list.association == Association::cells
@@ -105,7 +105,7 @@ void take_sets(const Mesh& mesh, Metadata& metadata) {
   }
 }
 
-/// The fields with the values of an array, and what they hold.
+/// The fields with the values of an array, and the vertices or cells that they cover.
 class ArrayFields {
  public:
   explicit ArrayFields(const Metadata& metadata) : metadata_(metadata) {}
@@ -145,7 +145,7 @@ class ArrayFields {
   std::unordered_set<Index> listed_;
 };
 
-/// Takes the arrays from fields that cannot hold all of them any more.
+/// Releases the fields of each array that no longer fits into its fields.
 void release_arrays(const Mesh& mesh, Metadata& metadata) {
   std::map<std::pair<Association, std::string>, ArrayFields> by_array;
   for (const Field& field : metadata.fields) {
@@ -189,8 +189,8 @@ class Pruner {
   }
 
  private:
-  /// Removes the data of a zone's regions that name a condition or connectivity with other members now, and
-  /// regions that name one that is gone.
+  /// Removes regions that name a condition or connectivity that is gone. Removes the data of regions that
+  /// name a condition or connectivity whose members have changed.
   void prune_regions(Node& zone) const {
     std::set<std::string> gone;
     std::set<std::string> changed;

@@ -14,7 +14,7 @@
 
 namespace meshorder {
 
-/// Reads the lines of a deck; the lines of an included file come in place of the line that includes it.
+/// Reads the lines of a deck. The lines of an included file replace the line that includes it.
 class DeckLines {
  public:
   explicit DeckLines(const FilePath& path);
