@@ -39,10 +39,10 @@ inline constexpr std::string_view kLabelProperty = kLabel;
 // ---- elements
 
 /// Returns the shape of elements of a type. The type may be in any case, with or without the number of nodes.
-/// Null for unknown types, for those without a fixed number of nodes, and for too few nodes.
+/// Null for unknown types, for types without a fixed number of nodes, and for too few nodes.
 const Shape* shape_of(std::string_view type, int nodes, int dimension);
 
-/// Returns the name of the element type for these cells; empty if other programs know no such type.
+/// Returns the name of the element type for these cells; empty if other programs do not know such a type.
 std::string_view type_of(Shape shape, int nodes);
 
 /// Returns the place in the file of each vertex of a cell; empty if the file has the order of a Mesh.
@@ -60,7 +60,7 @@ int faces_of(Shape shape, std::string_view type, int dimension);
 /// @param faces  as returned by `faces_of`
 int nodes_of_side(Shape shape, int nodes, int side, int faces);
 
-// ---- what a file has besides the mesh
+// ---- contents of a file besides the mesh
 
 /// A variable over all steps.
 struct Series {
@@ -155,10 +155,10 @@ std::string title(const SetKind& kind, std::string_view in_mesh);
 struct Metadata final : FormatMetadata {
   Storage storage{0};
   std::vector<Attribute> attributes;  ///< of the file
-  std::vector<Dimension> dimensions;  ///< those whose lengths do not depend on the mesh
+  std::vector<Dimension> dimensions;  ///< dimensions whose lengths do not depend on the mesh
   std::vector<PlainVariable> plain;
   std::map<std::string, std::vector<Attribute>>
-      variable_attributes;  ///< by variable; without those that the format defines
+      variable_attributes;  ///< by variable; without attributes that the format defines
   int coordinates = 3;      ///< number of coordinates of a point
   NcType coordinate_type = kDouble;
   bool packs_coordinates = false;  ///< all coordinates are in one variable, "coord"
@@ -211,7 +211,8 @@ enum class PartContent : std::uint8_t { points_and_cells, all };
 /// are kept. O(size of the part + entries of sets).
 ///
 /// @param notes  receives the notes of `read` about this part, except those on repeated members and repeated
-///               numbers: the caller has all parts, see `note_of_repeated` and `note_of_number_twice`
+///               numbers. The caller, which has all parts, makes these: see `note_of_repeated` and
+///               `note_of_number_twice`
 /// @throws InputError as `read`, for faults of the part, and for coordinates that are not finite
 MeshPart read_part(const FilePath& path, const MeshRanges& ranges, PartContent content, Notes& notes);
 

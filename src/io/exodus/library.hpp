@@ -7,13 +7,12 @@
 
 namespace meshorder::exodus {
 
-/// Loads netCDF and HDF5, where this is put off until a file needs them. Throws Unavailable if one is not
-/// found.
+/// Loads netCDF and HDF5 in builds that load them on demand. Throws Unavailable if one is not found.
 void load_library();
 
 /// While an object of this class lives, other threads cannot enter libnetcdf or libhdf5, and no plug-ins are
-/// loaded. The first object starts libnetcdf so that it does not read settings in the current folder or in
-/// HOME (.ncrc, .daprc, .dodsrc) or cloud credentials.
+/// loaded. The first object starts libnetcdf and keeps it from reading settings in the current folder or in
+/// HOME (.ncrc, .daprc, .dodsrc) and cloud credentials.
 class Library {
  public:
   Library();
@@ -28,9 +27,8 @@ class Library {
   unsigned plugins_ = 0;
 };
 
-/// Throws InputError if a file of HDF5 has groups, links to other files, or values in other files: libnetcdf
-/// would follow them wherever they lead. A mesh needs none of them. To be called while a Library object
-/// lives.
+/// Throws InputError if an HDF5 file has groups, links to other files, or values in other files: libnetcdf
+/// would follow all of these, and a mesh needs none. Call it while a Library object lives.
 ///
 /// @param path   the file; empty if it is in memory
 /// @param bytes  the content of the file if `path` is empty

@@ -30,7 +30,7 @@ const NcType kDouble = NC_DOUBLE;
 
 namespace {
 
-constexpr const char* kNameInMemory = "mesh";  // netCDF could take other names for an address in the net
+constexpr const char* kNameInMemory = "mesh";  // netCDF might take another name for a URL
 constexpr std::string_view kDamaged = "the file may be damaged";
 constexpr std::uint64_t kMostExpansion = 1032;  // largest ratio that deflate can reach
 constexpr std::size_t kBuffer = std::size_t{1} << 18;
@@ -39,7 +39,7 @@ constexpr std::size_t kBuffer = std::size_t{1} << 18;
 constexpr std::array<NcType, 10> kTypesOfValues{NC_DOUBLE, NC_FLOAT, NC_BYTE, NC_UBYTE, NC_SHORT,
                                                 NC_USHORT, NC_INT,   NC_UINT, NC_INT64, NC_UINT64};
 
-/// Returns the alternative of Values for a type; the one of texts if the type is not numeric.
+/// Returns the alternative of Values for a type; the alternative of texts if the type is not numeric.
 std::size_t alternative_of(NcType type) {
   return static_cast<std::size_t>(std::find(kTypesOfValues.begin(), kTypesOfValues.end(), type) -
                                   kTypesOfValues.begin());
@@ -407,7 +407,7 @@ int creation_mode(int kind) {
 NcOutput::NcOutput(const FilePath& path, const Storage& storage)
     : name_(path.string()), out_(path), is_in_memory_(path.store() != nullptr), storage_(storage) {
   if (is_in_memory_) {
-    // initial size 0, as the file would not become smaller than an initial size
+    // initial size 0: the file would not become smaller than an initial size
     check(nc_create_mem(kNameInMemory, NC_CLOBBER | creation_mode(storage.kind), 0, &id_), "");
     // fill mode stays on: the library does not write the bytes between variables, so they would be arbitrary
   } else {

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-/// Files of netCDF, read and written through its C library. The library allows one call at a time, so that an
+/// Files of netCDF, read and written through its C library. The library allows one call at a time: each
 /// object of these classes holds a lock of the whole process.
 namespace meshorder::exodus {
 
@@ -111,12 +111,12 @@ class NcInput {
   [[nodiscard]] std::vector<std::size_t> shape(const Variable& variable) const;
   /// Returns the number of values. Throws InputError if the file is too small to hold them.
   [[nodiscard]] std::size_t size(const Variable& variable) const;
-  /// Returns `count`. Throws InputError if `count` values of `bytes_each` bytes exceed the limit on memory
-  /// for what a file claims.
+  /// Returns `count`. Throws InputError if `count` values of `bytes_each` bytes exceed the memory limit for
+  /// sizes that a file claims.
   [[nodiscard]] std::size_t claimed(std::string_view what, std::size_t count, std::size_t bytes_each) const;
 
-  /// Returns the attributes of a variable, or of the file if it is null. Leaves out those of user-defined
-  /// types or of several strings, and appends their names to `lost`.
+  /// Returns the attributes of a variable, or of the file if `variable` is null. Leaves out attributes of
+  /// user-defined types or of several strings, and appends their names to `lost`.
   [[nodiscard]] std::vector<Attribute> attributes(const Variable* variable,
                                                   std::vector<std::string>& lost) const;
   /// Returns the text of an attribute of a variable, empty if there is none.
@@ -144,7 +144,7 @@ class NcInput {
 
   [[nodiscard]] Storage storage() const;
 
-  /// Throws InputError for a fault of a variable.
+  /// Throws InputError for a fault of the file.
   [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
@@ -197,7 +197,7 @@ class NcSink {
   int variable_;
 };
 
-/// A file that exists, and that the caller puts in place once it is written.
+/// A file that already exists. The caller puts it in place once it is written.
 struct UnfinishedFile {
   std::filesystem::path path;
   std::string name;  ///< in messages
@@ -227,7 +227,7 @@ class NcOutput {
   /// Returns whether the file can hold 64-bit integers.
   [[nodiscard]] bool holds_wide_integers() const noexcept;
 
-  /// Writes all values, and puts the file in place unless the caller does.
+  /// Writes all values, and puts the file in place unless the caller does so.
   void finish();
 
  private:

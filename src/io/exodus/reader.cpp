@@ -202,7 +202,7 @@ void read_elements(Reading& reading, const Variable& connect, std::size_t b) {
   for (std::size_t e = 0; e < elements; ++e) {
     Index* const row = cells.vertices.data() + begin + e * nodes;
     for (std::size_t k = 0; k < nodes; ++k) {
-      // as unsigned numbers, those below 1 become large
+      // as unsigned numbers, numbers below 1 become large
       const std::uint32_t place = static_cast<std::uint32_t>(row[k]) - 1;
       if (place >= count) {
         file.fail(fmt::format("{}, element {}: node {} does not exist", connect.name, first + e + 1, row[k]),
@@ -500,7 +500,7 @@ void read_maps(Reading& reading) {
   read_named_maps(reading, "elem", "em", Association::cells, metadata.element_maps);
 }
 
-/// Returns whether a dimension counts nodes or elements, so that its variables depend on their order.
+/// Returns whether a dimension counts nodes or elements. Its variables then depend on their order.
 bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension) {
   constexpr std::array<std::string_view, 6> kWhole{"num_nodes", "num_elem", "num_edge",
                                                    "num_face",  "num_node", "num_elements"};

@@ -28,7 +28,7 @@ struct Reading {
 
   /// Adds an array, under a name that no other array has, and returns that name.
   std::string add_array(DataArray array, MeshPart::ArrayRows rows = {});
-  /// Adds a set, likewise.
+  /// Adds a set in the same way.
   std::string add_set(EntitySet set, MeshPart::SetRows rows = {});
 
   [[nodiscard]] bool is_whole() const noexcept { return ranges_wanted == nullptr; }
@@ -84,7 +84,7 @@ std::vector<std::string> read_properties(Reading& reading, const std::string& pr
 /// Returns the ids of blocks, sets or maps; 1, 2, … if the file has none or gives one twice.
 std::vector<std::int64_t> read_ids(Reading& reading, const std::string& variable, std::size_t objects);
 
-/// Return the start and the number of values of a range, as reading a variable of one dimension needs them.
+/// Return the start and the number of values of a range, for reading a variable of one dimension.
 inline std::vector<std::size_t> start_of(MeshRange range) { return {static_cast<std::size_t>(range.first)}; }
 inline std::vector<std::size_t> count_of(MeshRange range) { return {static_cast<std::size_t>(range.size())}; }
 

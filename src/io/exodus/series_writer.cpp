@@ -147,7 +147,7 @@ NcType type_of_all(const std::vector<SeriesPlan>& series) {
   return is_one ? first : kDouble;
 }
 
-/// Returns the number of cells of each block that an array has a row for.
+/// Returns, for each block, the number of cells for which an array has a row.
 std::vector<Index> rows_in_blocks(const Writing& writing, const DataArray& array) {
   std::vector<Index> rows;
   std::vector<Index> firsts;
@@ -169,7 +169,7 @@ struct Presence {
   bool declared = false;
 };
 
-/// Returns how a variable appears in each block: if it has no values there, as in the file it came from.
+/// Returns how a variable appears in each block. A block that never had values keeps its entry of the file.
 std::vector<Presence> presence(Writing& writing, const SeriesPlan& series) {
   std::vector<Presence> result(writing.blocks.size());
   for (std::size_t b = 0; b < result.size(); ++b) {

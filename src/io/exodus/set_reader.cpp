@@ -110,8 +110,8 @@ std::vector<Number> packed(const Sides& sides, const std::vector<Number>& values
   return result;
 }
 
-/// Returns the table that says which block or set (row) has values of which variable (column), row by row.
-/// Empty if the file has no table.
+/// Returns the table that marks which blocks or sets (rows) have values of which variables (columns), row by
+/// row. Empty if the file has no table.
 std::vector<std::int64_t> read_table(Reading& reading, const std::string& of, std::size_t objects,
                                      std::size_t variables) {
   const Variable* const table = reading.take(of + "_var_tab");
@@ -481,7 +481,7 @@ class SetReader {
 
 // ---- variables of nodes and elements
 
-/// Returns labels as 32-bit integers, as other formats have them, if they are whole; other arrays unchanged.
+/// Converts labels that are whole numbers to 32-bit integers, as other formats have them. Keeps other arrays.
 Values as_labels(const std::string& name, Values values) {
   const auto* const reals = std::get_if<std::vector<double>>(&values);
   if (name != kLabel || reals == nullptr) return values;
@@ -530,7 +530,7 @@ void read_nodal(Reading& reading) {
                                                  .components = is_vector ? static_cast<Index>(shape[2]) : 1,
                                                  .values = as_labels(name, values)}));
     }
-    // a vector gets no series: it is written as scalar variables, as the format has only these
+    // a vector gets no series: it is written as scalar variables, the only variables of the format
     if (!is_vector) metadata.nodal.push_back(std::move(series));
   }
 }

@@ -290,8 +290,8 @@ class FamilyWriter {
                        [](const DataArray* array) { return array != nullptr; });
   }
 
-  /// Returns whether the table of variables shall say that a set has values: it has some, or the table in the
-  /// file said so without any.
+  /// Returns whether the table of variables marks values for a set: the set has some, or the table of the
+  /// file that the mesh came from marked values that did not exist.
   static bool is_in_table(const SetPlan& plan, std::size_t v) {
     if (has_values(plan, v)) return true;
     if (plan.record == nullptr) return false;

@@ -35,7 +35,7 @@ struct WrittenType {
   std::string_view name;
 };
 
-// of the names that the format defines, those that meshio reads as well
+// names that the format defines and that meshio reads as well
 constexpr std::array kWrittenTypes{
     WrittenType{Shape::vertex, 1, "SPHERE"},        WrittenType{Shape::line, 2, "BAR2"},
     WrittenType{Shape::line, 3, "BEAM3"},           WrittenType{Shape::triangle, 3, "TRI3"},

@@ -286,7 +286,7 @@ PlainVariable with_name_length(PlainVariable table, std::size_t length) {
   return table;
 }
 
-/// Writes the variables and dimensions that are kept as they are; steps that they did not have get zeros.
+/// Writes the variables and dimensions that are kept as they are. New steps get zeros.
 void write_plain(Writing& writing) {
   NcOutput& file = writing.file;
   for (const PlainVariable& of_file : writing.metadata.plain) {
@@ -321,8 +321,8 @@ void write_plain(Writing& writing) {
   }
 }
 
-/// Returns the length of rows in tables of names: that of the longest name with its zero byte, at most 256;
-/// at least the length in the file that the mesh came from. Notes names that change.
+/// Returns the length of rows in tables of names: the length of the longest name with its zero byte, at most
+/// 256, or the length in the file that the mesh came from if that is larger. Notes names that change.
 std::size_t length_of_names(const Writing& writing, const std::vector<std::string>& names) {
   std::size_t longest = writing.metadata.name_length;
   for (const std::string& name : names) {
@@ -392,7 +392,7 @@ void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
   NcOutput file(target, metadata.storage);
   Writing writing(mesh, metadata, file, notes);
 
-  // plan what each part of the mesh becomes
+  // plan the outputs for each part of the mesh
   plan_blocks(writing, own != nullptr);
   const std::vector<const EntitySet*> element_sets = name_blocks(writing);
   std::vector<Columns> attributes;

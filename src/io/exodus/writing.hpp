@@ -53,8 +53,8 @@ struct Writing {
   std::size_t steps = 0;
 };
 
-/// Returns the type in which to write values: their type in the file that the mesh came from, `of_file`, if
-/// it can hold each of them, else double precision.
+/// Returns the type in which to write values: `of_file`, their type in the file that the mesh came from, if
+/// it can hold each value, else double precision.
 NcType written_type(NcType of_file, const Values& values);
 
 /// Returns whether all values are integers, or real numbers that are whole and at most 2^52 in size.
@@ -103,8 +103,7 @@ std::vector<std::string> write_plans(Writing& writing, const std::string& prefix
 
 inline constexpr Index kRowsAtOnce = 1 << 16;
 
-/// Divides `count` rows into parts and calls `put(first, rows)` for each, so that the copies that are written
-/// stay small.
+/// Divides `count` rows into parts and calls `put(first, rows)` for each. This keeps copies of values small.
 template <class Put>
 void in_parts(Index count, const Put& put) {
   for (Index first = 0; first < count; first += std::min(kRowsAtOnce, count - first)) {
@@ -143,12 +142,12 @@ std::vector<Number> column(const DataArray& array, Index component, const std::v
 /// Divides the cells, which already are in the order of the file, into `writing.blocks`.
 void plan_blocks(Writing& writing, bool is_own);
 
-/// Gives a block the name of a set that has exactly its cells, unless that was an element set in the file.
-/// Returns the other sets of cells.
+/// Gives a block the name of a set with exactly the cells of the block, unless the set was an element set in
+/// the file. Returns the other sets of cells.
 std::vector<const EntitySet*> name_blocks(Writing& writing);
 
-/// Returns the attributes of a block: those that it had in its file; for a new block, the arrays "attribute
-/// NAME" that have a value in it.
+/// Returns the attributes of a block. A block of the file that the mesh came from keeps the file's
+/// attributes; a new block gets the arrays "attribute NAME" that have a value in it.
 Columns attributes_of(Writing& writing, const BlockPlan& block);
 
 /// Declares the blocks with their elements and attributes. `attributes` has an entry for each block.
@@ -186,8 +185,8 @@ struct SeriesPlan {
   std::vector<bool> declared = {};  ///< as in Series
 };
 
-/// Returns the variables of nodes or elements: those of the file that the mesh came from, then one for each
-/// component of the arrays that have no other place. Notes arrays that no variable can hold.
+/// Returns the variables of nodes or elements: the variables of the file that the mesh came from, then one
+/// for each component of the arrays that have no other place. Notes arrays that no variable can hold.
 std::vector<SeriesPlan> plan_series(Writing& writing, Association association);
 
 void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series);

@@ -60,7 +60,7 @@ View read_view_head(NumberReader& source, std::string_view section) {
   return view;
 }
 
-/// Returns the number of nodes in the entry of cell c by a rule; `fixed` is the number for that rule.
+/// Returns the number of nodes in the entry of cell c by the rule `per`; `fixed` is for PerElement::fixed.
 int nodes_of_entry(const Mesh& mesh, Index c, PerElement per, int fixed) {
   const int vertices = mesh.cells.vertex_count(c);
   switch (per) {
@@ -288,7 +288,7 @@ bool has_place(const DataArray& array) {
   return !are_texts(array.values) && gmsh_components(array.components) > 0;
 }
 
-/// Returns the components of a view of an array that has a place. Notes what changes.
+/// Returns the number of components of a view of an array that `has_place`. Notes changes.
 Index components_of_view(const DataArray& array, Notes& notes) {
   const Index components = gmsh_components(array.components);
   if (components != array.components) {

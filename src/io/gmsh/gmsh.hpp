@@ -53,7 +53,7 @@ std::span<const int> vtk_order(Shape shape, int nodes);
 // ---- names of the arrays that keep data of Gmsh's files
 
 inline constexpr std::string_view kCellEntity = "gmsh:geometrical";    ///< tag of each cell's entity
-inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< where it is not that of the cell
+inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< if not the cell's dimension
 inline constexpr std::string_view kCellType = "gmsh:type";  ///< if shape and count do not determine it
 inline constexpr std::string_view kCellPartitions = "gmsh:partitions";  ///< 2.2: tags from the third on
 inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.2: if it differs among cells
@@ -166,7 +166,7 @@ void expect_end(ReadContext& reading, std::string_view section);
 inline std::int64_t read_number(ReadContext& reading, std::string_view what) {
   return reading.metadata.has_wide_numbers() ? reading.source.int64(what) : reading.source.int32(what);
 }
-/// Reads a count likewise; fails if the file is too short for items of at least that many bytes each.
+/// Reads a count as `read_number`; fails if the file is too short for items of at least that many bytes each.
 inline Index read_count(ReadContext& reading, std::string_view what, std::int64_t text_bytes,
                         std::int64_t binary_bytes) {
   const std::int64_t count = read_number(reading, what);
@@ -299,7 +299,7 @@ struct WriteContext {
   std::vector<std::int32_t> cell_dimensions;  ///< 4.1: of each cell's entity
   std::vector<std::int32_t> cell_tags;        ///< 4.1: of each cell's entity
   std::vector<std::int32_t> node_entities;    ///< 4.1, $ParametricNodes: dimension and tag for each node
-  std::vector<const DataArray*> placed;       ///< arrays that other sections hold, so that they need no view
+  std::vector<const DataArray*> placed;       ///< arrays that other sections hold: they need no view
   NamedParts parts;                           ///< of the mesh
 
   [[nodiscard]] std::int64_t node_id(Index v) const { return node_ids.empty() ? v + 1 : node_ids[v]; }
@@ -319,8 +319,8 @@ void classify(Metadata& layout, WriteContext& output, Notes& notes);
 /// Adds a view for an array that has none yet; returns false, with a note, if Gmsh has no place for it.
 bool add_view(Metadata& layout, const DataArray& array, Notes& notes);
 
-/// Fits the views of arrays of a mesh that were replaced to the components that these have now. Views without
-/// a place for their array lose it. Notes what changes.
+/// Adapts the views of arrays that were replaced to the components of the new arrays. A view that has no
+/// place for its new array loses the array. Notes changes.
 void refit_views(Metadata& layout, const NamedParts& parts, Notes& notes);
 
 /// Returns a name that fits between double quotes in one line.

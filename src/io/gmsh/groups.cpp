@@ -32,7 +32,7 @@ struct CellEntities {
   const Cells& cells;
 };
 
-/// Finds the value of an entity. Remembers the last result, as successive cells mostly have the same entity.
+/// Finds the value of an entity. Caches the last result: successive cells mostly have the same entity.
 template <class Value>
 class EntityTable {
  public:
@@ -217,8 +217,8 @@ std::string names_text(const std::vector<PhysicalName>& names) {
 using LabelCounts = std::map<std::pair<std::int32_t, std::int32_t>, Index>;
 
 /// Finds the labels that are the numbers of sets. In a mesh that came from Gmsh, the label of a cell is its
-/// first physical group, and each named group is a set. If a group is the first one of all its cells, its set
-/// has exactly the cells with its label. Other sets also have cells with labels of such groups.
+/// first physical group, and each named group is a set. If a group is the first group of all its cells, its
+/// set has exactly the cells with its label. Sets of other groups also have cells with labels of such groups.
 class NumbersOfSets {
  public:
   NumbersOfSets(const Mesh& mesh, const std::vector<std::int32_t>& labels)

@@ -45,7 +45,7 @@ void refuse_element_tags(const NumberReader& source, double version, std::span<c
   }
 }
 
-/// Reads the number of nodes of an element of version 1; fails unless its type has as many.
+/// Reads the number of nodes of an element of version 1; fails unless its type has the same number.
 void check_node_count(NumberReader& source, const Element& element) {
   const std::int32_t count = source.int32("an element's number of nodes");
   if (count != element.type->nodes) {
@@ -114,7 +114,7 @@ Index read_alike(ReadContext& reading, const Element& last, Index most, Tags& ta
 }
 
 /// Decides when to call `read_alike`, and for how many elements. After a success, it tries more; after each
-/// failure, it waits until more elements have been read one by one, so that mixed elements cost little.
+/// failure, it waits for more elements to be read one by one. Mixed elements then cost little.
 class Alikes {
  public:
   /// Reads the next elements by `read_alike`, or none.
@@ -124,7 +124,7 @@ class Alikes {
       --pause_;
       return 0;
     }
-    // each number takes two bytes at least, so that a wrong count cannot cause a huge allocation
+    // each number takes two bytes at least: a wrong count cannot cause a huge allocation
     const std::int64_t numbers = 3 + last.tag_count + last.type->nodes;
     const std::int64_t room = reading.source.scanner.bytes_left() / (2 * numbers);
     const auto most = static_cast<Index>(std::min<std::int64_t>(std::min(left, at_once_), room));

@@ -315,7 +315,8 @@ void read_elements_4(ReadContext& reading) {
   reading.elements = number_ids(source, ids, "element");
   if (!reading.elements.runs_from(1)) mesh.cell_ids = std::move(ids);
 
-  // if a kind has several blocks, as in a converted mesh, order matters more than blocks: do not bind cells
+  // if a kind has several blocks, as in a converted mesh, do not bind cells to blocks: their order matters
+  // more
   if (!repeated && starts.size() > 1) mesh.cell_blocks = std::move(starts);
   bool own = true;
   for (Index c = 0; c < mesh.cell_count(); ++c) own = own && dimensions[c] == dimension(mesh.cells.shapes[c]);
@@ -334,7 +335,7 @@ void write_nodes_4(NumberWriter& sink, const WriteContext& output) {
             parameters && (*parameters)[2 * at] != 0 ? 1 : 0};
   };
 
-  // successive nodes of one entity form a block, so that the order of the mesh is kept
+  // successive nodes of one entity form a block: this keeps the order of the mesh
   const auto write_point = [&](RowWriter& to, const EmptyBlock& block, Index v) {
     to.all(mesh.points[v]);
     const int given = block[2] == 1 ? parameters_4(output.layout, block[0]) : 0;
