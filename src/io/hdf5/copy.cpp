@@ -20,8 +20,8 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);
   const Handle space(H5Aget_space(attribute.id()), H5Sclose);
   if (!type.is_open() || !space.is_open() || H5Tdetect_class(type.id(), H5T_REFERENCE) > 0) return;
-  // converts only what needs it: the library does not check the bit fields of number types, which a damaged
-  // file may place anywhere
+  // converts only types that need it: the library does not check the bit fields of number types, which a
+  // damaged file may place anywhere
   const bool varies = H5Tdetect_class(type.id(), H5T_VLEN) > 0 || H5Tis_variable_str(type.id()) > 0;
   const Handle memory(varies ? H5Tget_native_type(type.id(), H5T_DIR_DEFAULT) : H5Tcopy(type.id()), H5Tclose);
   if (!memory.is_open()) return;
@@ -35,7 +35,7 @@ void copy_attribute(hid_t from, const char* name, hid_t to) {
   if (varies) H5Dvlen_reclaim(memory.id(), space.id(), H5P_DEFAULT, bytes.data());
 }
 
-/// Returns the order of a group's links: that of their creation if the group records it, else by name.
+/// Returns the order of a group's links: the order of creation if the group records it, else by name.
 H5_index_t order_of(hid_t group) {
   const Handle creation(H5Gget_create_plist(group), H5Pclose);
   unsigned flags = 0;

@@ -7,7 +7,8 @@
 
 namespace meshorder::hdf5 {
 
-/// A handle of libhdf5; the destructor closes it. A negative id means none, as after a call that failed.
+/// A handle of libhdf5; the destructor closes it. A negative id means no handle, for example after a failed
+/// call.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);

@@ -151,8 +151,8 @@ Handle File::open_dataset(const std::string& path) const {
 std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
   const Session session;
   std::vector<std::pair<std::string, std::uint64_t>> result;
-  // The library visits an object once if the object's count of links is right. Without this, a damaged group
-  // within itself is visited for ever.
+  // The library visits an object once if the object's count of links is right. Without this check, it would
+  // visit a damaged group that contains itself for ever.
   std::set<haddr_t> groups;
   Visitor<H5O_info_t> visitor([&](hid_t file, const char* name, const H5O_info_t& object) {
     if (object.type == H5O_TYPE_GROUP && !groups.insert(object.addr).second)

@@ -51,15 +51,16 @@ class File {
   /// Returns the library's handle, for work that the functions below do not do; only within a `Session`.
   [[nodiscard]] hid_t id() const noexcept { return file_.id(); }
 
-  /// Returns the size and number type of a dataset of numbers whose values are in this file. Refuses one that
-  /// claims more values than its bytes can hold.
+  /// Returns the size and number type of a dataset of numbers whose values are in this file. Refuses a
+  /// dataset that claims more values than its bytes can hold.
   [[nodiscard]] DatasetInfo info(const std::string& path) const;
   /// Returns the number type of a dataset, as an alternative of Values, even if its values are missing;
   /// nothing if there is no dataset of plain numbers.
   [[nodiscard]] std::optional<std::size_t> number_type(const std::string& path) const;
   /// Returns the values of a dataset that `info` accepts, row by row, in its own number type.
   [[nodiscard]] Values read(const std::string& path) const;
-  /// Returns whole numbers as indices; one out of range becomes the limit that it exceeds, which is no index.
+  /// Returns whole numbers as indices. A number out of range becomes the nearest 32-bit limit, which is not
+  /// an index.
   [[nodiscard]] std::vector<Index> read_indices(const std::string& path) const;
   /// Returns the byte of the file where the values of a dataset that `info` accepts begin; 0 if it has none;
   /// nothing unless they are contiguous, in this machine's byte order.
@@ -71,13 +72,13 @@ class File {
   [[nodiscard]] bool has(const std::string& path) const;
   /// Returns the names in a group, ascending; none if there is no such group.
   [[nodiscard]] std::vector<std::string> names(const std::string& group) const;
-  /// Returns the texts of a dataset. Its rows are texts of any length, or arrays of at most 1,024 characters;
-  /// of arrays, blanks and zero bytes at the end are left out.
+  /// Returns the texts of a dataset. Its rows are texts of any length, or arrays of at most 1,024 characters.
+  /// Removes blanks and zero bytes from the ends of arrays.
   [[nodiscard]] std::vector<std::string> read_texts(const std::string& path) const;
   /// Returns whether there is a dataset that `read_texts` understands.
   [[nodiscard]] bool has_texts(const std::string& path) const;
-  /// Returns a whole number or a text that belongs to a group or a dataset; nothing if it has no such
-  /// attribute or one of another kind.
+  /// Returns a whole number or a text that belongs to a group or a dataset; nothing if the attribute does not
+  /// exist or is of another kind.
   [[nodiscard]] std::optional<std::int64_t> integer_attribute(const std::string& path,
                                                               const std::string& name) const;
   /// Returns all whole numbers of an attribute, at most 64; none if there is no such attribute.
@@ -103,8 +104,8 @@ class File {
   /// Allocates room in the file for the values of a dataset that has none yet. Writes only the first value,
   /// as zero.
   void give_room(const std::string& path);
-  /// Order of the links in a group that `make_group` makes: that of their creation, or by name. `make_group`
-  /// makes a group, and its parents, unless the group exists.
+  /// Order of the links in a group that `make_group` makes: by creation or by name. `make_group` makes a
+  /// group, and its parents, unless the group exists.
   enum class LinkOrder : std::uint8_t { made, names };
   void make_group(const std::string& path, LinkOrder order = LinkOrder::made);
   /// Sets an attribute of a group or a dataset. A single whole number keeps the number type of the old one.
@@ -118,17 +119,17 @@ class File {
   void remove(const std::string& path);
 
   /// Returns the bytes of a copy of this file in which the datasets at `paths` keep their types, attributes,
-  /// chunks and filters, but have no values. A path that ends in "/" is that of a group to which something
-  /// will be added. If several of the paths lead to one dataset or group, the copy has one for each path.
+  /// chunks and filters, but have no values. A path that ends in "/" is the path of a group that will get a
+  /// new member. If several of the paths lead to one dataset or group, the copy has one for each path.
   /// Everything else is copied.
   [[nodiscard]] std::string without_values(const std::set<std::string>& paths) const;
   /// Returns the bytes of a file in memory.
   [[nodiscard]] std::string bytes() const;
-  /// Writes what is buffered and closes the file. Throws InputError if that fails.
+  /// Writes all buffers and closes the file. Throws InputError if that fails.
   void close();
 
  private:
-  /// Returns a path beside this one that nothing has.
+  /// Returns an unused path beside this one.
   [[nodiscard]] std::string free_path(const std::string& path) const;
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
   [[nodiscard]] Handle open_dataset(const std::string& path) const;

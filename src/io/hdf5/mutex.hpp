@@ -8,7 +8,7 @@ namespace meshorder::hdf5 {
 
 using LibraryLock = std::unique_lock<std::recursive_mutex>;
 
-/// Function that the first thread calls once, just before it enters the library; to be set before that.
+/// Function that the first thread calls once, just before it enters the library. Set it before that.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process, as the library's state
 inline void (*at_first_entry)() = nullptr;
 

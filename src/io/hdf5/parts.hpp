@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// Functions that several parts of File use. To be called in a Session.
+// Functions that several parts of File use. Call them in a Session.
 
 #include "io/hdf5/handle.hpp"
 #include "io/hdf5/library.hpp"
@@ -28,7 +28,7 @@ std::uint64_t most_bytes(hid_t dataset);
 /// Returns whether the values of a dataset are in external files, or in other datasets (a virtual dataset).
 bool has_values_elsewhere(hid_t dataset);
 
-/// Makes a dataset store no times of change, so that the same mesh gives the same bytes at any time.
+/// Makes a dataset store no times of change: the same mesh then always gives the same bytes.
 void forget_times(const Handle& creation);
 
 /// Returns the names in a group, sorted by name or by the creation of links. Sorts them itself, because the

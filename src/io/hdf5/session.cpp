@@ -36,7 +36,7 @@ std::string_view system_words(std::string_view cause) {
   return cause.substr(0, cause.find('\''));
 }
 
-/// Copies the beginning of a text, as far as it fits before a zero byte.
+/// Copies the beginning of a text: the part that fits before a zero byte.
 template <std::size_t Size>
 void keep(std::string_view text, std::array<char, Size>& into) {
   into = {};
@@ -88,7 +88,7 @@ void Session::require_no_fault(const std::string& file) const {
                      std::string("HDF5 could not read or write all of it (") + faults.words.data() + ")",
                      "is the disk full, or does it fail?");
   }
-  // parts of the library ignore a failed malloc; what fails afterwards gives another cause or none
+  // parts of the library ignore a failed malloc; a later failure then gives another cause or none
   if (faults.memory || errno == ENOMEM)
     throw InputError(file, "HDF5 had no memory for a part of it", "the file may be damaged");
 }

@@ -8,9 +8,9 @@
 
 namespace meshorder::hdf5 {
 
-/// While it lives, keeps other threads out of libhdf5 and stops the library from printing errors and from
-/// loading plug-ins, which a file can request by the number of a filter. Records calls that fail, even if the
-/// library, or one on top of it, ignores their result. May be nested.
+/// While an object of this class lives, other threads cannot enter libhdf5, and the library does not print
+/// errors or load plug-ins, which a file can request by the number of a filter. Records calls that fail, even
+/// if the library, or a library on top of it, ignores their result. May be nested.
 class Session {
  public:
   Session();
@@ -27,8 +27,8 @@ class Session {
   /// session began.
   void require_no_fault(const std::string& file) const;
 
-  /// Throws InputError if any call has failed since the outermost session began. For code that checks whether
-  /// an object exists before it opens it, so that only damage makes a call fail.
+  /// Throws InputError if any call has failed since the outermost session began. For code that opens only
+  /// objects that it knows to exist: there, only damage makes a call fail.
   void require_no_failure(const std::string& file) const;
 
  private:
@@ -39,7 +39,7 @@ class Session {
 };
 
 /// Runs `work`, which reads a file, in a session and returns its result. Throws InputError if any call fails:
-/// what the library could not read must not count as absent.
+/// data that the library could not read must not count as absent.
 template <class Work>
 auto read_whole(const std::string& file, const Work& work) {
   const Session session;
@@ -48,8 +48,8 @@ auto read_whole(const std::string& file, const Work& work) {
   return result;
 }
 
-/// While it lives, the session does not record calls that fail. For questions that a failed call answers,
-/// such as whether a link leads to an object.
+/// While an object of this class lives, the session does not record calls that fail. For questions that a
+/// failed call answers, for example whether a link leads to an object.
 class Unwatched {
  public:
   Unwatched() {

@@ -10,8 +10,8 @@
 namespace meshorder::hdf5 {
 
 /// Calls `work` for each entry that an iteration of libhdf5 visits. Exceptions must not pass through the
-/// library: one ends the iteration, and `rethrow` throws it. `Info` is the library's description of an entry:
-/// H5A_info_t, H5L_info_t or H5O_info_t.
+/// library: an exception ends the iteration, and `rethrow` throws it again. `Info` is the library's
+/// description of an entry: H5A_info_t, H5L_info_t or H5O_info_t.
 template <class Info>
 class Visitor {
  public:
@@ -31,7 +31,7 @@ class Visitor {
     }
   }
 
-  /// Throws the exception of `work`, if there was one. To be called after the iteration.
+  /// Throws the exception of `work`, if there was one. Call it after the iteration.
   void rethrow() const {
     if (thrown_) std::rethrow_exception(thrown_);
   }

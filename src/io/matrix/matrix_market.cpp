@@ -256,7 +256,7 @@ bool changes_sign(Symmetry symmetry, Offset component) {
 
 template <class Number>
 Number negative(Number value) {
-  // unsigned, as the least integer has no negative; it stays as it is
+  // unsigned: the least integer has no negative and stays as it is
   if constexpr (std::is_integral_v<Number>)
     return static_cast<Number>(0 - static_cast<std::uint64_t>(value));
   else

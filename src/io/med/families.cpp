@@ -35,7 +35,7 @@ std::vector<std::int64_t> numbers_in(const Mesh& mesh, const std::string& name, 
   return numbers;
 }
 
-/// Returns the families of a file: −1, −2, … before 1, 2, …; leaves out 0 and numbers that occur again.
+/// Returns the families of a file: −1, −2, … before 1, 2, …; leaves out 0 and repeated numbers.
 std::vector<Family> families_in(const Reading& reading, const std::string& root) {
   std::vector<Family> families;
   std::unordered_set<std::int64_t> numbers;
@@ -103,7 +103,7 @@ class Combinations {
   explicit Combinations(const std::vector<std::int64_t>& families) {
     of_item_.reserve(families.size());
     std::unordered_map<std::int64_t, std::size_t> known;
-    std::size_t last = 0;  // neighbours are mostly of one family
+    std::size_t last = 0;  // neighbouring items mostly have the same family
     for (const std::int64_t family : families) {
       if (all_.empty() || all_[last].family != family) {
         const auto [found, is_new] = known.try_emplace(family, all_.size());
@@ -141,7 +141,8 @@ class Combinations {
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-  /// A family and groups, stored as a chain of one group a link, as an item may be in thousands of groups.
+  /// A family and groups, stored as a chain with one group in each link: an item may be in thousands of
+  /// groups.
   struct Combination {
     std::int64_t family;
     std::size_t without_last;  ///< the combination before the last group; kNone for a family alone
@@ -231,8 +232,8 @@ class FamilyWriter {
     return result;
   }
 
-  /// Returns the number of a family with these groups: that of `wanted` if the file's family has the same
-  /// groups, else that of another family of the file or of a new one.
+  /// Returns the number of a family with these groups: the number of `wanted` if the file's family has the
+  /// same groups, else the number of another family of the file or of a new one.
   std::int64_t number_for(const Family& wanted) {
     std::vector<std::string> groups = wanted.groups;
     std::sort(groups.begin(), groups.end());

@@ -11,9 +11,9 @@
 #include <type_traits>
 #include <variant>
 
-// Reads fields: at each step, their values at nodes, in cells, at the nodes of cells and at Gauss points.
-// A dataset has the values of the first component for all items, each with its points one after another, then
-// those of the next component.
+// Reads fields: at each step, their values at nodes, in cells, at the nodes of cells and at Gauss points. A
+// dataset has the values of the first component for all items, each with its points one after another, then
+// the values of the next component.
 
 namespace meshorder::med {
 namespace {

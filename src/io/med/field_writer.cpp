@@ -14,7 +14,7 @@
 #include <type_traits>
 #include <variant>
 
-// Writes fields and the profiles that say which items they have values for.
+// Writes fields, and the profiles that list the items with values.
 
 namespace meshorder::med {
 namespace {

@@ -56,7 +56,7 @@ const GeometryType* geometry_type(Shape shape, int nodes);
 /// Returns for each node of a cell in the file its place in the Mesh's cell; empty if the orders are equal.
 std::span<const int> mesh_order(const GeometryType& type);
 
-// ---- what a file has besides the mesh
+// ---- contents of a file besides the mesh
 
 /// A family: cells or vertices that belong to the same groups.
 struct Family {
@@ -84,7 +84,7 @@ struct Equivalence {
   std::vector<Index> members = {};     ///< vertices or cells of the mesh, two for each pair
 };
 
-/// What a file has for vertices or for the cells of a type, besides coordinates and nodes.
+/// Contents of a file for vertices or for the cells of a type, besides coordinates and nodes.
 struct Items {
   bool has_numbers = false;
   bool has_names = false;
@@ -118,7 +118,7 @@ struct Layout final : FormatMetadata {
                                                             std::span<const Index> new_cells) const override;
 };
 
-/// Returns a text in UTF-8; one that is not valid UTF-8 is taken to be Latin-1.
+/// Returns a text in UTF-8; a text that is not valid UTF-8 is taken to be Latin-1.
 std::string utf8(std::string text);
 
 /// Returns the path of the dataset of a profile.
@@ -132,7 +132,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
 // ---- parts of the reader
 
-/// A file that is being read, and what has been found so far.
+/// A file that is being read, and the results so far.
 struct Reading {
   Reading(const FilePath& path, Notes& warnings);
 
@@ -142,7 +142,7 @@ struct Reading {
   std::string add_array(DataArray array);
   /// Returns the first cell of a type and the number of these cells; 0 and the number of vertices if null.
   [[nodiscard]] std::pair<Index, Index> range(const GeometryType* type) const;
-  /// Marks a dataset as one that the writer writes.
+  /// Marks a dataset as written by the writer.
   void take(const std::string& path) { taken.insert(hdf5::normal_path(path)); }
 
   hdf5::File file;

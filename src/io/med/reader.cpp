@@ -227,7 +227,7 @@ void turn(std::span<Index> cell, std::span<const int> order) {
 }
 
 /// Puts the nodes of all cells in the order of a Mesh. Some programs write that order into the file: if
-/// nearly all volumes are positive as they are in the file, the nodes stay.
+/// nearly all volumes are positive in the order of the file, the nodes stay.
 void turn_cells(Reading& reading) {
   Mesh& mesh = reading.mesh;
   WedgeVote vote(mesh.points);
@@ -274,7 +274,7 @@ std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& path
 }
 
 bool are_unique(std::vector<std::int64_t> numbers) {
-  // most files give them in order
+  // most files give the numbers in order
   const auto descends = [](std::int64_t number, std::int64_t next) { return number >= next; };
   if (std::adjacent_find(numbers.begin(), numbers.end(), descends) == numbers.end()) return true;
   std::sort(numbers.begin(), numbers.end());
@@ -298,7 +298,7 @@ struct Collected {
   }
 };
 
-/// Reads what belongs to vertices, or to cells of each type, besides coordinates and nodes.
+/// Reads the data of vertices, or of cells of each type, besides coordinates and nodes.
 class ItemReader {
  public:
   ItemReader(Reading& reading, Association association) : reading_(reading), association_(association) {}

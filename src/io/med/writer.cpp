@@ -16,7 +16,7 @@
 #include <type_traits>
 #include <variant>
 
-// Writes a file: what it had besides the mesh, then the mesh, its numbers and names.
+// Writes a file: its contents besides the mesh, then the mesh, its numbers and names.
 
 namespace meshorder::med {
 namespace {
@@ -45,7 +45,7 @@ Values columns_of(const std::vector<Point>& points, int axes) {
   return columns;
 }
 
-/// Marks a group as one that has values for all its items.
+/// Marks a group as having values for all its items.
 void mark_whole(hdf5::File& file, const std::string& group) {
   file.set_attribute(group, "CGT", std::int64_t{1});
   file.set_attribute(group, "CGS", std::int64_t{1});
@@ -114,7 +114,7 @@ std::optional<std::vector<Result>> rows_for(const Array& values, const std::vect
   return result;
 }
 
-/// Writes what belongs to vertices, or to cells, besides coordinates and nodes.
+/// Writes the data of vertices, or of cells, besides coordinates and nodes.
 class ItemWriter {
  public:
   ItemWriter(Writing& writing, Association association)
@@ -145,7 +145,7 @@ class ItemWriter {
     }
   }
 
-  /// Writes what belongs to these vertices or cells into their group.
+  /// Writes the data of these vertices or cells into their group.
   void write(const std::string& group, const Items& of_file, const std::vector<Index>& items) {
     write_numbers(group + "/NUM", of_file, items);
     write_families_of(group + "/FAM", of_file, items);
@@ -379,7 +379,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const Layout layout = own != nullptr ? *own : new_layout(mesh);
   hdf5::write_from(path, *layout.file, [&](hdf5::File& file) {
     Writing writing{mesh, layout, file, notes, {}, {}};
-    std::vector<Index>* of_type = nullptr;  // neighbours are mostly of one type
+    std::vector<Index>* of_type = nullptr;  // neighbouring cells mostly have the same type
     for (Index c = 0; c < mesh.cell_count(); ++c) {
       if (c == 0 || mesh.cells.shapes[c] != mesh.cells.shapes[c - 1] ||
           mesh.cells.vertex_count(c) != mesh.cells.vertex_count(c - 1)) {

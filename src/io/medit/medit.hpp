@@ -46,7 +46,7 @@ inline constexpr std::array kCellKinds{
 };
 inline constexpr std::size_t kLinearKinds = 7;
 
-/// What positions in a list or table refer to: vertices, or the cells of one section.
+/// The target of positions in a list or table: vertices, or the cells of one section.
 using Target = std::optional<Shape>;  // none: vertices
 
 /// A section that lists positions. It is read as a set of its name.
@@ -67,8 +67,8 @@ inline constexpr std::array kListKinds{
     ListKind{"ParallelQuadrilaterals", Shape::quad},
 };
 
-/// A table: each line has a position and numbers, which are kept; they refer to normals, tangents or a
-/// geometry in another file. It is read as an array of its name on the positions that occur.
+/// A table: each line has a position and numbers. The numbers are kept: they refer to normals, tangents or a
+/// geometry in another file. A table is read as an array of its name on the positions that occur.
 inline constexpr std::array kTableKinds{
     ListKind{"NormalAtVertices", {}},
     ListKind{"TangentAtVertices", {}},
@@ -81,7 +81,7 @@ inline constexpr std::array kTableKinds{
     ListKind{"TrianglesOnGeometricQuadrilaterals", Shape::triangle},
     ListKind{"QuadrilateralsOnGeometricTriangles", Shape::quad},
     ListKind{"QuadrilateralsOnGeometricQuadrilaterals", Shape::quad},
-    ListKind{"VertexOnGeometricVertex", {}},  // from here on BAMG's and those of libMesh 3
+    ListKind{"VertexOnGeometricVertex", {}},  // from here on BAMG's tables and those of libMesh 3
     ListKind{"VertexOnGeometricEdge", {}},
     ListKind{"VertexOnGeometricTriangle", {}},
     ListKind{"VertexOnGeometricQuadrilateral", {}},
@@ -152,7 +152,7 @@ struct Metadata final : FormatMetadata {
   std::int64_t version = 2;
   std::string comments_before;
   std::string after_end;
-  std::vector<Section> sections;  ///< those that do not depend on the order
+  std::vector<Section> sections;  ///< sections that do not depend on the order
   std::vector<Rows> rows;
   std::vector<std::size_t> empty_sections;  ///< kinds of cells whose section is empty
   /// For kinds whose node order the file gives: the position in the file of each node in VTK's order.
@@ -163,7 +163,7 @@ struct Metadata final : FormatMetadata {
                                                             std::span<const Index> cells) const override;
 };
 
-/// Returns what a column of a RowKind refers to; the column must have a letter.
+/// Returns the target of a column of a RowKind; the column must have a letter.
 Target target_of(char column);
 
 /// Returns the kind of a cell type, or the number of kinds if there is none.
@@ -177,7 +177,7 @@ std::size_t kind_of_ordering(std::string_view keyword);
 std::vector<std::vector<int>> reference_nodes(Shape shape);
 
 /// Returns the kind of cells that positions of a target refer to: linear, else second order; the number of
-/// kinds if the mesh has neither. `counts` are the cells of each kind.
+/// kinds if the mesh has neither. `counts`: number of cells of each kind.
 std::size_t counted_kind(Shape target, std::span<const Index> counts);
 
 /// Adds the note "FILE `what`" for each file of solutions (.sol, .solb) beside the mesh.

@@ -64,7 +64,7 @@ std::size_t find_kind(const Kinds& kinds, std::string_view keyword) {
   return static_cast<std::size_t>(found - kinds.begin());
 }
 
-/// A section to be read after those that it refers to; its keyword ends at `byte`.
+/// A section to be read after the sections that it refers to; its keyword ends at `byte`.
 struct Pending {
   std::size_t kind;
   std::int64_t byte;
@@ -301,7 +301,8 @@ class Reader {
 
   // ---- sections that refer to vertices or cells
 
-  /// Skips a section that is read later. Each row has `words` words; if 0, as many as the first line.
+  /// Skips a section that is read later. Each row has `words` words; if 0, the number of words of the first
+  /// line.
   void skip_rows(std::vector<Pending>& pending, std::size_t kind, int words) {
     pending.push_back({kind, in_.byte()});
     const Index count = in_.count(what_count(), 2 * std::max(words, 1));
@@ -394,8 +395,8 @@ class Reader {
   }
 
   /// Returns the columns of a section of that kind in this file. A file without triangles and quadrilaterals
-  /// is a geometry: its domains name its own edges. In a mesh, domains of the geometry name edges of another
-  /// file, which are kept.
+  /// is a geometry: its domains name edges of the same file. In a mesh, domains of the geometry name edges of
+  /// another file; these numbers are kept.
   [[nodiscard]] std::string_view columns_of(const RowKind& kind) const {
     const auto cells = [&](Shape shape) { return counted_kind(shape, counts_) < kCellKinds.size(); };
     const bool is_geometry = !cells(Shape::triangle) && !cells(Shape::quad);

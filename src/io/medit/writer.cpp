@@ -62,7 +62,7 @@ struct WriteContext {
   Labels cell_labels;
 };
 
-/// Returns the version to write: 4 if a reference needs 64 bits, else that of the file, or 2.
+/// Returns the version to write: 4 if a reference needs 64 bits, else the version of the file, or 2.
 std::int64_t version(const WriteContext& from) {
   const std::int64_t wanted = from.own ? from.own->version : 2;
   return fit_32_bits(from.vertex_labels.values) && fit_32_bits(from.cell_labels.values) ? wanted : 4;
@@ -110,7 +110,7 @@ void write_ordering(OutputFile& out, std::size_t kind) {
 
 // ---- sections that refer to vertices or cells
 
-/// Returns the position of a vertex or cell among those that a section refers to; −1 if it is not one of
+/// Returns the position of a vertex or cell among the items that a section refers to; −1 if it is not one of
 /// them.
 Index position_in(const WriteContext& from, const Target& target, Index item) {
   if (!target) return item;

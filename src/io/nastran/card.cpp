@@ -108,7 +108,7 @@ class Splitter {
     }
   }
 
-  /// Compares the name of a line with the one at the end of the line before.
+  /// Compares the name of a line with the name at the end of the line before.
   void check_name(std::string_view name) {
     const std::string_view own = line_name(name);
     if (!own.empty() && !next_name_.empty() && own != next_name_) {

@@ -52,8 +52,8 @@ struct Field {
   std::string_view text;   ///< without blanks around it
 };
 
-/// The fields of a card. Field 0 is the name. Then each line has 8 fields, or 4 if they are large; numbers go
-/// on from line to line.
+/// The fields of a card. Field 0 is the name. Then each line has 8 fields, or 4 if they are large. The
+/// numbering of fields goes on from line to line.
 struct CardFields {
   std::vector<Field> fields;
   bool is_large = false;     ///< whether the first line has large fields
@@ -104,8 +104,9 @@ struct RealText {
   bool is_rounded = false;  ///< whether it reads back to another number
 };
 
-/// Returns the shortest text that reads back to the same bits; if that has more than 16 characters, the text
-/// of the value rounded to as many digits as fit. Has a point, and no letter before the exponent.
+/// Returns the shortest text that reads back to the same bits. If it has more than 16 characters, returns the
+/// text of the value rounded to as many digits as fit. The text has a point, and no letter before the
+/// exponent.
 RealText real_text(double value);
 
 }  // namespace meshorder::nastran

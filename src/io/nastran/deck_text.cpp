@@ -131,7 +131,7 @@ std::string DeckText::quoted_name(std::string_view line) {
   return name.append(line.substr(0, line.find(quote)));
 }
 
-/// Handles INCLUDE 'name': the next lines are those of that file.
+/// Handles INCLUDE 'name': the next lines come from that file.
 void DeckText::include() {
   const std::int64_t number = lines_.at().line();
   std::string_view line;

@@ -32,8 +32,8 @@ class DeckText {
 
   /// Throws InputError at the line of that byte of the text.
   [[noreturn]] void fail(std::size_t byte, const std::string& what, const std::string& remedy) const;
-  /// Returns the file and line of that byte. O(bytes since the byte of the last call),
-  /// or O(bytes of the file) if that byte came later.
+  /// Returns the file and line of that byte. O(bytes since the byte of the last call), or O(bytes of the
+  /// file) if that byte came later.
   [[nodiscard]] Location location(std::size_t byte) const;
 
  private:
@@ -56,7 +56,7 @@ class DeckText {
   std::string text_;
   Piece bulk_;
   std::vector<Origin> origins_;
-  /// The last byte whose line was asked for; npos before the first.
+  /// The byte of the last call of `location`; npos before the first call.
   struct Counted {
     std::size_t byte = std::string::npos;
     std::int64_t line = 0;

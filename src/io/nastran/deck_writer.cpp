@@ -104,7 +104,7 @@ class BulkWriter {
     append_edited_card(card);
   }
 
-  /// Writes a node, whose coordinates differ from those in the file, in the basic system.
+  /// Writes a node in the basic system because its coordinates differ from the file.
   void write_moved_node(Index v) {
     std::vector<std::string> texts{std::to_string(nodes_.at(v)), deck_.has_default_system ? "0" : ""};
     for (const double x : mesh_.points[v]) {
@@ -238,7 +238,8 @@ class BulkWriter {
     return association == Association::vertices ? nodes_ : elements_;
   }
 
-  /// Writes a card with ranges of numbers: with these if they still hold the same items, else with a list.
+  /// Writes a card with ranges of numbers. If the ranges no longer hold the same items, writes a list
+  /// instead; for PLOAD4, one card for each item.
   void write_ranges(std::string_view card, const std::string& name, const References& found) {
     std::vector<NumberRange> ranges;
     if (name == "PLOAD4") {

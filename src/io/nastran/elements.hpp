@@ -15,7 +15,7 @@ namespace meshorder::nastran {
 enum class Extra : std::uint8_t {
   none,
   orientation,  ///< field 5 is a node if it is an integer and the next two are blank, else a direction
-  warping       ///< likewise, and fields 17 and 18 are points
+  warping       ///< as `orientation`; fields 17 and 18 are points
 };
 
 /// A card of elements.
@@ -23,7 +23,7 @@ struct ElementType {
   std::string_view name;
   Shape shape;
   int corners;               ///< nodes that every element has
-  int most;                  ///< nodes with those of edges, faces and the interior
+  int most;                  ///< nodes including those of edges, faces and the interior
   bool has_property = true;  ///< whether field 2 is the number of a property
   Extra extra = Extra::none;
 

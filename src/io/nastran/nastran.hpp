@@ -25,12 +25,12 @@ constexpr std::int64_t kLargestNumber = 99'999'999;
 struct ElementCard {
   Piece place;
   const ElementType* type = nullptr;
-  int nodes = 0;  ///< of the cell: all that the card has, or the corners where some of the others are missing
+  int nodes = 0;  ///< of the cell: all nodes of the card, or the corners if the card lacks some of the others
 };
 
 /// A file, and where its nodes and elements are in it.
 struct Deck {
-  std::string text;  ///< all lines, those of included files in place
+  std::string text;  ///< all lines; lines of included files are in place
   Piece bulk;        ///< the lines between BEGIN BULK and ENDDATA, or all
   std::vector<Piece> nodes;
   std::vector<ElementCard> elements;
@@ -40,22 +40,22 @@ struct Deck {
   bool has_default_system = false;  ///< GRDSET gives a system to nodes that name none
   /// Properties for elements that name none, by the name of their card: from BAROR and BEAMOR.
   std::map<std::string_view, std::int64_t> default_properties;
-  std::vector<std::int64_t> other_points;    ///< numbers of points that are no nodes, ascending
-  std::vector<std::int64_t> other_elements;  ///< numbers of elements that are no cells, ascending
+  std::vector<std::int64_t> other_points;    ///< numbers of points that are not nodes, ascending
+  std::vector<std::int64_t> other_elements;  ///< numbers of elements that are not cells, ascending
   std::vector<EntitySet> sets;               ///< of the cards SET3; members are positions in the file
   std::int64_t last_set = 0;                 ///< the largest number of a set
   std::string line_end = "\n";
-  /// Cards that may name nodes or elements by number and are not understood: "CWELD (line 12)". With one of
-  /// them all numbers must stay.
+  /// Cards that may name nodes or elements by number and are not understood: "CWELD (line 12)". If there are
+  /// any, all numbers must stay.
   std::vector<std::string> unknown;
-  std::vector<std::string> contents;  ///< what other formats lose
+  std::vector<std::string> contents;  ///< contents that other formats lose
 };
 
 /// A deck, and where its nodes and elements are in the mesh.
 using Metadata = DeckMetadata<Deck>;
 
-/// Returns the deck that a mesh can be written into; null if it came from elsewhere or no longer fits. Valid
-/// as long as the mesh. O(cells).
+/// Returns the deck that a mesh can be written into; null if the mesh came from elsewhere or no longer fits.
+/// Valid as long as the mesh. O(cells).
 const Metadata* own_deck(const Mesh& mesh);
 
 /// The words before the name of a set, in the comment above its SET3.
@@ -63,7 +63,7 @@ constexpr std::string_view kSetComment = "$ set: ";
 
 Mesh read(const FilePath& path, Notes& notes);
 
-/// Writes a mesh into its deck; notes what has no place.
+/// Writes a mesh into its deck; notes the parts that have no place in it.
 void write_into_deck(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes);
 
 /// Appends a set as SET3, with its name in a comment. Notes a set without members, which is left out, and a

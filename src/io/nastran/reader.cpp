@@ -119,7 +119,7 @@ class DeckReader {
 
   // ---- elements
 
-  /// Reads an element that is a cell; returns false for a CBUSH to the ground, which is no cell.
+  /// Reads an element that is a cell; returns false for a CBUSH to the ground, which is not a cell.
   bool read_element(const ElementType& type) {
     check_lines();
     const std::size_t first = type.first_node();
@@ -240,7 +240,7 @@ class DeckReader {
 
   // ---- the end
 
-  /// Returns the cards of elements that are no cells: they begin with C, but not with CORD.
+  /// Returns the cards of elements that are not cells: they begin with C, but not with CORD.
   [[nodiscard]] std::vector<std::string> other_elements() const {
     std::vector<std::string> names;
     std::ranges::copy_if(others_.list, std::back_inserter(names), [](const std::string& name) {
@@ -314,7 +314,7 @@ class DeckReader {
     }
   }
 
-  /// Gives elements that name no property that of BAROR or BEAMOR, or else their own number.
+  /// Gives elements without a property the property of BAROR or BEAMOR, else their own number.
   void complete_properties() {
     for (std::size_t k = 0; k < labels_.size(); ++k) {
       if (labels_[k] != 0) continue;
@@ -352,7 +352,7 @@ class DeckReader {
     deck_->sets = mesh_.sets;
   }
 
-  /// Returns the name in the comment above a card, or the number of the set.
+  /// Returns the name of a set: from the comment above its card, else "SET3 N" with the number of the set.
   [[nodiscard]] std::string name_of_set(std::string_view text, Piece card) const {
     const std::string_view before = text.substr(0, card.begin);
     const std::size_t end = before.find_last_not_of("\r\n") + 1;
@@ -400,7 +400,7 @@ class DeckReader {
     }
   }
 
-  /// Finds what names nodes or elements in case control: sets, curves, and grid points of commands.
+  /// Finds names of nodes or elements in case control: in sets, curves, and grid points of commands.
   template <class Add>
   void find_in_control(std::string_view control, const Add& add) const {
     bool in_set = false;

@@ -15,8 +15,8 @@ namespace meshorder::nastran {
 namespace {
 
 /// One letter for each field after the name: a node (n), a node if the next field is blank (G), an element
-/// (e), the number of an element that is no cell (x), other (-). Letters in parentheses repeat to the end of
-/// the card. N, E and S begin a list of nodes, elements and points that are no nodes. From a "." on all
+/// (e), the number of an element that is not a cell (x), other (-). Letters in parentheses repeat to the end
+/// of the card. N, E and S begin a list of nodes, elements and points that are not nodes. From a "." on all
 /// fields must be blank: some programs give a second element there.
 struct Layout {
   std::string_view name;
@@ -78,7 +78,7 @@ constexpr std::array kLayouts{
     Layout{"RROD", "xnn"},
     Layout{"RSPLINE", "x-n(n-)"},
     Layout{"RTRPLT", "xnnn"},
-    // elements that are no cells
+    // elements that are not cells
     Layout{"CBUSH", "x-nnG"},
     Layout{"CBUSH1D", "x-nn"},
     Layout{"CDAMP1", "x-n-n"},
@@ -120,7 +120,7 @@ constexpr std::array kLayouts{
     Layout{"SPOINT", "S"},
 };
 
-/// Cards that name no nodes and no elements.
+/// Cards that name neither nodes nor elements.
 constexpr std::array<std::string_view, 124> kPlain{
     // clang-format off
     "ACCEL", "BCPROP", "BCTADD", "BCTPARM", "BFRIC", "CORD2C", "CORD2R", "CORD2S", "CREEP",
@@ -147,7 +147,7 @@ bool is_word(std::string_view field, std::string_view word) {
   return field.size() == word.size() && same_but_for_case(field, word);
 }
 
-/// Collects what a card names.
+/// Collects the nodes and elements that a card names.
 class Finder {
  public:
   explicit Finder(const CardFields& card) : card_(card) {}
@@ -198,7 +198,7 @@ class Finder {
     return found_;
   }
 
-  /// DMIG gives a matrix by columns, each for a point; its first card names none.
+  /// DMIG gives a matrix by columns, each for a point; its first card names no points.
   std::optional<References> of_dmig() { return card_.text(2) == "0" ? found_ : by_layout("-n--(n---)"); }
 
   /// PLOAD4, a pressure on solids or shells, names one element and two nodes, or a range of elements.
@@ -214,7 +214,7 @@ class Finder {
 
   std::optional<References> of_param() { return is_word(card_.text(1), "GRDPNT") ? by_layout("-n") : found_; }
 
-  /// SET3 is a set of grid points or elements; sets of properties name neither, other sets are not known.
+  /// SET3 is a set of grid points or elements. Sets of properties name neither; other sets are not known.
   std::optional<References> of_set3() {
     const std::string_view kind = card_.text(2);
     if (is_word(kind, "GRID")) return by_layout("--N");

@@ -21,7 +21,7 @@ struct Reference {
   std::size_t field;
 };
 
-/// What a card names.
+/// The nodes and elements that a card names.
 struct References {
   std::vector<Reference> fields = {};  ///< ascending
   /// The fields from here to the end of the card are a list of numbers, and of ranges "1 THRU 9" or
@@ -29,13 +29,12 @@ struct References {
   std::size_t list = 0;
   Association of_list = Association::vertices;
   bool is_range = false;  ///< whether the list has a range
-  /// Whether the card defines items that are no vertices and no cells: points, or an element.
+  /// Whether the card defines items that are neither vertices nor cells: points, or an element.
   bool defines_points = false;   ///< the list has their numbers
   bool defines_element = false;  ///< field 1 has its number
 };
 
-/// Returns the references of a card of that name (in capitals); none if the card, or the way in which it is
-/// written, is not known.
+/// Returns the references of a card of that name (in capitals); none if the card or its form is not known.
 std::optional<References> references(std::string_view name, const CardFields& card);
 
 /// A range of numbers from, from + step, … ≤ to; one number if from = to.
@@ -48,8 +47,8 @@ struct NumberRange {
 /// Returns the numbers and ranges of the list of a card; none if the list holds anything else.
 std::optional<std::vector<NumberRange>> ranges_of(const CardFields& card, std::size_t list);
 
-/// Returns those of `others` (ascending) that the list of a card names. `found` receives the positions of the
-/// file's items that the list names, each once.
+/// Returns the numbers in `others` (ascending) that the list of a card names. `found` receives the positions
+/// of the file's items that the list names, each once.
 std::vector<std::int64_t> numbers_in_list(const std::vector<NumberRange>& ranges, const IdMap& items,
                                           const std::vector<std::int64_t>& others, std::vector<Index>& found);
 

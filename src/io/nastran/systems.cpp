@@ -12,7 +12,7 @@
 namespace meshorder::nastran {
 namespace {
 
-constexpr int kMostOpen = 100;  // systems in a chain, each given in the next
+constexpr int kMostOpen = 100;  // systems in a chain in which each refers to the next
 
 Point in_frame_directions(double radius, double angle, double z) {
   const double radians = angle * std::numbers::pi / 180;

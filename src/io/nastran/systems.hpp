@@ -14,11 +14,11 @@
 namespace meshorder::nastran {
 
 /// The coordinate systems of a deck, in which nodes may be given: CORD1R, CORD1C, CORD1S by three nodes,
-/// CORD2R, CORD2C, CORD2S by three points. One may be given in another. 0 is the basic system. Angles are in
-/// degrees (MSC Nastran Quick Reference Guide, "CORD2R").
+/// CORD2R, CORD2C, CORD2S by three points. A system may be given in another system. 0 is the basic system.
+/// Angles are in degrees (MSC Nastran Quick Reference Guide, "CORD2R").
 class CoordinateSystems {
  public:
-  /// Returns the position of a node in the basic system; `byte` is that of the card that names the node.
+  /// Returns the position of a node in the basic system; `byte` is the byte of the card that names the node.
   using NodePosition = std::function<Point(std::int64_t node, std::size_t byte)>;
 
   explicit CoordinateSystems(const DeckText& file) : file_(file) {}
