@@ -46,7 +46,7 @@ bool takes_cell_order(const FilePath& dictionary) {
   FoamFile file(dictionary);
   bool is_manual = false;
   bool names_order = false;
-  int depth = 0;  // of braces: only outside of them is `method` that of the dictionary
+  int depth = 0;  // of braces; only a `method` outside of all braces belongs to the dictionary
   std::string key = ";";
   while (!file.at_end()) {
     const std::string value(file.token());

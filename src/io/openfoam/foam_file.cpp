@@ -261,7 +261,7 @@ std::int64_t FoamFile::size(std::string_view what, std::int64_t bytes_each) {
   if (size > kMaxIndex) fail(fmt::format("{} is {}", of, size), "at most 2147483647 are possible");
   if (size > 0) refuse_text();
   const std::size_t after = position_;
-  // the last entry of a text file may lack what separates it from the next
+  // the last entry of a text file may lack a separator after it
   if (!at('{') && size > 0 && size > (bytes_left() + 1) / bytes_each) {
     position_ = after;
     fail(fmt::format("{} is {}, but only {} bytes follow", of, size, bytes_left()),

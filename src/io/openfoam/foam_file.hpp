@@ -38,7 +38,7 @@ class FoamFile {
 
   /// Returns the value of `note` in the header; empty if there is none.
   [[nodiscard]] const std::string& note() const noexcept { return note_; }
-  /// Throws an InputError with the line of `class` in the header if that has another value.
+  /// Throws an InputError with the line of `class` in the header if `class` has another value.
   void require_class(std::string_view class_name) const;
 
   /// Throws an InputError at the current line or byte.
@@ -62,7 +62,7 @@ class FoamFile {
 
   /// Takes the next word, quoted text or punctuation mark; empty at the end of the file. Quotes are left out.
   std::string_view token();
-  /// Returns whether nothing but blanks and comments is left.
+  /// Returns whether only blanks and comments are left.
   [[nodiscard]] bool at_end();
 
  private:
@@ -82,7 +82,7 @@ class FoamFile {
   std::errc take_number(T& value);
   /// Throws an InputError if the list that follows is text in a file whose header says `format binary`.
   void refuse_text() const;
-  /// Throws an InputError on the next word, which is no such number.
+  /// Throws an InputError at the next word, which is not such a number.
   [[noreturn]] void fail_number(std::string_view what, std::string_view needed);
   std::int64_t integer(std::string_view what);
   double finite(std::string_view what);

@@ -72,7 +72,7 @@ std::optional<std::int64_t> count_in(std::string_view note, std::string_view key
   return is_number ? std::optional(count) : std::nullopt;
 }
 
-/// Notes the counts in a header that differ from those of the mesh.
+/// Notes the counts in a header that differ from the counts of the mesh.
 void compare_counts(const FoamFile& file, const Sides& sides, Notes& notes) {
   const std::array<std::pair<std::string_view, std::int64_t>, 3> found{
       {{"nCells", sides.cells},
@@ -99,7 +99,7 @@ Sides read_sides(const MeshFolder& folder, Notes& notes) {
   FoamFile neighbour(folder.file("neighbour"));
   neighbour.require_class("labelList");
   neighbour.read_labels(sides.neighbour, "neighbour", -1, faces);
-  // old versions list all faces and give those at the boundary a −1
+  // old versions list all faces and give faces at the boundary a −1
   while (!sides.neighbour.empty() && sides.neighbour.back() < 0) sides.neighbour.pop_back();
   if (sides.neighbour.size() > sides.owner.size()) {
     throw InputError(neighbour.file(),

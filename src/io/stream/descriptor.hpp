@@ -37,8 +37,7 @@ class Descriptor {
   int descriptor_ = -1;
 };
 
-/// Returns how many descriptors may be held for locks: a quarter of those that the process may have, at most
-/// 128.
+/// Returns how many descriptors may be held for locks: a quarter of the process's limit, at most 128.
 [[nodiscard]] std::size_t descriptors_for_locks() noexcept;
 
 /// Waits until the names in a folder are on the disk.

@@ -42,7 +42,7 @@ std::size_t read_on_threads(InputFile& file, std::span<char> into) {
 
 /// Returns the first `wanted` bytes of a file.
 std::string read_sized(InputFile& file, const std::string& name, std::uint64_t wanted) {
-  // the limit on claims does not limit what a file holds
+  // the limit on claims does not limit the stored bytes of a file
   const std::uint64_t most = std::max(limit_on_unknown_sizes(), usable_memory() / 4 * 3);
   if (wanted > most) {
     throw InputError(
@@ -63,7 +63,7 @@ std::string read_sized(InputFile& file, const std::string& name, std::uint64_t w
   return bytes;
 }
 
-/// Returns all that `read` puts into a buffer, call by call, until it puts nothing there.
+/// Calls `read`, which fills a buffer, until it puts nothing there. Returns all bytes.
 template <class Read>
 std::string all_of(const Read& read, const std::string& name) {
   constexpr std::size_t kPart = std::size_t{1} << 20;
@@ -80,7 +80,7 @@ std::string all_of(const Read& read, const std::string& name) {
   return bytes;
 }
 
-/// Returns the bytes of a file, at most `most` of them; of a pipe all.
+/// Returns the bytes of a file, at most `most` of them; of a pipe, all bytes.
 std::string read_from_disk(const FilePath& path, std::uint64_t most) {
   InputFile file = path.open();
   // files of /proc have no size either

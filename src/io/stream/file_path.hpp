@@ -17,7 +17,7 @@ namespace meshorder {
 /// Returns the path without the ".gz" (in any case) at its end, if it has one.
 std::filesystem::path without_gz(std::filesystem::path path);
 
-/// Returns the rest of a stream; `name` is for messages. Throws InputError for one that does not end
+/// Returns the rest of a stream; `name` is for messages. Throws InputError for a stream that does not end
 /// within the limit on memory.
 std::string read_to_end(std::istream& stream, const std::string& name);
 
@@ -33,11 +33,12 @@ class FileStore : public Polymorphic {
 
 class OutputSet;
 
-/// A file on disk or in a store, whether it exists or not. Knows which part of it the user named: symbolic
-/// links are followed there, but not in what this program derived from it, such as mesh.ele of mesh.node.
+/// The path of a file on disk or in a store; the file need not exist. Records which part of the path the user
+/// named. Symbolic links are followed in that part, but not in a part that this program derived, such as
+/// mesh.ele from mesh.node.
 class FilePath {
  public:
-  // NOLINTBEGIN(google-explicit-constructor): a file on disk is what a path says
+  // NOLINTBEGIN(google-explicit-constructor): a path names a file on disk
   /// A file on disk.
   FilePath(std::filesystem::path path) : path_(std::move(path)) {}
   FilePath(const std::string& path) : path_(path) {}
@@ -50,7 +51,7 @@ class FilePath {
       : path_(std::move(path.path_)), folder_(std::move(path.folder_)), set_(&set) {}
 
   /// A file on disk below a folder that the user named; this program, or a file, gave the rest of the path.
-  /// It is read only if it lies below the folder after links are resolved (see `may_include`).
+  /// The file is read only if it lies below the folder after links are resolved (see `may_include`).
   static FilePath in(std::filesystem::path folder, std::filesystem::path path);
   /// The same with the path's own folder; this program made the file's name.
   static FilePath derived(const std::filesystem::path& path) { return in(path.parent_path(), path); }
@@ -75,8 +76,8 @@ class FilePath {
   [[nodiscard]] bool is_same(const FilePath& other) const;
   /// Opens a file on disk. Throws InputError as `InputFile` does.
   [[nodiscard]] InputFile open() const;
-  /// Returns the bytes of the file, of a gzip file decompressed. Throws InputError for a folder, a device,
-  /// an unreadable or an empty file, one that changes meanwhile or exceeds the limit on memory, and a damaged
+  /// Returns the bytes of the file; decompresses a gzip file. Throws InputError for a folder, a device, an
+  /// unreadable or an empty file, a file that changes meanwhile or exceeds the limit on memory, and a damaged
   /// gzip file; Unavailable for a gzip file in a build without zlib.
   [[nodiscard]] std::string read() const;
   /// Returns its first bytes, at most `most`, not decompressed. Reads a pipe to its end. Throws

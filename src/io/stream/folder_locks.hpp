@@ -12,8 +12,8 @@
 
 namespace meshorder {
 
-/// Marks a folder that this process has locked by other means, as long as this object lives: `FolderLocks`
-/// skips the folder, since otherwise the process would wait for itself.
+/// Marks a folder that this process has locked by other means, as long as this object lives. `FolderLocks`
+/// skips the folder: otherwise the process would wait for itself.
 class HeldFolder {
  public:
   /// @param descriptor  of the open folder
@@ -28,13 +28,13 @@ class HeldFolder {
   std::pair<dev_t, ino_t> identity_{};
 };
 
-/// Locks on folders (`flock`), by which only one process at a time renames files there. Whoever may read a
-/// folder can lock it, so the wait is limited: after ten seconds the process goes on without the locks, as
-/// it does where a folder cannot be opened or the file system has none.
+/// Locks on folders (`flock`): only one process at a time renames files there. Anyone who may read a folder
+/// can lock it. Therefore the wait is limited: after ten seconds the process goes on without the remaining
+/// locks. It also goes on if a folder cannot be opened or the file system has no locks.
 class FolderLocks {
  public:
-  /// Locks the folders, always in the same order, so that no two processes wait for each other; of many
-  /// folders only the first ones, which suffices if all processes name the same folders.
+  /// Locks the folders, always in the same order: two processes then never wait for each other. If there are
+  /// many folders, locks only the first ones, which suffices if all processes name the same folders.
   explicit FolderLocks(const std::set<std::filesystem::path>& folders);
 
  private:

@@ -57,7 +57,7 @@ class InflatedBlocks {
   std::size_t used_ = 0;
 };
 
-/// A running decompression. The bytes may hold several members, as those of `cat a.gz b.gz` do.
+/// A running decompression. The bytes may hold several members, as `cat a.gz b.gz` writes them.
 class Inflation {
  public:
   Inflation(const std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {

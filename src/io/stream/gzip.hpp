@@ -9,13 +9,13 @@ namespace meshorder {
 ///
 /// @param bytes  all bytes of a file
 /// @param file   its path, for errors
-/// @throws InputError for a damaged or truncated gzip file, and for one that expands beyond the limit of
-///         `claim_memory`
+/// @throws InputError for a damaged or truncated gzip file, and if the file expands beyond the limit of
+/// `claim_memory`
 /// @throws Unavailable for a gzip file in a build without zlib
 std::string uncompressed(std::string bytes, const std::string& file);
 
-/// Returns the first bytes of a file as they are; of a gzip file what can be decompressed from them, at most
-/// 1 MiB. Serves to find out what a file holds. Throws Unavailable as `uncompressed` does.
+/// Returns the first bytes of a file as they are; for a gzip file, the bytes that can be decompressed from
+/// them, at most 1 MiB. Used to find out what a file holds. Throws Unavailable as `uncompressed` does.
 std::string uncompressed_start(std::string bytes, const std::string& file);
 
 }  // namespace meshorder

@@ -12,8 +12,8 @@
 
 namespace meshorder {
 
-/// Reads numbers that are text or binary, as the file's header says. Errors name the line of a text file, the
-/// byte of a binary one. `what` names the number in an error.
+/// Reads numbers that are text or binary, as the file's header says. Errors name the line of a text file and
+/// the byte of a binary one. `what` names the number in an error.
 struct NumberReader {
   explicit NumberReader(const FilePath& path) : scanner(path) {}
 

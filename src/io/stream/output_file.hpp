@@ -25,9 +25,9 @@ class Scratch;
 /// commit the target stays unchanged. The protocol is in output_set.hpp.
 ///
 /// Symbolic links are followed as `FilePath` says. The new file gets the owner, the group, the mode and the
-/// extended attributes of the old one as far as the system allows; further hard links of the old one keep the
-/// old content. What cannot be replaced (a device, a pipe, /dev/stdout) is kept in memory and written at
-/// `commit`.
+/// extended attributes of the old one as far as the system allows; further hard links of the old file keep
+/// the old content. For a target that cannot be replaced (a device, a pipe, /dev/stdout), the bytes are kept
+/// in memory and written at `commit`.
 class OutputFile {
  public:
   /// Throws InputError if the folder does not exist or cannot be written, or the target is a folder.
@@ -70,7 +70,7 @@ class OutputFile {
   /// Throws InputError for a target that cannot be replaced.
   [[nodiscard]] std::filesystem::path temporary() const;
 
-  /// Writes what is buffered and closes the file. Throws InputError if that fails, as on a full disk.
+  /// Writes all buffers and closes the file. Throws InputError if that fails, as on a full disk.
   void close();
 
   /// Completes the file and renames it into place, or adds it to the set of its target.

@@ -54,7 +54,7 @@ void refuse_link_of_others(const fs::path& link) {
 }
 
 /// Throws InputError if one of the folders or the file that this program named is a symbolic link: the owner
-/// of the folder above may have put it there so that another file is replaced.
+/// of the folder above may have put it there to have another file replaced.
 void refuse_links_in_derived(const FilePath& file) {
   if (!file.folder()) return;
   fs::path path = file.path();
@@ -84,7 +84,7 @@ constexpr const char* kAcl = "system.posix_acl_access";
 
 bool has_acl(const fs::path& path) { return ::getxattr(path.c_str(), kAcl, nullptr, 0) > 0; }
 
-/// Copies those extended attributes that the system lets this process copy.
+/// Copies the extended attributes that the system lets this process copy.
 void copy_extended_attributes(const fs::path& from, const Descriptor& to) {
   // removes the ACL that came from the folder's default ACL
   (void)::fremovexattr(to.get(), kAcl);

@@ -20,9 +20,10 @@ struct OutputPlace {
 /// Returns the folder of a path, "." for a plain name.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
-/// Returns where a path leads, with all symbolic links followed. Throws InputError for links in what this
-/// program named, for a folder, links in a circle, a name that the file system refuses and a link that
-/// another user left in a folder open to all; where this program named the file, for a device or a pipe.
+/// Returns where a path leads, with all symbolic links followed. Throws InputError for a folder, for links in
+/// a circle, for a name that the file system refuses, and for a link of another user in a folder open to all.
+/// If this program named the file or a part of its path, also for a link in that part and for a device or a
+/// pipe.
 OutputPlace output_place(const FilePath& file);
 
 /// Gives an open file the owner, the group, the mode and the extended attributes, ACLs among them, of the

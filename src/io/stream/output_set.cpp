@@ -34,11 +34,11 @@ int renamed(const fs::path& from, const fs::path& to) {
   return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
 
-/// A new file that replaces its target, or a target that is taken away.
+/// A new file that replaces its target, or a target that is removed.
 class Move {
  public:
-  /// @param fresh  the new file; empty: the target is taken away
-  /// @param old    where the old file is kept meanwhile
+  /// @param fresh  the new file; empty: the target is removed
+  /// @param old    place of the old file until the move is complete
   Move(fs::path fresh, fs::path target, fs::path old)
       : fresh_(std::move(fresh)), target_(std::move(target)), old_(std::move(old)) {}
 
@@ -46,12 +46,12 @@ class Move {
   [[nodiscard]] int apply() {
     existed_ = is_there(target_);
     if (fresh_.empty()) return existed_ ? renamed(target_, old_) : 0;
-    // where the file system has no hard links, the old file cannot be put back
+    // if the file system has no hard links, the old file cannot be put back
     if (existed_) std::ignore = ::link(target_.c_str(), old_.c_str());
     return renamed(fresh_, target_);
   }
 
-  /// Puts the old file back, also where `apply` failed. Returns 0 or an `errno`.
+  /// Puts the old file back, also if `apply` failed. Returns 0 or an `errno`.
   [[nodiscard]] int take_back() const {
     if (existed_ && is_there(old_)) return renamed(old_, target_);
     if (fresh_.empty() || is_there(fresh_)) return 0;  // nothing was done
@@ -78,7 +78,7 @@ bool is_beside_target(const FinishedFile& file) {
   return folder_of(output_place(file.target).path) == file.scratch.parent_path();
 }
 
-/// Gives a file the attributes of the one that it replaces and syncs it.
+/// Gives a file the attributes of the file that it replaces and syncs it.
 void complete(const FinishedFile& file, const OutputPlace& place) {
   if (place.is_through || folder_of(place.path) != file.scratch.parent_path())
     throw InputError(file.target.string(), "was replaced by something else meanwhile",
@@ -157,7 +157,7 @@ std::vector<std::string> put_in_place(std::span<const FinishedFile> files,
     }
     fresh.emplace_back(file.scratch / Scratch::kNew, place.path, file.scratch / Scratch::kOld);
   }
-  std::vector<Scratch> scratches;  // of what is taken away
+  std::vector<Scratch> scratches;  // for the removed files
   std::vector<Move> moves;
   const auto take_away = [&](const FilePath& file) {
     if (!is_there(file.path())) return;

@@ -11,7 +11,8 @@
 
 namespace meshorder {
 
-/// Output files that belong together: those written to a `FilePath` of this set. `commit` puts all in place.
+/// Output files that belong together: the files written to a `FilePath` of this set. `commit` puts all in
+/// place.
 class OutputSet {
  public:
   OutputSet() = default;
@@ -28,15 +29,15 @@ class OutputSet {
   /// Makes `commit` remove a file of an earlier run, if it exists, that is not part of this set.
   void remove(FilePath path) { removals_.push_back(std::move(path)); }
 
-  /// Makes `commit` first take away an old file without which no reader reads the others, such as one that
-  /// names them. A process that is killed in between then leaves a set that cannot be read, not a mixed one.
-  /// For outputs without a mark (see `put_in_place`). The new version of that file must be added last.
+  /// Makes `commit` first remove an old file without which no reader reads the other files, for example a
+  /// file that names them. If the process is then killed, the set cannot be read, but it is not a mixed one.
+  /// For outputs without a mark (see `put_in_place`). Add the new version of that file last.
   void remove_first(FilePath path) { removals_first_.push_back(std::move(path)); }
 
   /// Puts all files in place. Throws InputError as `put_in_place`.
   void commit();
 
-  /// Returns notes on files that were replaced: those with further hard links, which keep the old content.
+  /// Returns notes on replaced files with further hard links, which keep the old content.
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
  private:
@@ -52,11 +53,11 @@ struct FinishedFile {
   FilePath target;
 };
 
-/// Puts files in place of their targets, and takes others away. Every output of the program goes through
-/// here:
+/// Replaces targets by new files, and removes other files. Every output of the program goes through this
+/// function:
 ///
-/// 1. each file gets the attributes of the one that it replaces, and is synced;
-/// 2. the folders are locked (`flock`), so that sets of two processes do not mix;
+/// 1. each file gets the attributes of the file that it replaces, and is synced;
+/// 2. the folders are locked (`flock`): sets of two processes do not mix;
 /// 3. `removed_first` are moved into scratch folders; each file is renamed over its target, in this order;
 ///    `removed` are moved away;
 /// 4. the folders are synced and unlocked.
@@ -79,7 +80,7 @@ using PutInPlace = std::function<std::vector<std::string>(std::span<const Finish
                                                           std::span<const FilePath> removed)>;
 
 /// Makes `put_in_place` call `other`, which asks another process, for outputs whose scratch folders are not
-/// beside them (`keep_scratches_in`). To be called while there is one thread.
+/// beside them (`keep_scratches_in`). Call it while there is one thread.
 void put_in_place_by(PutInPlace other);
 
 }  // namespace meshorder

@@ -16,11 +16,11 @@
 namespace meshorder {
 
 /// Marks that the current thread reads one mesh: adds up the sizes of its files and the memory that they
-/// claim beyond that, and holds the folders in which files that they name may be.
+/// claim beyond that, and holds the folders that may contain files that they name.
 ///
-/// All claims of a mesh together may take the limit that is given; without one, 256 MiB plus 100 times the
-/// size of its files, but at most `memory_limit()`. Outside of any scope, each single claim may take
-/// `memory_limit()`.
+/// All claims of a mesh together must not exceed a limit: `memory`, else the limit that the process was
+/// given, else 256 MiB plus 100 times the size of the mesh's files, but at most `memory_limit()`. Outside of
+/// any scope, each single claim may take `memory_limit()`.
 class ReadScope {
  public:
   /// @param file             the mesh, for messages; must outlive this object
@@ -60,22 +60,23 @@ void count_file(const FilePath& file, std::uint64_t bytes);
 /// the reordered mesh and in the output.
 inline constexpr std::uint64_t kCopiesOfClaim = 4;
 
-/// Claims memory for data that a file announces but does not hold; to be called before the allocation. The
-/// bytes count `kCopiesOfClaim` times. Returns an empty text; if all claims of the mesh together would exceed
-/// its limit, claims nothing and returns the fault, "WHAT would take 64 GiB …".
+/// Claims memory for data that a file announces but does not hold. Call it before the allocation. The bytes
+/// count `kCopiesOfClaim` times. Returns an empty text; if all claims of the mesh together would exceed its
+/// limit, claims nothing and returns the fault, "WHAT would take 64 GiB …".
 [[nodiscard]] std::string refused_claim(std::uint64_t bytes, std::string_view what);
 
 /// The same for memory that a library needs only while it reads: counts once, and not for later claims.
 [[nodiscard]] std::string refused_for_a_while(std::uint64_t bytes, std::string_view what);
 
-/// Returns how many bytes of its limit the claims of the last mesh that was read have left.
+/// Returns the bytes of its limit that the last mesh read in this process did not claim.
 std::uint64_t left_by_last_reading();
 
 /// The advice in messages about a claim that is refused.
 inline constexpr const char* kClaimRemedy =
     "if you trust the file, raise the limit on memory (--limit-memory)";
 
-/// As `refused_claim`, but throws InputError at `where`; without a file there, for the mesh that is read.
+/// As `refused_claim`, but throws InputError at `where`; if `where` has no file, names the mesh that is being
+/// read.
 void claim_memory(std::uint64_t bytes, std::string_view what, Location where = {});
 
 /// Returns the limit in bytes on an input whose size is not known before it is read.
@@ -87,11 +88,11 @@ void allow_includes_from(std::filesystem::path folder);
 /// Returns the folders that `allow_includes_from` has allowed.
 const std::vector<std::filesystem::path>& allowed_include_folders();
 
-/// Returns the folders in which the files named by a file in `folder` may be: `folder` and the allowed ones.
+/// Returns the folders that may hold files named by a file in `folder`: `folder` and the allowed ones.
 std::vector<std::filesystem::path> folders_for_includes(const std::filesystem::path& folder);
 
-/// Returns whether the mesh `from` may name `file` to be read: whether it is below the folder of `from` or an
-/// allowed one, after links and .. are resolved. For files in a store the names alone count.
+/// Returns whether the mesh `from` may name `file` as a file to read: `file` must be below the folder of
+/// `from` or an allowed folder, after links and .. are resolved. For files in a store only the names count.
 bool may_include(const FilePath& from, const FilePath& file);
 
 /// The advice in messages about a file that `may_include` refuses.

@@ -64,7 +64,7 @@ const char* read_number(const char* at, const char* end, Number& value) {
   return code == std::errc{} && (after == end || is_separator(*after)) ? after : nullptr;
 }
 
-/// Divides the text from `begin` to `end` into parts, each of which ends after a separator or with the text.
+/// Divides the text from `begin` to `end` into parts. Each part ends after a separator or with the text.
 std::vector<std::string_view> divided_at_blanks(std::string_view text, std::size_t begin, std::size_t end,
                                                 std::size_t part_bytes) {
   std::vector<std::string_view> parts;
@@ -86,7 +86,7 @@ std::vector<std::size_t> first_words(const std::vector<std::string_view>& parts)
   return first;
 }
 
-/// What was read of a part.
+/// The numbers read from a part.
 struct PartRead {
   RegularNumbers numbers;
   bool is_regular = false;  ///< all words are numbers, and nothing else is there

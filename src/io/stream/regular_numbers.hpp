@@ -16,7 +16,7 @@ struct RegularNumbers {
   std::size_t count = 0;     ///< of the numbers
   std::size_t bytes = 0;     ///< of the text, up to the end of the last number or of the blanks after it
   std::int64_t lines = 0;    ///< line feeds in these bytes
-  bool has_returns = false;  ///< carriage returns may be among them, which end lines, too
+  bool has_returns = false;  ///< these bytes may contain carriage returns, which also end lines
 };
 
 /// As `read_regular_numbers`, for double, float, uint8, int32 and int64.
@@ -24,11 +24,11 @@ template <class Number>
 RegularNumbers read_numbers_of_type(std::string_view text, std::span<Number> values, std::size_t part_bytes);
 
 /// Reads numbers from the beginning of a text on all threads, as far as they are regular: in the form and
-/// range of `std::from_chars`, and separated by blanks, tabs and line ends alone. The caller reads the others
-/// one by one, as it would read all of them, so that errors and results are the same.
+/// range of `std::from_chars`, and separated by blanks, tabs and line ends alone. The caller reads the other
+/// numbers one by one, as it would read all of them: errors and results are then the same.
 ///
-/// The text is divided at blanks and line ends into parts. The words of the parts are counted, so that each
-/// part knows its first number.
+/// The text is divided at blanks and line ends into parts. The number of words in each part gives the first
+/// number of the next.
 ///
 /// @param values      receives the numbers, as many as fit; entries after those read may be overwritten
 /// @param part_bytes  least size of a part, > 0
@@ -57,7 +57,7 @@ std::size_t read_regular_numbers(Scanner& in, std::span<Number> values) {
   return read.count;
 }
 
-/// Returns how many words a text has, on all threads. Bytes up to the space separate them.
+/// Counts the words of a text on all threads. All bytes up to the space separate words.
 std::size_t count_words(std::string_view text);
 
 }  // namespace meshorder

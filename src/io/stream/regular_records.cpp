@@ -30,7 +30,7 @@ struct Part {
   bool is_regular = false;
 };
 
-/// Counts the lines of a part, and those that have a word, as a Scanner does.
+/// Counts all lines of a part, and lines with a word, as a Scanner does.
 void count_lines(std::string_view text, char comment, Part& part) {
   const std::string_view whole = text.substr(part.begin, part.end - part.begin);
   const bool has_returns = whole.find('\r') != std::string_view::npos;
@@ -49,7 +49,7 @@ void count_lines(std::string_view text, char comment, Part& part) {
   }
 }
 
-/// Divides the text from `begin` on into parts, up to where so many records usually end: a file may have many
+/// Divides the text from `begin` on into parts, up to the usual end of so many records. A file may have many
 /// short runs of records, and none of them may cost a pass over the rest of the text.
 std::vector<Part> divided(std::string_view text, std::size_t begin, std::size_t bytes, std::size_t records) {
   std::vector<Part> parts;

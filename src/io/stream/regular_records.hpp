@@ -14,14 +14,14 @@ namespace meshorder {
 /// it reports their errors and accepts what is unusual but valid. So errors and results are those of a reader
 /// that reads all records one by one.
 ///
-/// The text is divided at line ends into parts. Each part's lines that are not empty are counted, so
-/// that it knows its first record.
+/// The text is divided at line ends into parts. The number of lines with a word in each part gives the first
+/// record of the next.
 ///
-/// @param in     is after all that precedes the first record, on its line or before
+/// @param in     is after all text that precedes the first record, on its line or before
 /// @param count  the most records to read, ≥ 0
-/// @param read   `read(part, record)` takes the words of a record; returns false if it is not regular. It
-///               writes only what belongs to the record, and may be called again for the same one. A record
-///               is not regular either if `read` throws an Error, or more words follow on its line
+/// @param read   `read(part, record)` takes the words of a record; returns false if the record is not
+///              regular. It writes only data of the record, and may be called again for the same record. A
+///              record is also not regular if `read` throws an Error, or if more words follow on its line
 /// @param part_bytes  least size of a part, > 0
 /// @note O(bytes); memory: a few numbers for each part.
 Index read_regular_records(Scanner& in, Index count, const std::function<bool(Scanner&, Index)>& read,

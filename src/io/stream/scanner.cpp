@@ -57,7 +57,7 @@ void Scanner::seek(std::int64_t byte) {
   const auto is_pair = [&](std::size_t k) { return text_[k] == '\r' && text_[k + 1] == '\n'; };
   const auto [first, last] = std::minmax(position_, target);
   std::int64_t lines = 0;
-  // a pair that begins before has been counted
+  // a CR LF pair that begins before `first` has been counted
   for (std::size_t k = first > 0 && is_pair(first - 1) ? first + 1 : first; k < last; ++k) {
     if (!is_line_end(text_[k])) continue;
     ++lines;

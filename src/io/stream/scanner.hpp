@@ -53,7 +53,7 @@ class Scanner {
   [[nodiscard]] char comment() const noexcept { return comment_; }
   /// Moves to that byte. O(bytes moved).
   void seek(std::int64_t byte);
-  /// Moves on by so many bytes of this line. O(1).
+  /// Moves on by `bytes` bytes of this line. O(1).
   void move_on(std::size_t bytes) { position_ += bytes; }
 
   /// Throws an Error at the current line.
@@ -74,11 +74,11 @@ class Scanner {
   std::string_view word(std::string_view what);
   /// Returns the next word without taking it; empty at the end of the file.
   std::string_view peek_word();
-  /// Takes the next word if all of it is a plain number in the range of T; returns false and leaves it there
-  /// otherwise. Reads each byte once, where `word` and a parser read it twice.
+  /// Takes the next word if all of it is a plain number in the range of T; otherwise returns false and leaves
+  /// the word. Reads each byte once; `word` and a parser read it twice.
   template <class T>
   bool take_number(T& value);
-  /// The same for a finite real number; takes a number that is not finite, too, but returns false.
+  /// The same for a finite real number. Takes a number that is not finite as well, but returns false.
   bool take_finite(double& value) { return take_number(value) && std::isfinite(value); }
   /// Takes the next word as an integer of type T.
   template <class T>
@@ -88,7 +88,7 @@ class Scanner {
   /// Takes the next word as a finite real number.
   double finite(std::string_view what);
   /// Takes a number of items, 0 … kMaxIndex. Fails if the rest of the file is too short for them at
-  /// `min_bytes` each, so that a wrong count cannot cause a huge allocation.
+  /// `min_bytes` each: a wrong count cannot cause a huge allocation.
   Index count(std::string_view what, std::int64_t min_bytes);
   /// Checks a count that was read already.
   [[nodiscard]] Index checked_count(std::int64_t number, std::string_view what, std::int64_t min_bytes) const;
@@ -112,7 +112,8 @@ class Scanner {
   void skip_blanks();
   void next_line();
   [[nodiscard]] bool at_break() const;
-  /// Skips spaces; returns whether a word follows. False does not mean that none does: a tab may precede it.
+  /// Skips spaces; returns whether a word follows at once. If not, one may still follow, for example after a
+  /// tab.
   bool skip_spaces() {
     while (text_[position_] == ' ') ++position_;  // a zero byte ends the text
     return text_[position_] > ' ' && text_[position_] != comment_;
@@ -126,8 +127,8 @@ class Scanner {
     }
     return true;
   }
-  /// Takes a number of digits alone, before a space or line feed and too few to overflow; otherwise returns
-  /// false and skips spaces and line feeds only. Most numbers of a mesh are such.
+  /// Takes a number that has only digits, ends before a space or line feed and is too short to overflow;
+  /// otherwise returns false, and skips only spaces and line feeds. Most numbers of a mesh have this form.
   template <class T>
   bool take_digits(T& value);
   template <class T>
@@ -148,7 +149,7 @@ T parse_integer(const Scanner& at, std::string_view text, std::string_view what)
 /// Returns `text` as a real number; throws an Error at the scanner's line.
 double parse_real(const Scanner& at, std::string_view text, std::string_view what);
 
-/// Returns at most 40 characters of `text` for a message, with `?` for those that cannot be printed.
+/// Returns at most 40 characters of `text` for a message, with `?` for characters that cannot be printed.
 std::string shown(std::string_view text);
 
 extern template std::int32_t parse_integer<std::int32_t>(const Scanner&, std::string_view, std::string_view);

@@ -39,7 +39,7 @@ constexpr std::size_t kDigits = 16;
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): descriptors are the process's
 std::atomic<std::size_t> locks_held = 0;
 
-// ---- what a signal handler removes
+// ---- folders that a signal handler removes
 
 /// Paths of scratch folders, each in memory of its own. Whoever takes a path out of its slot owns it.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing else
@@ -94,9 +94,9 @@ bool lock_new(const fs::path& folder, Descriptor& lock) {
   return ::fstat(lock.get(), &status) != 0 || status.st_nlink > 0;
 }
 
-/// Removes what this program puts into a scratch folder, by system functions alone, which a signal handler
-/// may call. The lock goes last: until then the folder is not taken for that of a process that has just
-/// begun.
+/// Removes the files that this program puts into a scratch folder, only by system functions that a signal
+/// handler may call. The lock goes last: a folder without a lock looks like the folder of a process that has
+/// just begun.
 void remove_files_of(const Descriptor& folder) noexcept {
   for (const char* const name : {"new", "old", "lock"}) ::unlinkat(folder.get(), name, 0);
 }
@@ -117,8 +117,8 @@ std::vector<std::string> scratches_in(const Descriptor& folder) {
   return names;
 }
 
-/// Removes a scratch folder if it is this user's and the process that made it is dead, and the scratch
-/// folders of dead processes in it.
+/// Removes a scratch folder if it belongs to this user and the process that made it is dead. Also removes the
+/// scratch folders of dead processes in it.
 void remove_if_dead(const Descriptor& parent, const std::string& name, bool is_inner = false) {
   const Descriptor folder = opened_folder(parent, name.c_str());
   struct stat status {};
@@ -132,7 +132,8 @@ void remove_if_dead(const Descriptor& parent, const std::string& name, bool is_i
   } else if (errno != ENOENT) {
     return;
   }
-  // a folder without a lock is of a process that has just begun, or died then; it is removed only if empty
+  // a folder without a lock belongs to a process that has just begun or died then; it is removed only if
+  // empty
   ::unlinkat(parent.get(), name.c_str(), AT_REMOVEDIR);
 }
 
@@ -142,8 +143,8 @@ bool remove_own(const char* path) noexcept {
   return ::rmdir(path) == 0;
 }
 
-/// Removes what dead processes left in a scratch folder of this one, and then the folder; without memory it
-/// stays.
+/// Removes the files that dead processes left in a scratch folder of this process, and then the folder.
+/// Without memory the folder stays.
 void remove_inner(const fs::path& path) noexcept {
   try {
     const Descriptor folder(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW);

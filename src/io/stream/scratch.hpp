@@ -16,7 +16,7 @@ class Scratch {
  public:
   /// Makes the folder beside `target`. Throws InputError if the system refuses.
   explicit Scratch(const std::filesystem::path& target);
-  /// Removes it with its content, including what dead processes left in it.
+  /// Removes the folder with its content, including files that dead processes left in it.
   ~Scratch();
   Scratch(Scratch&& other) noexcept;
   Scratch(const Scratch&) = delete;
@@ -27,7 +27,7 @@ class Scratch {
   /// Returns the path of a file in it.
   [[nodiscard]] std::filesystem::path file(std::string_view name = kNew) const { return path_ / name; }
 
-  // what it may hold besides its lock
+  // contents besides the lock
   static constexpr std::string_view kNew = "new";
   static constexpr std::string_view kOld = "old";
 
@@ -38,20 +38,21 @@ class Scratch {
 };
 
 /// From now on, scratch folders of outputs in `folder` are made in `place`, in the same file system. For a
-/// process that may write nowhere else. To be called while there is one thread.
+/// process that may write nowhere else. Call it while there is one thread.
 void keep_scratches_in(const std::filesystem::path& place, const std::filesystem::path& folder);
 
 /// Returns where scratch folders of outputs in a folder are made: in the folder itself, unless
 /// `keep_scratches_in` says otherwise.
 std::filesystem::path place_of_scratches(const std::filesystem::path& folder);
 
-/// Removes the scratch folders that dead processes of this user left in a folder, at the first call for the
-/// folder in a process; for commands that write there. Removes nothing but folders with such a name whose
-/// `lock` is free, and in them `new`, `old` and `lock`; follows no links. What cannot be removed stays.
+/// Removes the scratch folders that dead processes of this user left in a folder; for commands that write
+/// there. Only the first call for a folder in a process does this. Removes only folders with such a name
+/// whose `lock` is free, and in them only `new`, `old` and `lock`; follows no links. Files that cannot be
+/// removed stay.
 void remove_dead_scratches(const std::filesystem::path& folder);
 
-/// Removes all scratch folders of this process; for a signal handler that ends the process, as it calls
-/// nothing but system functions that are safe there.
+/// Removes all scratch folders of this process. For a signal handler that ends the process: it calls only
+/// system functions that are safe there.
 void remove_unfinished_outputs() noexcept;
 
 }  // namespace meshorder

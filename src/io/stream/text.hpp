@@ -35,10 +35,10 @@ class Text {
     written(put_digits(at, static_cast<std::uint32_t>(value)));
   }
 
-  /// Appends `before` and the number as `print` would as `{}`; faster.
+  /// Appends `before` and the number as `print` does for `{}`, but faster.
   void real(std::string_view before, double value);
 
-  /// Appends `before` and a number of any type as `print` would as `{}`, by the fastest of these functions.
+  /// Appends `before` and a number of any type as `print` does for `{}`, by the fastest of these functions.
   template <class Number>
   void number(std::string_view before, Number value) {
     if constexpr (std::is_same_v<Number, double>) {
@@ -56,8 +56,8 @@ class Text {
     written(put_number(room(sizeof(T)), value, order));
   }
 
-  /// Returns room for so many bytes more. The caller then calls `written` with the end of what it put there,
-  /// before anything else.
+  /// Returns room for `bytes` more bytes. The caller must next call `written` with the end of the bytes that
+  /// it put there.
   [[nodiscard]] char* room(std::size_t bytes) {
     buffer_.reserve(buffer_.size() + bytes);
     return buffer_.data() + buffer_.size();

@@ -16,7 +16,7 @@ std::size_t first_mark(std::string_view text, std::size_t from) {
   return from;
 }
 
-/// Returns the beginning of the line after that of byte `from`.
+/// Returns the beginning of the line after the line of byte `from`.
 std::size_t next_line(std::string_view text, std::size_t from) {
   const std::size_t end = text.find_first_of(kLineEnds, from);
   if (end == std::string_view::npos) return text.size();

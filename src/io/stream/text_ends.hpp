@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-// What is before and after the data of a text file.
+// Text before and after the data of a text file.
 
 /// Returns a text without the byte order mark of UTF-8 that some editors put before it.
 std::string_view without_byte_order_mark(std::string_view text);

@@ -190,7 +190,7 @@ class Su2Reader {
 
   // ---- elements and points
 
-  /// Takes the first word of an item's line; fails where a keyword comes instead.
+  /// Takes the first word of an item's line; fails if a keyword comes instead.
   std::string_view first_word() {
     const std::string_view word = in_.word("a line of " + keyword_ + "=");
     const bool letter = std::isalpha(static_cast<unsigned char>(word.front())) != 0;

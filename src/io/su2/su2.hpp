@@ -57,7 +57,7 @@ struct Metadata final : FormatMetadata {
   };
   struct Section {
     Part part;
-    std::string text = {};      ///< the name of a marker; the lines of what is kept as it is
+    std::string text = {};      ///< the name of a marker; the lines that are kept as they are
     std::string comments = {};  ///< the lines between MARKER_TAG= and MARKER_ELEMS=
     std::vector<SurfacePoint> surface_points = {};
   };
@@ -80,8 +80,8 @@ std::int64_t label_of_name(std::string_view name);
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
-/// Returns the places of the cells in a file: those of the highest dimension, then marker by marker.
-/// `blocks` receives the first cell of each part.
+/// Returns the places of the cells in a file: cells of the highest dimension, then marker by marker. `blocks`
+/// receives the first cell of each part.
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks);
 
 }  // namespace meshorder::su2

@@ -29,7 +29,7 @@ struct Marker {
   std::vector<Index> cells;  ///< ascending
 };
 
-/// The markers of a mesh, and what has no place in them.
+/// The markers of a mesh, and notes on what they cannot hold.
 struct Markers {
   explicit Markers(const Mesh& of) : mesh(of), dimension(of.cells.highest_dimension()) {
     marked.assign(mesh.cells.shapes.size(), false);
@@ -43,7 +43,7 @@ struct Markers {
   }
 
   const Mesh& mesh;
-  int dimension;  ///< of the elements; that of markers is one less
+  int dimension;  ///< of the elements; markers have one less
   std::vector<Marker> markers;
   std::map<std::string, std::size_t, std::less<>> places;  ///< of markers, by name
   DistinctNames names;                                     ///< of the sets' markers
@@ -71,7 +71,7 @@ struct Markers {
   void add_set(const EntitySet& set) {
     if (!has_place(set)) return note_set_unsupported(set, "SU2", notes);
     Marker& into = marker(name_of(set));
-    places.try_emplace(set.name, static_cast<std::size_t>(&into - markers.data()));  // its own name, too
+    places.try_emplace(set.name, static_cast<std::size_t>(&into - markers.data()));  // also by the set's name
     std::int64_t others = 0;
     std::int64_t repeated = 0;
     for (const Index c : set.members) {
@@ -256,7 +256,7 @@ class Su2Writer {
     return found == markers_.places.end() ? std::nullopt : std::optional(found->second);
   }
 
-  /// Returns the number of markers of the file whose name is a label, and which have no cells.
+  /// Returns the number of the file's markers without cells whose names are labels.
   [[nodiscard]] std::size_t empty_labels() const {
     if (own_ == nullptr) return 0;
     return static_cast<std::size_t>(
