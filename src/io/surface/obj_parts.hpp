@@ -15,8 +15,9 @@
 /// Declarations shared by the reader and the writer of OBJ files.
 namespace meshorder::obj {
 
-/// A statement that applies to the cells after it until the next of its kind, and the cell array that keeps
-/// which one applied: 0 for none, else a number; the metadata has its name. Smoothing groups are numbers.
+/// A statement that applies to the cells after it until the next statement of its kind, and the cell array
+/// that records the statement of each cell: 0 for none, else a number whose name is in the metadata.
+/// Smoothing groups are numbers.
 struct State {
   std::string_view keyword;
   std::string_view array;

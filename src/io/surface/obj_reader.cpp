@@ -52,8 +52,8 @@ std::optional<std::int32_t> as_integer(const std::string& text) {
   return value;
 }
 
-/// Returns the numbers of names: their values if all are integers, else their alphabetical ranks, so that
-/// they do not depend on the order of cells.
+/// Returns the numbers of names: their values if all are integers, else their alphabetical ranks, which do
+/// not depend on the order of cells.
 std::map<std::int32_t, std::string> numbered(const Named& named, bool are_numbers) {
   std::map<std::int32_t, std::string> result;
   const bool some_without = std::count(named.of_cell.begin(), named.of_cell.end(), 0) > 0;
@@ -111,7 +111,7 @@ class Reader {
   }
 
  private:
-  /// Reads one line, or several joined by backslashes. Takes it at the end, so that errors name its line.
+  /// Reads one line, or several joined by backslashes. Takes the line last: errors then name its number.
   void read_statement() {
     std::string_view line = trimmed(scanner_.peek_line());
     if (!line.empty() && line.back() == '\\') return read_long_statement();

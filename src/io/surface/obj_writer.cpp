@@ -158,8 +158,8 @@ class ObjWriter {
     return {groups_.data() + group_offsets_[cell], groups_.data() + group_offsets_[cell + 1]};
   }
 
-  /// Returns a set's name as one word, which a group's name must be. A backslash at its end would join the
-  /// next line to it, and becomes an underscore.
+  /// Returns a set's name as one word, as names of groups must be. A backslash at its end would join the next
+  /// line to it, and becomes an underscore.
   static std::string one_word(const EntitySet& set) {
     std::string name = plain_name(set.name.empty() ? "unnamed" : set.name, " ");
     for (std::size_t at = name.size(); at > 0 && name[at - 1] == '\\'; --at) name[at - 1] = '_';
@@ -174,7 +174,7 @@ class ObjWriter {
   }
 
   void write_vertices() {
-    // whole colours run to 255, those of OBJ to 1
+    // whole colours run to 255, colours of OBJ to 1
     const double scale = colors_.integers ? 255 : 1;
     write_rows(out_, mesh_.vertex_count(), [&](Text& row, Index v) {
       const Point& p = mesh_.points[v];
@@ -222,7 +222,7 @@ class ObjWriter {
     current_[i] = name;
   }
 
-  /// Writes each name that no cell has, so that it is not lost.
+  /// Writes the names that no cell has, which the file would otherwise lose.
   void write_unused_names() {
     for (std::size_t s = 0; s < mesh_.sets.size(); ++s) {
       if (mesh_.sets[s].association != Association::cells || !mesh_.sets[s].members.empty()) continue;
@@ -312,7 +312,7 @@ class ObjWriter {
   std::array<std::string, kStates.size()> current_;
   std::vector<Offset> group_offsets_;
   std::vector<Index> groups_;
-  std::vector<std::string> group_names_;  // of all sets; empty for those of vertices
+  std::vector<std::string> group_names_;  // of all sets; empty for sets of vertices
   bool in_group_ = false;
 };
 

@@ -126,7 +126,7 @@ void check_cells_element(const Scanner& scanner, const Element& element) {
   }
 }
 
-/// Returns whether the name is like that of a number of a vertex or face: "vertex1", "face_index".
+/// Returns whether the name looks like one for numbers of vertices or faces: "vertex1", "face_index".
 bool sounds_like_index(const Property& property) {
   if (!is_integer(property.type.type)) return false;
   const std::string name = "_" + property.name;
@@ -134,8 +134,9 @@ bool sounds_like_index(const Property& property) {
          has_part(name, "indices");
 }
 
-/// Marks as left out what may depend on the order of vertices or faces in an unknown way: lists of whole
-/// numbers; in other elements also numbers named like an index, and as many rows as vertices or cells.
+/// Marks properties and elements as left out if they may depend on the order of vertices or faces in an
+/// unknown way: lists of whole numbers; for other elements also numbers named like an index, and elements
+/// with as many rows as vertices or cells.
 ///
 /// @param known  the elements of vertices and cells, by their numbers of rows
 void leave_out_dependent(Element& element, const std::map<Index, std::string>& known) {
@@ -365,7 +366,7 @@ void append(Values& values, BodyReader& body, Index count, const Property& prope
   });
 }
 
-/// The values of one property; those of a list separately for each length.
+/// The values of one property; values of a list separately for each length.
 struct Column {
   struct OfLength {
     std::vector<Index> rows;
@@ -464,7 +465,7 @@ class Reader {
     });
   }
 
-  /// Turns the description of an element of triangle strips into that of the triangles made of them.
+  /// Turns the description of an element of triangle strips into a description of their triangles.
   void become_faces(Element& element, Index first_cell, Notes& notes) {
     element.name = "face";
     element.role = Role::faces;
@@ -509,7 +510,8 @@ class Reader {
     return true;
   }
 
-  /// Reads the triangles of strips, separated by −1. Turns every second one round, so that all face one way.
+  /// Reads the triangles of strips, separated by −1. Turns every second triangle round: all then face one
+  /// way.
   bool read_strip(const Property& property) {
     std::array<Index, 3> last{};
     int known = 0;  // corners of the strip, of which three make a triangle

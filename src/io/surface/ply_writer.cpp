@@ -37,7 +37,7 @@ using ply::TypeWord;
 /// The source of a property's numbers.
 struct ArraySource {
   const DataArray* array = nullptr;
-  Index component = 0;        ///< of a property that is no list
+  Index component = 0;        ///< of a property that is not a list
   std::vector<Index> row_of;  ///< the row of each vertex or cell, −1 for none; empty if row i belongs to i
 };
 
@@ -67,7 +67,7 @@ TypeWord word_of(const Values& values) {
   return i < kWords.size() ? TypeWord{std::string(kWords[i].first), kWords[i].second} : TypeWord{};
 }
 
-/// Returns the type in which 64-bit integers are written, as PLY has none for them.
+/// Returns the type in which 64-bit integers are written: PLY has no such type.
 TypeWord word_for_wide(const Values& values) {
   const std::vector<double> numbers = as_reals(values);
   const bool fit = std::all_of(numbers.begin(), numbers.end(), [](double x) {
@@ -483,7 +483,7 @@ bool ply_holds(const Mesh& mesh, Shape shape, int vertices) {
          (mesh.format == "ply" && (dimension(shape) < 2 || shape == Shape::tetrahedron));
 }
 
-/// Notes what the reader did not understand.
+/// Notes the elements and properties that the reader did not understand.
 void note_left_out(const ply::Metadata& metadata, Notes& notes) {
   for (const Element& element : metadata.elements) {
     if (!element.why_left_out.empty())

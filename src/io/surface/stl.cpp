@@ -370,7 +370,7 @@ void write_ascii(const Mesh& mesh, const StlMetadata* metadata, const std::vecto
                  OutputFile& out) {
   std::map<std::int64_t, std::vector<Index>> by_label;
   for (Index c = 0; c < mesh.cell_count(); ++c) by_label[labels.empty() ? 0 : labels[c]].push_back(c);
-  // the solids of the file in their order, then those of other labels
+  // the solids of the file in their order, then solids of other labels
   if (metadata && metadata->names.size() == 1 && labels.empty()) {
     return write_solid(mesh, metadata->names[0], by_label[0], out);
   }

@@ -66,7 +66,7 @@ void end_record(Scanner& in) {
   }
 }
 
-/// Reads an integer; accepts 2.0, as some writers print markers so.
+/// Reads an integer; accepts 2.0 because some writers print markers this way.
 std::int64_t whole(Scanner& in, std::string_view what) {
   const std::string_view text = column(in, what);
   if (text.find_first_of(".eE") == std::string_view::npos) return parse_integer<std::int64_t>(in, text, what);
@@ -77,7 +77,7 @@ std::int64_t whole(Scanner& in, std::string_view what) {
   return static_cast<std::int64_t>(value);
 }
 
-/// Reads the numbers of a header line; `standard` has the values of those that are missing.
+/// Reads the numbers of a header line; `standard` has the values of missing numbers.
 template <std::size_t N>
 std::array<std::int64_t, N> header(Scanner& in, std::array<std::int64_t, N> standard) {
   begin_record(in, "the header");
@@ -200,7 +200,7 @@ void read_points(Scanner& in, ReadContext& to) {
   }
 
   // As in TetGen, the first number decides whether numbers begin at 0 or at 1. If they are not consecutive,
-  // any 0 decides, so that reordering the points does not change which points the cells name.
+  // any 0 decides: the points that cells name then do not depend on the order of the points.
   to.metadata->base = to.points.id(0) == 0 ? 0 : 1;
   mesh.vertex_ids = to.points.ids_unless_from(to.metadata->base);
   if (std::find(mesh.vertex_ids.begin(), mesh.vertex_ids.end(), 0) != mesh.vertex_ids.end())
@@ -358,8 +358,8 @@ std::vector<std::array<Index, 2>> edges_of_nodes(const Mesh& mesh, Index tetrahe
   return result;
 }
 
-/// TetGen 1.5 writes the second-order nodes of faces by opposite edges with -f, else in VTK's order, in which
-/// they were read. Finds the order by the edges of the tetrahedra, and corrects it.
+/// TetGen 1.5 writes the second-order nodes of faces by opposite edges with -f, else in VTK's order. The
+/// faces were read as if in VTK's order. Finds the order by the edges of the tetrahedra, and corrects it.
 void settle_face_order(ReadContext& to) {
   const Index tetrahedra = to.parts[kEle].count;
   const Index end = tetrahedra + to.parts[kFace].count;

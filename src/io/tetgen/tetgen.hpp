@@ -41,9 +41,9 @@ struct Metadata final : FormatMetadata {
 };
 
 /// For each node of a cell in VTK's order, its position in TetGen's line. In the tetrahedra that TetGen's -o2
-/// writes, nodes 5 to 10 are those of the edges (3,4) (1,4) (1,2) (2,3) (2,4) (1,3).
+/// writes, nodes 5 to 10 are on the edges (3,4) (1,4) (1,2) (2,3) (2,4) (1,3).
 inline constexpr std::array<int, 10> kTetrahedron{0, 1, 2, 3, 6, 7, 9, 5, 8, 4};
-/// Triangle's order: nodes 4 to 6 are those of the edges opposite to corners 1 to 3.
+/// Triangle's order: nodes 4 to 6 are on the edges opposite to corners 1 to 3.
 inline constexpr std::array<int, 6> kTriangleOpposite{0, 1, 2, 5, 3, 4};
 inline constexpr std::array<int, 6> kTriangle{0, 1, 2, 3, 4, 5};
 

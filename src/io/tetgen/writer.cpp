@@ -22,7 +22,7 @@ namespace meshorder::tetgen {
 
 namespace {
 
-/// Returns whether a .poly or .smesh file has no points of its own but refers to those of the .node file.
+/// Returns whether a .poly or .smesh file has no points and refers to the points of the .node file.
 bool refers_to_points(const FilePath& path) {
   const std::string text = path.is_empty() ? std::string() : path.read();
   std::string_view lines = text;
@@ -203,7 +203,7 @@ void note_lost_names(const std::vector<Column>& columns, std::string_view file, 
 
 // ---- files
 
-/// Returns whether the items of a file have markers; notes those without one, which get 0.
+/// Returns whether the items of a file have markers; notes the items without a marker, which get 0.
 bool has_markers(const Labels& labels, const std::vector<Index>& items, std::string_view file, Notes& notes) {
   if (!labels.any()) return false;
   const auto given =

@@ -61,7 +61,7 @@ class Reader {
     return count;
   }
 
-  /// Takes the end of a line; returns false where the line goes on.
+  /// Takes the end of a line; returns false if the line goes on.
   bool take_end() {
     if (!in_.at_line_end()) return false;
     (void)in_.raw_line();
@@ -206,7 +206,8 @@ class Reader {
     }
   }
 
-  /// Keeps the data of the model. If there are none, fails for further text: it could be in the old order.
+  /// Keeps the data of the model. If there are none, fails for further text: it could depend on the old
+  /// order.
   void keep_rest() {
     if (in_.at_end()) return;
     if (metadata_->model_values == 0) {

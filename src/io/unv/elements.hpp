@@ -17,14 +17,14 @@ struct ElementKind {
   bool operator==(const ElementKind&) const = default;
 };
 
-/// Returns the kind of cells that elements of a type ("FE descriptor id") with so many nodes are; none if it
-/// is not known.
+/// Returns the kind of cells for elements of a type ("FE descriptor id") with that many nodes; none if it is
+/// not known.
 std::optional<ElementKind> kind_of(std::int64_t type, std::int64_t nodes);
 
-/// Returns the type of element as which cells of another format's mesh are written; 0 if there is none.
+/// Returns the element type for cells of a mesh of another format; 0 if there is none.
 int type_of(ElementKind kind);
 
-/// Returns whether a type is that of beams. Their elements always have a line of three numbers after the
+/// Returns whether a type is a beam. Elements of such a type always have a line of three numbers after the
 /// first line.
 bool is_beam(std::int64_t type);
 

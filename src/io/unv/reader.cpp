@@ -27,7 +27,7 @@ constexpr std::size_t kMostNodes = 20;
 /// Returns whether a line begins or ends a dataset: −1 in its first six columns.
 bool is_delimiter(std::string_view line) { return trimmed(line) == "-1" && line.find('-') <= 4; }
 
-/// Returns whether a dataset that is kept verbatim is known to name no nodes and no elements.
+/// Returns whether a dataset that is kept verbatim is known to name neither nodes nor elements.
 bool is_harmless(int dataset) {
   // systems of coordinates, header, units, materials, header of the model, systems of coordinates
   constexpr std::array kHarmless{18, 151, 164, 1710, 2400, kSystems};
@@ -580,7 +580,7 @@ class UnvReader {
   std::int64_t begin_ = 0;  // first byte of the dataset
   std::int64_t line_ = 0;   // first line of the dataset
   std::vector<UnresolvedNode> unresolved_;
-  std::set<std::int64_t> other_elements_;  // that are no cells
+  std::set<std::int64_t> other_elements_;  // elements that are not cells
   std::set<std::string> other_types_;
   std::vector<Members> members_;  // of the groups
   std::vector<FoundResults> results_;

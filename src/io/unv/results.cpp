@@ -33,8 +33,8 @@ std::vector<std::string_view> take_lines(Scanner& in, std::size_t count) {
   return lines;
 }
 
-/// Sets what follows from a data type (1 integer, 2 single, 4 double, 5 complex single, 6 complex double) and
-/// the number of values; returns false for other types.
+/// Sets the fields that depend on a data type (1 integer, 2 single, 4 double, 5 complex single, 6 complex
+/// double) and the number of values; returns false for other types.
 bool set_type(ResultsHeader& header, std::int64_t type, std::int64_t values) {
   if (values < 1 || values > kMostComponents) return false;
   const bool is_complex = type == 5 || type == 6;
@@ -168,7 +168,7 @@ std::vector<std::int64_t> local_systems(std::string_view text) {
 }
 
 double real_of(const Scanner& at, std::string_view word, std::string_view what) {
-  // in place for the usual length; all else goes to the general parser
+  // in place for the usual length; longer words go to the general parser
   std::array<char, 40> buffer{};
   if (word.size() < buffer.size()) {
     char* const end = std::transform(word.begin(), word.end(), buffer.begin(),

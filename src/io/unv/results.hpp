@@ -32,13 +32,13 @@ std::optional<ResultsHeader> read_results_header(Scanner& in, int dataset);
 /// Returns the values as an array; none if there are no values, or an item is unknown or comes twice.
 std::optional<DataArray> array_of(const FoundResults& found, const IdMap& items);
 
-/// Returns the numbers of those systems of coordinates in a dataset 2420 that are not the global one.
+/// Returns the numbers of the systems of coordinates in a dataset 2420, except global systems.
 std::vector<std::int64_t> local_systems(std::string_view text);
 
 /// Returns a number as Fortran writes it: 1.5D-3, 1.5E-3, 1.5-103. Throws an Error at the scanner's line.
 double real_of(const Scanner& at, std::string_view word, std::string_view what);
 
-/// Returns whether a whole number leaves a blank in its ten columns, so that readers can split the line at
+/// Returns whether a whole number leaves a blank in its ten columns. Readers can then split the line at
 /// blanks.
 inline bool fits_columns(std::int64_t number) {
   constexpr std::int64_t kLargest = 999'999'999;

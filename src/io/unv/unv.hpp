@@ -20,7 +20,7 @@
 
 namespace meshorder::unv {
 
-// Numbers of datasets, by what they hold.
+// Numbers of datasets, by content.
 inline constexpr int kNodes = 2411;
 inline constexpr int kNodesInDouble = 781;
 inline constexpr int kNodesInSingle = 15;
@@ -88,7 +88,7 @@ class FieldTable {
   std::map<Fields, Index> places_;
 };
 
-/// An element that is no cell.
+/// An element that is not a cell.
 struct OtherElement {
   std::int64_t number;
   ElementFields fields;
@@ -100,7 +100,7 @@ struct Group {
   std::vector<std::int64_t> fields;                 ///< the first line without the number of members
   std::string name;                                 ///< as in the file
   std::string set;                                  ///< name of its sets in the mesh
-  bool has_nodes = false;                           ///< whether it has a set of vertices; empty groups have
+  bool has_nodes = false;                           ///< whether it has a set of vertices, as empty groups do
   bool has_elements = false;                        ///< whether it has a set of cells
   std::vector<std::array<std::int64_t, 4>> others;  ///< members of other kinds: code, number, two more
 };
@@ -122,17 +122,17 @@ enum class Part : std::uint8_t { text, nodes, elements, groups, results };
 struct Section {
   Part part = Part::text;
   int dataset = 0;
-  std::string text = {};  ///< all lines, if kept as they are; of results, those before the values
+  std::string text = {};  ///< all lines, if kept as they are; for results, the lines before the values
   Index first = 0;        ///< first node, element, group or result of the file in it
   Index count = 0;
-  std::vector<OtherElement> others = {};  ///< elements that are no cells
+  std::vector<OtherElement> others = {};  ///< elements that are not cells
 };
 
 /// The contents of a universal file, in its order.
 struct Contents {
   std::vector<Section> sections;
   IdMap nodes;     ///< numbers in the order of the file
-  IdMap elements;  ///< numbers of those that are cells
+  IdMap elements;  ///< numbers of the elements that are cells
   FieldTable<NodeFields> node_fields;
   FieldTable<ElementFields> element_fields;
   std::vector<Group> groups;
@@ -142,7 +142,7 @@ struct Contents {
   /// Datasets that are not understood and may name nodes or elements by number: "dataset 791 (line 12)". If
   /// there are any, all numbers must stay.
   std::vector<std::string> unknown;
-  std::vector<std::string> contents;  ///< what other formats lose
+  std::vector<std::string> contents;  ///< contents that other formats lose
 };
 
 /// A universal file, and where its nodes and elements are in the mesh.

@@ -296,7 +296,7 @@ class UnvWriter {
       std::vector<std::array<std::int64_t, 4>> members;
       const EntitySet* const nodes = sets_.find(Association::vertices, group.set);
       const EntitySet* const elements = sets_.find(Association::cells, group.set);
-      // a group whose sets were removed goes with them
+      // a group is left out if its sets were removed
       const bool is_gone = nodes == nullptr && elements == nullptr && (group.has_nodes || group.has_elements);
       if (is_gone && group.others.empty()) continue;
       add_members(nodes, members);
@@ -358,7 +358,8 @@ class UnvWriter {
     if (begun) lines_.delimiter();
   }
 
-  /// Returns the number of the dataset in which the file has its groups; without one, that of Gmsh's files.
+  /// Returns the number of the dataset in which the file has its groups; without one, the number in Gmsh's
+  /// files.
   [[nodiscard]] int dataset_of_groups() const {
     const auto own = std::find_if(file_.sections.begin(), file_.sections.end(),
                                   [](const Section& section) { return section.part == Part::groups; });
@@ -382,8 +383,8 @@ class UnvWriter {
       return;
     }
     written_arrays_.insert(array);
-    // if values are not whole any more, the dataset gets a new header but stays in place, as the order of
-    // datasets gives the steps of one name their numbers
+    // if values are no longer whole, the dataset gets a new header. It stays in place: the order of datasets
+    // numbers the steps of one name
     if (results.integers && !holds_integers(*array)) return write_result(*array, results.name, 1);
     lines_.text(section.text);
     const bool counts = results.association == Association::cells;
@@ -458,7 +459,7 @@ class UnvWriter {
 
   void write_header(const DataArray& array, const std::string& name, const Results& results,
                     std::int64_t label) {
-    /// The codes for values with so many components.
+    /// The codes for values with this number of components.
     struct Meaning {
       Index components;
       int characteristic;

@@ -34,7 +34,7 @@ bool vega_holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
 constexpr std::int64_t kLargestNumber =
     std::numeric_limits<std::int64_t>::max();  // number of a vertex or cell
 
-/// Writes one mesh; the sections of a Vega file in their order, those of other meshes in the usual one.
+/// Writes one mesh; the sections of a Vega file in their order, sections of other meshes in the usual order.
 class VegaWriter {
  public:
   VegaWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
@@ -234,7 +234,7 @@ class VegaWriter {
                                            : label_sets_[section.set - mesh_.sets.size()];
   }
 
-  /// Returns the name under which the set of that name is written.
+  /// Returns the name that is written for the set `of_set`.
   [[nodiscard]] const std::string& written_name(const std::string& of_set) const {
     const auto found = names_.find(parts_.set(of_set, Association::cells));
     return found == names_.end() ? of_set : found->second;  // no set: all elements

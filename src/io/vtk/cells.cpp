@@ -148,7 +148,7 @@ const std::vector<std::uint8_t>* kept_types(const Mesh& mesh) {
   return numbers;
 }
 
-/// Caches default types, as a mesh has few.
+/// Caches default types: a mesh has few.
 class DefaultTypes {
  public:
   const CellType* operator()(Shape shape, int vertices) {
@@ -322,7 +322,7 @@ void swap_hexahedron_edges(const Mesh& mesh, const std::vector<std::uint8_t>& ty
           },
           array->values);
     }
-    // the swapped edges come after 8 corners, the edges along x and y, and two of those along z
+    // the swapped edges come after 8 corners, the edges along x and y, and two edges along z
     const Offset along_z = degrees[2] - 1;
     const Offset first = 8 + 4 * (degrees[0] - 1 + degrees[1] - 1) + 2 * along_z;
     if (along_z <= 0 || first + 2 * along_z > n) continue;

@@ -226,7 +226,7 @@ class PieceJoiner {
   const Pieces& pieces_;
   const ErrorAt& error_;
   Notes& notes_;
-  std::vector<Index> new_points_;  // of all points; −1 for those left out
+  std::vector<Index> new_points_;  // of all points; −1: left out
 };
 
 }  // namespace

@@ -181,7 +181,8 @@ class LegacyReader {
                "its size counts all numbers that follow");
   }
 
-  /// Reads such cells fast if they have no fault; otherwise returns false and takes nothing.
+  /// Reads cells as `read_counted_cells` does, but fast. If they have a fault, returns false and takes
+  /// nothing.
   bool read_sound_cells(FileCells& cells, std::int64_t count, std::int64_t size) {
     Scanner at = in_.scanner;
     std::vector<std::int32_t> numbers;
@@ -221,7 +222,7 @@ class LegacyReader {
     return true;
   }
 
-  /// Returns one more than the last point that a cell may name, as far as that is known.
+  /// Returns one more than the last point that a cell may name, if it is known; else kMaxIndex.
   [[nodiscard]] std::int64_t point_limit() const {
     return has_points_ ? mesh_.vertex_count() : std::int64_t{kMaxIndex};
   }
@@ -271,7 +272,7 @@ class LegacyReader {
         [&](const auto& numbers) {
           using Number = typename std::decay_t<decltype(numbers)>::value_type;
           if constexpr (std::is_integral_v<Number>) {
-            // no early exit, so that the loop can be vectorised
+            // no early exit: the loop can then be vectorised
             resize_large(cells.vertices, numbers.size());
             const std::int64_t limit = point_limit();
             std::size_t missing = 0;
@@ -281,7 +282,8 @@ class LegacyReader {
               cells.vertices[i] = static_cast<Index>(numbers[i]);
             }
             if (missing == 0) return;
-            // a number of a polyhedron may be no point; one that fits in no Index is a fault in any cell
+            // a number of a polyhedron need not be a point; a number that does not fit an Index is a fault in
+            // any cell
             for (std::size_t i = 0; i < numbers.size(); ++i) {
               if (!std::in_range<Index>(numbers[i])) cells.vertices[i] = -1;
             }

@@ -180,7 +180,7 @@ class LegacyWriter {
 
   // ---- arrays
 
-  /// Returns the number type of an array: that of its file if it can hold the values.
+  /// Returns the number type of an array: its type in the file if that can hold the values.
   [[nodiscard]] std::string type_of(const DataArray& array, std::optional<Association> association) const {
     const ArrayFacts* facts = find_facts(from_.metadata, association, array.name);
     std::string usual(kLegacyTypeNames[array.values.index()]);

@@ -84,7 +84,7 @@ class Names {
   std::map<Association, NameNumbers> numbers_;
 };
 
-/// Returns the metadata of a mesh that came from VTK, or empty ones; notes those of another format.
+/// Returns the metadata of a mesh that came from VTK, or empty metadata; notes metadata of another format.
 const Metadata& metadata_of(const Mesh& mesh, Notes& notes) {
   static const Metadata none;
   if (!mesh.format_metadata) return none;

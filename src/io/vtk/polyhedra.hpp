@@ -31,7 +31,7 @@ struct Polyhedra {
   [[nodiscard]] Polyhedra moved(std::span<const Index> new_vertices, std::span<const Index> new_cells) const;
 };
 
-/// Returns whether the numbers can be those of a polyhedron: its counts add up to their size.
+/// Returns whether the numbers can describe a polyhedron: its counts add up to their size.
 bool are_faces(std::span<const Index> numbers);
 
 /// Calls `visit` with the corners of each face of a polyhedron. `are_faces` must be true for its numbers.

@@ -195,7 +195,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices);
 /// Returns whether the mesh has polyhedra with the faces of a file of VTK.
 bool has_polyhedra(const Mesh& mesh);
 
-/// Returns VTK's type number of every cell; VTK `holds` them.
+/// Returns VTK's type number of every cell. `holds` must be true for all cells.
 std::vector<std::uint8_t> cell_types(const Mesh& mesh);
 
 /// Returns the first polyhedron among the cells that has no faces, or a face with a corner that is not one of

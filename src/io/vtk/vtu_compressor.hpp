@@ -24,7 +24,7 @@ class VtuCompressor {
   /// Returns whether this build has the library of the compressor; true for `none`.
   static bool available(VtuEncoding::Compressor kind);
 
-  /// Returns the name of the library and that of the CMake option that brings it; empty for `none`.
+  /// Returns the names of the library and of the CMake option that brings it; empty for `none`.
   static std::string_view library(VtuEncoding::Compressor kind);
   static std::string_view option(VtuEncoding::Compressor kind);
 

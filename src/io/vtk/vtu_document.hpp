@@ -37,7 +37,7 @@ struct VtuElement {
     const std::string* const value = attribute(wanted);
     return value == nullptr ? std::string_view() : *value;
   }
-  /// Returns the index of its number type in Values; for an unknown type, the number of such indices.
+  /// Returns the index of its number type in Values; for an unknown type, the number of types.
   [[nodiscard]] std::size_t number_type() const {
     return static_cast<std::size_t>(std::find(kXmlTypeNames.begin(), kXmlTypeNames.end(), text_of("type")) -
                                     kXmlTypeNames.begin());

@@ -272,8 +272,8 @@ class VtuReader {
     }
   }
 
-  /// Reads polyhedra as VTK wrote them up to 9.3: the numbers of Polyhedra, and where those of each cell end;
-  /// −1 for other cells.
+  /// Reads polyhedra as VTK wrote them up to 9.3: the numbers of Polyhedra, and the end of each cell's
+  /// numbers; −1 for other cells.
   void read_streams_of_faces(const VtuElement& cells, std::int64_t count, std::int64_t first_cell,
                              Index first_point) {
     constexpr const char* kNeeded = "polyhedra have faces and faceoffsets";
@@ -513,7 +513,7 @@ class VtuReader {
   const VtuDocument* file_ = nullptr;          ///< the file that is being read
   int version_ = 0;                            ///< of the first file that is not empty, times ten
   std::map<std::string, std::size_t> fields_;  ///< places of the fields, by name
-  bool is_first_ = true;                       ///< of the files, the one that is read now
+  bool is_first_ = true;                       ///< whether the file that is being read is the first
   int pieces_ = 0;                             ///< that are not empty
   Mesh mesh_;
   std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();

@@ -169,7 +169,7 @@ void VtuDocument::locate_blocks(const VtuElement& array, std::string_view data, 
 
 namespace {
 
-/// Returns for each number the sum of those before it.
+/// Returns for each number the sum of the numbers before it.
 std::vector<std::uint64_t> sums_before(const std::vector<std::uint64_t>& numbers) {
   std::vector<std::uint64_t> sums(numbers.size());
   std::exclusive_scan(numbers.begin(), numbers.end(), sums.begin(), std::uint64_t{0});
@@ -255,7 +255,7 @@ std::vector<Number> VtuDocument::numbers(const VtuElement& array, std::int64_t c
   return result;
 }
 
-/// Reads the bits of an array of type Bit: eight a byte, the first the highest; in text as numbers.
+/// Reads the bits of an array of type Bit: eight in a byte, the first in the highest bit; in text as numbers.
 std::vector<std::uint8_t> VtuDocument::bits(const VtuElement& array, std::int64_t count) const {
   if (mode(array) == VtuEncoding::Mode::ascii) return words<std::uint8_t>(array, count);
   const std::vector<std::uint8_t> packed = numbers<std::uint8_t>(array, (count + 7) / 8);

@@ -238,7 +238,7 @@ const hdf5::File& DataReader::file(pugi::xml_node item, const std::string& name)
   if (known != files_.end()) return known->second;
   hdf5::File opened = hdf5::File::open(path_of(item, name));
   const std::string mark = opened.text_attribute("/", kMark).value_or("");
-  // the .xdmf file is put in place first, so of files of two runs it is the newer one, which has a mark
+  // the .xdmf file is put in place first: among files of two runs it is the newer file, which has a mark
   if (!document_.mark().empty() && mark != document_.mark()) {
     throw NotTogether(document_.error(
         item, fmt::format("'{}' was not written together with this file: their marks differ", name),

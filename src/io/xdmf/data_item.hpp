@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// Arrays of XDMF files: DataItem elements and what they name.
+// Arrays of XDMF files: DataItem elements and the values that they name.
 
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/stream/file_path.hpp"
@@ -31,7 +31,8 @@ struct DataPlace {
   std::endian order = std::endian::native;  ///< in a binary file
   std::uint64_t seek = 0;                   ///< first byte in a binary file
   std::vector<std::uint64_t> shape = {};
-  /// Number of the DataItem in the Topology, Geometry, Attribute or Set: `item`, or one that refers to it.
+  /// Number of the DataItem in the Topology, Geometry, Attribute or Set: `item`, or a DataItem that refers to
+  /// it.
   std::size_t named_by = 0;
 
   /// Another DataItem, in another time step for example, that names the same values.
@@ -61,11 +62,13 @@ class DataReader {
  public:
   DataReader(const Document& document, FilePath path) : document_(document), path_(std::move(path)) {}
 
-  /// Returns where the values of a DataItem are; follows references. Throws for what is not understood.
+  /// Returns where the values of a DataItem are; follows references. Throws if it does not understand the
+  /// DataItem.
   [[nodiscard]] DataPlace place_of(pugi::xml_node item);
   /// Returns the values, as many as its shape says.
   [[nodiscard]] Values read(const DataPlace& place);
-  /// Returns whole numbers as indices; those out of range become the limit that they exceed, never an index.
+  /// Returns whole numbers as indices. A number out of range becomes the nearest 32-bit limit, which is not
+  /// an index.
   [[nodiscard]] std::vector<Index> read_indices(const DataPlace& place);
 
   /// Returns the path of a file that a DataItem names. Throws where it is missing or may not be read.
@@ -79,7 +82,7 @@ class DataReader {
   [[nodiscard]] std::size_t alternative_of(pugi::xml_node item) const;
   /// Sets where the values of a DataItem are in an HDF5 file, and their number type.
   void find_dataset(pugi::xml_node item, DataPlace& place);
-  /// Sets where they are in a binary file.
+  /// Sets where the values of a DataItem are in a binary file.
   void find_bytes(pugi::xml_node item, DataPlace& place) const;
   const hdf5::File& file(pugi::xml_node item, const std::string& name);
   [[nodiscard]] Values read_text(const DataPlace& place, pugi::xml_node item) const;

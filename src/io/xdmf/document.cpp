@@ -229,7 +229,7 @@ std::vector<pugi::xml_node> Document::children(pugi::xml_node grid) const {
 }
 
 std::string Document::take_values_out(std::vector<std::size_t> items) {
-  // inner elements, which have the higher numbers, before those around them
+  // inner elements, which have the higher numbers, before the elements around them
   std::sort(items.begin(), items.end(), std::greater());
   for (const std::size_t item : items) items_[item].remove_children();
   std::string text;

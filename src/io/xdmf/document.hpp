@@ -42,11 +42,11 @@ class Document {
   /// Returns the mark that the file shares with its HDF5 files, empty without one; see `kMark`.
   [[nodiscard]] std::string_view mark() const { return root().find_child(is_mark).value(); }
 
-  /// Returns the element that one refers to by Reference="…", or itself.
+  /// Returns the element that `element` refers to by Reference="…", or `element` itself.
   [[nodiscard]] pugi::xml_node resolved(pugi::xml_node element) const;
-  /// Returns the child elements of a Grid; xi:include and references are replaced by what they name.
+  /// Returns the child elements of a Grid, with xi:include and references resolved.
   [[nodiscard]] std::vector<pugi::xml_node> children(pugi::xml_node grid) const;
-  /// Returns the number of a DataItem or a Grid among those of its name, in the order of the file.
+  /// Returns the number of a DataItem or a Grid among all DataItems or Grids, in the order of the file.
   [[nodiscard]] std::size_t number(pugi::xml_node element) const { return numbers_.at(element.hash_value()); }
   /// Returns the DataItem of that number.
   [[nodiscard]] pugi::xml_node item(std::size_t number) const { return items_[number]; }
@@ -74,16 +74,16 @@ std::vector<pugi::xml_node> elements_named(const pugi::xml_document& xml, std::s
 /// Parses XML that `Document::take_values_out` made. Throws std::bad_alloc without memory.
 void parse(pugi::xml_document& xml, const std::string& text);
 
-/// Sets the text of an element, or adds or sets an attribute. Both throw std::bad_alloc without memory, also
-/// for a null element, which could not be added before.
+/// Sets the text of an element, or adds or sets an attribute. Both throw std::bad_alloc without memory, and
+/// for a null element: memory was lacking when it should have been added.
 void set_text(pugi::xml_node element, const std::string& text);
 void set_attribute(pugi::xml_node element, const char* name, const std::string& value);
 
 /// Takes the next part of a text.
 using TakeText = std::function<void(std::string_view part)>;
 
-/// Writes XML as text: `print` as it was parsed, after `prolog`, the text before its root element;
-/// `print_indented` with a line for each element.
+/// `print` writes XML as it was parsed, after `prolog`, the text before its root element. `print_indented`
+/// writes a line for each element.
 void print(const pugi::xml_document& xml, std::string_view prolog, const TakeText& take);
 void print_indented(const pugi::xml_document& xml, const TakeText& take);
 

@@ -132,7 +132,7 @@ class Expansion {
     }
   }
 
-  /// Returns the end of a declaration other than that of an entity.
+  /// Returns the end of a declaration other than <!ENTITY …>.
   [[nodiscard]] std::size_t skip_declaration(std::size_t begin) const {
     std::size_t at = text_.find_first_of(">\"'", begin);
     while (at != std::string_view::npos && text_[at] != '>') {

@@ -14,7 +14,7 @@
 namespace meshorder::xdmf {
 namespace {
 
-/// Names of Grids, by the highest dimension of the mesh's cells minus that of the Grid's cells.
+/// Names of Grids, by the highest dimension of the mesh's cells minus the dimension of the Grid's cells.
 constexpr std::array<std::string_view, 4> kGridNames{"mesh", "facet_tags", "ridge_tags", "peak_tags"};
 
 std::vector<Index> cells_of_dimension(const Mesh& mesh, int wanted) {

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-// XDMF files whose values are all in one HDF5 file, each dataset in one run of bytes, so that code other than
-// libhdf5 can read and write them by their bytes.
+// XDMF files whose values are all in one HDF5 file, each dataset in one run of bytes. Code other than libhdf5
+// can then read and write the bytes of the values.
 
 #include "io/file_layout.hpp"
 #include "io/stream/file_path.hpp"

@@ -18,7 +18,7 @@
 #include <type_traits>
 #include <utility>
 
-// Reads Grids and their points, and keeps what the files have besides the mesh.
+// Reads Grids and their points, and keeps the contents of the files besides the mesh.
 
 namespace meshorder::xdmf {
 
@@ -410,7 +410,7 @@ class XdmfReader {
     }
   }
 
-  /// Keeps for the writer what the files have besides the mesh.
+  /// Keeps the contents of the files besides the mesh for the writer.
   void keep_rest(std::int64_t vertices, std::int64_t cells) {
     std::vector<std::size_t> items;
     std::map<std::string, std::set<std::string>> datasets;

@@ -26,7 +26,7 @@ struct GridElement {
   int step = 0;
 };
 
-/// The file that is being read, and what has been read so far.
+/// The file that is being read, and the results so far.
 struct Reading {
   Reading(const FilePath& path, Notes& warnings) : document(path), data(document, path), notes(warnings) {}
 
@@ -87,7 +87,7 @@ class TopologyReader {
   bool read_mixed(const std::vector<Index>& numbers, std::int64_t claimed, bool counted,
                   vtk::FileCells& cells);
   void check_vertices(pugi::xml_node item, vtk::FileCells& cells, int base) const;
-  /// Returns those of the cells read before that equal the cells of a piece; none if one of these is new.
+  /// Returns the cells read before that equal the cells of a piece; none if the piece has a new cell.
   [[nodiscard]] std::optional<std::vector<Index>> known_cells(const Piece& piece) const;
   /// Adds the cells of a piece as a part, or finds the part that has them; returns its number.
   int part_of(const GridElement& grid, pugi::xml_node topology, Piece piece);
@@ -105,7 +105,7 @@ class ArrayReader {
  public:
   explicit ArrayReader(Reading& reading) : reading_(reading) {}
 
-  /// Keeps the points of a time step as an array, because they differ from those of the mesh.
+  /// Keeps the points of a time step as an array: they differ from the points of the mesh.
   void add_moved_points(const GridElement& grid, std::vector<Field>& fields, std::vector<Point> points,
                         int dimension);
   void read_attribute(const GridElement& grid, int part, pugi::xml_node element);
@@ -127,7 +127,7 @@ class ArrayReader {
     std::vector<bool> has_row;  ///< by cell; empty before rows are appended
   };
 
-  /// Adds an array under a name that is free, its own if possible; returns that name.
+  /// Adds an array under a free name, its own name if possible; returns the name.
   std::string add_growing(DataArray array);
   [[nodiscard]] GrowingArray* array_named(const std::string& name, Association association);
   [[nodiscard]] std::string name_of(pugi::xml_node element) const;
@@ -148,7 +148,7 @@ class ArrayReader {
   std::map<std::pair<Association, std::string>, std::size_t> place_of_array_;
   std::vector<Pending> pending_;
   std::vector<bool> labelled_;  ///< whether each cell has a label
-  /// Places in `pending_`, by key; none for those without values.
+  /// Places in `pending_`, by key; none for arrays without values.
   std::map<std::string, std::optional<std::size_t>> known_arrays_;
   std::map<std::string, std::size_t> known_sets_;  ///< places of fields in the layout, by key
 };

@@ -14,7 +14,7 @@
 #include <unordered_map>
 #include <utility>
 
-// Reads Topologies, of which two may hold the same cells.
+// Reads Topologies. Two of them may hold the same cells.
 
 namespace meshorder::xdmf {
 namespace {
@@ -156,7 +156,7 @@ std::int64_t TopologyReader::claimed_cells(pugi::xml_node topology) const {
       throw reading_.document.error(topology, fmt::format("NumberOfElements is '{}'", shortened(text)),
                                     "a whole number up to 2147483647 is needed");
     }
-    cells = cells < 0 ? size : cells;  // the first of several numbers is that of the cells
+    cells = cells < 0 ? size : cells;  // the first of several numbers is the number of cells
   }
   return cells;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 // Writes .xdmf files and the files of values that they name. Parts of the mesh go to their places in the
-// layout; what has no place there is added.
+// layout; parts without a place are added.
 
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/named_parts.hpp"
@@ -34,7 +34,7 @@ struct Hdf5Output {
   std::unique_ptr<OutputFile> out;
   std::unique_ptr<hdf5::File> file;
   std::set<std::string> datasets;
-  std::set<std::string> written;  ///< those that have values of the mesh already
+  std::set<std::string> written;  ///< datasets that have values of the mesh already
   int next_array = 0;             ///< lowest number that an array without a name of its own may have
 };
 
@@ -44,7 +44,7 @@ class Writer {
   /// `rows`: the cells of each part.
   Writer(const Mesh& mesh, const Layout& layout, std::vector<std::vector<Index>> rows, const FilePath& path,
          Notes& notes);
-  /// Writes the file and those that it names.
+  /// Writes the file and the files of values that it names.
   void write();
   /// See `SplitFile`; `mark` is the result of `mark_of` for its checksum.
   std::string write_without_values(const std::filesystem::path& data, const std::string& mark);
@@ -57,7 +57,7 @@ class Writer {
   void finish(Hdf5Output& output) const;
   void rename_files();
   [[nodiscard]] std::string mark_of_mesh() const;
-  /// Marks the files as those of one mesh.
+  /// Marks the files as belonging to one mesh.
   void mark_files(const std::string& mark);
   void put_xml(const TakeText& take) const;
 
@@ -66,8 +66,8 @@ class Writer {
   static void set_number_type(pugi::xml_node item, std::size_t alternative);
   /// Returns the shape of values at a place in rows of `components`; the old shape if it fits.
   std::vector<std::uint64_t> shape_at(const DataPlace& place, std::size_t count, std::size_t components);
-  /// Returns whether another field has written other values to the dataset of a place, such as an array of
-  /// cells if this is one of vertices. From the first call on, the dataset counts as written.
+  /// Returns whether another field has written other values to the dataset of a place, for example an array
+  /// on cells if this one is on vertices. From the first call on, the dataset counts as written.
   bool is_taken(const DataPlace& place, const Values& values);
   /// Sets the shape and the number type of a DataItem for values in rows of `components`; returns the
   /// shape.
@@ -81,7 +81,7 @@ class Writer {
   [[nodiscard]] std::vector<pugi::xml_node> items_at(const DataPlace& place) const;
   /// Writes values to a place in their own number type, in rows of `components` values.
   void put(const DataPlace& place, const Values& values, std::size_t components);
-  /// Writes indices to a place in the number type that it has, unless that is too narrow.
+  /// Writes indices to a place in its number type, unless that is too narrow.
   void put_indices(const DataPlace& place, std::span<const Index> indices, std::size_t components);
   /// Writes the name of a dataset to the XML of a made layout; `rename_files` replaces the file in it.
   void name_dataset(const DataPlace& place);
@@ -113,10 +113,10 @@ class Writer {
   void remove_element(const Field& field);
   /// Removes marked elements, and their datasets unless other elements name them.
   void remove_gone();
-  /// Returns the row of each cell in a part, −1 for those of other parts.
+  /// Returns the row of each cell in a part, −1 for cells of other parts.
   [[nodiscard]] std::vector<Index> places_in(const std::vector<Index>& rows) const;
-  /// Returns the values of an array for all vertices or for the cells of a part; none if these are the values
-  /// that the array has. Notes rows that the array lacks.
+  /// Returns the values of an array for all vertices or for the cells of a part; none if the array already
+  /// has exactly these values. Notes rows that the array lacks.
   std::optional<Values> values_of(const DataArray& array, Association association, int part);
   void note_filled_once(const DataArray& array);
 
@@ -160,7 +160,7 @@ class Writer {
 /// Sets `other` if the element has it but not `name`; else sets or adds `name`.
 void set_either(pugi::xml_node element, const char* name, const char* other, const std::string& value);
 
-/// Returns the AttributeType of values with so many components.
+/// Returns the AttributeType of values with that many components.
 std::string attribute_type(Index components);
 
 }  // namespace meshorder::xdmf

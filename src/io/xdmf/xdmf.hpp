@@ -50,15 +50,15 @@ int vtk_type(const TopologyType& type, std::int64_t nodes);
 /// XDMF only.
 bool holds(const Mesh& mesh, Shape shape, int vertices);
 
-// ---- what a file has
+// ---- contents of a file
 
 /// The cells of one Topology.
 struct Part {
   std::string name;           ///< of its Grid
   std::string set;            ///< set of its cells, in the order of the file; empty for the first part, and
                               ///< for a Grid that `layout_of` added
-  int below = 0;              ///< of such a Grid: highest dimension of cells minus dimension of its own
-  bool has_own_cells = true;  ///< false: its cells are those of parts before it
+  int below = 0;              ///< of such a Grid: highest dimension of cells minus that of its cells
+  bool has_own_cells = true;  ///< false: all its cells are cells of earlier parts
   bool is_ascending = true;   ///< whether its cells are in the order of the mesh
   std::size_t grid = 0;       ///< number of its Grid; see `Document::number`
 };
@@ -96,11 +96,11 @@ Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
 /// Returns the layout of a file for a mesh from another format: a Grid for the cells of the highest
-/// dimension, and one for those of each lower dimension.
+/// dimension, and a Grid for the cells of each lower dimension.
 Layout layout_of(const Mesh& mesh, const FilePath& path);
 
-/// Name of the element <Information> that marks a Grid which `layout_of` added: readers do not take it for a
-/// set.
+/// Name of the element <Information> that marks a Grid which `layout_of` added: readers make no set of this
+/// Grid.
 inline constexpr std::string_view kAdded = "cells of a lower dimension";
 /// Returns the value of `Part::below` for a Grid that `layout_of` added, by its name; 0 for any other name.
 int below_of(std::string_view grid);
