@@ -70,7 +70,7 @@ int highest_dimension_of(const std::vector<TypeCount>& types) {
   return highest;
 }
 
-/// Returns the types that a file of the format does not hold and leaves out; none if one of the highest
+/// Returns the types that a file of the format does not hold and leaves out; none if a type of the highest
 /// dimension is among them.
 std::vector<TypeCount> types_left_out(const Mesh& mesh, const std::vector<TypeCount>& types,
                                       const Format& format) {

@@ -64,8 +64,8 @@ struct Reference {
 /// Returns whether the lines or numbers of a card are in another file.
 bool has_other_file(const Card& card);
 
-/// Returns where a card, given with its lines from the keyword on, names nodes and elements by number; none
-/// if the card is not known.
+/// Returns the places where a card names nodes and elements by number; none if the card is not known.
+/// `lines`: the lines of the card, from the keyword on.
 std::optional<std::vector<Reference>> references(const Card& card, std::string_view lines);
 
 /// The name of a set in the first field of a line. Valid as long as the lines.

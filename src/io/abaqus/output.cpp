@@ -66,7 +66,7 @@ struct RealText {
   }
 };
 
-/// Returns a valid name that is not in `taken`, where case does not matter, and adds it to `taken`.
+/// Returns a valid name that is not in `taken`, ignoring case, and adds it to `taken`.
 std::string name_for(const std::string& given, std::set<std::string>& taken, NameNumbers& numbers) {
   constexpr std::size_t kLongest = 80;
   std::string name = plain_name(given, " ,\"=*.");

@@ -47,7 +47,7 @@ class SetReader {
   [[nodiscard]] bool knows(Association association, std::string_view name) const;
 
   /// Returns the sets with their members. Notes names and numbers that do not exist. `others`: numbers of
-  /// elements that are not cells; sets may name them but do not get them.
+  /// elements that are not cells; sets may name these elements but do not contain them.
   std::vector<EntitySet> members(const IdMap& nodes, const IdMap& elements,
                                  const std::unordered_set<std::int64_t>& others, const Cells& cells,
                                  Notes& notes);

@@ -17,7 +17,8 @@ class Filler {
   /// Returns whether the vertices are in the order of their zones.
   [[nodiscard]] bool has_vertices_in_order() const;
   void fill(Node& node);
-  /// Returns whether a node has nothing to write: an empty section or list, or an array that is gone.
+  /// Returns whether a field has nothing to write: an empty section or list, or an array that is gone or no
+  /// longer fits.
   [[nodiscard]] bool is_gone(const Field& field) const;
 
  private:

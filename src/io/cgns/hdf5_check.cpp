@@ -94,7 +94,7 @@ class Hdf5Check {
     if (link.type != H5L_TYPE_HARD) {
       fail(parent + " is a link to another node", "copy all into one file with cgnsconvert -l -f IN OUT");
     }
-    // H5Oget_info_by_name leaves an id open where the object is damaged
+    // H5Oget_info_by_name leaves an id open if the object is damaged
     const Handle object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose);
     if (!object.is_open()) fail(path + " cannot be read");
     const H5I_type_t kind = H5Iget_type(object.id());

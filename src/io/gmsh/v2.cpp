@@ -67,8 +67,8 @@ void read_element_body(ReadContext& reading, const Element& element, Tags& tags,
   add_cell(reading.mesh, *element.type, nodes);
 }
 
-/// Reads at most `most` elements of a text on all threads, up to the first that differs from the last one in
-/// type or number of tags. Adds them to `tags`, `ids` and the mesh; returns how many.
+/// Reads at most `most` elements of a text on all threads, up to the first element that differs from `last`
+/// in type or number of tags. Adds them to `tags`, `ids` and the mesh; returns their number.
 Index read_alike(ReadContext& reading, const Element& last, Index most, Tags& tags,
                  std::vector<std::int64_t>& ids) {
   const auto tag_count = static_cast<std::size_t>(last.tag_count);

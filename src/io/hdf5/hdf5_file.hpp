@@ -62,8 +62,8 @@ class File {
   /// Returns whole numbers as indices. A number out of range becomes the nearest 32-bit limit, which is not
   /// an index.
   [[nodiscard]] std::vector<Index> read_indices(const std::string& path) const;
-  /// Returns the byte of the file where the values of a dataset that `info` accepts begin; 0 if it has none;
-  /// nothing unless they are contiguous, in this machine's byte order.
+  /// Returns the byte offset in the file of the values of a dataset that `info` accepts; 0 if it has no
+  /// values; nothing unless the values are contiguous and in this machine's byte order.
   [[nodiscard]] std::optional<std::uint64_t> place_of_values(const std::string& path) const;
   /// Returns the paths of all datasets with at least one dimension, and the length of their first.
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> datasets() const;

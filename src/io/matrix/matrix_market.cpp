@@ -249,7 +249,7 @@ bool is_transposed(std::span<const Index> entry, Symmetry symmetry) {
   return symmetry != Symmetry::general && entry.front() < entry.back();
 }
 
-/// Returns whether a component of a value changes its sign where the entry is transposed.
+/// Returns whether a component of a value changes its sign if the entry is transposed.
 bool changes_sign(Symmetry symmetry, Offset component) {
   return symmetry == Symmetry::skew_symmetric || (symmetry == Symmetry::hermitian && component == 1);
 }

@@ -10,7 +10,7 @@ namespace meshorder {
 
 /// Coordinates from a file beside a matrix or graph, a point for each row.
 struct RowPoints {
-  std::vector<Point> points;  ///< the third coordinate is 0 where the file has two
+  std::vector<Point> points;  ///< the third coordinate is 0 if the file has two
   int dimension = 3;          ///< numbers in each row of the file, 2 or 3
 };
 

@@ -28,7 +28,7 @@ bool is_text_array(const DataArray& array) {
   return std::holds_alternative<std::vector<std::string>>(array.values);
 }
 
-/// Returns a name, changed where HDF5 or MED would not allow it.
+/// Returns a name, changed if HDF5 or MED would not allow it.
 std::string clean_name(const std::string& given) {
   const std::string plain = plain_name(utf8(given), "/");
   std::string name(utf8_prefix(plain, kLongestName));

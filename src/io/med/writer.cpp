@@ -100,7 +100,7 @@ std::vector<Index> node_columns(const Writing& writing, const GeometryType& type
   return columns;
 }
 
-/// Returns the numbers or texts of an array for some vertices or cells; nothing if one of them has none.
+/// Returns the numbers or texts of an array for some vertices or cells; nothing if an item has none.
 template <class Result, class Array>
 std::optional<std::vector<Result>> rows_for(const Array& values, const std::vector<Index>& row_of,
                                             const std::vector<Index>& items) {

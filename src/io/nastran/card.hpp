@@ -59,7 +59,7 @@ struct CardFields {
   bool is_large = false;     ///< whether the first line has large fields
   std::string_view fault{};  ///< why the fields cannot be found; empty if they can
 
-  /// Returns the text of a field without blanks; empty where the card has none.
+  /// Returns the text of a field without blanks; empty if the card has no such field.
   [[nodiscard]] std::string_view text(std::size_t field) const {
     return field < fields.size() ? fields[field].text : std::string_view();
   }

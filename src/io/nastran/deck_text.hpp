@@ -22,7 +22,7 @@ class DeckText {
   /// Returns all lines, each with a line end. The caller may move the text out.
   [[nodiscard]] std::string& text() { return text_; }
   [[nodiscard]] const std::string& text() const { return text_; }
-  /// Returns the lines between BEGIN BULK and ENDDATA; all up to ENDDATA where there is no BEGIN BULK.
+  /// Returns the lines between BEGIN BULK and ENDDATA; all up to ENDDATA if there is no BEGIN BULK.
   [[nodiscard]] Piece bulk() const { return bulk_; }
   /// Returns false for a file with BEGIN BULK, but without ENDDATA.
   [[nodiscard]] bool has_end() const { return section_ == Section::end || bulk_.begin == 0; }

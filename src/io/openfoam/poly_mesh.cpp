@@ -205,7 +205,7 @@ class CentreReader {
     faces_.end_lists("faces");
   }
 
-  /// Reads where each face begins in the list of points, and where the last one ends; then that list.
+  /// Reads the begin of each face in the list of points and the end of the last face, then that list.
   void read_compact() {
     std::vector<Index> begins;
     faces_.read_labels(begins, "face's begin", 0, kMaxIndex);

@@ -14,7 +14,7 @@ namespace meshorder::openfoam {
 struct PolyMesh {
   CsrGraph graph;              ///< joins cells that share an internal face
   Index internal_faces = 0;    ///< at least the number of edges: two cells may share several
-  std::vector<Point> centres;  ///< of each cell the mean of its faces' centres; empty unless asked for
+  std::vector<Point> centres;  ///< for each cell, the mean of its faces' centres; empty if not wanted
 };
 
 /// Throws InputError for a missing file of a mesh.

@@ -41,7 +41,7 @@ class InflatedBlocks {
   }
   void use(std::size_t bytes) { used_ += bytes; }
 
-  /// Returns all bytes as one text. Needs memory for one more block only, as it frees each after copying.
+  /// Returns all bytes as one text. Needs memory for only one more block: it frees each block after copying.
   std::string joined() && {
     std::string result;
     reserve_large(result, used_);

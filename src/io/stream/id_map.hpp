@@ -11,7 +11,8 @@
 namespace meshorder {
 
 /// The ids that a file gives to its vertices or cells, in file order, and a map from ids back to positions,
-/// counted from 0. Consecutive ids take no memory, others a table while they are dense, else a hash map.
+/// counted from 0. Consecutive ids take no memory. Other ids take a table while they are dense, else a hash
+/// map.
 class IdMap {
  public:
   /// Appends the id of the next position. Returns false and leaves the map unchanged if `id` is already
@@ -72,7 +73,7 @@ class IdMap {
   }
 
  private:
-  /// id − first_ for id ≥ first_; unsigned, as it may need 64 bits.
+  /// id − first_ for id ≥ first_; unsigned because it may need 64 bits.
   [[nodiscard]] std::uint64_t above_first(std::int64_t id) const {
     return static_cast<std::uint64_t>(id) - static_cast<std::uint64_t>(first_);
   }

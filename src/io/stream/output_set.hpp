@@ -29,9 +29,9 @@ class OutputSet {
   /// Makes `commit` remove a file of an earlier run, if it exists, that is not part of this set.
   void remove(FilePath path) { removals_.push_back(std::move(path)); }
 
-  /// Makes `commit` first remove an old file without which no reader reads the other files, for example a
-  /// file that names them. If the process is then killed, the set cannot be read, but it is not a mixed one.
-  /// For outputs without a mark (see `put_in_place`). Add the new version of that file last.
+  /// Makes `commit` first remove an old file that readers need to read the others, for example a file that
+  /// names them. If the process is then killed, the set cannot be read, but it is not a mixed one. For
+  /// outputs without a mark (see `put_in_place`). Add the new version of that file last.
   void remove_first(FilePath path) { removals_first_.push_back(std::move(path)); }
 
   /// Puts all files in place. Throws InputError as `put_in_place`.

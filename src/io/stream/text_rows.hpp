@@ -19,7 +19,7 @@ namespace meshorder {
 /// @note Memory: 1 MB or so for each thread.
 void write_row_ranges(OutputFile& out, Index count, const std::function<void(Text&, Index, Index)>& rows);
 
-/// The same, where `row(text, i)` appends row i.
+/// The same; `row(text, i)` appends row i.
 template <class Row>
 void write_rows(OutputFile& out, Index count, const Row& row) {
   write_row_ranges(out, count, [&row](Text& text, Index begin, Index end) {

@@ -148,7 +148,7 @@ struct Contents {
 /// A universal file, and where its nodes and elements are in the mesh.
 using Metadata = DeckMetadata<Contents>;
 
-/// Name of the array on cells that holds the numbers of materials, where they differ.
+/// Name of the array on cells that holds the numbers of materials, if they differ.
 inline constexpr std::string_view kMaterial = "material";
 
 /// Returns how many numbers a member has in a dataset of groups, 2 or 4; 0 for other datasets.

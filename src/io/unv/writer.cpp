@@ -320,8 +320,8 @@ class UnvWriter {
     list(numbers);
   }
 
-  /// Returns a name that groups can have and that is not taken yet; takes it. A line that is the delimiter of
-  /// datasets would end the groups.
+  /// Takes and returns a free name that groups can have. A line that is the delimiter of datasets would end
+  /// the groups.
   static std::string name_for(const std::string& given, DistinctNames& taken) {
     const std::string name = plain_name(trimmed(given), " ");  // Gmsh reads the first word
     if (name.empty()) return taken.take("group");

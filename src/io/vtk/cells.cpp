@@ -136,7 +136,7 @@ bool can_be(int number, Shape shape, int vertices) {
 }
 
 /// Returns the numbers of VTK's types that the reader kept; null if there are none. An array of that name
-/// with a number that does not fit its cell does not count. O(cells).
+/// does not count if a number does not fit its cell. O(cells).
 const std::vector<std::uint8_t>* kept_types(const Mesh& mesh) {
   const DataArray* const kept = find_array(mesh, kCellTypes, Association::cells);
   if (kept == nullptr || !kept->is_dense() || kept->components != 1) return nullptr;

@@ -16,10 +16,10 @@ struct Pieces {
   std::vector<ArrayRole>& roles;
 };
 
-/// Makes one mesh of its pieces, in place. Leaves out cells that `vtkGhostType` marks as another
-/// piece's, points that only these use, and `vtkGhostType` itself if it marks nothing else. Sorts points
-/// and cells by their global ids, which are in the array of that role or of VTK's name for it. A point
-/// of several pieces becomes one, with the values of the piece that owns it. Leaves out ids that are 0,
+/// Makes one mesh of its pieces, in place. Leaves out cells that `vtkGhostType` marks as another piece's,
+/// points that it marks and that no remaining cell uses, and `vtkGhostType` itself if it marks nothing else.
+/// Sorts points and cells by their global ids, which are in the array of that role or of VTK's name for it. A
+/// point of several pieces becomes one, with the values of the piece that owns it. Leaves out ids that are 0,
 /// 1, 2 …
 ///
 /// Points without ids on the borders of pieces stay once for each piece, which is noted. Throws `error` for

@@ -159,8 +159,8 @@ const ArrayFacts* find_facts(const Metadata& metadata, std::optional<Association
 
 // ---- cells
 
-/// The cell array of VTK's cell types, kept where shape and number of vertices do not determine them: a
-/// Lagrange tetrahedron of 10 nodes is not a quadratic one.
+/// The cell array of VTK's cell types, kept if shape and number of vertices do not determine them: a Lagrange
+/// tetrahedron of 10 nodes is not a quadratic one.
 inline constexpr std::string_view kCellTypes = "vtk:type";
 
 /// Cells as in VTK's files: type numbers of vtkCellType.h; cell c has the vertices from `offsets[c]` on.
@@ -177,7 +177,8 @@ using ErrorAt = std::function<InputError(const std::string&, const std::string&)
 /// Gives `mesh` these cells, with their vertices in the order of a Mesh. Pixels and voxels become quads and
 /// hexahedra (noted); type numbers that shape and vertices do not determine are kept as the array kCellTypes.
 /// Throws `error` for types without a Shape, for cells with a wrong number of vertices and for polyhedra
-/// without faces on their vertices. Leaves nothing but the polyhedra in `cells`. O(vertex entries).
+/// without faces on their vertices. Moves the contents of `cells` out, except the polyhedra; the types become
+/// kCellTypes or stay. O(vertex entries).
 ///
 /// The first triangle of a linear wedge faces outward up to VTK 9.6 and inward since. Files do not say
 /// which; the volumes of their cells decide. Returns whether the file's wedges face inward, as those of a

@@ -71,7 +71,7 @@ class DataReader {
   /// an index.
   [[nodiscard]] std::vector<Index> read_indices(const DataPlace& place);
 
-  /// Returns the path of a file that a DataItem names. Throws where it is missing or may not be read.
+  /// Returns the path of a file that a DataItem names. Throws if it is missing or may not be read.
   [[nodiscard]] FilePath path_of(pugi::xml_node item, const std::string& name) const;
   /// Returns the opened HDF5 files by their names in the XML.
   [[nodiscard]] const std::map<std::string, hdf5::File>& files() const noexcept { return files_; }

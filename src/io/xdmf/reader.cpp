@@ -156,7 +156,7 @@ class XdmfReader {
  private:
   // ---- values that are not read
 
-  /// Adds the datasets of a Grid. Returns false where they cannot be read by their bytes.
+  /// Adds the datasets of a Grid. Returns false if they cannot be read by their bytes.
   bool find_grid(const GridElement& grid) {
     pugi::xml_node topology;
     pugi::xml_node geometry;
