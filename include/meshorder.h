@@ -192,10 +192,10 @@ enum {
  * Makes a reorderer. Destroy it by `mo_reorderer_destroy`.
  *
  * @param options         options of its orders, or null; its arrays must be empty, and `progress` and `user`
- * must stay valid
- * @param slack           share, >= 0, by which the mean span of edges may exceed that of the last fresh
- * order before a new one is computed; for points alone, this many times log2 of their number
- * is added to that of the last fresh order; usual: 0.02
+ *                        must stay valid
+ * @param slack           share, >= 0, by which the mean span of edges may exceed that of the last fresh order
+ *                        before a new one is computed; for points alone, this many times log2 of their number
+ *                        is added to that of the last fresh order; usual: 0.02
  * @param budget_seconds  >= 0; no new order is computed if the last one took longer; infinity: no limit
  * @param reorderer       written; null after a failure
  */
@@ -211,12 +211,11 @@ MO_API void mo_reorderer_destroy(mo_reorderer* reorderer);
  *
  * @param reorderer   made by `mo_reorderer_create`
  * @param offsets     n + 1, ascending, the first is the base of the options; null if there are only points
- *
  * @param neighbours  offsets[n] - base numbers from the base on, or null
  * @param points      dimension * n coordinates, or null
  * @param dimension   1 to 3; not used without points
  * @param previous    place of each vertex after the last update, from the base on, no place twice; base - 1
- * for a new vertex; null: the same vertices in the same places
+ *                    for a new vertex; null: the same vertices in the same places
  * @param new_to_old  n integers, or null: the present place of the vertex at each new place, from the base on
  * @param old_to_new  n integers, or null: the new place of each vertex, from the base on
  * @param repair      how the order was found, MO_REPAIR_...; or null

@@ -76,7 +76,7 @@ bool needs_root(const Arguments& arguments) {
          !arguments.points.empty();
 }
 
-/// Throws SharedError for pieces of a process that was started alone and does not say how many.
+/// Throws SharedError if one process, started alone, is to write pieces and no number of parts is given.
 void check_count_of_pieces(const Communicator& communicator, const Arguments& arguments) {
   communicator.together([&] {
     if (arguments.is_started_as_rank || arguments.parts > 0 || arguments.pieces.empty()) return;
@@ -93,7 +93,7 @@ void check_parts(const Communicator& communicator, Index parts, GlobalIndex vert
   });
 }
 
-/// Throws SharedError if the root read a matrix without coordinates and an option names a method that goes by
+/// Throws SharedError if the root read a matrix without coordinates and an option names a method that needs
 /// them.
 void require_points_of(const Communicator& communicator, const Mesh& mesh, const Arguments& arguments) {
   communicator.at_root([&] {
@@ -254,7 +254,7 @@ int share_of_cores(const Communicator& communicator) {
       1, static_cast<int>(std::thread::hardware_concurrency()) / communicator.ranks_on_this_machine());
 }
 
-/// Adds how many parts there are, what makes them, and their orders.
+/// Adds the options of the parts: their number, how they are made, and how each is ordered.
 void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
   subcommand
       .add_option("--vertices", arguments.vertices,

@@ -12,7 +12,7 @@ namespace meshorder::command {
 /// Adds the options of `order`. It runs on all ranks once all arguments are parsed, and throws SharedError on
 /// all of them if one fails.
 ///
-/// @param is_started_as_rank  whether a launcher started this process, be it alone
+/// @param is_started_as_rank  whether a launcher started this process, even if it started no other
 void add_distributed_order(CLI::App& subcommand, const distributed::Communicator& communicator,
                            bool is_started_as_rank);
 

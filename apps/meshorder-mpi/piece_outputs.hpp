@@ -19,8 +19,8 @@ class PieceOutputs {
   ///
   /// @param folder  made by `open` if it does not exist; its parent has to exist
   /// @throws InputError if the folder cannot be written or would have the name of a mesh's file, and if it
-  /// holds
-  ///         a piece's file that no NAME.pvtu there lists, as it may be another program's
+  ///                    holds a piece's file that no NAME.pvtu there lists: another program may have written
+  ///                    this file
   PieceOutputs(std::filesystem::path folder, std::string name);
   /// Removes the folder if `open` made it and it is empty.
   ~PieceOutputs();

@@ -37,7 +37,7 @@ std::uint64_t checksum_of(const Communicator& communicator, const Layout& layout
   return checksum.value();
 }
 
-/// Returns the old number of each new one of this rank.
+/// Returns the old number for each of this rank's new numbers.
 std::vector<GlobalIndex> inverse(const Communicator& communicator, const Layout& layout,
                                  const std::vector<GlobalIndex>& new_numbers) {
   const std::vector<GlobalIndex> old_numbers = communicator.together([&] {

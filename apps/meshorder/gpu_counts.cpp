@@ -24,7 +24,7 @@ namespace {
 constexpr std::array kCards{
     GpuCard{.name = "h100", .title = "an NVIDIA H100", .launch_us = 4.0, .us_per_sector = 15.9e-6}};
 
-/// The smallest mesh by which times were tested has 161,222 tetrahedra.
+/// Fewest tetrahedra for which times are shown; the smallest mesh in the tests of times has 161,222.
 constexpr Index kFewestTimed = 100'000;
 
 constexpr std::array<std::string_view, kGpuLayouts.size()> kAdditions{
@@ -35,7 +35,7 @@ constexpr std::array<std::string_view, kLanes.size()> kProducts{"product, 1 thre
                                                                 "product, 8 threads a row"};
 constexpr std::array<std::string_view, kLanes.size()> kProductKeys{"product_1", "product_8"};
 
-/// Whether times of element forces are known for a layout.
+/// Returns whether times of element forces are known for a layout.
 bool has_times(GpuLayout layout) {
   return layout == GpuLayout::packed || layout == GpuLayout::apart || layout == GpuLayout::padded;
 }
@@ -90,7 +90,7 @@ std::vector<CountedKernel> counted_products(const CsrGraph& graph, const MeshOrd
   return kernels;
 }
 
-/// Returns the mean of those `sector_ratio` that `reason_to_keep_on_gpu` goes by.
+/// Returns the geometric mean of the `sector_ratio` of the layouts that `reason_to_keep_on_gpu` uses.
 double ratio_of_additions(std::span<const CountedKernel> additions) {
   double sum = 0;
   for (const CountedKernel& kernel : additions.first(3))

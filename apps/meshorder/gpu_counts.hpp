@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-// What kernels on a graphics processor cost with a mesh in its order and in others, counted.
+// Counts of the costs of kernels on a graphics processor, for a mesh in its order and in others.
 
 namespace meshorder::command {
 
@@ -31,7 +31,7 @@ std::optional<GpuCost> cost_of_additions(const Mesh& mesh, GpuLayout layout);
 double sector_ratio(const GpuCost& as_is, const GpuCost& ordered);
 
 /// A graphics processor whose times are known: of element forces of tetrahedra in single precision, in the
-/// layouts packed, apart and padded. They are a constant and the same time for each sector
+/// layouts packed, apart and padded. A time is a constant for the launch, plus a constant for each sector
 /// (benchmarks/gpu_card.py).
 struct GpuCard {
   std::string_view name;   ///< of --card
@@ -56,7 +56,7 @@ struct CountedKernel {
   std::optional<double> ordered_us = {};
 };
 
-/// What `order --for gpu` makes of a mesh.
+/// The effect of `order --for gpu` on a mesh.
 struct GpuReport {
   MeshOrder order;
   std::vector<CountedKernel> additions;  ///< one for each layout; none if `cost_of_additions` has none
@@ -77,7 +77,7 @@ GpuReport gpu_report(const Mesh& mesh, const CsrGraph& graph, const GpuCard* car
 /// Returns in a sentence whether the mesh is in a good order for a graphics processor.
 std::string to_string(const GpuReport& report);
 
-/// Prints the line that makes the new order, or why the old one is kept.
+/// Prints the command that makes the new order, or the reasons to keep the old one.
 void print_next(const Console& console, const GpuReport& report, const std::string& mesh);
 
 /// Prints a table with a row for each kernel.

@@ -5,9 +5,9 @@
 
 namespace meshorder::command {
 
-/// Executes another program beside this one with the same arguments, and does not return, if that
-/// program does the work: `meshorder-mpi` if `mpirun` or `srun` started several of this process together, or
-/// if `order` has an option of parts; `meshorder-lab` for a subcommand of the laboratory.
+/// If another program beside this one does the work, executes that program with the same arguments and does
+/// not return: `meshorder-mpi` if `mpirun` or `srun` started several of this process together, or if `order`
+/// has an option of parts; `meshorder-lab` for a subcommand of the laboratory.
 ///
 /// @param arguments  as of `main`
 /// @return exit status if there is no such program, which the first process then reports; nothing if this

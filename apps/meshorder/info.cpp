@@ -65,7 +65,8 @@ constexpr Offset kMaxQuick = 250'000;
 constexpr Offset kMaxQuickEntries = 1'000'000;
 /// The smallest first-level cache of today's processors, bytes.
 constexpr Offset kFirstCache = 32 * 1024;
-/// Largest number of simplices for which times are predicted by default, in seconds a million vertices.
+/// Largest number of simplices for which times are predicted by default; that takes seconds per million
+/// vertices.
 constexpr Offset kMaxPredicted = 100'000'000;
 /// Largest number of simplices for which there is time to measure a second order.
 constexpr Offset kMaxOfTwoOrders = 500'000;
@@ -73,13 +74,13 @@ constexpr Offset kMaxOfTwoOrders = 500'000;
 /// Returns whether the kernels have something to compute: points are not elements.
 bool has_elements(SimplicesRef simplices) { return simplices.size() > 0; }
 
-/// Returns whether times are predicted: by default only if this takes seconds, with --cache always.
+/// Returns whether times are predicted: with --cache always, else for up to `kMaxPredicted` simplices.
 bool is_predicted(const InfoArguments& arguments, SimplicesRef simplices) {
   return has_elements(simplices) && (simplices.size() <= kMaxPredicted || !arguments.caches.empty());
 }
 
-/// Whether the matrix of a graph and two vectors fit in the first cache: then no order is faster than
-/// another.
+/// Returns whether the matrix of a graph and two vectors fit in the first cache; all orders are then equally
+/// fast.
 bool fits_in_first_cache(const CsrGraph& graph) {
   constexpr Offset kBytesPerEntry = sizeof(double) + sizeof(Index);
   const Offset entries = std::ssize(graph.neighbours) + graph.size();
@@ -295,7 +296,7 @@ void print_details(const Console& console, const Mesh& mesh, const Findings& fou
   }
 }
 
-/// Prints what another order is worth, and the line that makes it.
+/// Prints the gain of the best other order, and the command that makes it.
 void print_verdict(const Console& console, const InfoArguments& arguments, const Findings& found) {
   const std::optional<Advice>& advice = found.advice;
   if (found.gpu) {

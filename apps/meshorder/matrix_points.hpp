@@ -26,8 +26,8 @@ void require_points(const Mesh& mesh, const std::string& input, const std::strin
 
 /// Throws InvalidArgument if the mesh is a matrix or graph without coordinates.
 ///
-/// @param by      what goes by them: "order 'hilbert'"
-/// @param others  what needs none
+/// @param by      the part that needs them: "order 'hilbert'"
+/// @param others  methods that need none
 void require_coordinates(const Mesh& mesh, const std::string& input, const std::string& by,
                          const std::vector<std::string>& others);
 

@@ -36,14 +36,14 @@ struct MeshToOrder {
 void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids,
                         const std::string& more_maps = "");
 
-/// Reads a mesh to compute with. Its graphs may use what it leaves of the memory limit, for the rest of
-/// the process.
+/// Reads a mesh to compute with. For the rest of the process, its graphs may use the part of the memory limit
+/// that the reading has left.
 ///
 /// @param bytes_of_entry  as of `limit_joins`
 Mesh read_to_work_on(const FilePath& path, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
-/// As kBytesToOrder: for commands that predict times, and, for each order held at a time, for those that run
-/// kernels.
+/// Like kBytesToOrder: kBytesToPredict for commands that predict times, kBytesToMeasure for those that run
+/// kernels, for each order that they hold at a time.
 inline constexpr std::uint64_t kBytesToPredict = 64;
 inline constexpr std::uint64_t kBytesToMeasure = 100;
 
@@ -60,8 +60,9 @@ std::vector<Index> keep_wanted(Mesh& mesh, const std::string& input, int dimensi
 /// @param bytes_of_entry  as of `limit_joins`
 MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
-/// Writes a mesh that is in its new order, and its maps, whose permutations are known by now, as files of a
-/// set; its `commit` puts all in place. Returns the paths of the maps. An empty output is not written.
+/// Writes a mesh that is in its new order, and its maps, whose permutations must be set, as files of a set;
+/// `commit` of the set puts all files in place. Returns the paths of the maps. An empty output is not
+/// written.
 std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
                                        Notes& notes);
 

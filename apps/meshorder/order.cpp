@@ -162,7 +162,7 @@ class Ordering {
   }
 
  private:
-  /// On all threads a race needs the costs of a calibration to choose by.
+  /// Calibrates this machine if times are predicted or all threads share each run.
   void calibrate() {
     if (arguments_.predict || arguments_.all_threads) {
       machine_ =
@@ -183,7 +183,7 @@ class Ordering {
     times_.end("race");
   }
 
-  /// Compares the order with the file's own. `graph`: before it moved.
+  /// Compares the order with the file's own. `graph` is the graph before the mesh moved.
   void judge(const CsrGraph& graph) {
     spans_ = {quick_edge_span(graph, {}), quick_edge_span(graph, job_.maps.vertices.old_to_new())};
     if (!raced_) {
@@ -231,7 +231,7 @@ class Ordering {
 };
 
 void run(const OrderArguments& arguments) {
-  // what must fail fails before the work
+  // report wrong arguments before the work
   check(arguments);
   std::optional<MachineChoice> machine;
   if (is_race(arguments)) machine = choose_machine(arguments.machine, arguments.all_threads);

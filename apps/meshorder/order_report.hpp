@@ -14,7 +14,7 @@
 
 namespace meshorder::command {
 
-// What `order` says of an order that it made; the page in browser/ says the same.
+// The report of `order` on its result; the page in browser/ shows the same.
 
 /// The edge spans of the vertices before and after reordering.
 struct SpanChange {
@@ -28,16 +28,16 @@ struct SpanChange {
 std::vector<std::string> lines_of_order(const MeshOrder& order, const std::optional<Grouping>& groups,
                                         const SpanChange& spans, const StoredMatrix* stored);
 
-/// Notes a method that was requested by name and does not improve the order of the vertices. `graph` is that
-/// before reordering.
+/// Notes a method that was requested by name and does not improve the order of the vertices. `graph` is the
+/// graph before reordering.
 void note_no_better(GraphRef graph, const ReorderOptions& options, const Permutation& vertices, Notes& notes);
 
 /// Notes a method that was requested by name and does not improve the order of the elements. `mesh` has been
 /// reordered by `cells`.
 void note_no_better(const Mesh& mesh, const ReorderOptions& options, const Permutation& cells, Notes& notes);
 
-/// Returns whether the file's numbers of vertices or cells differ from those before they moved. `mesh`
-/// has been reordered.
+/// Returns whether the numbers of vertices or cells in the output differ from those in the input. `mesh` has
+/// been reordered.
 bool has_new_numbers(const Mesh& mesh, const MeshOrder& order, const ReorderOptions& options);
 
 }  // namespace meshorder::command

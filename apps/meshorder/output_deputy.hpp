@@ -14,7 +14,7 @@ namespace meshorder::command {
 
 /// Puts outputs in place for a confined child process. The child writes them in private scratch folders and
 /// can reach no others. It asks over a socket, and this process checks that the user requested each
-/// file. A child that a stranger controls can spoil these outputs, but no other file.
+/// file. A malicious file that controls the child can damage these outputs, but no other file.
 class OutputDeputy {
  public:
   /// Makes a scratch folder in each folder of an output. Throws InputError for an output that cannot be
@@ -47,7 +47,7 @@ class OutputDeputy {
   void add_home(const std::filesystem::path& target);
   /// Returns an output that may be put in place. Throws Error for any other path.
   [[nodiscard]] FilePath allowed(const std::string& path) const;
-  /// Takes a file out of the child's hands: moves it from its scratch folder to one of this process.
+  /// Moves a file from its scratch folder to one of this process, where the child cannot reach it.
   [[nodiscard]] Scratch taken(const std::string& scratch, const FilePath& target) const;
   [[nodiscard]] std::vector<std::string> do_as_asked(std::string_view request) const;
 

@@ -11,7 +11,7 @@ class App;
 
 namespace meshorder::command {
 
-/// What distinguishes a program with subcommands from others.
+/// The parts in which programs with subcommands differ.
 struct Program {
   /// Gives the parser its options and subcommands. May take away arguments that are not for the parser.
   void (*describe)(CLI::App& app, std::vector<std::string>& arguments);

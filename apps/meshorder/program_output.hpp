@@ -10,7 +10,7 @@
 
 namespace meshorder::command {
 
-/// Returns the number that a text is, also in Fortran's form ("1.5D-3") or with a plus; nothing for other
+/// Returns the number that a text spells, also in Fortran's form ("1.5D-3") or with a plus; nothing for other
 /// texts.
 std::optional<double> number_of(std::string_view text);
 
@@ -37,7 +37,7 @@ class PrintedNumbers {
 std::string difference(const std::vector<double>& expected, const std::vector<double>& found,
                        double tolerance);
 
-/// Returns where two texts differ, word by word: numbers by the same rule, other words in any character.
+/// Returns where two texts differ, word by word: numbers are compared by the same rule, other words exactly.
 std::string difference(std::string_view expected, std::string_view found, double tolerance);
 
 /// Returns the files that hold a program's stdout and stderr; see TrialCommand::log.

@@ -14,8 +14,7 @@
 namespace meshorder::command {
 
 /// A private folder in which a program runs on a mesh in one order after another, with copies of the files
-/// beside the mesh. Every run finds the same files at the same paths; what it leaves is
-/// removed.
+/// beside the mesh. Every run finds the same files at the same paths; files that a run leaves are removed.
 ///
 /// Files beside the mesh are copied, the smallest first, up to 64 MiB; larger ones become links, as do links
 /// to folders. Hidden files are left out. A program can write to linked files: this is noticed after
@@ -50,7 +49,8 @@ class TrialFolder {
 
   /// Puts the files of an order in place.
   void begin_run(std::size_t order);
-  /// Takes them away again, restores the files beside the mesh and removes everything else. If `kept` is
+  /// Removes the files of the order, restores the files beside the mesh and removes everything else. If
+  /// `kept` is
   /// not empty, first copies what the program wrote to this folder. Throws InvalidArgument if the program
   /// changed its mesh or a linked file.
   void end_run(std::size_t order, const std::filesystem::path& kept = {});

@@ -38,7 +38,7 @@ struct TrialCommand {
   std::vector<std::string> words;  ///< the first word as `find_program` returns it
   std::filesystem::path folder;    ///< its current directory
   std::filesystem::path log;       ///< prefix of the files that receive what it prints: log.out, log.err
-  double timeout_seconds = 0;      ///< by the clock; 0: no limit
+  double timeout_seconds = 0;      ///< elapsed time; 0: no limit
 };
 
 /// Result of a run.

@@ -114,7 +114,7 @@ std::vector<std::string>& program_to_try() {
   return words;
 }
 
-/// Adds what is tried, how often, and what counts.
+/// Adds the options for the orders, the budget, the times and the results to compare.
 void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
   subcommand
       .add_option("--methods", arguments.methods,

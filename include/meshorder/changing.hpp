@@ -69,7 +69,8 @@ struct Update {
 /// Call `update` whenever connectivity or positions have changed, and move all arrays by its permutation.
 /// The arrays then have the last order, so this object does not store it. Most updates cost a pass over a
 /// sample, and nothing moves. A new order is computed when neighbours are too far apart, and now and then to
-/// test whether it would be better: first after 10 updates, then half as often after each test in vain.
+/// test whether it would be better: first after 10 updates, then half as often after each test that finds no
+/// better order.
 ///
 /// Elements: calling `order_elements` with `max` after every change of connectivity pays at once.
 ///

@@ -82,7 +82,7 @@ inline mo_mpi_options to_c(const RankOptions& options) {
           .reserved = 0};
 }
 
-/// Returns the count as a size, 0 for a negative one: the library refuses that on all ranks.
+/// Returns the count as a size, 0 for a negative one: the library refuses negative counts on all ranks.
 inline std::size_t room_for(std::int64_t count) { return count > 0 ? static_cast<std::size_t>(count) : 0; }
 
 inline void throw_unless_ok(mo_status status) {

@@ -148,7 +148,7 @@ template <class E>
 ///
 /// @param permutation  of n places
 /// @param values       n × k, in either storage order; of a trivially copyable type
-/// @throws InvalidArgument if it does not have n rows; nothing is changed then
+/// @throws InvalidArgument if the matrix does not have n rows; nothing is changed then
 /// @note O(n · k), with a copy of the matrix.
 template <class Derived>
 void move_rows(const Permutation& permutation, Eigen::PlainObjectBase<Derived>& values) {

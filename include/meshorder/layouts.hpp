@@ -98,8 +98,8 @@ struct Colours {
 [[nodiscard]] MESHORDER_API std::vector<Index> sort_corners(const CellsView& cells, std::size_t vertex_count,
                                                             const Run& run = {});
 
-/// Where a kernel keeps the numbers, of 4 bytes each, that it reads for the vertices of its cells and adds to
-/// them. `patches` and `gathered` have three numbers of a vertex side by side.
+/// Where a kernel keeps the numbers of vertices, of 4 bytes each: those that it reads for its cells, and
+/// those that it adds to. `patches` and `gathered` have three numbers of a vertex side by side.
 enum class GpuLayout {
   packed,   ///< the three numbers of a vertex side by side, each added separately
   apart,    ///< three arrays, one for each number
@@ -127,8 +127,8 @@ struct GpuCost {
   /// Sectors of 32 bytes that these requests touch. A sector of additions counts t times, where t is the
   /// largest number of threads of the warp that add to the same number in it: they wait for each other.
   Offset sectors = 0;
-  /// `sectors` if the numbers that each warp touches at once were all different and side by side; for
-  /// patches, if no vertex were in two of them, too.
+  /// Value of `sectors` if the numbers that each warp touches at once were all different and side by side;
+  /// for patches, also if no vertex were in two of them.
   Offset floor = 0;
   Offset dram_bytes = 0;  ///< bytes read from memory, if the cache is filled again and again
   Offset dram_floor = 0;  ///< `dram_bytes` if each number were read once
@@ -138,11 +138,12 @@ struct GpuCost {
 
 /// Counts what adding to the vertices of cells costs on a graphics processor, with one thread for each cell.
 /// Of two orders of the same cells, the one with fewer sectors is faster there. The counters of an NVIDIA
-/// H100 agree within 1.2 % for tetrahedra; docs/gpu.md has all.
+/// H100 agree within 1.2 % for tetrahedra; docs/gpu.md has all figures.
 ///
 /// `sectors` are those of atomic additions; for `gathered`, those that the first pass stores and the second
-/// one loads. `dram_bytes` are vertex numbers of 4 bytes, of 2 bytes within patches, and what the layout has
-/// for each vertex in two arrays: one is read, the other is added to. Other data of the cells is not counted.
+/// one loads. `dram_bytes` counts vertex numbers, of 4 bytes or within patches 2 bytes, and the layout's
+/// numbers of each vertex in two arrays: one is read, the other is added to. Other data of the cells is not
+/// counted.
 ///
 /// @param cells         cells with the same number of vertices; edges are lines
 /// @param vertex_count  n
@@ -150,9 +151,8 @@ struct GpuCost {
 /// @param cache_bytes   size of the last cache, ≥ 1
 /// @param run           threads
 /// @throws InvalidArgument for faulty cells, cells of several types and no cache; for `patches` and
-/// `gathered`
-///         as the functions of these names; TooLarge as `patches`
-/// @note O(Σ vertices of a cell), on all threads but for `dram_bytes` and `gathered`.
+///                         `gathered` as the functions of these names; TooLarge as `patches`
+/// @note O(Σ vertices of a cell), on all threads except for `dram_bytes` and `gathered`.
 [[nodiscard]] MESHORDER_API GpuCost gpu_cost(const CellsView& cells, std::size_t vertex_count,
                                              GpuLayout layout, std::size_t cache_bytes = kGpuCacheBytes,
                                              const Run& run = {});
@@ -168,7 +168,7 @@ struct GpuCost {
 /// @param cache_bytes  size of the last cache, ≥ 1
 /// @param run          threads
 /// @throws InvalidArgument for other numbers of threads, no cache, and as `quality`; TooLarge as `quality`
-/// @note O(n + entries), on all threads but for `dram_bytes`. Memory: a copy of the graph.
+/// @note O(n + entries), on all threads except for `dram_bytes`. Memory: a copy of the graph.
 [[nodiscard]] MESHORDER_API GpuCost gpu_product_cost(const GraphView& graph, int lanes = 1,
                                                      std::size_t cache_bytes = kGpuCacheBytes,
                                                      const Run& run = {});

@@ -201,8 +201,8 @@ struct ReorderOptions {
   /// An array on cells groups the cells and, by the smallest value among its elements, each vertex. Write
   /// "cells:NAME" or "vertices:NAME" if both exist; "sets" groups by the sets of cells. Empty: no groups.
   std::string group_by = {};
-  /// Name of the format that the mesh will be written in. If it keeps cells of a type together, they are
-  /// brought together first. Cells that it cannot hold stay: see `keep_cells`. Empty:
+  /// Name of the format that the mesh will be written in. If that format keeps cells of a type together,
+  /// these cells are brought together first. Cells that it cannot hold stay: see `keep_cells`. Empty:
   /// `Mesh::format`.
   std::string format = {};
   OrderOptions order = {};  ///< `groups` and `cell_groups` must be empty if `group_by` is not

@@ -69,10 +69,10 @@ struct MeshMethods {
 /// @throws Unavailable for a method that this build lacks
 /// @throws Stopped if the progress callback returned false
 /// @note Time: rcm and bfs O(n + entries · log degree), with a copy of the graph; hilbert and morton O(n log
-///       n); fiedler O((n + entries) · iterations), about six; spectral that times log n; minla that and
-///       O(n + entries) a pass. A clean graph with int64 offsets and int32 neighbours is read in place; other
-///       offsets take 8 bytes a vertex, other neighbours 4 bytes an entry. Same input, options and version
-///       give the same order on any number of threads and for any integer types. Reentrant.
+/// n); fiedler O((n + entries) · iterations), about six; spectral: that of fiedler times log n; minla: that
+/// of fiedler and O(n + entries) a pass. A clean graph with int64 offsets and int32 neighbours is read in
+/// place; other offsets take 8 bytes a vertex, other neighbours 4 bytes an entry. Same input, options and
+/// version give the same order on any number of threads and for any integer types. Reentrant.
 MESHORDER_API Order order_vertices(const GraphView& graph, std::string_view method = "auto",
                                    const OrderOptions& options = {}, const PointsView& points = {});
 

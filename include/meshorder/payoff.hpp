@@ -183,14 +183,14 @@ struct CalibrationReport {
   std::string doubt = {};
 };
 
-/// Measures this machine on test lattices: the caches' share of a thread, latencies, bandwidths, and the cost
-/// of misses to each kernel, on one thread and on all. The result is stored in the user's cache folder
+/// Measures this machine on test lattices: a thread's share of the caches, latencies, bandwidths, and the
+/// cost of misses to each kernel, on one thread and on all. The result is stored in the user's cache folder
 /// ($MESHORDER_CACHE, else $XDG_CACHE_HOME/meshorder, else ~/.cache/meshorder) for this processor and this
 /// build of the library.
 ///
 /// @param options  see `CalibrationOptions`
 /// @throws InvalidArgument for a time that is not above 0; Error with Code::io if it cannot be stored;
-/// Stopped
+///                         Stopped
 /// @note Runs for `options.seconds`, or longer on a slow machine, in about 1 GB of memory. Other work on the
 /// machine makes the result wrong. Stages of progress: "caches", "bandwidths", "lattices".
 MESHORDER_API CalibrationReport calibrate(const CalibrationOptions& options = {});

@@ -45,7 +45,8 @@ struct ElementProblem {
 };
 
 /// A vertex method returns the order of the n vertices. It may throw; the exception reaches the caller that
-/// asked for the order. It runs on the caller's thread, on several threads at once if several ask.
+/// requested the order. It runs on the caller's thread, and on several threads at once if several request an
+/// order.
 using VertexMethod = std::function<Permutation(const VertexProblem&, const OrderOptions&)>;
 
 /// An element method returns the order of the m elements. Calls and exceptions as of `VertexMethod`.

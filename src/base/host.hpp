@@ -27,7 +27,7 @@ ProcessorFamily processor_family(std::istream& cpuinfo);
 /// Returns the family of this machine's processor.
 ProcessorFamily family_of_this_machine();
 
-/// Returns whether the family is AMD's Zen 4, as Linux does (init_amd in arch/x86/kernel/cpu/amd.c).
+/// Returns whether the family is AMD's Zen 4, by the test in Linux (init_amd in arch/x86/kernel/cpu/amd.c).
 bool is_zen4(const ProcessorFamily& family);
 
 /// Returns the folder for files that can be remade: `$MESHORDER_CACHE`, `$XDG_CACHE_HOME/meshorder` or

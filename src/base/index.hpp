@@ -39,8 +39,8 @@ inline bool all_below(std::span<const Index> numbers, Index limit) noexcept {
   return limit > 0 ? signs >> 31U == 0 : numbers.empty();
 }
 
-/// Calls `work` with the numbers of a view as a span of their own type and returns its result, which has the
-/// same type for all four.
+/// Calls `work` with the numbers of a view as a span of their own type and returns its result. `work` must
+/// have the same result type for all four number types.
 template <class Work>
 decltype(auto) with_type(const IndexView& numbers, const Work& work) {
   const auto as = [&]<class T>(T) {

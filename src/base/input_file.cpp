@@ -35,7 +35,7 @@ int opened_at(int folder, const char* name, int flags) {
   return result;
 }
 
-/// Opens an absolute path of which no part is a link. Returns −1 and sets errno where that fails.
+/// Opens an absolute path, no part of which may be a link. Returns −1 and sets errno on failure.
 int opened_without_links(const fs::path& path) {
   int folder = opened_at(AT_FDCWD, "/", kPassing);
   const fs::path below = path.relative_path();
@@ -43,7 +43,7 @@ int opened_without_links(const fs::path& path) {
     const bool is_last = std::next(part) == below.end();
     struct stat status {};
     int next = -1;
-    // a device is not opened, since that may have an effect
+    // do not open a device: that may have an effect
     if (::fstatat(folder, part->c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0) {
       const bool may_open = is_last ? S_ISREG(status.st_mode) || S_ISFIFO(status.st_mode) : true;
       errno = S_ISLNK(status.st_mode) ? ELOOP : ENXIO;
@@ -61,7 +61,8 @@ bool is_below(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// Returns "is a folder" and the like for what cannot be read; nullptr for a file or an allowed pipe.
+/// Returns why a file of this mode cannot be read, such as "is a folder"; nullptr for a file or an allowed
+/// pipe.
 const char* kind_of_unreadable(mode_t mode, bool may_be_pipe) {
   if (S_ISDIR(mode)) return "is a folder";
   if (S_ISSOCK(mode)) return "is a socket";

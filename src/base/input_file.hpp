@@ -18,16 +18,16 @@ std::optional<std::filesystem::path> real_path_below(const std::filesystem::path
 /// A file that is open for reading. All files that are read are opened here, except those of the system that
 /// describe the machine (/proc, /sys).
 ///
-/// It does not wait for long: a pipe that the user named needs a writer within three seconds; other pipes are
-/// refused like devices, sockets and folders. Throws InputError for these, for a file that is missing or may
-/// not be read, and for failures of the disk.
+/// Opening does not wait for long: a pipe that the user named needs a writer within three seconds; other
+/// pipes are refused like devices, sockets and folders. Throws InputError for these, for a file that is
+/// missing or may not be read, and for failures of the disk.
 class InputFile {
  public:
   /// Opens the path that the user gave. Links are followed; a pipe is read to its end.
   explicit InputFile(const std::filesystem::path& path);
   /// Opens a file whose name comes from a file, a folder or another name. It must lie below one of the
-  /// folders (see `real_path_below`). The path is checked first and then opened part by part; no part may be
-  /// a link, so what others put in its place meanwhile is not opened.
+  /// folders (see `real_path_below`). The path is checked first and then opened part by part. No part may be
+  /// a link: a link that another process puts there after the check is not followed.
   InputFile(const std::filesystem::path& path, std::span<const std::filesystem::path> folders);
   ~InputFile();
   InputFile(InputFile&& other) noexcept;
@@ -46,8 +46,8 @@ class InputFile {
   /// Returns the rest of a small file. Throws InputError if it has more than `most` bytes.
   std::string text(std::size_t most);
 
-  /// Returns a path by which libraries open this very file while this object lives, even if others put
-  /// another in its place; where the system has no /proc, the file's own path.
+  /// Returns a path by which libraries can open this file while this object lives, even if another file has
+  /// replaced it (/proc/self/fd/…); on systems without /proc, the file's own path.
   [[nodiscard]] std::string path_for_libraries() const;
 
  private:

@@ -76,7 +76,7 @@ std::uint64_t find_usable_memory() {
 #if defined(__linux__)
 constexpr std::size_t kLargePage = std::size_t{2} << 20;
 
-/// The whole small pages of a block: its neighbours are not ours.
+/// The pages that lie entirely in a block; the pages at its ends may also hold other data.
 struct Pages {
   char* begin;
   std::size_t bytes;
@@ -144,7 +144,7 @@ void ask_for_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::si
 void clear_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__)
   constexpr std::size_t kAtOnce = 8 * kLargePage;
-  // one thread had better clear each page when it fills it, while the page is in the cache
+  // with one thread, clearing each page when it is filled is faster: the page is then in the cache
   if (bytes < 2 * kAtOnce || thread_count() < 2) return;
   const Pages pages(memory, bytes);
   for_each_range(static_cast<Offset>(pages.bytes), Offset{kAtOnce}, [&](Offset begin, Offset end) {

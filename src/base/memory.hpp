@@ -48,11 +48,13 @@ std::optional<std::uint64_t> parse_size(std::string_view text);
 std::string size_text(std::uint64_t bytes);
 
 /// Asks the system for large pages under memory that is about to be filled, as NumPy does for its arrays: one
-/// fault for 2 MiB instead of 512. A hint, without effect on smaller blocks and other systems than Linux.
+/// page fault for 2 MiB instead of 512. A hint, without effect on smaller blocks and on systems other than
+/// Linux.
 void ask_for_large_pages(void* memory, std::size_t bytes) noexcept;
 
-/// Has the system clear the pages of memory that is about to be filled, on all threads; touching the memory
-/// would do so on one. Polls. A hint, without effect on smaller blocks and other systems than Linux.
+/// Clears the pages of memory that is about to be filled, on all threads; otherwise one thread would clear
+/// them when it first touches them. Polls. A hint, without effect on smaller blocks and on systems other than
+/// Linux.
 void clear_pages(void* memory, std::size_t bytes);
 
 /// Like `container.reserve(size)`, and asks for large pages if it allocates. It then reserves at least twice

@@ -16,7 +16,8 @@
 
 namespace meshorder {
 
-/// Returns how many threads work at most: those of the current arena, as tbb::global_control allows.
+/// Returns the largest number of threads that work: those of the current arena, up to the limit of
+/// tbb::global_control.
 [[nodiscard]] Index thread_count();
 
 /// Returns the number of chunks of `size` that make up 0 … n−1; the last one may be shorter.
@@ -29,8 +30,8 @@ enum class Sharing { balanced, repeated };
 /// Calls `work(begin, end)` for ranges that make up 0 … n−1, on all threads. The ranges vary from call to
 /// call.
 ///
-/// TBB cancels a loop within a turn of another loop together with the outer one; the inner loop then returns
-/// as if it were done. This function throws Stopped instead, so that nothing uses the incomplete results.
+/// If TBB cancels an outer loop, it also cancels loops within the turns of that loop; these then return as if
+/// complete. This function throws Stopped instead, so that nothing uses incomplete results.
 ///
 /// @throws what `work` throws; Stopped within a loop that another thread has cancelled
 void share_turns(Offset n, Sharing sharing, const std::function<void(Offset begin, Offset end)>& work);
@@ -68,7 +69,7 @@ void for_each_chunk(Index n, Index size, Work work) {
 /// longest turns should come first. For few turns of a millisecond and more; each polls on the calling
 /// thread.
 ///
-/// @throws as `parallel_loop`; turns that have not begun by then are left out
+/// @throws as `parallel_loop`; turns that have not begun are then skipped
 template <class Work>
 void take_turns(Index n, const Work& work) {
   std::atomic<Index> next = 0;
@@ -115,7 +116,7 @@ void for_each_range(Offset n, Offset size, const Work& work) {
                 [&](Offset range) { work(range * size, std::min(n, (range + 1) * size)); });
 }
 
-/// Returns whether `holds(begin, end)` for all parts of 0 … n−1, which all threads share.
+/// Returns whether `holds(begin, end)` is true for all parts of 0 … n−1. On all threads.
 template <class Holds>
 bool holds_for_all(Offset n, const Holds& holds) {
   constexpr Offset kAtOnce = 65536;

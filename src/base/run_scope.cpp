@@ -17,8 +17,8 @@ constexpr auto kBetweenReports = std::chrono::milliseconds(50);
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the state of each thread
 thread_local RunScope* innermost = nullptr;
 
-/// Active while the user's progress function runs: library calls that the function makes are no part of the
-/// call that it watches, and do not call it again.
+/// Active while the user's progress function runs: library calls that this function makes are not part of the
+/// watched call and do not call the function again.
 class OutsideOfCalls {
  public:
   OutsideOfCalls() : scope_(std::exchange(innermost, nullptr)) {}

@@ -21,15 +21,15 @@ static_assert(static_cast<int>(Code::stopped) == MO_STOPPED);
 static_assert(static_cast<int>(Code::io) == MO_IO);
 static_assert(static_cast<int>(Code::internal) == MO_INTERNAL);
 
-/// Calls `work()` for a caller in C. Returns MO_OK, or the status of the exception that `work` throws. Its
-/// text then replaces `message`, with control characters escaped (see `visible`).
+/// Calls `work()` for a caller in C. Returns MO_OK, or the status of the exception that `work` throws. The
+/// text of the exception then replaces `message`, with control characters escaped (see `visible`).
 template <class Work>
 mo_status status_of(const Work& work, std::string& message) noexcept {
   const auto failure = [&](mo_status status, const char* sentence) noexcept {
     try {
       message = visible(sentence);
     } catch (...) {
-      message.clear();  // no memory for the sentence: the status has to do
+      message.clear();  // no memory for the message: return only the status
     }
     return status;
   };

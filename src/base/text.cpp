@@ -9,13 +9,13 @@ namespace {
 
 /// The character at the front of a text.
 struct Utf8Character {
-  std::uint32_t code = 0;  ///< the byte where it is no UTF-8
+  std::uint32_t code = 0;  ///< the byte itself if it is not valid UTF-8
   std::size_t bytes = 1;
   bool is_valid = true;
 };
 
 /// Decodes the first character of a text that is not empty. Overlong forms, surrogates and numbers above
-/// 0x10FFFF are no UTF-8.
+/// 0x10FFFF are invalid.
 Utf8Character first_character(std::string_view text) {
   const auto byte = [&](std::size_t i) {
     return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]));
@@ -41,7 +41,7 @@ bool turns_direction(std::uint32_t code) {
          (code >= 0x2066 && code <= 0x2069);
 }
 
-/// Appends "\\u202e" for a character below 0x10000, "\\xff" for a byte that is no UTF-8.
+/// Appends "\\u202e" for a character below 0x10000, "\\xff" for a byte that is not valid UTF-8.
 void append_escape(const Utf8Character& character, std::string& text) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   text += character.is_valid ? "\\u" : "\\x";
@@ -49,8 +49,8 @@ void append_escape(const Utf8Character& character, std::string& text) {
     text += kDigits[character.code >> static_cast<unsigned>(shift) & 0xFU];
 }
 
-/// Returns `text` with escapes in place of bytes that are no UTF-8 and of characters for which `is_plain` is
-/// false.
+/// Returns `text` with escapes in place of bytes that are not valid UTF-8 and of characters for which
+/// `is_plain` is false.
 template <class IsPlain>
 std::string with_escapes(std::string_view text, IsPlain is_plain) {
   std::string result;

@@ -70,9 +70,9 @@ inline bool same_but_for_case(std::string_view a, std::string_view b) {
                     [&](char x, char y) { return lower(x) == lower(y); });
 }
 
-/// Returns `text` with escapes for all that a terminal would act on and all that is not UTF-8: control
-/// characters other than those in `kept`, and characters that change the direction of writing. A character
-/// becomes "\u001b", a byte "\xff". O(size).
+/// Returns `text` with escapes in place of bytes that are not UTF-8, and of characters that a terminal acts
+/// on: control characters other than those in `kept`, and characters that change the direction of writing. A
+/// character becomes "\u001b", a byte "\xff". O(size).
 std::string visible(std::string_view text, std::string_view kept = {});
 
 /// Returns whether `text` is UTF-8. O(size).
@@ -81,8 +81,8 @@ bool is_utf8(std::string_view text);
 /// Returns the longest prefix of `text` of at most `most` bytes that does not end within a UTF-8 character.
 std::string_view utf8_prefix(std::string_view text, std::size_t most);
 
-/// Returns `text` with escapes, like those of `visible`, for what XML cannot hold: control characters other
-/// than tab and line ends, U+FFFE, U+FFFF, and bytes that are not UTF-8. O(size).
+/// Returns `text` with escapes, like those of `visible`, for characters that XML cannot hold: control
+/// characters other than tab and line ends, U+FFFE, U+FFFF, and bytes that are not UTF-8. O(size).
 std::string xml_text(std::string_view text);
 
 /// Returns `xml_text(text)` escaped for an XML attribute between double quotes. O(size).

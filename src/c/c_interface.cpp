@@ -41,7 +41,7 @@ void check_points(const PointsView& points, std::size_t n) {
                      std::to_string(n) + " vertices");
 }
 
-/// Throws if a call has no place to write anything to.
+/// Throws if all outputs of a call are null.
 void check_any_output(std::initializer_list<const mo_out*> maps,
                       std::initializer_list<const mo_result*> results) {
   const auto exists = [](const auto* output) { return output != nullptr; };
@@ -118,8 +118,8 @@ Permutation permutation_of(const IndexView& new_to_old, int base) {
   return Permutation::from_new_to_old(std::move(map));
 }
 
-/// Returns a number that counts from `base` as one that counts from 0; the smallest one of all stays, and is
-/// out of every range.
+/// Converts a number counted from `base` to one counted from 0. Returns the smallest int64 unchanged, to
+/// avoid overflow: it is out of every range.
 std::int64_t from_zero_on(std::int64_t number, int base) {
   return number == std::numeric_limits<std::int64_t>::min() ? number : number - base;
 }

@@ -11,7 +11,7 @@
 namespace meshorder::c {
 namespace {
 
-// What callers get, and the arrays that it refers to.
+// The structures that callers get, each with the arrays that it points to.
 
 struct OwnedPatches : mo_patches {
   Patches arrays;

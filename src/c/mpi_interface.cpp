@@ -75,7 +75,8 @@ std::array<NamedOption, 6> in_words(const DistributedOptions& options) {
        {"parts", std::to_string(options.parts)}}};
 }
 
-/// Throws on all ranks, which would wait for each other, if an option is not the same on all of them.
+/// Throws on all ranks if an option is not the same on all of them; otherwise the ranks could wait for each
+/// other.
 void check_same_options(const Communicator& communicator, const DistributedOptions& options) {
   const std::array<NamedOption, 6> own = in_words(options);
   std::vector<std::string> values(own.size());

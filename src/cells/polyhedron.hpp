@@ -22,7 +22,7 @@ struct CellOfFaces {
   enum class Kind : std::uint8_t {
     standard,  ///< a tetrahedron, pyramid, wedge or hexahedron
     other,     ///< any other pattern of faces
-    open       ///< fewer than four faces, or an edge that is not of exactly two
+    open       ///< fewer than four faces, or an edge that does not belong to exactly two of them
   };
   Kind kind = Kind::other;
   Shape shape = Shape::tetrahedron;  ///< of a standard one

@@ -12,10 +12,10 @@
 
 namespace meshorder {
 
-/// Returns whether a cell joins its vertices by pieces, and not each to all others. A polyline joins
+/// Returns whether a cell joins its vertices by pieces, instead of each to all others. A polyline joins
 /// consecutive points, a triangle strip those of each of its triangles, a point cloud none. A polygon or
-/// polyhedron of more than 64 vertices is cut as the kernels cut it (`cut_into_simplices`): all pairs would
-/// be as many as its vertices squared. O(1).
+/// polyhedron of more than 64 vertices is cut as the kernels cut it (`cut_into_simplices`), because the
+/// number of all pairs is quadratic in the vertices. O(1).
 bool is_joined_by_pieces(Shape shape, std::size_t vertices);
 
 /// Calls `call` with the vertices of each piece of a cell: each of its vertices is joined to all others. A

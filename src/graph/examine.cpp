@@ -131,7 +131,7 @@ void refuse_asymmetry(std::span<const Offset> offsets, std::span<const Index> ne
         " lacks " + named(missing) +
         "; a graph has each edge in the rows of both its ends (Symmetry::mirror adds them)");
   };
-  // Rows are visited in ascending order, so the lower neighbours of each row are asked for in ascending order
+  // Rows are visited in ascending order, so the lower neighbours of each row are matched in ascending order
   // too.
   std::vector<Offset> cursor(offsets.begin(), offsets.end() - 1);
   for (Index v = 0; v < n; ++v) {

@@ -132,8 +132,8 @@ struct Rows {
   Offset end = 0;  ///< of the neighbours in use
 };
 
-/// Where the vertices of each element lie in the list of all. `Size` is the size of every element, so that
-/// the offsets need not be read, or 0 if sizes differ.
+/// Finds the vertices of each element in the list of all. `Size` is the size of every element, and the
+/// offsets need not be read; 0 if sizes differ.
 template <int Size>
 struct Elements {
   IncidenceRef incidence;

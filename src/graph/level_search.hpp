@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// Breadth-first searches of one graph, level after level. All threads share large levels. Vertices of a
-/// level are in the order of the first vertex that finds them, then of its row, for any number of threads.
+/// Breadth-first searches of one graph, level after level. All threads share large levels. For any number of
+/// threads, the vertices of a level are ordered by the first vertex that finds them, then by its row.
 ///
 /// On several threads each vertex of a level claims its neighbours. The smallest place wins, and the others
 /// drop the neighbours that they lost.

@@ -18,7 +18,7 @@ struct ComponentCounts {
   Index isolated = 0;  ///< components of one vertex
 };
 
-/// Counts the components that `connected_components` would list. Takes four bytes a vertex and as much time.
+/// Counts the components that `connected_components` would list. Takes four bytes a vertex and the same time.
 ComponentCounts component_counts(GraphRef graph);
 
 /// A graph whose vertices are numbered as a breadth-first search from the smallest vertex of each component

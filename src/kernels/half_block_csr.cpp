@@ -53,7 +53,8 @@ class HalfRow {
     hn::Store(hn::Add(hn::Load(d, column_sum), column), d, column_sum);
   }
 
-  /// Sets q to the sums of this row plus `column_sum`, what other rows added to it, and clears the latter.
+  /// Sets q to the sums of this row plus `column_sum`, the terms that other rows added, and zeroes
+  /// `column_sum`.
   HWY_INLINE void finish(double* column_sum, double* q) const {
     const Tag d;
     const hn::Half<Tag> two;

@@ -67,8 +67,8 @@ void springs(std::span<const Index> ends, std::span<const Number> lengths, std::
 }
 
 /// The volume of a tetrahedron (negative if it is inverted), the area of a triangle or the length of a line,
-/// and its derivative by the position of each corner, which is the volume times the gradient of that corner's
-/// barycentric coordinate.
+/// and its derivative with respect to the position of each corner: the volume times the gradient of that
+/// corner's barycentric coordinate.
 template <int Corners>
 struct Gradients {
   std::array<std::array<double, 3>, Corners> of_corner{};

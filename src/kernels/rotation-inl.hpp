@@ -90,7 +90,7 @@ struct RotationTerms {
 };
 
 /// Computes the closest rotations by a formula, for matrices whose closest rotation is well separated from
-/// others. Returns false, with unusable results, if one matrix is not.
+/// others. Returns false, with unusable results, unless this holds for all of the matrices.
 ///
 /// The largest eigenvalue of N is λ = tr S, the largest root of λ⁴ − 2aλ² − 8dλ + a² − 4b with a = ‖F‖²,
 /// b = ‖cof F‖² and d = det F. Halley's method decreases to it from √3 ‖F‖ without overshooting, since all

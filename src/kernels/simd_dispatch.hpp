@@ -2,7 +2,7 @@
 #pragma once
 
 // The table of a function's versions, one for each instruction set, and the choice among them. Highway's own
-// choice needs its library, which measures the processor's clock for 7 ms whenever a program with it starts.
+// choice needs its library, which takes 7 ms at the start of a program to measure the processor's clock.
 
 #include <hwy/highway.h>
 
@@ -15,11 +15,10 @@
 namespace meshorder {
 
 /// Returns the instruction sets of this processor among those that Highway compiles for, as bits of
-/// HWY_TARGETS. Better ones have lower bits. Those that the compiler takes for granted are among them.
+/// HWY_TARGETS. Better ones have lower bits. They include those that the compiler presupposes.
 std::int64_t simd_targets();
 
-/// Makes `simd_targets` return no others than these, for tests; 0: all again. To be called while no kernel
-/// runs.
+/// Restricts `simd_targets` to these, for tests; 0: no restriction. Call it only while no kernel runs.
 void limit_simd_targets(std::int64_t targets);
 
 /// Returns Highway's name of the instruction set that the kernels use on this processor: "AVX3", "AVX2",

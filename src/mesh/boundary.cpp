@@ -39,8 +39,8 @@ void keep_unmatched(std::vector<ElementFacet>& facets) {
             [](const ElementFacet& a, const ElementFacet& b) { return a.element < b.element; });
 }
 
-/// Removes the facets whose corners one polyhedron has, too: they are between it and their element. O(facets
-/// · corners of the polyhedra at that corner which fewest of them have).
+/// Removes the facets whose corners all belong to one polyhedron: they are between the polyhedron and their
+/// element. O(facets · corners of the polyhedra at the facet's corner with the fewest polyhedra).
 void drop_facets_of_polyhedra(const Mesh& mesh, std::vector<ElementFacet>& facets) {
   std::vector<std::pair<Index, Index>> polyhedra;  // a vertex and a polyhedron there
   for (Index c = 0; c < mesh.cell_count(); ++c) {

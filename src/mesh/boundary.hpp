@@ -11,9 +11,10 @@ namespace meshorder {
 /// Returns the visible surface of a mesh as triangles on its corners. For volumes: the faces of exactly one
 /// cell, including those of cavities, counterclockwise as seen from outside for either orientation of the
 /// cell (a cell without volume leaves its faces as they are). For a surface mesh: its cells. Quadrilaterals
-/// and polygons are cut into fans. Faces of polyhedra are not known, and left out; so are those of other
-/// cells whose corners a polyhedron has. In the order of cells. Throws InputError for a mesh without cells of
-/// two or three dimensions. O(facets · log facets at a vertex), and for polyhedra their corners there.
+/// and polygons are cut into fans. Faces of polyhedra are not known and are left out, as are the faces of
+/// other cells whose corners all belong to one polyhedron. Triangles are in the order of cells. Throws
+/// InputError for a mesh without cells of two or three dimensions. O(facets · log facets at a vertex), and
+/// for polyhedra their corners there.
 std::vector<std::array<Index, 3>> boundary_triangles(const Mesh& mesh);
 
 /// Returns the faces that exactly one tetrahedron has, ascending, as 4 · tetrahedron + k; face k is opposite

@@ -25,7 +25,7 @@ Index class_count(const Mesh& mesh) { return 4 * std::max<Index>(1, index_size(m
 
 Cells reordered(const Cells& cells, const Permutation& vertices, const Permutation& order) {
   constexpr Index kCellsAtOnce = 65536;
-  constexpr Index kAhead = 16;  // cells lie anywhere in memory: ask for them early
+  constexpr Index kAhead = 16;  // cells lie anywhere in memory: prefetch them early
   const std::span<const Index> new_to_old = order.new_to_old();
   const std::span<const Index> new_number = vertices.old_to_new();
   const auto for_cells = [&](auto work) {
@@ -142,7 +142,7 @@ MeshOrder compute_reordering(const Mesh& mesh, const CsrGraph& graph, const Reor
   result.vertices = order_vertices_by_options(options.methods.vertices, {graph, mesh.points}, ordering);
   result.vertices.seconds = vertices.seconds();
   const Stopwatch cells;
-  // the speed of a product depends on the order of rows, not on where the file has an entry
+  // the speed of a product depends on the order of rows, not on the place of an entry in the file
   const bool stay = options.methods.elements == "auto" && stored_matrix(mesh) != nullptr;
   result.cells = order_cells(stay ? "original" : options.methods.elements, cell_arrays(mesh),
                              result.vertices.permutation, mesh.points, ordering.cell_groups, ordering);

@@ -16,8 +16,8 @@
 namespace meshorder {
 namespace {
 
-/// Returns whether each entry has one at the transposed place. The rows are visited in ascending order, so
-/// the rows with an entry in a column come in the order in which that column's own row lists them.
+/// Returns whether each entry has a transposed one. Rows are visited in ascending order; in a symmetric
+/// pattern the rows with an entry in a column then come in the order of the entries in that column's own row.
 bool is_symmetric_pattern(const EntryPattern& pattern) {
   std::vector<Offset> next(pattern.starts.begin(), pattern.starts.end() - 1);
   for (Index row = 0; row < pattern.rows(); ++row) {

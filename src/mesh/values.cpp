@@ -55,7 +55,7 @@ std::vector<Index> rows_by_item(const DataArray& array, Index count) {
 
 void make_dense(DataArray& array, Index count) {
   if (array.is_dense() || index_size(array.indices) != count) return;
-  // as the rows are distinct, ascending ones are in place
+  // the indices are distinct: if they ascend, all rows are in place
   if (!std::is_sorted(array.indices.begin(), array.indices.end()))
     array.values = rows_of_values(array.values, array.components, rows_by_item(array, count));
   array.indices.clear();

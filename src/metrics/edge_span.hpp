@@ -16,7 +16,7 @@ namespace meshorder {
 struct EdgeSpan {
   double mean = 0;       ///< 1 at best; n/3 for a random order
   Index max = 0;         ///< the bandwidth of the matrix with this pattern
-  double mean_log2 = 0;  ///< mean of log₂ span: weighs near neighbours, where the mean weighs far ones
+  double mean_log2 = 0;  ///< mean of log₂ span: emphasises near neighbours; the mean emphasises far ones
 
   bool operator==(const EdgeSpan&) const = default;
 };

@@ -233,8 +233,8 @@ void ReuseDistance::close_gaps() {
 }
 
 Reuse ReuseDistance::repeated() && {
-  // within a run distances are the same in every run; across its start, each line that the new run has
-  // accessed counts once, however often it was accessed
+  // accesses within a run have the same distances in every run; the distance of a line's first access in a
+  // run reaches back into the run before, and each line accessed meanwhile counts once
   reuse_.all.forget_cold();
   reuse_.jumps.forget_cold();
   for (std::size_t k = 0; k < first_accesses_.size(); ++k) {

@@ -109,7 +109,7 @@ class ReuseDistance {
   static constexpr Index kSampledBlock = 11;
   static constexpr Index kUncounted = 2;  ///< the first lines of a block
 
-  /// Both are needed together and are seldom in this machine's caches, so they are side by side.
+  /// Both are read together and are seldom in this machine's caches, so they are side by side.
   struct LastAccess {
     Slot slot = kNever;
     std::uint32_t far = 0;  ///< number of the last far access, cold ones included

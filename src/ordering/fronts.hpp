@@ -11,7 +11,7 @@ namespace meshorder {
 ///
 /// A sweep over rows or edges then touches new vertices nearly in the order of their numbers. If vectors
 /// exceed the last cache, it reads memory forward, which processors prefetch, as after breadth-first
-/// numbering of the whole graph; but each chunk is still the compact region that the order made it. Vertices
+/// numbering of the whole graph; but each chunk remains the compact region that the order gave it. Vertices
 /// move within their chunk only.
 ///
 /// O(n + edges · log degree) on all threads; the result does not depend on their number.

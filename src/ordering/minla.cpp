@@ -53,10 +53,10 @@ std::vector<Index> expanded(const std::vector<Index>& coarse_order, const std::v
   return result;
 }
 
-/// Replaces the order by one found on the coarser graph, where large parts move at once, and then improved by
-/// moving single vertices. What is better on the coarser graph may be worse here, so this is done twice, the
-/// second time with groups that follow the new order. Keeps the better of the two, which may have a larger
-/// span than the order at the beginning.
+/// Replaces the order by one that is found on the coarser graph, where large parts move at once, and is then
+/// improved by moving single vertices. An order that is better on the coarser graph may be worse here, so
+/// this is done twice, the second time with groups that follow the new order. Keeps the better of the two,
+/// which may have a larger span than the order at the beginning.
 void search(const ArrangementGraph& graph, TimeLimit limit, std::vector<Index>& order) {
   Offset least = std::numeric_limits<Offset>::max();
   for (int visit = 0; visit < kVisits; ++visit) {

@@ -33,8 +33,8 @@ class Neighbourhood : public Polymorphic {
   [[nodiscard]] virtual NeighbourRows rows_of(std::span<const Index> vertices) const = 0;
   /// Orders the vertices by that method.
   [[nodiscard]] virtual Order order_by(std::string_view method, const OrderOptions& options) = 0;
-  /// Returns whether a sweep over the vertices as they are numbered reads memory forward, so that a new order
-  /// would gain nothing (see `jump_share`). False if only points are known.
+  /// Returns whether a sweep over the vertices in their present numbering reads memory forward; a new order
+  /// would then gain nothing (see `jump_share`). False if only points are known.
   [[nodiscard]] virtual bool is_read_forward() { return false; }
 };
 

@@ -20,8 +20,9 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace {
 
-/// The tolerance of a warm order, in tolerances of a fresh one. At this tolerance the best mix of the last
-/// vector and those of coarser graphs puts neighbours as near, without an iteration on the whole graph.
+/// The tolerance of a warm order as a multiple of that of a fresh one. At this tolerance, the best
+/// combination of the last vector and those of coarser graphs brings neighbours as near, without an iteration
+/// on the whole graph.
 constexpr double kWarmTolerance = 30;
 
 /// Returns the start vector in the numbering of this update; 0 for new vertices.
@@ -152,8 +153,8 @@ class Reorderer::Inside {
     keep(update, std::move(carried), span);
   }
 
-  /// Returns the number of updates between new orders: where the loss of speed outweighs the cost of an
-  /// order, if both are known.
+  /// Returns the number of updates between new orders. If the slowdown per update and the cost of an order
+  /// are known: the number after which the time lost equals that cost.
   [[nodiscard]] static Index interval(const ReordererState& memory) {
     const double slope = memory.observed.slope();
     const double cost = memory.warm_seconds > 0 ? memory.warm_seconds : memory.fresh_seconds;

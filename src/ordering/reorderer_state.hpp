@@ -11,8 +11,7 @@
 
 namespace meshorder {
 
-/// Sums for a line fitted through the times of steps since the last new order. k: the number of updates since
-/// then.
+/// Sums for a line fitted through the times of steps. k: the number of updates since the last new order.
 struct Observed {
   double count = 0;
   double k = 0;

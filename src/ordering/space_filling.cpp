@@ -246,8 +246,9 @@ namespace {
 
 constexpr int kFirstBits = 30;  // of a point's number along a curve; few points share them
 
-/// Sorts points by the number that `key(cell, axes, scales)` gives each along a curve, ties by place. The
-/// numbers of the first scales come first: only points that share them need all. O(n) where few do.
+/// Sorts points by the number that `key(cell, axes, scales)` gives each along a curve, ties by place. Sorts
+/// by the number of the first scales first: only points that share it need the number of all scales. O(n) if
+/// few do.
 template <class Key>
 Permutation sorted_along(const PointsView& points, const Key& key) {
   constexpr Index kPart = 65536;  // points taken by a thread at a time

@@ -103,8 +103,8 @@ struct Slabs {
   }
 };
 
-/// Cuts into two halves, or into as many slabs as keep each thicker than it is wide and high: one vector then
-/// replaces several cuts in a row.
+/// Cuts into two halves, or into more slabs as long as each is at least about 0.7 times as thick as it is
+/// wide: one vector then replaces several successive cuts.
 Slabs cut(GraphRef graph, std::vector<Index> sequence) {
   Slabs slabs;
   const double least = std::pow(kThickness * mean_front(graph, sequence), 1.5);

@@ -65,8 +65,8 @@ AccessStream::Array AccessStream::place(Offset bytes) {
 
 namespace {
 
-/// Predicts the lengths of loops and counts the wrong predictions. It models a processor that remembers which
-/// length followed each of some thousands of sequences of eight lengths.
+/// Predicts the lengths of loops and counts the wrong predictions. Models a processor that remembers, for
+/// each of some thousands of sequences of eight lengths, the length that followed.
 class LoopLengths {
  public:
   void add(Index length) {

@@ -236,7 +236,7 @@ class AccessStream {
     return rows;
   }
 
-  /// Returns the corners of a simplex; of the last one if the number is too large.
+  /// Returns the corners of a simplex; those of the last simplex if the number is too large.
   [[nodiscard]] std::span<const Index> corners_of(Offset simplex) const {
     const Offset corners = simplices_.dimension + 1;
     return simplices_.vertices.subspan(corners * std::min(simplex, simplices_.size() - 1), corners);
@@ -278,7 +278,8 @@ struct RunReuse : Reuse {
   Kernel kernel = Kernel::spmv;
   int dimension = 0;  ///< of the simplices: 3 for tetrahedra
   /// Number of loops whose end a processor mispredicts: rows of a product, or searches of assembly in a row.
-  /// A loop counts if its length differs from the last that followed the same eight lengths. Else 0.
+  /// A loop counts if its length differs from the one that last followed the same eight lengths. 0 for other
+  /// kernels.
   Offset turns = 0;
 
   bool operator==(const RunReuse&) const = default;

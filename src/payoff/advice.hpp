@@ -73,7 +73,7 @@ double factor_for(Workload workload, const Advice& advice, std::size_t candidate
 
 /// Returns the place of the candidate in which the kernels of a workload (one or all) run fastest; nothing if
 /// no candidate is faster than the mesh's own order by more than same_time. The first candidate wins if no
-/// other is faster than it by more than that. For all kernels, geometric means are compared. Throws
+/// other is faster than the first by more than that. For all kernels, geometric means are compared. Throws
 /// InvalidArgument for `bandwidth` and `fill`, which are not about times of kernels.
 std::optional<std::size_t> winner_for(Workload workload, const Advice& advice);
 
@@ -109,7 +109,7 @@ inline bool is_told_by_kernels(Workload workload) {
 Workload told_by_kernels(const Advice& advice, Workload workload);
 
 /// Returns the methods of a candidate: "hilbert", or "hilbert/original" if its elements are not in the
-/// default order after that of the vertices. For a matrix, the order of its rows.
+/// default order for its vertices. For a matrix, the order of its rows.
 std::string order_in_words(const Candidate& candidate, bool is_matrix = false);
 
 /// Returns a sentence that names the best measured candidate for a workload, its speedup and when it has paid

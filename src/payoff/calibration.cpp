@@ -185,7 +185,7 @@ void measure_memory(const CalibrationEffort& effort, Calibration& calibration) {
                                        : calibration.read_bandwidth;
 }
 
-/// Times all orders of a lattice in the same rounds, the last but one of them twice, at other addresses.
+/// Times all orders of a lattice in the same rounds. Times the last but one twice, at different addresses.
 void time_small(const CalibrationLattice& lattice, int number, double seconds, std::span<Runs> runs) {
   const std::size_t twice = lattice.orders.size() - 2;
   std::vector<LatticeOrder> orders = lattice.orders;

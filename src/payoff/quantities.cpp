@@ -16,7 +16,7 @@ std::string with_commas(long long number) {
 }
 
 std::string duration(double seconds) {
-  if (seconds < 0.9995) return fmt::format("{:.3g} ms", seconds * 1e3);  // what is above rounds to 1 s
+  if (seconds < 0.9995) return fmt::format("{:.3g} ms", seconds * 1e3);  // larger values round to 1 s
   if (seconds < 59.95) return fmt::format("{:.1f} s", seconds);
   const auto whole = std::llround(seconds);
   return fmt::format("{} min {} s", whole / 60, whole % 60);

@@ -17,7 +17,7 @@ struct Steadiness {
 
 /// Returns a sentence that says why the times are unreliable; empty if they can be trusted. They can if the
 /// timed thread waited for at most 5 % of the time, arithmetic took at most 10 % longer than at best, and
-/// repeated timings differ by at most 5 %, from which on measured orders count as different.
+/// repeated timings differ by at most 5 % (from this difference on, measured orders count as different).
 std::string reason_to_doubt(const Steadiness& steadiness);
 
 /// Returns the relative difference of the best even-numbered and the best odd-numbered sample; 0 for fewer

@@ -11,7 +11,7 @@
 namespace meshorder {
 
 struct FiedlerOptions {
-  double tolerance = 0.1;  ///< residual ‖L x − λ x‖ / ‖x‖ relative to λ₂; an order settles at 0.1
+  double tolerance = 0.1;  ///< residual ‖L x − λ x‖ / ‖x‖ relative to λ₂; 0.1 suffices for orders
   int max_iterations = 500;  ///< limit on the iterations of LOBPCG on the whole graph
   std::uint64_t seed = 0;    ///< for the start vector, if one is needed
   RealView start = {};       ///< n numbers near the Fiedler vector, or none

@@ -13,11 +13,14 @@ constexpr double kDoubtful = 0.25;  ///< share of an eigenvector's norm² that m
 /// coarser graphs do not show it. If false, every such vector is constant on all aggregates except for at
 /// most half of its squared norm.
 ///
-/// An aggregate of small slack hides nothing, see `aggregate`. Nor does one whose slack is small if the
-/// vertices that joined spread over all edges to founding members, nor one whose second eigenvalue of L x = μ
-/// M x, cut out of the graph, is at least `eigenvalue` / `kDoubtful`, as the signs of pivots show
-/// (Sylvester's law of inertia). The pivots of more than 300 vertices are not computed: such aggregates may
-/// hide a vector. O(n + edges) and the cube of the vertices of doubtful aggregates; on all threads.
+/// An aggregate hides nothing in three cases:
+/// - its slack is small, see `aggregate`;
+/// - its slack is small if joining vertices spread their mass over all edges to founding members;
+/// - the second eigenvalue of L x = μ M x on the aggregate, cut out of the graph, is at least `eigenvalue` /
+///   `kDoubtful`, as the signs of pivots show (Sylvester's law of inertia). The pivots of more than 300
+///   vertices are not computed: such aggregates may hide a vector.
+///
+/// O(n + edges) and the cube of the vertices of doubtful aggregates; on all threads.
 ///
 /// @param laplacian  columns beyond the rows belong to no aggregate
 /// @param masses     of the rows; empty: all 1

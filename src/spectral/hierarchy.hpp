@@ -41,9 +41,8 @@ struct CycleWorkspace {
 /// A hierarchy of ever coarser Laplacians of one connected graph, made by aggregation, with the cycle that
 /// approximates the pseudo-inverse of the finest one.
 ///
-/// The first coarsening is plain (piecewise constant prolongation), the later ones are smoothed aggregation
-/// (Vaněk, Mandel, Brezina 1996): the finest operator keeps its sparsity where it costs most. Coarse
-/// operators are Galerkin products Pᵀ L P. Memory: about 1.2 times the graph. Set-up: O(n + edges). Set-up
+/// The first coarsening is plain (piecewise constant prolongation): the largest coarse operator stays sparse.
+/// The later ones are smoothed aggregation (Vaněk, Mandel, Brezina 1996). Coarse
 /// and cycles use all threads and give the same numbers on any number of them.
 class Hierarchy {
  public:
@@ -69,7 +68,8 @@ class Hierarchy {
   void two_cycles(int level, VectorBlock<M>& b, VectorBlock<M>& x, VectorBlock<M>& second_x,
                   CycleWorkspace<M>& workspace) const;
 
-  /// Does one Gauss–Seidel sweep forwards and one backwards on L x = 0: damps what prolongation left rough.
+  /// Does one Gauss–Seidel sweep forwards and one backwards on L x = 0: damps the rough parts that
+  /// prolongation leaves.
   template <int M>
   void smooth(int level, VectorBlock<M>& x) const;
 

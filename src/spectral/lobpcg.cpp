@@ -13,7 +13,8 @@ namespace {
 constexpr Index kRows = 2048;       // rows of a chunk for threads; the data of a pass stay in the L2 cache
 constexpr double kCalm = 0.01;      // relative change of a Ritz value in an iteration
 constexpr int kLeastUntilCalm = 4;  // iterations until noise becomes smooth
-constexpr double kSettled = 0.2;    // residual / Ritz value; above it, a value at rest may still fall later
+constexpr double kSettled = 0.2;    // residual / Ritz value; above it, a value that has stopped changing may
+                                    // still fall later
 
 /// Numbers that are added entry by entry.
 template <std::size_t N>

@@ -89,7 +89,7 @@ class LevelProblem : public EigenProblem {
 /// Locally optimal block preconditioned conjugate gradients (Knyazev 2001): each iteration minimises the
 /// Rayleigh quotient over the span of x, the preconditioned residuals, the previous directions, and
 /// `companions`, all kept orthogonal to constants. Companions are rough guesses of the next eigenvectors. A
-/// single column converges slowly if λ₃ is close to λ₂; with a companion it can remove what resembles the
+/// single column converges slowly if λ₃ is close to λ₂; with a companion it can remove its part along the
 /// next eigenvector, which costs far less than a second column. Columns end in ascending order of their
 /// eigenvalues, ‖x‖_B = 1. Columns of x that depend on others or are constant are replaced by the
 /// search itself. O(graph) an iteration.

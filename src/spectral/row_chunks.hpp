@@ -46,7 +46,7 @@ class RowChunks {
   RowChunks() = default;
 
   /// Chunks the rows of a graph: up to 16 chunks of at least `least_rows` rows, whatever the number of
-  /// threads; one chunk of all rows if too many would touch one another for threads to gain. O(edges).
+  /// threads; one chunk of all rows if too many chunks touch each other for threads to gain. O(edges).
   explicit RowChunks(const Laplacian& laplacian, Index least_rows = kLeastRows);
 
   /// Returns one chunk of all rows.

@@ -95,7 +95,7 @@ std::uint64_t AppendedArrays::place_blocks(const vtk::VtuElement& element, const
     size += bytes;
     bounds.push_back(bounds.back() + static_cast<Offset>(compressed[b]));
   }
-  // claim what a rank holds of the array: its share, and a block of which it needs a part
+  // claim the memory that a rank needs: its share of the array, and one block that it needs in part
   document_.claim(element, size / static_cast<std::uint64_t>(ranks_) + std::min(head[1], size));
   part.stored = bounds.back() - part.at;
   part.blocks = std::ssize(compressed);

@@ -39,7 +39,7 @@ struct FileHead {
   std::shared_ptr<const SplitFile> files;  ///< of an .xdmf file
 };
 
-/// Returns whether the name of a file is that of an XDMF file.
+/// Returns whether the file name ends in .xdmf or .xmf.
 [[nodiscard]] bool is_xdmf(const std::string& path);
 
 /// Reads the head of a file whose arrays can be read directly. Returns nothing for a file of any other kind

@@ -53,7 +53,7 @@ std::vector<Offset> own_starts(const Communicator& communicator, const std::vect
   return communicator.exchange(sent).values;
 }
 
-/// Moves bytes between ranks so that each block is as a whole on the rank of its first byte.
+/// Moves bytes between ranks: each block ends up whole on the rank that has its first byte.
 std::vector<std::byte> in_whole_blocks(const Communicator& communicator, const Layout& bytes,
                                        std::vector<std::byte> own, Offset block) {
   const GlobalIndex begin = bytes.begin(communicator.rank());

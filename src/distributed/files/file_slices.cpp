@@ -60,8 +60,8 @@ class NewPlaces {
   std::vector<std::pair<Offset, Offset>> moves_;  ///< ascending
 };
 
-/// Returns, on all ranks, the checksum that marks both files of XDMF; the writer of whole meshes gives the
-/// same.
+/// Returns, on all ranks, the checksum that both files of XDMF contain; the writer of whole meshes computes
+/// the same.
 std::uint64_t checksum_of_xdmf(const Communicator& communicator, GlobalIndex vertices, const FilePart& part,
                                const std::vector<std::byte>& points, const Rows& cells) {
   Checksum sum;

@@ -33,7 +33,7 @@ struct GridRows {
 /// has to call it. O(size of the mesh) at the root.
 ///
 /// @param mesh   at the root, where it must outlive the result; ignored on other ranks
-/// @param notes  receives, at the root, what VTK's files hold in another way
+/// @param notes  receives, at the root, notes on data that VTK's files store in another form
 /// @throws as `Communicator::exchange`
 [[nodiscard]] GridRows scattered_grid(const Communicator& communicator, const Mesh& mesh, Notes& notes);
 

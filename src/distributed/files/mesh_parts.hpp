@@ -14,7 +14,7 @@ namespace meshorder::distributed {
 
 /// The cells and vertices of the parts of a mesh, without ghost cells. A cell is in the part of its largest
 /// vertex. A vertex is in each part whose cells use it or, if no cell does, in the part of its number. A rank
-/// knows its own parts, and which others share their vertices; others have no cells here. Vertices and cells
+/// has the cells of its own parts only, and knows which other parts share their vertices. Vertices and cells
 /// are numbered as in the rank's share of the mesh.
 class MeshParts {
  public:

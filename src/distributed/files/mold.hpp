@@ -20,7 +20,7 @@ namespace meshorder::distributed {
 /// @param arrays    one row of each, those of points before those of cells
 /// @param metadata  of the mesh; its encoding of .vtu files is ignored
 /// @param in_order_of_vtk_9  whether higher-order hexahedra have VTK 9's node order; sets the file's version
-/// @param notes     receives what .vtu files hold in another way
+/// @param notes     receives notes on data that .vtu files store in another form
 [[nodiscard]] std::string mold_of(std::vector<DataArray> arrays, vtk::Metadata metadata,
                                   bool in_order_of_vtk_9, Notes& notes);
 

@@ -27,7 +27,7 @@ class MovedGrid {
   /// Returns the mesh, valid as long as this object. Call it only once. Every rank has to call it.
   /// O(size of the cells).
   ///
-  /// @param notes  receives, at the root, what VTK's files hold in another way
+  /// @param notes  receives, at the root, notes on data that VTK's files store in another form
   [[nodiscard]] GridRows rows(Notes& notes);
 
  private:

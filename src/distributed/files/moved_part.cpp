@@ -111,8 +111,8 @@ void MovedPart::unify_arrays() {
   }
 }
 
-/// Finds out whether there are ids other than the places, and where they move: they ascend along vertices and
-/// along the cells of each dimension or block. If the order moves nothing, ids keep their places.
+/// Finds whether there are ids other than the places, and the new place of each id: ids ascend along vertices
+/// and along the cells of each dimension or block. If the order moves nothing, ids keep their places.
 void MovedPart::settle_ids(Entities& owner, std::vector<std::int64_t>& ids, const std::string& name,
                            Notes& notes) {
   if (name.empty() || are_places(communicator_, owner.layout, ids)) return ids.clear();

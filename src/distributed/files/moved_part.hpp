@@ -26,9 +26,8 @@ class MovedPart {
   /// Every rank has to call it. O(size of the part).
   ///
   /// @param communicator  must outlive this object
-  /// @param part        of this rank: an even range of the vertices and one of
-  ///                    the cells. Arrays must have the same
-  ///                    names on all ranks
+  /// @param part        of this rank: an even range of the vertices and one of the cells. Arrays must have
+  ///                    the same names on all ranks
   /// @param order       the mesh's new order
   /// @param block_ends  as in `places_by_block`; empty: cells keep the places of their dimension
   /// @param notes       receives, at the root, notes on members and numbers that the file gives twice

@@ -28,7 +28,7 @@ namespace meshorder::distributed {
 /// @param part_starts  as in `part_of`
 /// @param paths        of existing files, one for each part
 /// @param names        of the files in messages
-/// @param notes        receives what Exodus II holds in another way
+/// @param notes        receives notes on data that Exodus II stores in another form
 /// @return number of vertices of all pieces minus that of the mesh: vertices on borders are in several pieces
 /// @throws InputError if a file cannot be written; Unavailable in a build without netCDF
 GlobalIndex write_nemesis_pieces(const Mesh& mesh, const std::vector<GlobalIndex>& part_starts,
@@ -51,8 +51,8 @@ struct NemesisShare {
                                          const std::vector<GlobalIndex>& block_ends,
                                          const std::vector<GlobalIndex>& part_starts);
 
-/// Writes the parts as the first function, each rank its own. Every rank has to call it. O(size of the share
-/// · log).
+/// Writes the parts as the first function does; each rank writes its own. Every rank has to call it. O(size
+/// of the share · log).
 ///
 /// @throws SharedError if a file cannot be written
 GlobalIndex write_nemesis_pieces(const Communicator& communicator, const NemesisShare& share,

@@ -93,7 +93,7 @@ Part part_of_rows(const Rows& rows, std::span<const Offset> members) {
   return part;
 }
 
-/// Returns whether vertices that edges pull to the front are at the end rather than those pulled back.
+/// Returns whether an order should be reversed: the vertices that edges pull to the front are at its end.
 bool is_the_wrong_way_round(std::span<const Index> places, const std::vector<float>& pull) {
   const double middle = 0.5 * (static_cast<double>(places.size()) - 1);
   double along = 0;

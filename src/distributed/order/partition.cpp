@@ -13,7 +13,7 @@ namespace {
 // well.
 constexpr GlobalIndex kLeastPerRank = 100;
 constexpr GlobalIndex kLeastPerPart = 16;
-// Graphs of up to so many vertices are cut twice, which takes some tenths of a second.
+// Graphs of at most this many vertices are cut twice; that takes some tenths of a second.
 constexpr GlobalIndex kCutTwice = 100'000;
 
 /// Returns the parts that are equal ranges of the vertices' numbers.
@@ -29,7 +29,8 @@ std::vector<Index> cut_by_numbers(const Communicator& communicator, const Global
   });
 }
 
-/// Returns the parts that are ranges of numbers of equal weight: the middle of a vertex's weight decides.
+/// Returns the parts that are ranges of numbers of equal weight. The middle of a vertex's weight decides its
+/// part.
 std::vector<Index> cut_by_weights(const Communicator& communicator, const std::vector<GlobalIndex>& weights,
                                   Index parts) {
   const std::vector<GlobalIndex> of_ranks =
