@@ -54,7 +54,7 @@ typedef int32_t mo_type;
 enum { MO_INT32 = 0, MO_UINT32 = 1, MO_INT64 = 2, MO_UINT64 = 3, MO_FLOAT = 4, MO_DOUBLE = 5 };
 
 /** An array that is read during the call, aligned as its type. A null pointer to this structure, or size 0,
- * stands for no array. */
+ * means no array. */
 typedef struct mo_in {
   const void* data;
   int64_t size; /**< numbers, not bytes; >= 0 */
@@ -295,7 +295,7 @@ MO_API mo_status mo_patches_create(const mo_in* cell_offsets, const mo_in* cell_
 /** Destroys patches; does nothing for a null pointer. */
 MO_API void mo_patches_destroy(const mo_patches* made);
 
-/** The cells at each vertex, whose contributions it sums without atomic additions. */
+/** The cells at each vertex. A vertex sums their contributions without atomic additions. */
 typedef struct mo_gather_lists {
   const int64_t* offsets; /**< vertex_count + 1: where the entries of each vertex begin */
   const int32_t* cells;   /**< the cells of each vertex, ascending */
@@ -344,7 +344,7 @@ MO_API mo_status mo_colours_create(const mo_in* cell_offsets, const mo_in* cell_
 MO_API void mo_colours_destroy(const mo_colours* made);
 
 /**
- * Sorts the vertices of each linear triangle or tetrahedron as far as its orientation allows. It needs
+ * Sorts the vertices of each linear triangle or tetrahedron as far as its orientation allows. Needs
  * `vtk_types`.
  *
  * @param cell_offsets   cells + 1, ascending, the first is `base`
@@ -362,7 +362,7 @@ MO_API mo_status mo_sort_corners(const mo_in* cell_offsets, const mo_in* cell_ve
 typedef struct mo_gpu_counts {
   size_t struct_size;
   int64_t requests;   /**< additions, or loads and stores, each of a warp of 32 threads at once */
-  int64_t sectors;    /**< sectors of 32 bytes that they touch; where t threads add to a number, t times */
+  int64_t sectors;    /**< sectors of 32 bytes that these touch; t times if t threads add to one number */
   int64_t floor;      /**< `sectors` if the numbers of each warp were all different and side by side */
   int64_t dram_bytes; /**< bytes read from memory, if the cache is filled again and again */
   int64_t dram_floor; /**< `dram_bytes` if each number were read once */
@@ -376,10 +376,11 @@ typedef struct mo_gpu_counts {
  * @param cell_vertices  vertices of the cells, from `base` on
  * @param vtk_types      VTK's type of each cell, or null: all cells of one dimension
  * @param vertex_count   n
- * @param options        or null
  * @param layout         "packed": three numbers of a vertex side by side; "apart": in three arrays; "padded":
- * four, added at once; "patches": `packed` by patches of 256 cells; "gathered": two passes by gather lists
+ *                       four, added at once; "patches": `packed` by patches of 256 cells; "gathered": two
+ *                       passes by gather lists
  * @param cache_bytes    size of the last cache; 0: 50 MiB
+ * @param options        or null
  * @param counts         written
  */
 MO_API mo_status mo_gpu_cost(const mo_in* cell_offsets, const mo_in* cell_vertices, const mo_in* vtk_types,
@@ -416,7 +417,7 @@ MO_API const char* mo_method_name(int32_t k);
  * @param neighbours  ascending in each row, no loops, no repeats, symmetric
  * @param xyz         3 n coordinates, or null
  * @param new_to_old  n numbers, written by the method: a bijection of 0 ... n-1
- * @return 0 for success; with any other number the call that asked for the order fails with MO_INTERNAL
+ * @return 0 for success; with any other number the call that requested the order fails with MO_INTERNAL
  */
 typedef int32_t (*mo_method)(void* user, int64_t n, const int64_t* offsets, const int32_t* neighbours,
                              const double* xyz, int32_t* new_to_old);

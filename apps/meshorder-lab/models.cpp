@@ -50,7 +50,7 @@ void list(const Common& common) {
   console.print_json({{"models", models}});
 }
 
-/// Adds the options that were given before `make`, which mean the same there.
+/// Adds the options given before `make`; they have the same meaning there.
 void add_options_before(const Common& common, MakeArguments& arguments) {
   arguments.json = arguments.json || common.json;
   arguments.quiet = arguments.quiet || common.quiet;

@@ -71,7 +71,8 @@ OrderCosts costs_of(const MeshOrderRecord& order, std::size_t kernels) {
   return costs;
 }
 
-/// Adds the verdict of `info` from the times in this record, if it has the orders that it compares.
+/// Adds the verdict of `info` from the times in this record, if the record has the orders that `info`
+/// compares.
 void add_verdict(MeshRecord& record, const Steadiness& steadiness, bool is_matrix) {
   const auto order = [&](std::string_view name) {
     return std::find_if(record.orders.begin(), record.orders.end(),

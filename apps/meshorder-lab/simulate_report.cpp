@@ -363,7 +363,7 @@ nlohmann::ordered_json seconds_json(const Scenario& scenario, const StepReport::
   return seconds;
 }
 
-/// Adds what the steps of a simulator count, such as iterations.
+/// Adds the counts of a simulator's steps, such as iterations.
 void add_counts(nlohmann::ordered_json& json, const Simulation& simulation, const MotionRecord& record) {
   const Scenario& scenario = simulation.scenario;
   if (scenario.is_fluid()) {

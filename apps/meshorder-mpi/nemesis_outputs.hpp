@@ -18,8 +18,9 @@ class NemesisOutputs {
   /// Checks, before the work, that the files can be written.
   ///
   /// @param name  of the files, without the two numbers: mesh.e
-  /// @throws InputError if its folder does not exist or cannot be written, or has a file of a piece's name
-  ///         that meshorder did not write as one; Unavailable in a build without netCDF
+  /// @throws InputError if the folder of the files does not exist or cannot be written, or holds a file with
+  ///                    a piece's name that meshorder did not write as a piece; Unavailable in a build
+  ///                    without netCDF
   explicit NemesisOutputs(std::string name);
 
   /// Makes the files of `parts` pieces; returns the paths under which to write them.

@@ -11,8 +11,8 @@
 
 namespace meshorder::command {
 
-/// A file of a set that all ranks write, by its path while it is unfinished, and that the root completes.
-/// Every rank has to call all functions; they throw SharedError if the root fails.
+/// A file of a set: all ranks write it under a temporary path, and the root completes it. Every rank has to
+/// call all functions; they throw SharedError if the root fails.
 class SharedOutput {
  public:
   /// @param outputs  used at the root

@@ -111,7 +111,7 @@ Reach reach_of(const Files& files) {
   folders.push_back(calibration_file(key_of_this_machine()).parent_path());
   for (const fs::path& folder : folders) {
     if (folder.empty()) continue;
-    std::error_code ignored;  // the code that writes there reports what is wrong
+    std::error_code ignored;  // the code that writes there reports the error
     fs::create_directories(folder, ignored);
     reach.write.push_back(folder);
   }

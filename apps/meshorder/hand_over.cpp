@@ -25,7 +25,7 @@ constexpr const char* kLab = "meshorder-lab";
 constexpr std::array<std::string_view, 6> kOptionsOfParts{"--parts",     "--pieces",  "--ghosts",
                                                           "--partition", "--balance", "--interface"};
 
-/// Returns the word that names the subcommand; null if there is none, or if an option before it asks for
+/// Returns the word that names the subcommand; null if there is none, or if an option before it requests
 /// something else.
 char** subcommand(char** arguments) {
   if (*arguments == nullptr) return nullptr;

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Replaces operator new by one that serves small blocks from a reserve if the system has no memory, so
-// that the command ends with a message. Otherwise destructors that allocate memory would terminate it:
+// Replaces operator new. If the system has no memory, it serves small blocks from a reserve, and the command
+// ends with a message. Without the reserve, destructors that allocate memory would terminate the command:
 // nlohmann::json moves its values into a vector before it destroys them.
 #include <algorithm>
 #include <array>

@@ -93,7 +93,7 @@ void check(const OrderArguments& arguments) {
   }
 }
 
-/// A call of the command: its parts are called in turn.
+/// One call of the command; its parts are called one after another.
 class Ordering {
  public:
   /// @param machine  for a race

@@ -14,7 +14,7 @@ namespace meshorder::command {
 /// texts.
 std::optional<double> number_of(std::string_view text);
 
-/// Finds numbers in what a program printed.
+/// Finds numbers in the output of a program.
 class PrintedNumbers {
  public:
   /// @param option   option that gave the expression, for messages

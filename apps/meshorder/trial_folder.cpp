@@ -152,7 +152,7 @@ void TrialFolder::add_file(std::size_t order, const std::string& name) {
   orders_[order][name] = {stamp_of(path, false), hash_of(path)};
 }
 
-/// Makes a file beside the mesh a part of all orders that lack it, because it differs in some order.
+/// Adds a file beside the mesh to all orders that lack it, because the file differs in some order.
 void TrialFolder::move_into_orders(const std::string& name) {
   for (std::size_t order = 0; order < orders_.size(); ++order) {
     const fs::path path = folder_of_order(order) / name;

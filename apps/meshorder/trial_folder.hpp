@@ -17,9 +17,9 @@ namespace meshorder::command {
 /// beside the mesh. Every run finds the same files at the same paths; files that a run leaves are removed.
 ///
 /// Files beside the mesh are copied, the smallest first, up to 64 MiB; larger ones become links, as do links
-/// to folders. Hidden files are left out. A program can write to linked files: this is noticed after
-/// the run, but not prevented. If a folder is ordered instead of a file, it is copied whole for each order,
-/// with the folders that links lead to, because orders are made in these copies.
+/// to folders. Hidden files are left out. A program can write to linked files: this is noticed after the run,
+/// but not prevented. If a folder is ordered instead of a file, each order is made in a full copy of the
+/// folder, with the folders that links lead to.
 class TrialFolder {
  public:
   /// @param folder  folder of the mesh

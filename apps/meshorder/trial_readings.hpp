@@ -16,7 +16,7 @@ namespace meshorder::command {
 /// {stem}, and the path for outputs in place of {out}.
 std::string with_places(const std::string& word, const TrialSubject& subject, const TrialFolder& folder);
 
-/// Reads the times, counts and results of a program from what it printed and wrote.
+/// Reads the times, counts and results of a program from its printed output and its files.
 class TrialReadings {
  public:
   /// Throws InvalidArgument for faulty expressions, and for a file that is not in the program's folder.

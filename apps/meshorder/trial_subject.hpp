@@ -29,7 +29,7 @@ class TrialSubject : public Polymorphic {
   virtual void check_order(const std::string& name) const = 0;
 
   /// Writes the subject in another order to the folder of that number, and completes `order`. Returns whether
-  /// this is its own order, in which nothing moves. Throws CommandError if the order cannot be made.
+  /// the order moves nothing. Throws CommandError if the order cannot be made.
   virtual bool make(TriedOrder& order, TrialFolder& folder, std::size_t number) const = 0;
 };
 

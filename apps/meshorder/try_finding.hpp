@@ -28,15 +28,14 @@ std::string ratio_in_words(double ratio);
 /// Returns "1.08–1.16", or "" if too few pairs were run.
 std::string interval_in_words(const TimeRatio& speedup);
 
-/// Returns the number of runs after which the best order has saved what it cost; nothing if it saves no
-/// seconds.
+/// Returns the number of runs after which the best order has saved its cost; nothing if it saves no seconds.
 std::optional<double> runs_to_pay(const TrialReport& report);
 
 /// Returns how many orders, besides the mesh's own, `runs` runs can decide among; at least 1.
 std::size_t orders_that_fit(double runs);
 
-/// Returns the budget, in seconds, that an undecided trial needs for an interval, or, if it has one, to halve
-/// its width. Nothing for other trials.
+/// Returns the budget, in seconds, that an undecided trial needs to get an interval or, if there is one, to
+/// halve its width. Nothing for other trials.
 std::optional<double> needed_budget(const TrialReport& report);
 
 /// Returns the result of the trial in one sentence, which contains the verdict.

@@ -19,8 +19,8 @@ std::optional<std::string> option_without_value(const std::vector<std::string>& 
 /// Returns the arguments with `help WORDS…` and `version` replaced by the equivalent options.
 std::vector<std::string> with_words_as_options(std::vector<std::string> arguments);
 
-/// Makes the options of a command and of its subcommands refuse an empty text, which usually comes from
-/// a variable of a script that is not set.
+/// Makes the options of a command and of its subcommands refuse an empty text: it usually comes from an unset
+/// variable of a script.
 void refuse_empty_values(CLI::App& command);
 
 /// Returns "unknown command 'ordr'; did you mean 'order'?" if the parsed arguments name a command that does

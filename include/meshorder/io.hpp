@@ -54,8 +54,8 @@ struct ReadOptions {
 
 /// Reads a mesh from a file.
 ///
-/// Files that do not belong together, as an interrupted writer leaves them, are refused if the format marks
-/// them (TetGen, XDMF). Nothing is written.
+/// Refuses files that do not belong together, such as an interrupted writer leaves, if the format marks them
+/// (TetGen, XDMF). Nothing is written.
 ///
 /// @param path     the file; any of them if the format has several
 /// @param options  see `ReadOptions`

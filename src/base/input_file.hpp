@@ -38,10 +38,10 @@ class InputFile {
   /// Returns the size of the file when it was opened, in bytes; 0 for a pipe and for files of /proc.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
-  /// Reads the next bytes. Returns their number, less than asked for only at the end.
+  /// Reads the next bytes. Returns their number, less than requested only at the end.
   std::size_t read(std::span<char> into);
-  /// Reads bytes from offset `at`; not for pipes. Returns their number, which is less than asked for only at
-  /// the end of the file.
+  /// Reads bytes from offset `at`; not for pipes. Returns their number, less than requested only at the end
+  /// of the file.
   [[nodiscard]] std::size_t read_at(std::uint64_t at, std::span<char> into) const;
   /// Returns the rest of a small file. Throws InputError if it has more than `most` bytes.
   std::string text(std::size_t most);

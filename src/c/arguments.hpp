@@ -17,7 +17,7 @@
 #include <vector>
 
 // Arrays and structures of callers in C. All functions throw InvalidArgument, with the name of the argument,
-// for what they do not accept.
+// for arguments that they do not accept.
 
 namespace meshorder::c {
 

@@ -49,8 +49,8 @@ std::optional<Shape> shape_of_vtk_type(int type);
 std::size_t vertex_count_of(const MeshView& mesh);
 
 /// Converts a view of cells, and checks it unless `check` is none: sizes match, offsets ascend, VTK types are
-/// known, cells have at least as many vertices as their shape has corners, cells of blocks one of the numbers
-/// in `cell_widths`, vertices are in range.
+/// known, cells have at least as many vertices as their shape has corners, cells of blocks have a number of
+/// vertices that `cell_widths` lists, vertices are in range.
 ///
 /// @throws InvalidArgument for the first fault, with the cell that has it
 /// @throws TooLarge for more than 2,147,483,647 vertices or cells

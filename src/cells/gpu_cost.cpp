@@ -123,7 +123,8 @@ GpuCost cost_of(const Patches& cut, const CellArrays& cells, Offset cache_bytes)
   return cost;
 }
 
-/// Returns the cost of storing what cells add to their corners, and of summing it for each vertex.
+/// Returns the cost of storing the contributions of cells to their corners, and of summing them for each
+/// vertex.
 GpuCost cost_of(const GatherLists& lists, const CellArrays& cells, int width, Offset cache_bytes) {
   const Offset entries = std::ssize(cells.vertices);
   const Offset n = cells.vertex_count;

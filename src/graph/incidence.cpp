@@ -150,7 +150,7 @@ struct Elements {
 template <int Size>
 void append_row(Elements<Size> elements, const Incidence& at_vertex, Index v, std::vector<Index>& seen_by,
                 Rows& rows) {
-  constexpr Offset kAhead = 12;  // elements lie anywhere in memory: ask for them early
+  constexpr Offset kAhead = 12;  // elements lie anywhere in memory: prefetch them early
   Offset most = 0;
   for (const Index e : at_vertex[v]) most += elements.size(e);
   most = std::min(most, Offset{elements.incidence.vertex_count});

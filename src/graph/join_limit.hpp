@@ -17,7 +17,7 @@ inline constexpr std::size_t kManyJoined = 64;
 /// copies.
 inline constexpr std::uint64_t kBytesToOrder = 24;
 
-/// Limits the memory of each graph that this process makes from long rows and of what is computed from it.
+/// Limits the memory of each graph that this process makes from long rows, and of the data computed from it.
 /// `memory_limit` holds in any case. Must not be called while other threads order.
 ///
 /// @param bytes           for a graph and all that is computed from it

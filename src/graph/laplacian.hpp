@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// `M` real vectors of n entries stored together: entry v of all of them is side by side, so that one pass
-/// over a graph serves all.
+/// `M` real vectors of n entries stored together: the M entries of a vertex are side by side, and one pass
+/// over a graph serves all vectors.
 template <int M>
 using VectorBlock = std::vector<std::array<double, M>>;
 

@@ -16,7 +16,7 @@ namespace meshorder {
 /// drop the neighbours that they lost.
 class LevelSearch {
  public:
-  /// Sorts what one vertex has found, in place.
+  /// Sorts the vertices that one vertex has found, in place.
   using Arrange = void (*)(GraphRef graph, std::span<Index> found);
 
   explicit LevelSearch(GraphRef graph)

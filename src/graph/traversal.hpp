@@ -21,9 +21,9 @@ struct ComponentCounts {
 /// Counts the components that `connected_components` would list. Takes four bytes a vertex and the same time.
 ComponentCounts component_counts(GraphRef graph);
 
-/// A graph whose vertices are numbered as a breadth-first search from the smallest vertex of each component
-/// finds them, so that further searches find their data in the cache. Rows list the same neighbours in the
-/// same order as before: a search visits the vertices of both graphs in the same order.
+/// A graph numbered by breadth-first searches, one from the smallest vertex of each component; further
+/// searches find their data in the cache. Rows list the same neighbours in the same order as before: a search
+/// visits the vertices of both graphs in the same order.
 struct BreadthFirstCopy {
   /// A component's vertices, first … end − 1, level after level.
   struct Component {
@@ -49,7 +49,7 @@ BreadthFirstCopy breadth_first_copy(GraphRef graph);
 /// until the number of levels stops growing (Gibbs, Poole, Stockmeyer 1976, as simplified by George and Liu
 /// 1979). O(searches · component), with few searches in practice; the copy has made the first.
 ///
-/// @param search  of the copy's graph; forgets what it has found of the component
+/// @param search  of the copy's graph; forgets its earlier finds in the component before each new search
 std::vector<Index> search_from_rim(const BreadthFirstCopy& copy, const BreadthFirstCopy::Component& component,
                                    LevelSearch& search);
 

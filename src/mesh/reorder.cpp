@@ -181,7 +181,8 @@ void move_mesh(Mesh& mesh, const Permutation& vertices, const Permutation& cells
 
 namespace {
 
-/// Returns what cells of one type share: dimension, shape and size. Sorts by falling dimension.
+/// Returns the properties that cells of one type share: dimension, shape and size. Sorts by falling
+/// dimension.
 std::array<int, 3> type_of(const Cells& cells, Index c) {
   const Shape shape = cells.shapes[c];
   return {-dimension(shape), static_cast<int>(shape), cells.vertex_count(c)};

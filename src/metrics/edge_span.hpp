@@ -26,7 +26,8 @@ EdgeSpan edge_span(GraphRef graph, const Permutation& order);
 
 /// Like `edge_span`, for the edges at a `VertexSample`, on all threads. On tetrahedral meshes means are
 /// within 5 % of the exact ones, mean_log2 within 0.05, and `max` at most the exact one. Below 262,144
-/// vertices all are exact but for rounding. Does not depend on the number of threads. O(vertices and edges of
+/// vertices all are exact except for rounding. Does not depend on the number of threads. O(vertices and edges
+/// of
 /// the sample).
 ///
 /// @param place_of  the new number of each vertex; empty: as they are numbered

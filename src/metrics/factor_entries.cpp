@@ -95,7 +95,7 @@ Offset factor_entries(GraphRef graph, const Permutation& order) {
   for (Index k = 0; k < n; ++k) vertex[tree.number[k]] = order.new_to_old()[k];
 
   // The entries of a row are the nodes of a subtree below it. They are counted as paths from the leaves of
-  // the subtree to the row, each only as far as the node where it meets the path before.
+  // the subtree to the row; each path is counted up to the node where it meets the previous path.
   Offset entries = 0;
   std::vector<Index> last_neighbour(static_cast<std::size_t>(n), kNoPlace);
   std::vector<Index> last_leaf(static_cast<std::size_t>(n), kNoPlace);

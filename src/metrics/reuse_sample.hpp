@@ -64,9 +64,9 @@ class ReuseSample {
  private:
   static constexpr Index kBlock = ReuseDistance::kSampledBlock;
 
-  /// A sampled access. It waits for 32 others while the cache fetches what measuring it needs: first the
-  /// place of its block among the sampled ones; after 16 accesses, when its line has its number among the
-  /// sampled lines, the data of that line.
+  /// A sampled access. It is measured 32 sampled accesses later; meanwhile the cache fetches its data: first
+  /// the place of its block among the sampled blocks and, after 16 accesses, when the number of its line
+  /// among the sampled lines is known, the data of that line.
   struct Waiting {
     Index line = 0;
     Access how = Access::gathered;

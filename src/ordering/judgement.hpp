@@ -12,7 +12,7 @@
 
 namespace meshorder {
 
-/// Returns the workload by which to judge a method that was asked for by name.
+/// Returns the workload by which to judge a method that was requested by name.
 Workload made_for(std::string_view method);
 
 /// Judges an order by the figure for the workload: the bandwidth, the entries of the Cholesky factor, the

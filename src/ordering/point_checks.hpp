@@ -12,7 +12,7 @@ namespace meshorder {
 /// Throws InvalidArgument unless there are `count` finite points or none. Polls. O(points).
 void check_finite(const PointsView& points, std::size_t count, Check check);
 
-/// Returns whether neighbours are nearer to each other than any two points are, as they are in a mesh: false
+/// Returns whether neighbours are nearer to each other than random pairs of points, as in a mesh. False
 /// suggests that an array is transposed, or of another mesh. True for graphs of fewer than 256 vertices,
 /// without edges or without points, and if all points coincide. Samples 256 edges and as many pairs, the same
 /// ones in every call. O(log n).

@@ -107,7 +107,7 @@ std::vector<ReorderOptions> asked_for(const Mesh& mesh, const CsrGraph& graph, c
   return result;
 }
 
-/// Returns whether two candidates have the same methods, so that they are the same order.
+/// Returns whether two candidates have the same methods, and so are the same order.
 bool are_one(const Candidate& a, const Candidate& b) {
   return a.vertices.name == b.vertices.name && a.elements.name == b.elements.name;
 }
@@ -178,7 +178,7 @@ bool is_race(const AdviceOptions& options) { return options.race_of > 0 && optio
 
 bool measures(const AdviceOptions& options) { return is_race(options) || options.measure_within; }
 
-/// Computes the orders that are asked for, and adds a candidate for each that differs from the others.
+/// Computes the requested orders, and adds a candidate for each that differs from the others.
 void add_candidates(Advice& advice, Orders& orders, const Mesh& mesh, const AdviceOptions& options) {
   const CsrGraph& graph = orders.all.front().graph();
   for (const ReorderOptions& reordering : asked_for(mesh, graph, options)) {

@@ -16,7 +16,7 @@ namespace {
 constexpr std::array kShipped{ShippedMachine{"zen3", zen3_costs}};
 constexpr std::string_view kThis = "this";
 
-/// Returns the name or, if it is empty, MESHORDER_MACHINE, or "this" if that is not set or empty.
+/// Returns the first of these that is not empty: the name, the value of MESHORDER_MACHINE, "this".
 std::string asked_name(std::string_view name) {
   if (!name.empty()) return std::string(name);
   const char* const variable = std::getenv("MESHORDER_MACHINE");

@@ -50,7 +50,8 @@ class Search {
   Index component_start_ = 0;
   Index head_ = 0;  ///< place in the order of the first vertex whose row is still to be read
   Index tail_ = 0;  ///< number of vertices in the order so far
-  std::vector<std::vector<Index>> found_{1};  ///< what each batch found, in the order of its rows
+  std::vector<std::vector<Index>> found_{1};  ///< the vertices that each batch found, in the order of its
+                                              ///< rows
   /// For each batch: the vertices that it marked, with their marks.
   std::vector<std::vector<std::pair<Index, Index>>> claims_;
 };

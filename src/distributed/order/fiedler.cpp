@@ -202,8 +202,7 @@ std::vector<double> solve(const Communicator& communicator, SharedLevel finest, 
   return values;
 }
 
-/// Changes the sign of a vector so that the entry that decides it (see Sign) is
-/// not positive.
+/// Makes the entry that decides the sign of a vector (see Sign) negative or 0.
 void give_sign(const Communicator& communicator, const std::vector<GlobalIndex>& in_file,
                std::vector<double>& values) {
   double largest = 0;
