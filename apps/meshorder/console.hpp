@@ -27,7 +27,7 @@ class Console {
   /// Prints "meshorder: warning: …" on stderr unless quiet, and keeps the sentence for the JSON object.
   void warn(const std::string& sentence);
 
-  /// Warns of the notes of readers and writers; notes that differ in one name only become one warning.
+  /// Warns of the notes of readers and writers; notes that differ only in one name become one warning.
   void warn_of(const Notes& notes);
 
   /// Prints a line of the result as text, unless JSON is wanted or the console is quiet.

@@ -57,7 +57,7 @@ std::string unknown_option(const std::vector<std::string>& words) {
 }
 
 /// Returns the words to type after `order` if the user named a mesh but no output: "part.msh -o
-/// ordered-part.msh". If `words`, the superfluous arguments, are a single one, it is the output.
+/// ordered-part.msh". If there is exactly one superfluous argument in `words`, it is the output.
 std::optional<std::string> line_with_output(const CLI::App& command, const std::vector<std::string>& words) {
   const CLI::Option* const mesh = command.get_option_no_throw("MESH");
   const CLI::Option* const output = command.get_option_no_throw("--output");

@@ -65,7 +65,7 @@ void for_each_chunk(Index n, Index size, Work work) {
   });
 }
 
-/// Calls `work(i)` for 0 … n−1, on all threads: each takes the next i when it is done with one, so the
+/// Calls `work(i)` for 0 … n−1, on all threads. Each thread takes the next i when it has finished one, so the
 /// longest turns should come first. For few turns of a millisecond and more; each polls on the calling
 /// thread.
 ///

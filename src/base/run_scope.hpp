@@ -42,7 +42,7 @@ class RunScope {
 /// unknown. The fraction never falls: a smaller one is replaced by the last. Calls the user's progress
 /// function if 50 ms have passed since it was last called.
 ///
-/// @throws Stopped if the progress function returns false, and what it throws itself
+/// @throws Stopped if the progress function returns false, and the exceptions of that function
 void report(std::string_view stage, double fraction = -1);
 
 /// Calls the user's progress function if 50 ms have passed since it was last called. Costs a nanosecond if

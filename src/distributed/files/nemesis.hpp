@@ -15,10 +15,10 @@
 
 namespace meshorder::distributed {
 
-/// Writes the parts of a mesh that one rank has as Nemesis files: Exodus II files that also hold the numbers
-/// in the whole mesh, and the vertices and facets shared with other parts. A mesh that did not come from an
-/// Exodus II file, or is not in the order of one, is first written to memory as such a file and read from
-/// there. O(size of the mesh · log).
+/// Writes the parts of a mesh that is on one rank as a whole, as Nemesis files: Exodus II files that also
+/// hold the numbers in the whole mesh, and the vertices and facets shared with other parts. A mesh that did
+/// not come from an Exodus II file, or is not in the order of one, is first written to memory as such a file
+/// and read from there. O(size of the mesh · log).
 ///
 /// Format: Hennigan, Shadid, "NEMESIS I: A Set of Functions for Describing Unstructured Finite-Element Data
 /// on Parallel Computers" (Sandia, 1998), and the names of dimensions and variables in exodusII_int.h of

@@ -40,7 +40,8 @@ class SliceReader {
   void read_cells(MeshSlice& slice) const;
 
  private:
-  /// Reads the offsets of this rank's cells, relative to their first entry, which it returns.
+  /// Reads the offsets of this rank's cells, counted from the first entry of these cells; returns that
+  /// entry's place.
   [[nodiscard]] Offset read_offsets(MeshSlice& slice) const;
 
   const Communicator& communicator_;

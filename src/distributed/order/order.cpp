@@ -139,7 +139,8 @@ void check_one_order(const DistributedOptions& options) {
     throw InvalidArgument("the partition 'order' leaves interfaces at their places in the order" + remedy);
 }
 
-/// Throws InvalidArgument for more than a million parts, whose tables take memory, if vertices are fewer.
+/// Throws InvalidArgument for more than a million parts, more than there are vertices: tables of parts take
+/// memory.
 void check_parts(Index parts, GlobalIndex vertices) {
   constexpr Index kOfAnyMesh = 1'000'000;
   if (parts <= kOfAnyMesh || parts <= vertices) return;
