@@ -105,7 +105,7 @@ enum class GpuLayout {
   apart,    ///< three arrays, one for each number
   padded,   ///< four numbers of a vertex side by side, added at once
   patches,  ///< as `packed`, in patches of 256 cells: each block adds once to each of its vertices
-  gathered  ///< two passes: cells store 16 bytes for each corner, vertices sum what their gather lists name
+  gathered  ///< two passes: cells store 16 bytes for each corner, vertices sum those of their gather lists
 };
 
 /// All values of `GpuLayout`.
