@@ -96,7 +96,7 @@ void run(const ReproduceArguments& arguments) {
   if (finished || std::filesystem::exists(folder.results())) report(console, folder, progress);
   if (!finished)
     throw CommandError(
-        fmt::format("stopped; finished runs are kept in {}, and the same command goes on from there",
+        fmt::format("stopped; finished runs are kept in {}, and the same command resumes from there",
                     arguments.folder),
         128 + Interruption::signal());
 }

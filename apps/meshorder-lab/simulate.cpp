@@ -180,7 +180,7 @@ class Run {
         keep(state);
       if (interrupted && step < last) {
         progress.finish();
-        throw CommandError(fmt::format("stopped after step {} of {}; --resume {} goes on from there", step,
+        throw CommandError(fmt::format("stopped after step {} of {}; --resume {} continues from there", step,
                                        last, arguments_.checkpoint),
                            128 + Interruption::signal());
       }

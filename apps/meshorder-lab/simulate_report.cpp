@@ -222,7 +222,7 @@ void print_fluid_steps(const Console& console, const Simulation& simulation, con
                 sum.cg_iterations / steps, lowest, highest);
   const auto& fluid = dynamic_cast<const Fluid&>(*simulation.body);
   if (!fluid.order().ordering().stays())
-    console.print("{:<10} {} times anew in this run", "ordered", fluid.order().fresh_orders());
+    console.print("{:<10} {} times again in this run", "ordered", fluid.order().fresh_orders());
   double time = 0;
   for (const StepRecord& step : record.steps) time += step.report.time_step;
   console.print("{:<10} {:.4g} s of the flow; {} tetrahedra in the last step", "flow", time,
@@ -296,8 +296,8 @@ void print_header(const Console& console, const Simulation& simulation, const st
                   with_commas(simulation.tetrahedra));
     console.print("{:<10} particles {}{}, tetrahedra {} in each step", "order", order.vertices,
                   order.stays()      ? ""
-                  : order.every == 0 ? ", anew when it pays"
-                                     : fmt::format(", anew every {} steps", order.every),
+                  : order.every == 0 ? ", again when it pays"
+                                     : fmt::format(", again every {} steps", order.every),
                   order.elements);
   } else {
     console.print("{:<10} {}: {} vertices, {} tetrahedra{}", "mesh", mesh,

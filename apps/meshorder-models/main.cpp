@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    return fail(2, fmt::format("{}; meshorder-models --help says what would be right", error.what()).c_str());
+    return fail(2, fmt::format("{}; see meshorder-models --help", error.what()).c_str());
   } catch (const InputError& error) {
     return fail(2, error.what());
   } catch (const std::exception& error) {

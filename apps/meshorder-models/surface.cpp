@@ -100,7 +100,7 @@ Surface read_off(const std::filesystem::path& file) {
   if (!lines.next() || lines.word() != "OFF") {
     lines.fail("not an OFF file", "its first word should be OFF");
   }
-  if (!lines.at_word() && !lines.next()) lines.fail("ends before the counts", "OFF goes on with two counts");
+  if (!lines.at_word() && !lines.next()) lines.fail("ends before the counts", "two counts must follow OFF");
   const auto n_points = lines.number<std::uint32_t>("a number of vertices");
   const auto n_faces = lines.number<std::uint32_t>("a number of faces");
   if (n_points < 3 || n_faces < 1) lines.fail("an empty surface", "it should have a triangle");

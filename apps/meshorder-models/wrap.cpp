@@ -35,7 +35,7 @@ Surface wrap(const Surface& surface, const WrapOptions& options) {
   }
   const double diagonal = box_diagonal(points);
   if (!(diagonal > 1e-100 && diagonal < 1e100)) {
-    throw InputError("its size is beyond what squares in double precision hold; scale it towards 1");
+    throw InputError("squares of its size exceed the range of double precision; scale it to a size near 1");
   }
 
   Mesh mesh;

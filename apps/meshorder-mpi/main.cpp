@@ -53,7 +53,7 @@ std::optional<std::string> option_of_one_process(const CLI::App& app) {
   for (const std::string& word : app.remaining(true)) {
     const std::string name = word.substr(0, word.find('='));
     if (std::ranges::find(kOptionsOfOneProcess, name) == kOptionsOfOneProcess.end()) continue;
-    return "'" + name + "' is not known where parts are made or ranks run; leave it out";
+    return "'" + name + "' is not supported when parts are made or several ranks run; leave it out";
   }
   return std::nullopt;
 }
@@ -62,8 +62,8 @@ std::optional<std::string> option_of_one_process(const CLI::App& app) {
 int run(const Communicator& communicator, bool is_started_as_rank, std::vector<std::string> arguments) {
   CLI::App app;
   app.description(
-      "What `meshorder` executes where mpirun or srun starts several of it: orders a mesh by all ranks.\n"
-      "The other commands run on one, without mpirun.");
+      "The program that `meshorder` runs if mpirun or srun starts several processes: orders a mesh by all\n"
+      "ranks. The other commands run in one process, without mpirun.");
   app.name("meshorder-mpi");
   app.set_version_flag("-V,--version", MESHORDER_VERSION);
   app.require_subcommand(1);

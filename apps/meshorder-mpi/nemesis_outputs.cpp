@@ -55,7 +55,7 @@ std::vector<fs::path> NemesisOutputs::old_pieces() const {
     if (!has_name_of_nemesis_piece(file.string(), target.filename().string())) continue;
     const fs::path path = target.parent_path() / file;
     if (!distributed::is_own_nemesis_piece(path)) {
-      throw InputError(path.string(), "is called as a piece, but is none that meshorder wrote",
+      throw InputError(path.string(), "has the name of a piece, but meshorder did not write it",
                        "give --pieces another name, or remove the file");
     }
     pieces.push_back(path);

@@ -257,10 +257,10 @@ int share_of_cores(const Communicator& communicator) {
 /// Adds the options of the parts: their number, how they are made, and how each is ordered.
 void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
   subcommand
-      .add_option("--vertices", arguments.vertices,
-                  "Method for the vertices of a part, see `meshorder methods`; `auto` is spectral; fiedler "
-                  "is that of\n"
-                  "the whole mesh unless --partition names what makes the parts")
+      .add_option(
+          "--vertices", arguments.vertices,
+          "Method for the vertices of a part, see `meshorder methods`; `auto` is spectral; fiedler orders\n"
+          "the whole mesh unless --partition is ptscotch, hilbert or rsb")
       ->capture_default_str();
   subcommand.add_option("--parts", arguments.parts, "Number of parts; 0: as many as ranks")
       ->check(whole_from(0))
@@ -268,7 +268,7 @@ void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
   subcommand
       .add_option(
           "--partition", arguments.partition,
-          "What makes the parts: `ptscotch` has few edges between them, `hilbert` cuts Hilbert's\n"
+          "How the parts are made: `ptscotch` has few edges between them, `hilbert` cuts Hilbert's\n"
           "curve and gives the same parts on any number of ranks, `rsb` halves the mesh and its parts by\n"
           "their Fiedler vectors, `order` cuts one order of the whole mesh, by fiedler only, into equal\n"
           "ranges; `auto` is order for fiedler, else ptscotch")
@@ -284,7 +284,7 @@ void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
   subcommand
       .add_option(
           "--interface", arguments.interface_place,
-          "Where a part has the vertices that share an element with those of other parts: `mixed` with\n"
+          "Place in a part of the vertices that share an element with those of other parts: `mixed` with\n"
           "the others, in the method's order, or `last`, after them, so that a program can work on\n"
           "the others while it waits for these")
       ->check(CLI::IsMember({"mixed", "last"}))

@@ -198,7 +198,7 @@ void OrderOutputs::write_pieces(const GridRows& grid, const distributed::Distrib
 
 void OrderOutputs::refuse_losses(const Notes& losses) const {
   if (files_.keeping.strict && !losses.empty())
-    throw InputError(pieces_file(), losses.front(), "nothing is written, as no loss is allowed");
+    throw InputError(pieces_file(), losses.front(), "file not written: --strict forbids data loss");
 }
 
 void OrderOutputs::commit(Notes& notes) {

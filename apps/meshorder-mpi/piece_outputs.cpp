@@ -94,7 +94,7 @@ std::vector<fs::path> PieceOutputs::old_pieces() const {
     if (!is_name_of_piece(file, name_)) continue;
     if (!known.contains(xml_escaped(file))) {
       throw InputError(entry->path().string(),
-                       "is called as a piece, but is none that " + index().filename().string() + " names",
+                       "has the name of a piece, but " + index().filename().string() + " does not list it",
                        "give --pieces another folder, or remove the file");
     }
     pieces.push_back(entry->path());

@@ -85,8 +85,8 @@ void print_calibration(const Console& console, const Calibration& calibration) {
   console.print("read       {:.1f} GB/s on one thread, {:.1f} GB/s on {}", calibration.read_bandwidth,
                 calibration.read_bandwidth_all, calibration.threads);
   console.print(
-      "\nWhat a kernel pays, in ns: an access; a miss and, in addition, a jump of the first cache, the\n"
-      "second, half of the last and all of it; a loop that ends where the processor did not foresee (turn).\n"
+      "\nCost of a kernel, in ns: an access; a miss and, in addition, a jump of the first cache, the\n"
+      "second, half of the last and all of it; a loop end that the processor did not predict (turn).\n"
       "The second line of each kernel is of triangles");
   console.print("{:<14}{:>7}{:>32}{:>32}{:>7}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps", "turn",
                 "condition", "error", "floor");
@@ -96,9 +96,9 @@ void print_calibration(const Console& console, const Calibration& calibration) {
     print_costs(console, calibration.all_threads, calibration.all_threads_quality);
   }
   console.print(
-      "condition: how many times errors of measured times can grow in these numbers; error: of the times\n"
-      "that they predict for what they were fitted to, the median; floor: by how much two timings of the\n"
-      "same at other addresses differ");
+      "condition: factor by which errors of the measured times can grow in these costs; error: median error\n"
+      "of the predicted times for the runs that the costs were fitted to; floor: difference of two timings\n"
+      "of one run at different addresses");
 }
 
 void list_machines(const Console& console) {
@@ -121,7 +121,7 @@ void recheck_machine(const CalibrateArguments& arguments, Console& console) {
   const StoredCalibration stored = load_calibration(key_of_this_machine());
   if (!stored.calibration) {
     throw CommandError(stored.fault.empty() ? "this machine is not calibrated; `meshorder calibrate` does it"
-                                            : stored.fault + "; `meshorder calibrate` measures it anew",
+                                            : stored.fault + "; `meshorder calibrate` measures it again",
                        2);
   }
   const Recheck found =
@@ -163,8 +163,8 @@ void run(const CalibrateArguments& arguments) {
 void add_calibrate(CLI::App& subcommand) {
   subcommand.description(
       "Measure this machine, so that `info` predicts times for it: a thread's share of the caches,\n"
-      "latencies, bandwidths, and what misses cost each kernel on one thread and on all. The result is\n"
-      "kept for this processor and this build in $MESHORDER_CACHE, else in $XDG_CACHE_HOME/meshorder,\n"
+      "latencies, bandwidths, and the cost of misses for each kernel on one thread and on all. The result\n"
+      "is kept for this processor and this build in $MESHORDER_CACHE, else in $XDG_CACHE_HOME/meshorder,\n"
       "else in ~/.cache/meshorder. `info --predict` does so by itself the first time, in 40 to 60 s, unless\n"
       "--machine or $MESHORDER_MACHINE names another machine.");
   subcommand.footer(

@@ -70,7 +70,7 @@ std::vector<MeshMethods> methods_of_matrix(const Mesh& mesh, const CompareArgume
   for (const std::string& name : names) {
     if (name.find('/') != std::string::npos) {
       throw CommandError(
-          fmt::format("{}: a matrix or graph has no elements to order; name an order of its rows alone",
+          fmt::format("{}: a matrix or graph has no elements to order; give only the order of its rows",
                       name),
           2);
     }
@@ -158,7 +158,7 @@ void run(const CompareArguments& arguments) {
   if (!layouts.empty() && !counts_additions(mesh)) {
     throw CommandError(
         "--gpu-layout: additions are counted for elements with the same number of vertices, at most 255; "
-        "this mesh has others or none, leave the option out",
+        "this mesh has other elements or none; leave the option out",
         2);
   }
   mesh.cell_blocks.clear();  // orders are compared, not the layout of a file
@@ -210,7 +210,7 @@ void add_compare(CLI::App& subcommand) {
       "CuPy. Other options are then --methods, --threads, --json and --quiet");
   subcommand
       .add_option("--gpu-layout", arguments->gpu_layouts,
-                  "Also count what atomic additions cost on a graphics processor: packed, apart, padded,\n"
+                  "Also count the cost of atomic additions on a graphics processor: packed, apart, padded,\n"
                   "patches or gathered, separated by commas")
       ->delimiter(',')
       ->type_name("LAYOUT");

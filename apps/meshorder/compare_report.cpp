@@ -272,7 +272,7 @@ void print_comparison(const Console& console, const ComparisonReport& comparison
   const Workload told = told_by_kernels(advice, comparison.workload);
   const std::string sentence = sentence_on(comparison, advice, told);
   console.print("{}: {}", comparison.file,
-                sentence.empty() ? "--methods names no order but the file's own" : sentence);
+                sentence.empty() ? "--methods names only the file's own order" : sentence);
   if (const std::optional<std::size_t> best = winner_for(told, advice))
     print_line_for(console, advice.candidates[*best], advice.is_matrix, comparison.file);
   for (const ComparedMeshOrder& c : comparison.orders) {
@@ -285,7 +285,7 @@ void print_comparison(const Console& console, const ComparisonReport& comparison
         "gpu: how many times fewer sectors of memory atomic additions touch on a graphics processor, "
         "counted");
   }
-  console.print("{} is no order of your {}: it is a synthetic one of its size that streams, for reference.",
+  console.print("{0} is not an order of your {1} but a synthetic {1} of its size that streams; a reference.",
                 kBand, comparison.is_matrix() ? "matrix" : "mesh");
 }
 

@@ -211,14 +211,14 @@ int report_ending(const Work& of_child, int signal) {
   const std::string reader = library.empty() ? "meshorder" : fmt::format("the library {}", library);
   std::string fault;
   if (signal == SIGALRM || signal == SIGXCPU) {
-    fault = fmt::format("{} did not end reading it within {} s of processor time", reader,
+    fault = fmt::format("{} did not finish reading it within {} s of processor time", reader,
                         of_child.seconds.load());
   } else if (of_child.is_reading) {
     fault = fmt::format("{} crashed while reading it (signal {})", reader, signal);
   } else {
     fault = fmt::format("meshorder crashed (signal {}) after {} read it", signal, reader);
   }
-  const InputError error(mesh, fault, "it is damaged or made to do harm: get it anew from where it was made");
+  const InputError error(mesh, fault, "it is damaged or malicious: get it again from its source");
   return report_failure(error.what(), kStatusOfBadInput);
 }
 

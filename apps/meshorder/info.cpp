@@ -310,8 +310,8 @@ void print_verdict(const Console& console, const InfoArguments& arguments, const
       : !found.has_elements ? "nothing to compute on: it has no elements"
       : fits_in_first_cache(found.graph)
           ? "nothing to gain: its data fit in a processor's first cache, in any order"
-          : "too large to be judged unasked; --measure runs the kernels, and "
-            "--cache this predicts cache misses and times";
+          : "too large to be judged by default; --measure runs the kernels, and --cache this predicts cache "
+            "misses and times";
   console.print("{}: {}", arguments.input, advice ? to_string(*advice) : without_advice);
   if (advice) print_next(console, *advice, arguments.input);
 }
@@ -383,7 +383,7 @@ void run(const InfoArguments& arguments) {
     machine = calibrated(std::move(machine), arguments.all_threads, progress, console.quiet(), notes);
   }
   if (by == By::prediction && !machine.fault.empty())
-    notes.push_back(machine.fault + "; `meshorder calibrate` measures it anew");
+    notes.push_back(machine.fault + "; `meshorder calibrate` measures it again");
   progress.stage("measuring", 0.3, 0.6);
   Findings found = counted(arguments, mesh, simplices, by);
   found.caches = arguments.caches.empty() ? machine.model.caches : parse_caches(arguments.caches);

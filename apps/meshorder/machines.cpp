@@ -50,7 +50,7 @@ double seconds_to_calibrate() {
 MachineChoice calibrated(MachineChoice choice, bool all_threads, Progress& progress, bool quiet,
                          Notes& notes) {
   if (!choice.stands_in) return choice;
-  if (!choice.fault.empty()) notes.push_back(choice.fault + "; this machine is measured anew");
+  if (!choice.fault.empty()) notes.push_back(choice.fault + "; this machine is measured again");
   if (!quiet) {
     write_stderr("meshorder: measuring this machine once, 40 to 60 s; `--machine zen3` predicts without\n");
   }

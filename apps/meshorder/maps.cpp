@@ -149,7 +149,7 @@ Identity read_identity(const std::string& path) {
     return identity;
   } catch (const std::exception&) {
     throw InputError(path, "is not what `order --maps` wrote",
-                     "order again, or remove it: maps are applied without it, unchecked");
+                     "order again, or remove it: without it, maps are applied unchecked");
   }
 }
 
@@ -167,16 +167,16 @@ void require_order(const Identity& identity, const Maps& maps, const Mesh& mesh,
   if (found == start || (has_cells_of(start) && found != goal)) return;
   if (has_cells_of(goal) && maps.vertices.is_identity() && maps.cells.is_identity()) return;
   if (has_cells_of(goal) && inverse)
-    throw InputError(mesh_path, "is in its old order already, by " + path,
+    throw InputError(mesh_path, "is already in its old order, according to " + path,
                      "leave out --inverse to reorder it");
   if (has_cells_of(goal))
-    throw InputError(mesh_path, "is in the new order already, by " + path,
+    throw InputError(mesh_path, "is already in the new order, according to " + path,
                      "give --inverse to restore the old order");
   if (!start) return;
   throw InputError(
       mesh_path,
-      goal ? "is not the mesh that the maps were written for, by " + path
-           : "is not in the order that the maps start from, by " + path,
+      goal ? "is not the mesh that the maps were written for, according to " + path
+           : "is not in the order that the maps start from, according to " + path,
       stored_matrix(mesh) == nullptr
           ? "give the maps that were written with this mesh"
           : "give the maps that were written with this file; the same entries in another sequence "

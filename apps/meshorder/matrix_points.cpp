@@ -52,8 +52,8 @@ void require_coordinates(const Mesh& mesh, const std::string& input, const std::
                          const std::vector<std::string>& others) {
   if (stored_matrix(mesh) == nullptr || has_places(mesh)) return;
   throw InvalidArgument(
-      fmt::format("{} has no coordinates, which the {} goes by; give them by --points FILE, or "
-                  "take one that needs none: {}",
+      fmt::format("{} has no coordinates, which the {} needs; give them by --points FILE, or use an order "
+                  "that needs none: {}",
                   input, by, join(others)));
 }
 

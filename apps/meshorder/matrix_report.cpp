@@ -49,7 +49,7 @@ void print_pattern(const Console& console, const StoredMatrix& stored, const Mat
   console.print("{:<12} mean {:.1f}, most {} entries", "in a row", mean_in_row(report.pattern),
                 with_commas(facts.most_in_row));
   console.print("{:<12} {}", "pattern",
-                facts.is_symmetric ? "symmetric" : "not symmetric: orders go by that of A + A'");
+                facts.is_symmetric ? "symmetric" : "not symmetric: orders use that of A + A'");
   console.print("{:<12} {}", "diagonal",
                 facts.missing_diagonal == 0
                     ? "complete"

@@ -103,7 +103,7 @@ class Case {
     // renumberMesh looks for the dictionary in the case, and there in the region's folder
     command += " -overwrite -dict system/renumberMeshDict";
     if (!keeps_other_dictionary) return command;
-    return fmt::format("change {}, which asks for another order; then {}", dictionary().string(), command);
+    return fmt::format("change {}, which requests another order; then {}", dictionary().string(), command);
   }
 
   /// Returns warnings on a case with several times.
@@ -114,10 +114,10 @@ class Case {
       return name.find_first_not_of("0123456789.e-+") != std::string::npos || name.front() == '.';
     });
     if (times.size() > 1) {
-      notes.push_back(fmt::format(
-          "the case has folders of {} times; renumberMesh moves the fields of one, at which the case starts: "
-          "remove the others first, they would stay in the old order",
-          times.size()));
+      notes.push_back(
+          fmt::format("the case has folders of {} times; renumberMesh moves the fields of one, at which the "
+                      "case starts: remove the others first; they would stay in the old order",
+                      times.size()));
     }
     std::erase_if(times, [&](const std::string& name) {
       return !has_owners(folder_ / meshes_.front() / name / region_ / "polyMesh");
@@ -188,7 +188,7 @@ class Case {
     for (const std::string& name : folders_in(folder_)) {
       if (!name.starts_with("processors")) continue;
       throw InputError((folder_ / name).string(), "holds the meshes of all processors in common files",
-                       "write them apart, by decomposePar -fileHandler uncollated");
+                       "write separate files by decomposePar -fileHandler uncollated");
     }
     throw InputError(folder_.string(), "has no folder processor0", "run decomposePar first");
   }
@@ -374,7 +374,7 @@ void run(const OpenFoamArguments& arguments) {
   std::vector<std::string> written;
   if (outputs) written = outputs->write(done);
   if (outputs && outputs->keeps_other_dictionary()) {
-    notes.push_back(meshes.dictionary().string() + " asks for another order and is left as it is; put `" +
+    notes.push_back(meshes.dictionary().string() + " requests another order and is left as it is; put `" +
                     join(openfoam::kDictionaryEntries, std::string_view(" ")) +
                     "` into it, or give --force, which replaces it");
   }
@@ -428,8 +428,9 @@ void add_openfoam(CLI::App& subcommand) {
       ->type_name("TIME");
   subcommand.add_flag("--parallel", arguments->parallel,
                       "Order the meshes of a decomposed case, in processor0, processor1, …");
-  subcommand.add_flag("--force", arguments->force,
-                      "Replace a renumberMeshDict that asks for another order; without it such a file stays");
+  subcommand.add_flag(
+      "--force", arguments->force,
+      "Replace a renumberMeshDict that requests another order; without this option it is kept");
   subcommand.add_flag("--dry-run", arguments->dry_run, "Write nothing");
   add_ordering_options(subcommand, arguments->ordering);
   add_reading_options(subcommand);

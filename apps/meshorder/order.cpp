@@ -50,8 +50,8 @@ void check_race(const OrderArguments& arguments) {
   const ReorderOptions& options = arguments.reordering;
   const Workload use = options.order.workload;
   if (!is_told_by_kernels(use)) {
-    throw InvalidArgument(fmt::format("{} goes by the times of kernels, which say nothing of --for {}",
-                                      option, to_string(use)));
+    throw InvalidArgument(
+        fmt::format("{} chooses by kernel times, which do not apply to --for {}", option, to_string(use)));
   }
   if (options.methods != MeshMethods{} || !options.group_by.empty()) {
     throw InvalidArgument(fmt::format(
@@ -301,7 +301,7 @@ void add_order(CLI::App& subcommand) {
   add_reading_options(subcommand);
   subcommand.add_flag(
       "--timings", arguments->timings,
-      "Print what each stage takes: reading, the graph, the orders, moving, writing, and the disk");
+      "Print the time of each stage: reading, the graph, the orders, moving, writing, and the disk");
   add_common(subcommand, *arguments);
   subcommand.callback([arguments] { with_threads(arguments->threads, [&] { run(*arguments); }); });
 }

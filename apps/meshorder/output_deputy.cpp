@@ -49,7 +49,7 @@ void add(std::string& message, Kind kind, std::string_view text) {
 std::pair<char, std::string> next_part(std::string_view& message) {
   const std::size_t end = message.find('\0');
   if (end == std::string_view::npos || end == 0)
-    throw Error(Code::internal, "the reading process sent nonsense");
+    throw Error(Code::internal, "the reading process sent an invalid message");
   std::pair<char, std::string> part(message.front(), message.substr(1, end - 1));
   message.remove_prefix(end + 1);
   return part;
@@ -180,7 +180,7 @@ FilePath OutputDeputy::allowed(const std::string& path) const {
       name.starts_with(fs::path(maps_).filename().string() + ".")) {
     return FilePath::derived(target);
   }
-  throw InputError(path, "is no output of this command", "read the file by --trust if you trust it");
+  throw InputError(path, "is not an output of this command", "read the file by --trust if you trust it");
 }
 
 Scratch OutputDeputy::taken(const std::string& scratch, const FilePath& target) const {
@@ -189,7 +189,7 @@ Scratch OutputDeputy::taken(const std::string& scratch, const FilePath& target) 
                                  [&](const Home& one) { return one.scratch.path() == given.parent_path(); });
   const std::string name = given.filename().string();
   if (home == homes_.end() || name.empty() || name == "..")
-    throw Error(Code::internal, "the reading process sent nonsense");
+    throw Error(Code::internal, "the reading process sent an invalid message");
   constexpr int kFolder = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
   const Descriptor outer(home->scratch.path(), kFolder);
   const Descriptor inner(::openat(outer.get(), name.c_str(), kFolder));
@@ -202,7 +202,7 @@ Scratch OutputDeputy::taken(const std::string& scratch, const FilePath& target) 
     throw_system_fault(target.string(), "cannot be written", errno);
   }
   if (!S_ISREG(status.st_mode) || status.st_nlink != 1)
-    throw Error(Code::internal, "the reading process made no ordinary file");
+    throw Error(Code::internal, "the reading process did not make an ordinary file");
   constexpr mode_t kOfPrograms = S_ISUID | S_ISGID;  // such programs run with the rights of their owner
   if ((status.st_mode & kOfPrograms) != 0) {
     const Descriptor opened(own.file(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK);

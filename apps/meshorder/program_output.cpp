@@ -83,7 +83,7 @@ std::regex compiled(const std::string& option, const std::string& pattern) {
     return std::regex(pattern, std::regex::ECMAScript);
   } catch (const std::regex_error& error) {
     throw InvalidArgument(
-        fmt::format("{} {}: it is no regular expression: {}", option, pattern, error.what()));
+        fmt::format("{} {}: it is not a regular expression: {}", option, pattern, error.what()));
   }
 }
 
@@ -124,7 +124,7 @@ std::vector<double> PrintedNumbers::find(const std::vector<std::filesystem::path
       const std::optional<double> number = number_of(trimmed(captured));
       if (!number)
         throw InvalidArgument(
-            fmt::format("{} {}: it captures '{}', which is no number", option_, pattern_, captured));
+            fmt::format("{} {}: it captures '{}', which is not a number", option_, pattern_, captured));
       numbers.push_back(*number);
     }
   };
@@ -132,7 +132,7 @@ std::vector<double> PrintedNumbers::find(const std::vector<std::filesystem::path
     if (InputFile(file).size() > 0) for_each_line(FilePath(file).read(), find_in);
   }
   if (numbers.empty())
-    throw InvalidArgument(fmt::format("{} {}: no line that the program printed matches", option_, pattern_));
+    throw InvalidArgument(fmt::format("{} {}: no line of the program's output matches", option_, pattern_));
   return numbers;
 }
 

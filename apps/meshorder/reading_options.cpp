@@ -32,7 +32,7 @@ void add_reading_options(CLI::App& subcommand) {
           "limit. Default: 256M plus 100 times the file's size, at most three quarters of the memory")
       ->check(CLI::Validator(
           [](std::string& text) {
-            return limit_of(text) ? std::string() : "'" + text + "' is no size, such as 4G, and not none";
+            return limit_of(text) ? std::string() : "'" + text + "' is neither a size, such as 4G, nor none";
           },
           ""))
       ->type_name("SIZE");

@@ -20,7 +20,7 @@ nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches,
 /// Explanation of the columns of reuse_header.
 inline constexpr std::string_view kReuseLegend =
     "log2: mean log2 of the reuse distances; a cache's size: its misses; jumps: misses of the last\n"
-    "level that no hardware prefetcher foresees";
+    "level that hardware prefetchers do not predict";
 
 /// Name of the product with a matrix, its only kernel, in rows of tables.
 inline constexpr std::string_view kProduct = "product";

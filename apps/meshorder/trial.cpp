@@ -190,7 +190,7 @@ class Trial {
     constexpr double kShort = 0.05;
     if (last_seconds_[0] >= kShort) return;
     notes_.push_back(
-        fmt::format("a run takes {}, of which much is the start of the program; a larger mesh says more",
+        fmt::format("a run takes {}, much of it program start; a larger mesh gives a clearer result",
                     duration(last_seconds_[0])));
   }
 
@@ -225,7 +225,7 @@ class Trial {
       warm_up(number);
       if (report_.orders[number].fault.empty()) ++sound;
     }
-    if (!are_own_.empty()) notes_.push_back("no other order than the mesh's own: " + join(are_own_));
+    if (!are_own_.empty()) notes_.push_back("the same as the mesh's own order: " + join(are_own_));
     if (!report_.left_out.empty()) {
       notes_.push_back(fmt::format(
           "there is no time for {}: a run takes {}, and --budget allows {:.0f} run{}", join(report_.left_out),

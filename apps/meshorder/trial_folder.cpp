@@ -217,9 +217,8 @@ void TrialFolder::end_run(std::size_t order, const fs::path& kept) {
   }
   if (!changed.empty()) {
     throw InvalidArgument(
-        fmt::format("the program changes its mesh, {}: only programs that leave it as it is can be tried, "
-                    "for instance one "
-                    "that works on a copy",
+        fmt::format("the program changes its mesh, {}: only programs that do not change it can be tried, "
+                    "such as one that works on a copy",
                     changed));
   }
   remove_new();
@@ -260,10 +259,10 @@ void TrialFolder::restore() {
   for (auto& [name, companion] : companions_) {
     if (!companion.is_copied && stamp_of(companion.source, true) != companion.there &&
         !fs::is_directory(companion.source)) {
-      throw InvalidArgument(fmt::format(
-          "{}: it changed while the program ran, which reached it by a link as it is large; have the program "
-          "write to {{out}}",
-          companion.source.string()));
+      throw InvalidArgument(
+          fmt::format("{}: it changed while the program ran; the file is large, so the program saw it "
+                      "through a link; have the program write to {{out}}",
+                      companion.source.string()));
     }
     if (stamp_of(run() / name, false) != companion.here) place(name, companion);
   }

@@ -235,7 +235,7 @@ TrialSignals::~TrialSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr
 std::string find_program(const std::string& name) {
   if (name.find('/') != std::string::npos) {
     if (is_executable(name)) return fs::absolute(name).lexically_normal().string();
-    throw InvalidArgument(fmt::format("{}: there is no such program that may be executed", name));
+    throw InvalidArgument(fmt::format("{}: there is no executable program of this name", name));
   }
   const char* const path = std::getenv("PATH");
   std::string_view folders = path == nullptr ? "/usr/bin:/bin" : path;
@@ -243,8 +243,8 @@ std::string find_program(const std::string& name) {
     const fs::path candidate = fs::path(next_word(folders, ":")) / name;
     if (is_executable(candidate)) return fs::absolute(candidate).lexically_normal().string();
   }
-  throw InvalidArgument(
-      fmt::format("{}: no folder of PATH has such a program; write ./{} for one of this folder", name, name));
+  throw InvalidArgument(fmt::format(
+      "{}: no folder of PATH has this program; write ./{} for a program in this folder", name, name));
 }
 
 TrialRun run_program(const TrialCommand& command) {
@@ -287,7 +287,8 @@ TrialRun run_program(const TrialCommand& command) {
 }
 
 std::string failure_of(const TrialRun& run, const TrialCommand& command) {
-  if (run.timed_out) return fmt::format("no end within {} (--timeout)", duration(command.timeout_seconds));
+  if (run.timed_out)
+    return fmt::format("did not end within {} (--timeout)", duration(command.timeout_seconds));
   std::string line = error_line(command.log);
   for (const std::string& file : {command.log.string() + ".err", command.log.string() + ".out"}) {
     if (line.empty()) line = last_line(file);

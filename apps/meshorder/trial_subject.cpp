@@ -43,7 +43,7 @@ constexpr std::array kOrdersOfCase{"auto", kRenumberMesh, "bfs", "fiedler", "hil
 std::string own_program() {
   std::error_code code;
   const fs::path program = fs::read_symlink("/proc/self/exe", code);
-  if (code) throw Unavailable("try: the system does not say where meshorder is (/proc/self/exe)");
+  if (code) throw Unavailable("try: the system does not report where meshorder is (/proc/self/exe)");
   return program.string();
 }
 
@@ -72,7 +72,7 @@ class TriedMesh final : public TrialSubject {
     if (!fs::is_regular_file(path_))
       throw InputError(path_, "there is no such file", "give the file of a mesh");
     if (without_gz(path_) != path_)
-      throw InputError(path_, "it is compressed, and orders of it would not be", "gunzip it first");
+      throw InputError(path_, "it is compressed, but the reordered files would not be", "gunzip it first");
   }
 
   [[nodiscard]] std::string name() const override { return fs::path(path_).filename().string(); }
@@ -184,8 +184,7 @@ class TriedCase final : public TrialSubject {
     if (name == "auto" || name == kRenumberMesh || method_named(vertex_methods(), name)) return;
     refuse_order(
         name, name, vertex_methods(), kRenumberMesh,
-        fmt::format("cells have those that meshorder methods lists for vertices, and {}, the one that "
-                    "it takes by itself",
+        fmt::format("cells have the vertex methods that meshorder methods lists, and {}, its default method",
                     kRenumberMesh));
   }
 

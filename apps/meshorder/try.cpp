@@ -55,7 +55,7 @@ void check_command(const TrialOptions& options, const TrialSubject& subject) {
         return word.find("{}") != std::string::npos || word.find("{stem}") != std::string::npos;
       })) {
     throw InvalidArgument(
-        "the command has no {}, which stands for the mesh: write it where the program takes it");
+        "the command has no {}, which is replaced by the mesh: write it where the program takes the mesh");
   }
   const bool is_new_or_empty =
       !fs::exists(options.keep) || (fs::is_directory(options.keep) && fs::is_empty(options.keep));
@@ -186,9 +186,9 @@ void take_program_to_try(std::vector<std::string>& arguments) {
 void add_try(CLI::App& subcommand) {
   subcommand.description(
       "Run a program of yours on a mesh as it is and in other orders, and say in which it runs faster.\n"
-      "The program comes after --. In its arguments, {} stands for the mesh, {stem} for its name without\n"
-      "extension, and {out} for a path for outputs. It runs without a shell, in a private folder with\n"
-      "copies of the files beside the mesh; nothing of yours is changed.\n"
+      "The program comes after --. In its arguments, {} is replaced by the mesh, {stem} by its name\n"
+      "without extension, and {out} by a path for outputs. It runs without a shell, in a private\n"
+      "folder with copies of the files beside the mesh; nothing of yours is changed.\n"
       "MESH may be the folder of an OpenFOAM case: the program then runs in copies of it.");
   subcommand.footer(
       "Examples:\n"

@@ -120,7 +120,7 @@ std::optional<double> needed_budget(const TrialReport& report) {
 std::string trial_in_words(const TrialReport& report) {
   const std::string program = program_name(report.command);
   const std::optional<std::size_t> best = report.trials.best();
-  if (!best) return fmt::format("{} has no other order to be tried in: all are its own", program);
+  if (!best) return fmt::format("{} was not tried in another order: all are the mesh's own", program);
   switch (report.trials.verdict()) {
     case TrialVerdict::faster: {
       const TimeRatio speedup = report.trials.speedup(*best);

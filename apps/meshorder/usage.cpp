@@ -131,7 +131,7 @@ std::string usage_fault(const CLI::App& app, const CLI::ParseError& error) {
   if (!option.empty()) {
     const std::vector<std::string> known = options_of(*place.command);
     if (std::find(known.begin(), known.end(), option) != known.end()) {
-      return "'" + option + "' stands before the command; write " + place.words + " " + option;
+      return "'" + option + "' comes before the command; write " + place.words + " " + option;
     }
     const std::string nearest = suggestion(option, known);
     return "unknown option '" + option + "'" + (nearest.empty() ? "; " : nearest + " ") + help;

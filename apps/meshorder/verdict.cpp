@@ -67,8 +67,7 @@ void print_next(const Console& console, const Advice& advice, const std::string&
   }
   const Candidate& first = advice.candidates.front();
   if (first.vertices.name == "original" && first.elements.name == "original") return;
-  console.print("`{}` moves it all the same: neighbours come nearer, which these kernels do not feel",
-                kCommand);
+  console.print("`{}` still moves it: neighbours come nearer, but these kernels run no faster", kCommand);
 }
 
 void print_times(const Console& console, const Advice& advice) {

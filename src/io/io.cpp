@@ -160,7 +160,7 @@ void refuse_losses(const Mesh& mesh, const FilePath& path, const Format& format)
   MemoryStore store;
   format.write(mesh, {path.path(), store}, lost);
   if (!lost.empty())
-    throw InputError(path.string(), lost.front(), "nothing is written, as no loss is allowed");
+    throw InputError(path.string(), lost.front(), "file not written: --strict forbids data loss");
 }
 
 /// Writes a valid mesh.

@@ -497,7 +497,7 @@ Recheck recheck(const Calibration& calibration) {
   }
   if (!moved.empty()) {
     result.moved = "this machine has changed since it was calibrated (" + join(moved) +
-                   "); `meshorder calibrate` measures it anew";
+                   "); `meshorder calibrate` measures it again";
   }
   result.doubt = reason_to_doubt(timings.steadiness);
   return result;

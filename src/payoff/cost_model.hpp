@@ -12,7 +12,7 @@
 namespace meshorder {
 
 /// Nanoseconds (≥ 0) that a kernel spends on each access, each miss, each jump and each turn
-/// (RunReuse::turns). A jump is a miss that no hardware prefetcher foresees; its cost is added to that of the
+/// (RunReuse::turns). A jump is a miss that no hardware prefetcher predicts; its cost is added to that of the
 /// miss. Misses and jumps are those of four caches: the first level, the second, half of the last and all of
 /// it. A thread shares the last level, so misses begin to cost when half of it is full. Jumps of the whole
 /// last cache are first touches out of order; a sweep makes one for each line of its vectors.

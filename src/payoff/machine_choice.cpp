@@ -72,7 +72,7 @@ MachineChoice chosen(const Calibration& calibration, bool all_threads) {
   if (all_threads && calibration.threads != thread_count()) {
     throw InvalidArgument("this machine was calibrated on " + std::to_string(calibration.threads) +
                           " threads, and now there are " + std::to_string(thread_count()) +
-                          "; `meshorder calibrate` measures it anew");
+                          "; `meshorder calibrate` measures it again");
   }
   const bool steady = reason_to_doubt(calibration.steadiness).empty();
   const std::string calibrated = calibration.date + (steady ? "" : " while it was busy");

@@ -145,7 +145,7 @@ def test_a_damaged_calibration_is_measured_anew_with_one_warning(here, stored, c
     done = here.run("info", "mesh.node", "--json", "--predict")
     assert done.returncode == 0
     notes = [note for note in json.loads(done.stdout)["notes"] if "is not used" in note]
-    assert len(notes) == 1 and str(stored) in notes[0] and "measured anew" in notes[0]
+    assert len(notes) == 1 and str(stored) in notes[0] and "measured again" in notes[0]
     assert json.loads(stored.read_text())["date"] != "2026-01-02"
     assert "is not used" not in here.ok("info", "mesh.node", "--predict").stderr
 

@@ -303,4 +303,4 @@ def test_warnings_that_differ_in_a_name_are_one(command, tmp_path):
 @pytest.mark.parametrize("option", ["-q", "--json"])
 def test_an_option_before_its_command_is_told_where_to_stand(command, option):
     line = command.fails(option, "info", "mesh.msh")
-    assert line == f"meshorder: '{option}' stands before the command; write meshorder info {option}"
+    assert line == f"meshorder: '{option}' comes before the command; write meshorder info {option}"

@@ -114,7 +114,7 @@ def test_a_general_matrix_is_not_made_symmetric_for_the_product(command, tmp_pat
     write_matrix(tmp_path / "a.mtx", 7, entries, "general")
     done = command.ok("info", "a.mtx")
     assert "7 rows, 7 entries" in done.stdout and "one half" not in done.stdout
-    assert "not symmetric: orders go by that of A + A'" in done.stdout
+    assert "not symmetric: orders use that of A + A'" in done.stdout
     assert "5 of 7 entries are missing" in done.stdout
     assert "2 components, 2 rows that no entry joins to others" in done.stdout
     # the lines of 64 bytes that a product touches, a gathered one for each entry: starts, columns, values, y
@@ -252,7 +252,7 @@ def test_coordinates_of_every_kind_give_the_order_of_the_mesh(command, cube, tmp
     assert maps[0] == maps[1]
     command.ok("apply", "m", "b.mtx", "-o", "c.mtx", "--inverse")
     assert (tmp_path / "c.mtx").read_bytes() == (tmp_path / "a.mtx").read_bytes()
-    assert "in the new order already" in command.fails("apply", "m", "b.mtx", "-o", "d.mtx")
+    assert "already in the new order" in command.fails("apply", "m", "b.mtx", "-o", "d.mtx")
     command.ok("order", "a.mtx", "-o", "b.vtu", "--vertices", "hilbert", "--points", name, "--maps", "v")
     command.ok("apply", "v", "b.vtu", "-o", "c.vtu", "--inverse")
 

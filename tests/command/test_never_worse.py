@@ -89,7 +89,7 @@ def test_for_a_gpu_additions_cost_less_or_nothing_moves(command, lattice, tmp_pa
     result = command.json("order", "random.vtu", "-o", "out.vtu", "--for", "gpu")
     assert (result["vertices"]["method"], result["cells"]["method"]) == ("rcm", "lexmax")
     assert sectors_of_additions(tmp_path / "out.vtu") < 0.7 * sectors_of_additions(tmp_path / "random.vtu")
-    assert "nothing of --for gpu" in command.fails("order", "random.vtu", "-o", "b.vtu", "--for", "gpu", "--measure")
+    assert "do not apply to --for gpu" in command.fails("order", "random.vtu", "-o", "b.vtu", "--for", "gpu", "--measure")
 
 
 def test_fill_is_judged_by_the_entries_of_the_factor(command, tmp_path):

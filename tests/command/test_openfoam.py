@@ -101,7 +101,7 @@ def test_a_users_dictionary_stays(command, case):
     assert 'put `writeMaps false; method manual; manualCoeffs { dataFile "cellOrder"; }` into it' in done.stderr
     assert dictionary.read_text() == users
     result = command.json("openfoam", "case")
-    assert result["next"] == (f"change case/system/renumberMeshDict, which asks for another order; then renumberMesh "
+    assert result["next"] == (f"change case/system/renumberMeshDict, which requests another order; then renumberMesh "
                               "-case case -overwrite -dict system/renumberMeshDict")
     assert "next       " + result["next"] in done.stdout
     assert command.ok("openfoam", "case", "--force").stderr == "" and dictionary.read_text() == own

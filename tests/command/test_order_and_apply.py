@@ -185,9 +185,9 @@ def test_maps_know_whether_they_were_applied(command, tmp_path, extension):
     made = command.json("order", "a.vtu", "-o", f"b.{extension}", "--vertices", "rcm", "--maps", "m")["maps"]
     assert made[-1] == "m.maps.json"
     line = command.fails("apply", "m", f"b.{extension}", "-o", "c.vtu")
-    assert "is in the new order already" in line and "--inverse" in line
+    assert "is already in the new order" in line and "--inverse" in line
     line = command.fails("apply", "m", "a.vtu", "-o", "c.vtu", "--inverse")
-    assert "is in its old order already" in line and "leave out --inverse" in line
+    assert "is already in its old order" in line and "leave out --inverse" in line
     for inverse in ([], ["--inverse"]):
         assert "is not the mesh that the maps were written for" in \
             command.fails("apply", "m", "other.vtu", "-o", "c.vtu", *inverse)

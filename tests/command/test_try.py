@@ -390,21 +390,21 @@ def test_calculix_adds_the_extension(folder):
     (("mesh.mesh", "--methods", "rcmm", "--", "cat", "{}"), "--methods rcmm: there is no such order; did you mean 'rcm'?"),
     (("mesh.mesh", "--methods", "rcm/lexmx", "--", "cat", "{}"), "did you mean 'lexmax'?"),
     (("mesh.mesh", "--", "true"), "has no {}"),
-    (("mesh.mesh", "--", "./nothing", "{}"), "./nothing: there is no such program"),
+    (("mesh.mesh", "--", "./nothing", "{}"), "./nothing: there is no executable program"),
     (("mesh.mesh", "--", "no-such-program", "{}"), "no folder of PATH"),
-    (("mesh.mesh", "--", "./solver.py", "{}"), "may be executed"),
+    (("mesh.mesh", "--", "./solver.py", "{}"), "executable program"),
     (("none.mesh", "--", "cat", "{}"), "none.mesh: there is no such file"),
     (("mesh.mesh.gz", "--", "cat", "{}"), "compressed"),
     (("mesh.xyz", "--", "cat", "{}"), "unknown extension"),
     (("mesh.pvtu", "--", "cat", "{}"), "lists pieces"),
     (("mesh.mesh", "--methods", "best", "--", "cat", "{}"), "--methods best"),
-    (("mesh.mesh", "--time", "(", "--", "cat", "{}"), "no regular expression"),
+    (("mesh.mesh", "--time", "(", "--", "cat", "{}"), "not a regular expression"),
     (("mesh.mesh", "--same", "(a)(b)", "--", "cat", "{}"), "several groups"),
-    (("mesh.mesh", "--time", "seconds (.*)", "--", "cat", "{}"), "no line that the program printed matches"),
-    (("mesh.mesh", "--count", "MeshVersion(.*)", "--", "cat", "{}"), "captures 'Formatted 2', which is no number"),
+    (("mesh.mesh", "--time", "seconds (.*)", "--", "cat", "{}"), "no line of the program's output matches"),
+    (("mesh.mesh", "--count", "MeshVersion(.*)", "--", "cat", "{}"), "captures 'Formatted 2', which is not a number"),
     (("mesh.mesh", *shell("echo first >&2; echo last >&2; exit 3")), "exit status 3: last"),
     (("mesh.mesh", *shell("kill -9 $$")), "ended by signal 9"),
-    (("mesh.mesh", "--timeout", "0.3", *shell("sleep 60 & sleep 61")), "no end within 300 ms"),
+    (("mesh.mesh", "--timeout", "0.3", *shell("sleep 60 & sleep 61")), "did not end within 300 ms"),
     (("mesh.mesh", *shell("echo >> $1")), "changes its mesh"),
     (("mesh.mesh", *shell("rm $1")), "changes its mesh"),
     (("mesh.mesh", *shell("cp $1 x; mv x $1; echo >> $1")), "changes its mesh"),
@@ -424,11 +424,11 @@ def test_orders_that_move_nothing_are_left_out(folder):
     result = folder.json(*command)
     assert set(by_name(result)) <= {"original", "rcm", "spectral-fronts"}
     assert not any("coordinates" in note for note in result["notes"])
-    assert any(note.startswith("no other order") and "auto" in note for note in result["notes"])
-    assert "has no coordinates, which the order 'hilbert' goes by" in folder.fails("--methods", "hilbert", *command)
+    assert any(note.startswith("the same as the mesh's own order") and "auto" in note for note in result["notes"])
+    assert "has no coordinates, which the order 'hilbert' needs" in folder.fails("--methods", "hilbert", *command)
     result = folder.json("--methods", "original", *command)
     assert result["best"] is None and result["verdict"] == "undecided"
-    assert "no other order" in result["finding"]
+    assert "not tried in another order" in result["finding"]
 
 
 def test_results_that_vary_by_themselves_are_refused(folder):
@@ -570,7 +570,7 @@ def test_what_links_of_a_case_lead_to_stays(folder, case, linked, method):
 
 def test_faults_of_cases(folder, case):
     assert "there is no mesh of OpenFOAM" in folder.fails(".", "--", "flow")
-    assert "there is no such order; cells have those" in folder.fails("cavity", "--methods", "lexmax", "--", "flow")
+    assert "there is no such order; cells have the vertex methods" in folder.fails("cavity", "--methods", "lexmax", "--", "flow")
     assert "did you mean 'renumberMesh'?" in folder.fails("cavity", "--methods", "renumbermesh", "--", "flow")
     assert "no such numbers" in folder.fails("cavity", "--ids", "keep", "--", "flow")
     assert "no program to try" in folder.fails("cavity")

@@ -152,7 +152,7 @@ def test_what_only_the_whole_mesh_tells_is_done_by_rank_0(tmp_path, options):
     options = [tmp_path / option if option == "b.e" else option for option in options]
     done = launch(2, "order", tmp_path / "a.e", "--pieces", tmp_path / "p", "--json", *options)
     if "--strict" in options:  # sets and ids are arrays there
-        assert done.returncode == 2 and "no loss is allowed" in own_lines(done)[0]
+        assert done.returncode == 2 and "--strict forbids data loss" in own_lines(done)[0]
     else:
         assert done.returncode == 0 and by(done) == "rank 0", done.stderr
 

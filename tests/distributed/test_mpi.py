@@ -341,7 +341,8 @@ def test_options_of_one_process_are_named_as_such(tmp_path):
     for option in sorted(of_order - of_ranks):
         done = launch(1, "order", tmp_path / "a.vtu", "-o", tmp_path / "b.vtu", option, "value")
         assert done.returncode == 2
-        assert own_lines(done) == [f"meshorder: '{option}' is not known where parts are made or ranks run; leave it out"]
+        assert own_lines(done) == [
+            f"meshorder: '{option}' is not supported when parts are made or several ranks run; leave it out"]
     assert {"--for", "--elements", "--group-by"} <= of_order - of_ranks
 
 
@@ -383,7 +384,7 @@ def matrix(tmp_path):
 def test_a_matrix_without_coordinates_has_no_geometric_order(tmp_path, matrix, options, needs):
     done = launch(2, "order", matrix, "-o", tmp_path / "b.mtx", *options)
     assert done.returncode == 2 and len(own_lines(done)) == 1
-    assert f"a.mtx has no coordinates, which {needs} goes by; give them by --points FILE" in own_lines(done)[0]
+    assert f"a.mtx has no coordinates, which {needs} needs; give them by --points FILE" in own_lines(done)[0]
     assert not (tmp_path / "b.mtx").exists()
     numpy.savetxt(tmp_path / "points.txt", numpy.random.default_rng(2).random((400, 3)))
     order(2, matrix, "-o", tmp_path / "b.mtx", "--points", tmp_path / "points.txt", *options)

@@ -451,8 +451,8 @@ def test_fewer_pieces_than_before_leave_none_of_these(tmp_path):
 
 
 @pytest.mark.parametrize("arguments, words", [
-    (["--pieces", "taken.e"], "taken.e.8.3: is called as a piece, but is none that meshorder wrote"),
-    (["--pieces", "other.e"], "other.e.4.0: is called as a piece, but is none that meshorder wrote"),
+    (["--pieces", "taken.e"], "taken.e.8.3: has the name of a piece, but meshorder did not write it"),
+    (["--pieces", "other.e"], "other.e.4.0: has the name of a piece, but meshorder did not write it"),
     (["--pieces", "folder.e"], "folder.e"),
     (["--pieces", "nowhere/out.e"], "nowhere"),
     (["--pieces", "out.e", "--ghosts", "1"], "no ghost cells"),
@@ -479,7 +479,7 @@ def test_no_loss_where_none_is_allowed(tmp_path):
     meshio.Mesh(numpy.random.default_rng(1).random((4, 3)), [("tetra", [[0, 1, 2, 3]])],
                 point_data={"u": numpy.ones((4, 3))}).write(tmp_path / "b.vtu")
     done = launch(2, "order", tmp_path / "b.vtu", "--pieces", tmp_path / "new.e", "--strict")
-    assert done.returncode == 2 and len(own_lines(done)) == 1 and "no loss is allowed" in own_lines(done)[0], done.stderr
+    assert done.returncode == 2 and len(own_lines(done)) == 1 and "forbids data loss" in own_lines(done)[0], done.stderr
     assert not [*tmp_path.glob("new*")]
 
 

@@ -182,7 +182,7 @@ def test_no_loss_where_none_is_allowed(tmp_path):
     write(tmp_path / "b.vtu", grid())
     done = launch(2, "order", tmp_path / "a.vtu", "--pieces", tmp_path / "out", "--strict")
     assert done.returncode == 2 and len(own_lines(done)) == 1, done.stderr
-    assert "'part'" in own_lines(done)[0] and "no loss is allowed" in own_lines(done)[0]
+    assert "'part'" in own_lines(done)[0] and "--strict forbids data loss" in own_lines(done)[0]
     assert sorted(os.listdir(tmp_path)) == ["a.vtu", "b.vtu"]
     order(2, tmp_path / "b.vtu", "--pieces", tmp_path / "out", "--strict")
 
@@ -293,7 +293,7 @@ def test_fewer_pieces_than_before_leave_none_of_these(tmp_path):
 
 @pytest.mark.parametrize("arguments, words", [
     ([], "there is nothing to write"),
-    (["--pieces", "taken"], "taken/a_0001.vtu: is called as a piece"),
+    (["--pieces", "taken"], "taken/a_0001.vtu: has the name of a piece"),
     (["--pieces", "a.vtu"], "a.vtu: is not a folder"),
     (["--pieces", "out.pvtu"], "out.pvtu: --pieces expects a folder and not a file; give a name such as out; a.pvtu in it"),
     (["--pieces", "out.xdmf"], "out.xdmf: --pieces expects a folder"),

@@ -91,7 +91,7 @@ def test_a_crash_is_the_users_where_files_are_trusted(med):
 def test_what_never_ends_is_one_line(med, how):
     began = time.monotonic()
     done = run(med, "order", "mesh.med", "-o", "out.med", hostile=how, seconds=1)
-    one_line(done, "mesh.med", "HDF5 did not end reading it within 1 s", "damaged")
+    one_line(done, "mesh.med", "HDF5 did not finish reading it within 1 s", "damaged")
     assert time.monotonic() - began < 30
     assert not (med / "out.med").exists() and not list(med.glob(".meshorder*"))
 

@@ -224,7 +224,7 @@ def test_refuses_an_order_that_a_matrix_cannot_have(page, meshes):
     choose(page, "hilbert")
     settled(page, "failed")
     made = command("order", "part.mtx", "-o", "x.mtx", "--vertices", "hilbert", cwd=meshes)
-    fault = made.stderr.removeprefix("meshorder: ").partition(", or take one")[0]  # the page lacks METIS's orders
+    fault = made.stderr.removeprefix("meshorder: ").partition(", or use an order")[0]  # the page lacks METIS's orders
     assert fault and text(page, "error").startswith(fault)
 
 

@@ -458,7 +458,7 @@ TEST(MachineChoice, OnAllThreadsIsACalibrationOnAsMany) {
     (void)choose_machine("this", true);
     FAIL();
   } catch (const InvalidArgument& error) {
-    EXPECT_THAT(error.what(), HasSubstr("; `meshorder calibrate` measures it anew"));
+    EXPECT_THAT(error.what(), HasSubstr("; `meshorder calibrate` measures it again"));
   }
 }
 

@@ -311,7 +311,7 @@ def _write(made: str, path: str, format: str, words: _Words, dimension: int, map
         mesh.points = mesh.points[:, :dimension]
         lost = [note for note in notes if note != GROUPED]
         if words.strict and lost:
-            raise InputError(f"{path}: {lost[0]}; no loss is allowed")
+            raise InputError(f"{path}: {lost[0]}; file not written: --strict forbids data loss")
         written, *missing = _foreign.write_meshio(mesh, path, format, words.strict)
         if ordered and maps is not None:
             _reorder_map_of_cells(maps.scratch, order)

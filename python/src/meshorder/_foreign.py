@@ -143,7 +143,7 @@ def write_meshio(mesh: Any, path: str, format: str, strict: bool = False) -> lis
             lost = list(_what_is_lost(mesh, again, path))
             notes += _what_is_rounded(mesh, again)
         if strict and lost:
-            raise InputError(f"{path}: {lost[0]}; no loss is allowed")
+            raise InputError(f"{path}: {lost[0]}; file not written: --strict forbids data loss")
         notes += lost
         for name in os.listdir(folder):
             os.replace(os.path.join(folder, name), os.path.join(os.path.dirname(path), name))

@@ -154,7 +154,7 @@ void FoamFile::read_header() {
   }
   if (class_ == "decomposedBlockData") {
     fail("holds the meshes of several processors",
-         "write them apart, by decomposePar -fileHandler uncollated");
+         "write separate files by decomposePar -fileHandler uncollated");
   }
 }
 
