@@ -45,7 +45,7 @@ inline Tetrahedra read_tetgen(const std::string& prefix) {
     mesh.cells.push_back(cell);
   }
   if (points == 0 || cells == 0 || !nodes || !elements) {
-    throw std::runtime_error(prefix + ": no .node and .ele of TetGen, numbered from 0");
+    throw std::runtime_error(prefix + ": not .node and .ele files of TetGen, numbered from 0");
   }
   return mesh;
 }

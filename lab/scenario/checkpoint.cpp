@@ -177,7 +177,7 @@ void read_header(Scanner& file) {
   }
   if (all.size() > length) {
     file.seek(static_cast<std::int64_t>(length));
-    file.fail_at_byte("goes on after its end", "it was changed");
+    file.fail_at_byte("continues after its end", "it was changed");
   }
   if (length < kHeader + sizeof(std::uint32_t)) file.fail_at_byte("is too short", "it was changed");
   const std::size_t end = all.size() - sizeof(std::uint32_t);
@@ -185,7 +185,7 @@ void read_header(Scanner& file) {
   std::memcpy(&expected, all.data() + end, sizeof expected);
   if (checksum_of(all.substr(0, end)) != expected) {
     file.seek(static_cast<std::int64_t>(end));
-    file.fail_at_byte("its checksum does not fit what it holds", "it was changed or damaged");
+    file.fail_at_byte("its checksum does not match its content", "it was changed or damaged");
   }
 }
 

@@ -13,7 +13,7 @@ Scenario find_scenario(const std::string& name_or_file) {
   }
   std::error_code code;
   if (!std::filesystem::exists(name_or_file, code))
-    throw InputError(name_or_file, "no scenario has this name, and no file either",
+    throw InputError(name_or_file, "neither a scenario nor a file has this name",
                      "there are " + join(built_in_scenarios(), [](const auto& scenario) {
                        return scenario.name;
                      }) + ", or give a file as docs/simulate.md describes");

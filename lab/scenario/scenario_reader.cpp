@@ -181,7 +181,7 @@ Scenario parse_scenario(std::string_view text, const std::string& file) {
 Scenario read_scenario(const std::filesystem::path& path) {
   const Scanner file(path);
   if (const Format* const format = format_of_bytes(file.all())) {
-    throw InputError(path.string(), fmt::format("is no scenario but a file of {}", format->name),
+    throw InputError(path.string(), fmt::format("is not a scenario but a file of {}", format->name),
                      "give the name or the file of a scenario, and a mesh by --mesh");
   }
   return parse_scenario(file.all(), path.string());

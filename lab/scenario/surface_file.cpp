@@ -42,7 +42,7 @@ std::vector<std::vector<std::array<Index, 3>>> read_surfaces(const FilePath& pat
   Scanner file(path);
   const NpyHeader header = read_npy_header(file);
   if (header.type != "<i4" || header.columns_first || header.shape.size() != 2 || header.shape[1] != 4)
-    file.fail_at_byte("is no surface in motion", "it should hold rows × 4 numbers of type <i4 in C order");
+    file.fail_at_byte("is not a surface in motion", "it should hold rows × 4 numbers of type <i4 in C order");
   if (header.shape[0] < 0 || header.shape[0] > file.bytes_left() / kRow)
     file.fail_at_byte(
         fmt::format("should have {} rows, but only {} bytes follow", header.shape[0], file.bytes_left()),

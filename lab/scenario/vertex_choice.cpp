@@ -47,11 +47,11 @@ std::vector<Index> in_set(const Mesh& mesh, std::span<const Index> candidates, c
     }
   }
   if (!found) {
-    throw InvalidArgument("the mesh has no set '" + name + "'; " +
-                          (mesh.sets.empty() ? "it has none at all"
-                                             : "its sets are " + join(mesh.sets, [](const EntitySet& set) {
-                                                 return set.name;
-                                               })));
+    throw InvalidArgument(
+        "the mesh has no set '" + name + "'; " +
+        (mesh.sets.empty() ? "it has no sets" : "its sets are " + join(mesh.sets, [](const EntitySet& set) {
+                                                  return set.name;
+                                                })));
   }
   return marks.among(candidates);
 }

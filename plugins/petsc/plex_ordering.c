@@ -156,11 +156,11 @@ PetscErrorCode MeshorderDMPlexOrdering(DM dm, const char* method, IS* perm) {
   PetscFunctionBeginUser;
   PetscCall(PetscObjectTypeCompare((PetscObject)dm, DMPLEX, &is_plex));
   PetscCheck(is_plex, PetscObjectComm((PetscObject)dm), PETSC_ERR_ARG_WRONG,
-             "meshorder: this DM is no DMPLEX");
+             "meshorder: this DM is not a DMPLEX");
   PetscCall(DMPlexIsDistributed(dm, &distributed));
-  PetscCheck(
-      !distributed, PetscObjectComm((PetscObject)dm), PETSC_ERR_SUP,
-      "meshorder: DMPlexPermute would lose which process owns what; order the mesh before DMPlexDistribute");
+  PetscCheck(!distributed, PetscObjectComm((PetscObject)dm), PETSC_ERR_SUP,
+             "meshorder: DMPlexPermute would lose which process owns each point; order the mesh before "
+             "DMPlexDistribute");
   PetscCall(DMPlexGetChart(dm, &begin, &end));
   PetscCall(DMPlexGetHeightStratum(dm, 0, &first_cell, &end_cell));
   PetscCall(PetscMalloc1(end_cell - first_cell, &cells));

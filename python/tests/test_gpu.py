@@ -165,7 +165,7 @@ def faulty_source(cupy):
 
 
 @pytest.mark.parametrize("change, words", [
-    (no_device, "CuPy finds none: cudaErrorNoDevice: no CUDA-capable device is detected; see what nvidia-smi reports"),
+    (no_device, "CuPy finds no GPU: cudaErrorNoDevice: no CUDA-capable device is detected; see what nvidia-smi reports"),
     (little_memory, "the memory of emulator is too small for this mesh in so many orders; name fewer"),
     (faulty_source, "NVRTC cannot compile the kernels: "),
 ])  # fmt: skip

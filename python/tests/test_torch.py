@@ -262,7 +262,7 @@ def test_functions_take_data(geometric):
     data.part = torch.arange(48) % 3
     grouped, _ = meshorder.reorder(data, group_by="part")
     assert (grouped.part.diff() >= 0).all()
-    with pytest.raises(InvalidArgument, match="'edges' is no tensor"):
+    with pytest.raises(InvalidArgument, match="'edges' is not a tensor"):
         meshorder.reorder(data, group_by="edges")
 
 

@@ -221,7 +221,7 @@ mo_status mo_reorderer_create(const mo_options* options, double slack, double bu
                               mo_reorderer** reorderer) {
   if (reorderer != nullptr) *reorderer = nullptr;
   return guarded([&] {
-    if (reorderer == nullptr) fail("reorderer", "there is no place to write it to");
+    if (reorderer == nullptr) fail("reorderer", "the pointer to the result is null");
     const mo_options given = complete_options(options);
     const int base = base_of(given.base);
     Reorderer inside({.method = std::string(name_or_auto(given.method)),
@@ -240,7 +240,7 @@ mo_status mo_reorderer_update(mo_reorderer* reorderer, const mo_in* offsets, con
                               const mo_in* points, int32_t dimension, const mo_in* previous,
                               const mo_out* new_to_old, const mo_out* old_to_new, int32_t* repair) {
   return guarded([&] {
-    if (reorderer == nullptr) fail("reorderer", "there is none");
+    if (reorderer == nullptr) fail("reorderer", "the pointer is null");
     const int base = reorderer->base;
     const PointsView coordinates = points_of(points, dimension);
     const GraphView graph = offsets == nullptr ? GraphView() : graph_of(offsets, neighbours, nullptr, base);
@@ -259,7 +259,7 @@ mo_status mo_reorderer_update(mo_reorderer* reorderer, const mo_in* offsets, con
 
 mo_status mo_reorderer_observe(mo_reorderer* reorderer, double step_seconds) {
   return guarded([&] {
-    if (reorderer == nullptr) fail("reorderer", "there is none");
+    if (reorderer == nullptr) fail("reorderer", "the pointer is null");
     reorderer->inside.observe(step_seconds);
   });
 }

@@ -58,7 +58,7 @@ template <class Made, class Make>
 mo_status create(const Made** place, const char* name, const Make& make) {
   if (place != nullptr) *place = nullptr;
   return guarded([&] {
-    if (place == nullptr) fail(name, "there is no place to write it to");
+    if (place == nullptr) fail(name, "the pointer to the result is null");
     *place = make().release();
   });
 }
@@ -87,7 +87,7 @@ void write_counts(const GpuCost& cost, mo_gpu_counts* counts) {
 }
 
 void check_counts(const mo_gpu_counts* counts) {
-  if (counts == nullptr) fail("counts", "there is no place to write them to");
+  if (counts == nullptr) fail("counts", "the pointer to the result is null");
   check_struct_size(counts->struct_size, "counts");
 }
 
@@ -173,7 +173,7 @@ mo_status mo_gpu_cost(const mo_in* cell_offsets, const mo_in* cell_vertices, con
                       const mo_options* options, mo_gpu_counts* counts) {
   return guarded([&] {
     check_counts(counts);
-    if (layout == nullptr) fail("layout", "there is none; give a name like \"packed\"");
+    if (layout == nullptr) fail("layout", "the name is null; give one such as \"packed\"");
     const GivenCells given(cell_offsets, cell_vertices, vtk_types, vertex_count, options);
     write_counts(
         gpu_cost(given.cells, given.vertex_count, parse_gpu_layout(layout), cache_of(cache_bytes), given.run),

@@ -104,7 +104,7 @@ void check_shapes(const CellArrays& cells) {
                                     [](Shape shape) { return static_cast<int>(shape) >= kShapes; });
   if (unknown == cells.shapes.end()) return;
   throw InvalidArgument("cells: cell " + std::to_string(unknown - cells.shapes.begin()) + " has the shape " +
-                        std::to_string(static_cast<int>(*unknown)) + ", which is none of Shape");
+                        std::to_string(static_cast<int>(*unknown)) + ", which is not a value of Shape");
 }
 
 void check_corners(const CellArrays& cells) {

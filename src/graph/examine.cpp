@@ -145,7 +145,7 @@ void refuse_asymmetry(std::span<const Offset> offsets, std::span<const Index> ne
       if (neighbours[mirrored] < v) refuse(neighbours[mirrored], u);
       if (!weights.empty() && weights[k] != weights[mirrored]) {
         throw InvalidArgument("graph: the weight from " + named(v) + " to " + named(u) + " is " +
-                              text_of(weights[k]) + ", that back is " + text_of(weights[mirrored]));
+                              text_of(weights[k]) + ", the weight back is " + text_of(weights[mirrored]));
       }
       ++cursor[u];
     }

@@ -20,7 +20,7 @@ ElasticKernels kernels_of(MaterialModel model) {
     case MaterialModel::neo_hookean:
       return neo_hookean_kernels();
   }
-  throw InvalidArgument("elasticity: no such material model");
+  throw InvalidArgument("elasticity: unknown material model");
 }
 
 /// A batch of equal parameters, for a law with the same parameters everywhere.
@@ -36,13 +36,13 @@ struct UniformLame {
 void check(const RestShapes& rest, const Elasticity& elasticity) {
   if (elasticity.model != MaterialModel::stvk && rest.dimension != 3 && rest.count > 0) {
     throw InvalidArgument("elasticity: simplices of dimension " + std::to_string(rest.dimension) +
-                          "; only Saint Venant–Kirchhoff is for others than tetrahedra");
+                          "; only Saint Venant–Kirchhoff works on simplices other than tetrahedra");
   }
   const auto lanes = static_cast<std::size_t>(rest.batches()) * kBatch;
   const std::size_t mus = elasticity.mu.size();
   if (mus != elasticity.lambda.size() || (mus != 0 && mus != lanes)) {
     throw InvalidArgument("elasticity: " + std::to_string(mus) + " values of mu and " +
-                          std::to_string(elasticity.lambda.size()) + " of lambda; give none of each, or " +
+                          std::to_string(elasticity.lambda.size()) + " of lambda; give 0 of each, or " +
                           std::to_string(lanes) + ", whole batches");
   }
 }
@@ -52,8 +52,9 @@ void check_tangent(const RestShapes& rest, const Elasticity& elasticity) {
     throw InvalidArgument("elasticity: only the corotational law has an approximate tangent");
   }
   if (elasticity.tangent == Tangent::projected && rest.dimension != 3 && rest.count > 0) {
-    throw InvalidArgument("elasticity: only tetrahedra have a projected tangent, no simplices of dimension " +
-                          std::to_string(rest.dimension));
+    throw InvalidArgument(
+        "elasticity: only tetrahedra have a projected tangent, not simplices of dimension " +
+        std::to_string(rest.dimension));
   }
 }
 

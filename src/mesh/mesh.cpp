@@ -48,7 +48,7 @@ std::array<Offset, kBytes> least_vertices() {
                                     [](Shape shape) { return static_cast<int>(shape) >= kShapes; });
   if (unknown != cells.shapes.end()) {
     fail("cell " + std::to_string(unknown - cells.shapes.begin()) + " has the shape " +
-         std::to_string(static_cast<int>(*unknown)) + ", which is none of Shape");
+         std::to_string(static_cast<int>(*unknown)) + ", which is not a value of Shape");
   }
   Index c = 0;
   while (cells.vertex_count(c) >= least[static_cast<std::size_t>(cells.shapes[c])]) ++c;

@@ -64,11 +64,10 @@ constexpr std::array kVertexRules{
     Rule{.workloads = kForElements,
          .least_vertices = 100'000,
          .method = "spectral-fronts",
-         .reason = "the best order measured for elements that needs no coordinates, of which there are none"},
+         .reason = "this graph has no coordinates; the best order measured for elements that needs none"},
     Rule{.method = "bfs",
-         .reason =
-             "no order measured makes products faster without coordinates, of which there are none, and "
-             "it is cheap"},
+         .reason = "this graph has no coordinates; no order measured that needs none makes products faster, "
+                   "and it is cheap"},
 };
 
 bool fits(const Rule& rule, Index vertices, Kind kind, Workload workload) {
@@ -142,7 +141,7 @@ Order auto_vertices(const VertexInput& input, const OrderOptions& options) {
   MethodChoice choice = choose_vertex_method(input, options.workload);
   Order result = order_graph(choice.name, input, options);
   std::string reason = choice.name == "bfs" && is_well_numbered_lattice(input, result.permutation)
-                           ? "bfs is no better: this is a lattice, whose lines a sweep already reads forward"
+                           ? "bfs is no better: this is a lattice, and its lines are already read forward"
                            : reason_to_keep(input.graph, result.permutation, choice.name, options.workload);
   if (!reason.empty()) {
     choice = {"original", std::move(reason)};

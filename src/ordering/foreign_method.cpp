@@ -36,7 +36,7 @@ VertexMethod foreign_vertex_method(std::string name, mo_method method, void* use
     try {
       return Permutation::from_new_to_old(std::move(new_to_old));
     } catch (const InvalidArgument& fault) {
-      throw InternalError("the order '" + name + "' returned no bijection: " + fault.what());
+      throw InternalError("the order '" + name + "' did not return a bijection: " + fault.what());
     }
   };
 }

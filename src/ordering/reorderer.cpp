@@ -185,7 +185,7 @@ class Reorderer::Inside {
     const bool by_auto = options_.method == "auto" && (is_first || next.method == "auto");
     if (by_auto && carried.is_identity() && hood.is_read_forward()) {
       next.method = "auto";
-      update.reason += "; a sweep over the numbering as it is already reads memory forward";
+      update.reason += "; the present numbering already reads memory forward";
       return pass(update, next, is_first, std::move(carried), carried_span);
     }
     const Stopwatch stopwatch;

@@ -75,7 +75,7 @@ std::vector<std::byte> to_bytes(const ReordererState& state) {
 
 ReordererState reorderer_state(std::span<const std::byte> bytes) {
   Reader in(bytes);
-  if (in.take<std::uint64_t>() != kMark) throw InvalidArgument("state: this is none of a Reorderer");
+  if (in.take<std::uint64_t>() != kMark) throw InvalidArgument("state: this is not the state of a Reorderer");
   constexpr std::size_t kSum = sizeof(std::uint64_t);
   if (bytes.size() < 2 * kSum ||
       Reader(bytes.last(kSum)).take<std::uint64_t>() != checksum_of(bytes.first(bytes.size() - kSum)))

@@ -125,7 +125,7 @@ double cost_for(Workload workload, const Advice& advice, const OrderCosts& costs
     ++kernels;
   }
   if (kernels == 0) {
-    throw InvalidArgument(fmt::format("advice: no kernel tells what is best for {}", to_string(workload)));
+    throw InvalidArgument(fmt::format("advice: no kernel measures {}", to_string(workload)));
   }
   return sum / kernels;
 }

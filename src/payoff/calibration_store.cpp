@@ -33,7 +33,8 @@ Caches caches_from(const Json& sizes) {
   for (const Json& size : sizes) {
     const auto bytes = size.get<Offset>();
     const Offset before = caches.level_bytes.empty() ? 0 : caches.level_bytes.back();
-    if (bytes <= before || bytes % kLineBytes != 0) throw InvalidArgument("has sizes of no caches");
+    if (bytes <= before || bytes % kLineBytes != 0)
+      throw InvalidArgument("has sizes that are not cache sizes");
     caches.level_bytes.push_back(bytes);
   }
   return caches;
@@ -144,9 +145,9 @@ std::string to_json_text(const Calibration& calibration) {
 
 Calibration parse_calibration(const std::string& text) {
   const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) throw InvalidArgument("is no JSON");
+  if (json.is_discarded()) throw InvalidArgument("is not JSON");
   const bool has_schema = json.is_object() && json.contains("schema") && json.at("schema") == kSchema;
-  if (!has_schema) throw InvalidArgument("is no calibration");
+  if (!has_schema) throw InvalidArgument("is not a calibration");
   try {
     Calibration calibration;
     calibration.processor = json.at("processor").get<std::string>();

@@ -11,7 +11,7 @@ namespace meshorder {
 
 const CostModel& zen3_costs() {
   // printed by `meshorder calibrate --json`
-  static const CostModel model{.machine = "2-core Zen 3, 32 KB L1, 512 KB L2, 16 MB to be had of 32 MB L3",
+  static const CostModel model{.machine = "2-core Zen 3, 32 KB L1, 512 KB L2, 16 MB available of 32 MB L3",
                                .caches = parse_cache_sizes("32K,512K,16384K"),
                                .solid = {{{.access = 0.5756,
                                            .miss = {0, 0, 0.431, 2.37},

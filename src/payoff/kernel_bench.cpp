@@ -21,7 +21,7 @@ std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const KernelInpu
   std::unique_ptr<KernelBench> bench;
   if (input.is_matrix()) {
     if (kernels == KernelSet::tuned) {
-      throw InvalidArgument("kernels: the tuned ones are of meshes; of a matrix there is the plain product");
+      throw InvalidArgument("kernels: a matrix has only the plain product; tuned kernels are for meshes");
     }
     bench = std::make_unique<ProductBench>(input.pattern());
   } else if (kernels == KernelSet::plain) {

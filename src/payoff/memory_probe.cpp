@@ -163,7 +163,7 @@ std::vector<ProbePoint> probe_latencies(std::span<const Offset> sizes, int round
 }
 
 FoundCaches find_caches(std::span<const ProbePoint> points, std::size_t most) {
-  if (points.empty()) throw InvalidArgument("caches: no latencies to find them in");
+  if (points.empty()) throw InvalidArgument("caches: no latencies are given");
   Explanation best = explained(points, {});
   for (std::size_t levels = 1; levels <= most; ++levels) {
     // one more level must reduce the error by a quarter

@@ -32,7 +32,7 @@ void check_places(const Mesh& mesh, const std::vector<MeshMethods>& methods) {
   for (const MeshMethods& method : methods) {
     if (needs_points(vertex_methods(), method.vertices) || needs_points(element_methods(), method.elements))
       throw InvalidArgument("advise: " + method.vertices + "/" + method.elements +
-                            " goes by points, and the matrix has none");
+                            " needs coordinates, and the matrix has none");
   }
 }
 
@@ -41,7 +41,8 @@ template <class Make>
 Advice advise_on(const PayoffOptions& options, const Make& make) {
   return in_call(options.order.run, [&] {
     if (!(options.budget_seconds >= 0)) {
-      throw InvalidArgument("advise: a budget of " + std::to_string(options.budget_seconds) + " s");
+      throw InvalidArgument("advise: the budget is " + std::to_string(options.budget_seconds) +
+                            " s, must be 0 or more");
     }
     if (options.predict && options.kernels != KernelSet::plain) {
       throw InvalidArgument("advise: tuned kernels are not predicted; measure them");
@@ -49,14 +50,13 @@ Advice advise_on(const PayoffOptions& options, const Make& make) {
     if (options.order.workload == Workload::gpu) {
       throw InvalidArgument(
           "workload gpu: the kernels run on this machine's processor; gpu_cost and gpu_product_cost count "
-          "what an "
-          "order costs on a graphics processor");
+          "the cost of an order on a graphics processor");
     }
     const int threads = options.all_threads ? thread_count() : 1;
     const MachineChoice machine = choose_machine(options.machine, options.all_threads && options.predict);
     if (options.predict && machine.model.threads != threads) {
       throw InvalidArgument(
-          "advise: what misses cost on all threads is not known; calibrate() measures it on this machine");
+          "advise: the cost of misses on all threads is not known; calibrate() measures it on this machine");
     }
     report("check");
     const auto& mesh = make();
@@ -115,7 +115,7 @@ std::vector<Candidate> compare(const Mesh& mesh, const PayoffOptions& options) {
 CalibrationReport calibrate(const CalibrationOptions& options) {
   return in_call(options.run, [&] {
     if (!(options.seconds > 0)) {
-      throw InvalidArgument("calibrate: " + std::to_string(options.seconds) + " s; it takes some");
+      throw InvalidArgument("calibrate: " + std::to_string(options.seconds) + " s, must be more than 0");
     }
     const Calibration calibration = measure_machine(effort_of(options.seconds));
     CalibrationReport result{.machine = chosen(calibration).in_words(),

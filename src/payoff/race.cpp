@@ -31,20 +31,22 @@ std::string reason_for(const Race& race) {
   if (is_predicted(race)) {
     if (!race.winner) {
       return fmt::format(
-          "no order is predicted to be faster than the file's by more than predictions tell, for {}",
+          "no order is predicted to be faster than the file's by more than the error of predictions, for {}",
           race.advice.machine);
     }
     return fmt::format(
         "predicted to be {:.2f} times as fast as the file's, and no other order to be faster by more than "
-        "predictions tell, for {}",
+        "the error of predictions, for {}",
         race.factors[*race.winner], race.advice.machine);
   }
   if (!race.winner) {
-    return fmt::format("none of {} orders timed here is faster than the file's by more than times vary",
-                       timed);
+    return fmt::format(
+        "none of {} orders timed here is faster than the file's by more than the variation of the times",
+        timed);
   }
   return fmt::format(
-      "none of {} orders timed here is faster by more than times vary; {:.2f} times as fast as the file's",
+      "none of {} orders timed here is faster by more than the variation of the times; {:.2f} times as fast "
+      "as the file's",
       timed, race.factors[*race.winner]);
 }
 
@@ -58,7 +60,7 @@ MeshMethods Race::methods() const {
 Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options) {
   const Workload workload = options.ordering.workload;
   if (!is_told_by_kernels(workload)) {
-    throw InvalidArgument(fmt::format("race: no kernel tells what is best for {}", to_string(workload)));
+    throw InvalidArgument(fmt::format("race: no kernel measures {}", to_string(workload)));
   }
   Race result;
   result.advice = advise(mesh, graph,

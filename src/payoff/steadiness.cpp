@@ -50,7 +50,7 @@ std::string reason_to_doubt(const Steadiness& steadiness) {
         fmt::format("two timings of the same kernel and order differ by {:.0f} %", 100 * steadiness.repeat));
   }
   if (signs.empty()) return {};
-  return "these times are not to be trusted: the machine is busy or throttled (" + join(signs) +
+  return "these times are unreliable: the machine is busy or throttled (" + join(signs) +
          "); measure again when it is idle";
 }
 

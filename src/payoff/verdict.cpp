@@ -92,8 +92,8 @@ std::string runs_of(const Advice& advice, Workload workload) {
 std::string in_doubt(const std::string& slower, const std::string& on, const char* than,
                      const std::string& command) {
   return fmt::format(
-      "as it is, {}{} than {} (measured here while the machine was busy: the amount is in doubt); "
-      "`{}` mends it",
+      "as it is, {}{} than {} (measured here while the machine was busy: the amount is in doubt); `{}` gives "
+      "a faster order",
       slower, on, than, command);
 }
 

@@ -119,8 +119,8 @@ void check_input(GraphRef graph, std::span<const double> weights, RealView start
     const auto [least, most] = std::minmax_element(weights.begin(), weights.end());
     if (*most * (1 / kLargestRatio) > *least) {
       throw InvalidArgument(
-          "fiedler_vector: the largest weight is more than 1e100 times the smallest one; "
-          "numbers cannot tell such weights apart from none");
+          "fiedler_vector: the largest weight is more than 1e100 times the smallest one; double precision "
+          "cannot distinguish such weights from 0");
     }
   }
   if (!start.empty() && std::cmp_not_equal(start.size(), graph.size())) {

@@ -159,7 +159,7 @@ def test_says_which_program_is_missing_or_foreign(tmp_path, pool):
     assert "meshorder-delaunay: is neither beside this program nor on PATH" in error(PATH="/nowhere")
     other = alone.parent / "meshorder-delaunay"
     for script, expected in (("exit 3", "ended with status 3"),
-                             ("head -c 5000000 /dev/zero | tr '\\0' '\\7'", "not that of a triangulation")):
+                             ("head -c 5000000 /dev/zero | tr '\\0' '\\7'", "its answer is not a triangulation")):
         other.write_text(f"#!/bin/sh\n{script}\n")
         other.chmod(0o755)
         assert expected in error()

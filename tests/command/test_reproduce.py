@@ -222,7 +222,7 @@ def test_it_stops_in_good_order_and_goes_on(tmp_path):
 
 
 @pytest.mark.parametrize("arguments, words", [
-    (["--scenario", "tumble"], "no scenario has this name"),
+    (["--scenario", "tumble"], "neither a scenario nor a file has this name"),
     (["--orders", "nonsense"], "unknown ordering 'nonsense'"),
     (["--size", "huge"], "unknown size 'huge'"),
     (["--mesh", "none.msh"], "none.msh"),

@@ -5,7 +5,7 @@ import os
 import subprocess
 import sys
 
-DOUBT = "these times are not to be trusted: the machine is busy or throttled"
+DOUBT = "these times are unreliable: the machine is busy or throttled"
 
 
 @contextlib.contextmanager

@@ -75,7 +75,7 @@ TEST(Check, FindsEveryMissingEntry) {
     EXPECT_EQ(fault(arrays.view(), Check::fast), "");
   }
   EXPECT_EQ(fault(Arrays{{0, 1, 2}, {1, 0}, {2, 3}}.view()),
-            "graph: the weight from 0 to 1 is 2, that back is 3");
+            "graph: the weight from 0 to 1 is 2, the weight back is 3");
 }
 
 TEST(Examine, GivesEveryTwoEdgesAnotherAsymmetry) {

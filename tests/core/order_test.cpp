@@ -170,7 +170,7 @@ TEST(OrderVertices, RefusesAsymmetryUnlessItIsToBeMirrored) {
   EXPECT_THAT(refusal([&] {
                 (void)order_vertices({offsets, symmetric, weights}, "fiedler");
               }),
-              HasSubstr("the weight from 0 to 1 is 1, that back is 2"));
+              HasSubstr("the weight from 0 to 1 is 1, the weight back is 2"));
 }
 
 TEST(OrderVertices, KeepsGroupsTogether) {

@@ -258,7 +258,7 @@ TEST(Comparison, NamesTheBestOrderOfAllKernelsOrOfOne) {
       "the springs kernel runs 4.00× faster in rcm than in the file's own order; it takes 300 ms and pays "
       "after 100 runs of the springs kernel");
   EXPECT_EQ(comparison_in_words(advice, Workload::fill), comparison_in_words(advice, Workload::all))
-      << "no kernel tells";
+      << "no kernel measures it";
   EXPECT_DOUBLE_EQ(*certain_gain(advice), 2) << "of the order that is advised";
   advice.doubt = "the machine was busy";
   advice.floor.fill(0.5);

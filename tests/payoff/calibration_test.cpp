@@ -388,14 +388,15 @@ TEST(CalibrationStore, NoDamagedFileIsTaken) {
     return stored.fault;
   };
   EXPECT_THAT(fault_of(""), HasSubstr("is empty"));
-  EXPECT_THAT(fault_of("{}"), HasSubstr("is no calibration"));
-  EXPECT_THAT(fault_of("[1]"), HasSubstr("is no calibration"));
-  EXPECT_THAT(fault_of(R"({"schema": 3})"), HasSubstr("is no calibration"));
-  EXPECT_THAT(fault_of(test::with(text, "calibration 7", "calibration 6")), HasSubstr("is no calibration"));
+  EXPECT_THAT(fault_of("{}"), HasSubstr("is not a calibration"));
+  EXPECT_THAT(fault_of("[1]"), HasSubstr("is not a calibration"));
+  EXPECT_THAT(fault_of(R"({"schema": 3})"), HasSubstr("is not a calibration"));
+  EXPECT_THAT(fault_of(test::with(text, "calibration 7", "calibration 6")),
+              HasSubstr("is not a calibration"));
   EXPECT_THAT(fault_of(test::with(text, "\"spmv\"", "\"smpv\"")), HasSubstr("is damaged"));
   EXPECT_THAT(fault_of(test::with(text, "\"date\": \"2026-01-02\"", "\"date\": 7")), HasSubstr("is damaged"));
   EXPECT_THAT(fault_of(test::with(text, "\"access\": ", "\"access\": -")), HasSubstr("negative"));
-  EXPECT_THAT(fault_of(test::with(text, "20971520", "1")), HasSubstr("sizes of no caches"));
+  EXPECT_THAT(fault_of(test::with(text, "20971520", "1")), HasSubstr("not cache sizes"));
   EXPECT_THAT(fault_of(test::with(text, "\"threads\": 7", "\"threads\": 0")), HasSubstr("has no threads"));
   EXPECT_THAT(fault_of(test::with(text, "\"all_threads\"", "\"some_threads\"")), HasSubstr("is damaged"));
   for (std::size_t size = 0; size + 2 < text.size(); size += 37)

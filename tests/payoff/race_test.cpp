@@ -50,9 +50,9 @@ TEST(Race, GoesToTheOrderThatIsTimedAsTheFastest) {
   EXPECT_EQ(result.winner, 1U);
   EXPECT_EQ(result.methods().vertices, result.advice.candidates[1].vertices.name);
   EXPECT_EQ(result.methods().elements, result.advice.candidates[1].elements.name);
-  EXPECT_EQ(
-      result.reason,
-      "none of 3 orders timed here is faster by more than times vary; 4.00 times as fast as the file's");
+  EXPECT_EQ(result.reason,
+            "none of 3 orders timed here is faster by more than the variation of the times; 4.00 times as "
+            "fast as the file's");
   EXPECT_EQ(result.advice.doubt, "");
 }
 
@@ -60,7 +60,8 @@ TEST(Race, GoesToTheMeshsOwnOrderWhereNoneIsFasterByMoreThanTimesVary) {
   const Race result = raced({8, 8.1, 7.9, 9});
   EXPECT_EQ(result.winner, std::nullopt);
   EXPECT_EQ(result.methods(), (MeshMethods{"original", "original"}));
-  EXPECT_EQ(result.reason, "none of 3 orders timed here is faster than the file's by more than times vary");
+  EXPECT_EQ(result.reason,
+            "none of 3 orders timed here is faster than the file's by more than the variation of the times");
 }
 
 TEST(Race, TimesWhatAutoTakesAndTwoOthersForHalfASecondEach) {
@@ -155,7 +156,7 @@ TEST(Race, LeavesOutOrdersByCoordinatesForAMatrixWithoutThem) {
 
 TEST(Race, RefusesWhatNoKernelTells) {
   for (const Workload workload : {Workload::fill, Workload::bandwidth}) {
-    const auto message = testing::StartsWith("race: no kernel tells what is best for ");  // before any work
+    const auto message = testing::StartsWith("race: no kernel measures ");  // before any work
     EXPECT_THAT([&] { (void)raced({}, workload); }, testing::ThrowsMessage<InvalidArgument>(message));
   }
 }

@@ -145,7 +145,7 @@ std::vector<std::string> comparison_findings(const ComparedStudy& a, const Compa
   }
   if (!turned.empty())
     findings.push_back(
-        fmt::format("What saves time for certain in one study costs time for certain in the other: {}.",
+        fmt::format("These save time for certain in one study and cost time for certain in the other: {}.",
                     in_words(turned)));
   std::vector<std::string> shorter;
   for (const ScenarioRecord& scenario : a.results.scenarios) {

@@ -184,8 +184,8 @@ def gpu_cost(
     """Counts what adding to the vertices of cells costs on a GPU, with one thread for each cell. The count needs no GPU.
 
     Of two orders of the same cells, the one with fewer sectors is faster there. ``sectors`` are those of atomic additions;
-    for "gathered", those that the first pass stores and the second one loads. ``dram_bytes`` are vertex numbers of 4 bytes, of
-    2 bytes within patches, and what the layout has for each vertex in two arrays: one is read, the other is added to. Other
+    for "gathered", those that the first pass stores and the second one loads. ``dram_bytes`` counts vertex numbers, of 4 bytes
+    or within patches 2 bytes, and the layout's numbers of each vertex in two arrays: one is read, the other is added to. Other
     data of the cells is not counted.
 
     Args:

@@ -213,7 +213,7 @@ class Calibration:
 
     Attributes:
         machine: the name of this machine in ``Advice.machine`` from now on.
-        figures: all measured numbers: the caches' share of a thread, latencies, bandwidths, and the costs of cache
+        figures: all measured numbers: a thread's share of the caches, latencies, bandwidths, and the costs of cache
             misses for each kernel.
         file: the file that stores them; None if they are not stored.
         doubt: reason not to trust them (the machine was busy or throttled); empty if they are reliable.

@@ -131,10 +131,10 @@ PartOrders in_one_order(const Communicator& communicator, const GlobalGraph& gra
 void check_one_order(const DistributedOptions& options) {
   const std::string remedy = "; the partitions ptscotch, hilbert and rsb order each part";
   if (options.vertices != "fiedler")
-    throw InvalidArgument("the partition 'order' is of `fiedler` only, not of '" + options.vertices + "'" +
+    throw InvalidArgument("the partition 'order' is only for `fiedler`, not for '" + options.vertices + "'" +
                           remedy);
   if (options.balance != Balance::vertices)
-    throw InvalidArgument("the partition 'order' has ranges of equally many vertices, not of cells" + remedy);
+    throw InvalidArgument("the partition 'order' balances vertices, not cells" + remedy);
   if (options.interface_place != InterfacePlace::mixed)
     throw InvalidArgument("the partition 'order' leaves interfaces at their places in the order" + remedy);
 }

@@ -94,7 +94,7 @@ void SharedHierarchy::gather(const SharedLevel& coarse) {
   gathered_ = coarse.layout;
   communicator_.at_root([&] {
     if (gathered_.size() > kMaxIndex)
-      throw TooLarge("more than 2,147,483,647 vertices that coarsening left; start fewer ranks");
+      throw TooLarge("more than 2,147,483,647 vertices are left after coarsening; start fewer ranks");
   });
   std::vector<Offset> degrees(coarse.rows());
   std::vector<Index> neighbours;

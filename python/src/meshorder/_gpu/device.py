@@ -69,7 +69,7 @@ class Device:
             self.name: str = runtime.getDeviceProperties(runtime.getDevice())["name"].decode()
         except runtime.CUDARuntimeError as error:
             raise Unavailable(
-                f"compare on a GPU: CuPy finds none: {_first_line(error)}; see what nvidia-smi reports"
+                f"compare on a GPU: CuPy finds no GPU: {_first_line(error)}; see what nvidia-smi reports"
             ) from None
         self._module: Any = self._cupy.RawModule(
             code=pathlib.Path(__file__).with_name("kernels.cu").read_text(encoding="utf-8"), options=("-std=c++17",)

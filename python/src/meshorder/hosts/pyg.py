@@ -137,7 +137,7 @@ class PygGraph(Host):
     def grouped_order(self, request: Request) -> MeshOrder:
         found = [store.get(request.group_by) for store in self.given.node_stores]
         if [tuple(getattr(part, "shape", ())) for part in found] != [(size,) for size in self._sizes]:
-            raise InvalidArgument(f"group_by: '{request.group_by}' is no tensor with a number for each node")
+            raise InvalidArgument(f"group_by: '{request.group_by}' is not a tensor with a number for each node")
         groups = np.concatenate([tensors.to_numpy(part) for part in found])
         return self.order(request.vertices, request.elements, {**request.options, "groups": groups})
 

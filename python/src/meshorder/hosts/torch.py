@@ -45,7 +45,7 @@ class TorchGraph(Host):
         if not is_sparse(self.given):
             return MeshOrder(found, order_of_edges(ends[0], ends[1], elements))
         if elements != "auto":
-            raise InvalidArgument("elements: the entries of a sparse matrix always go by rows; leave 'auto'")
+            raise InvalidArgument("elements: the entries of a sparse matrix are always sorted by rows; leave 'auto'")
         return MeshOrder(found, order_of_edges(ends[1], ends[0], elements, "rows", "entries by their new row"))
 
     def moved(self, order: MeshOrder, inplace: bool) -> Any:
@@ -123,7 +123,8 @@ def order_of_edges(
         InvalidArgument: ``elements`` is neither "auto" nor "original".
     """
     if elements not in ("auto", "original"):
-        raise InvalidArgument(f"elements: edges go by their target ('auto') or stay ('original'); {elements!r} is for meshes")
+        raise InvalidArgument(
+            f"elements: edges are sorted by their target ('auto') or stay ('original'); {elements!r} is for meshes")
     if elements == "original":
         name, reason, places = "original", "", np.arange(len(sources))
     else:
