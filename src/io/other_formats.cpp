@@ -8,7 +8,7 @@ namespace meshorder {
 namespace {
 
 constexpr std::string_view kStructured = "is structured";
-constexpr std::string_view kGridOrder = "its order is its grid's, and there is nothing to reorder";
+constexpr std::string_view kGridOrder = "its order is fixed by the grid; nothing to reorder";
 constexpr std::string_view kByMeshio =
     "the command of the Python package reads it by meshio (pip install meshio)";
 constexpr std::string_view kOneGrid = "save it as one .vtu, in ParaView by Append Datasets and Save Data";

@@ -566,7 +566,7 @@ def broken(name):
         "count": (lambda f: f["Base/A/ data"].__setitem__((0, 0), 2000000000), "values for 2000000000 vertices"),
         "label": (lambda f: f["Base/A"].attrs.__delitem__("label"), "'label' is not there"),
         "long": (lambda f: f["Base/A"].attrs.create("name", numpy.bytes_("A" * 300), dtype="S300"), "at most 33 bytes"),
-        "kind": (lambda f: f["Base/A/front/ElementConnectivity"].attrs.create("type", numpy.bytes_("R8"), dtype="S3"), "'R8', and has others"),
+        "kind": (lambda f: f["Base/A/front/ElementConnectivity"].attrs.create("type", numpy.bytes_("R8"), dtype="S3"), "'R8' but has others"),
         "link": (lambda f: f["Base"].__setitem__("C", h5py.ExternalLink("other.cgns", "/Base/A")), "is a link"),
         "loop": (lambda f: f["Base/A"].__setitem__("again", f["Base"]), "two places"),
         "donor": (lambda f: f["Base/A/ZoneGridConnectivity/to B/ data"].write_direct(text("C")), "zone 'C', which does not exist"),

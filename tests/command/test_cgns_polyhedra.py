@@ -540,7 +540,7 @@ FAULTS = {
               "face of three polyhedra"),
     "no faces": (lambda file: file["Base/A"].__delitem__("faces"), "does not exist"),
     "no polyhedra": (lambda file: file["Base/A"].__delitem__("cells"), "ParentElements of their faces only"),
-    "parents": (lambda file: file["Base/A/faces/ParentElements/ data"].__setitem__((0, 0), 10**6), "is no cell of the zone"),
+    "parents": (lambda file: file["Base/A/faces/ParentElements/ data"].__setitem__((0, 0), 10**6), "is not a cell of the zone"),
     "reals": (reals, "does not hold whole numbers"),
 }
 

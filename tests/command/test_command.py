@@ -173,7 +173,7 @@ def rows_of_compare(text):
     assert heads.split() == ["order", "cost", "all", "SpMV", "element", "force", "assembly", "springs"]
     cells = re.compile(r"(\d+\.\d\d)([* ])")
     return {row[:26].strip(): [(float(number), mark == "*") for number, mark in cells.findall(row[35:])]
-            for row in rows[:rows.index(next(row for row in rows if row.startswith("band is no order")))]}
+            for row in rows[:rows.index(next(row for row in rows if row.startswith("band is not an order")))]}
 
 
 def test_compare_for_people(command):

@@ -168,7 +168,7 @@ def test_links_are_followed_in_names_that_the_user_types(command, tmp_path, mesh
 
 def test_derived_names_are_no_pipes(command, tmp_path, mesh):
     os.mkfifo(tmp_path / "out.ele")
-    assert "out.ele: is no ordinary file" in command.fails("order", mesh, "-o", "out.node")
+    assert "out.ele: is not an ordinary file" in command.fails("order", mesh, "-o", "out.node")
 
 
 def test_a_study_removes_what_it_made_alone(command, tmp_path, mesh):

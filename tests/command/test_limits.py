@@ -72,7 +72,7 @@ def test_a_gzip_file_of_blanks(tmp_path):
     packed = gzip.compress(b"OFF\n" + b" " * (300 << 20), 9)
     (tmp_path / "a.off.gz").write_bytes(packed)
     line = refused(tmp_path, "info", "a.off.gz")
-    assert line.startswith("meshorder: a.off.gz: what is compressed in it would take 8 MiB beside ")
+    assert line.startswith("meshorder: a.off.gz: the decompressed file would take 8 MiB beside ")
     assert line.endswith(REMEDY)
 
 
@@ -197,7 +197,7 @@ def test_hdf5_does_not_lead_elsewhere(command, tmp_path):
         return command.fails("info", "mesh/a.xdmf")
 
     assert "has its values in other files" in line_of("a.h5:/p")
-    assert "a link to another file, which is not followed" in line_of("a.h5:/q")
+    assert "a link to another file; such links are not followed" in line_of("a.h5:/q")
     for place, kind in (("../b.h5:/p", "HDF"), (f"{tmp_path}/b.h5:/p", "HDF"), ("../secret", "Binary"),
                         (str(secret), "Binary")):
         assert "is not in the mesh's folder; put it below" in line_of(place, kind)

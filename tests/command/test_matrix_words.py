@@ -324,7 +324,7 @@ def test_a_report_shows_patterns_and_no_surface(command, cube, tmp_path):
 
 
 def test_a_matrix_is_no_scenario(command, cube):
-    assert "is no scenario but a file of MatrixMarket" in command.fails("simulate", "a.mtx")
+    assert "is not a scenario but a file of MatrixMarket" in command.fails("simulate", "a.mtx")
 
 
 def test_a_diagonal_matrix_has_nothing_to_gain(command, tmp_path):

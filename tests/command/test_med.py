@@ -301,7 +301,7 @@ def rewrite(group, name, values):
 
 
 REFUSED = {
-    "structured": (lambda f, m, s: m.attrs.modify("TYP", 1), "is structured; its order is its grid's"),
+    "structured": (lambda f, m, s: m.attrs.modify("TYP", 1), "is structured; its order is fixed by the grid"),
     "version": (lambda f, m, s: f["INFOS_GENERALES"].attrs.modify("MAJ", 2), "is of version 2 of MED; write it"),
     "two meshes": (lambda f, m, s: f.copy(m, "ENS_MAA/other"), "has 2 meshes: mesh, other; save each"),
     "steps": (lambda f, m, s: f.copy(s, m.name + "/later"), "changes over 2 steps; save one"),
@@ -309,9 +309,9 @@ REFUSED = {
     "polyhedra": (lambda f, m, s: s["MAI"].create_group("POE"), "has polyhedra; cut them"),
     "structural": (lambda f, m, s: s["MAI"].create_group("MED_PARTICLE"), "has cells of an unknown type; points"),
     "joints": (lambda f, m, s: f.create_group("JNT/mesh/other"), "says that the mesh is a piece of a larger one"),
-    "faces": (lambda f, m, s: s.create_group("FAC/TR3"), "has faces by which its cells are described"),
+    "faces": (lambda f, m, s: s.create_group("FAC/TR3"), "describes its cells by faces"),
     "node": (lambda f, m, s: s["MAI/TE4/NOD"].write_direct(numpy.full(80, 31)), "names node 31 in cell 1, which does"),
-    "short": (lambda f, m, s: rewrite(s["MAI/TE4"], "NOD", numpy.arange(1, 10)), "has 9 values, which are no rows of 4"),
+    "short": (lambda f, m, s: rewrite(s["MAI/TE4"], "NOD", numpy.arange(1, 10)), "has 9 values, which do not make rows of 4"),
     "families": (lambda f, m, s: rewrite(s["NOE"], "FAM", numpy.zeros(29, int)), "has 29 whole numbers, not 30"),
     "no nodes": (lambda f, m, s: s["NOE"].pop("COO"), "NOE/COO' is missing or damaged"),
     "not a number": (lambda f, m, s: rewrite(s["NOE"], "COO", numpy.full(90, numpy.nan)), "is not finite"),

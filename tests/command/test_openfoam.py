@@ -220,11 +220,11 @@ def test_faults_leave_nothing_behind(command, case):
     owner.write_text(text)
     assert "hilbrt" in command.fails("openfoam", "case", "--cells", "hilbrt")
     (case / "constant" / "polyMesh" / "points").write_text("no mesh")
-    assert "points:1: is no file of OpenFOAM" in command.fails("openfoam", "case", "--cells", "hilbert")
+    assert "points:1: is not an OpenFOAM file" in command.fails("openfoam", "case", "--cells", "hilbert")
     assert foam_cases.folder_files(case) == before
     command.ok("openfoam", "case")  # needs no points
     (case / "system" / "renumberMeshDict").write_text("method")
-    assert "system/renumberMeshDict:1: is no file of OpenFOAM" in command.fails("openfoam", "case")
+    assert "system/renumberMeshDict:1: is not an OpenFOAM file" in command.fails("openfoam", "case")
     shutil.rmtree(case / "system")
     assert "system" in command.fails("openfoam", "case")
     assert command.fails("openfoam", "none").endswith("none: no such folder; give an OpenFOAM case")

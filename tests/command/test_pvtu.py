@@ -127,7 +127,7 @@ def second_piece(**changes):
     (second_piece(cell_id=0), ["all.pvtu", "two cells have the global id 0"]),
     (second_piece(ids=[-1, 2, 3, 4]), ["all.pvtu", "a point has the global id -1"]),
     (second_piece(no_heights=True), ["all.pvtu", "'height' is missing in a piece"]),
-    (second_piece(version="2.2"), ["p1.vtu", "another side of 2.1"]),
+    (second_piece(version="2.2"), ["p1.vtu", "only one has a version below 2.1"]),
 ])
 def test_faults_of_pieces_are_told(command, tmp_path, spoil, words):
     write_pieces(tmp_path / "pieces", ghosts=False)

@@ -167,7 +167,7 @@ def test_elements_of_other_types_are_named(command, tmp_path):
     nodes = "".join(f"{n:10}         1         1        11\n   {n}.0D+00   {n % 2}.0D+00   0.0D+00\n" for n in (1, 2, 3))
     element = "         1       300         2         1         7         3\n         1         2         3\n"
     (tmp_path / "a.unv").write_text(f"    -1\n  2411\n{nodes}    -1\n    -1\n  2412\n{element}    -1\n")
-    assert "its only elements are of types that are no cells here (300); nothing can be reordered" in \
+    assert "its only elements are of types that are not cells here (300); nothing can be reordered" in \
         command.fails("order", "a.unv", "-o", "b.unv")
 
 

@@ -232,7 +232,7 @@ BROKEN = {
     "'/VTKHDF/Points' has the shape (27, 2)": replace("Points", numpy.zeros((27, 2))),
     "'/VTKHDF/Points' has the shape (81)": replace("Points", numpy.zeros(81)),
     "has a coordinate of point 5 (counted from 0) that is not finite": put("Points", (5, 1), numpy.nan),
-    "'/VTKHDF/Points' is behind '/VTKHDF/Points', a link to another file": link,
+    "'/VTKHDF/Points' is reached through '/VTKHDF/Points', a link to another file": link,
     "'/VTKHDF/Points' claims 81 values, but only 0 bytes are there": claim("Points", (27, 3), "f8"),
     "'/VTKHDF/Offsets' is missing": remove("Offsets"),
     "'/VTKHDF/Offsets' has the shape (52); 53 rows of 1 are needed":

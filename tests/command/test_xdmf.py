@@ -568,7 +568,7 @@ BROKEN = {
     "is a Function": ("<DataItem Dimensions", '<DataItem ItemType="Function" Function="JOIN($0;$1)" Dimensions'),
     "3DCoRectMesh', which is structured": ('"Tetrahedron"', '"3DCoRectMesh"'),
     "names no element of the file": ("/Xdmf/Domain/Grid/Geometry", "/Xdmf/Domain/Grid/Nothing"),
-    "is no XPath": ("/Xdmf/Domain/Grid/Geometry", "/Xdmf/Domain/Grid["),
+    "is not an XPath": ("/Xdmf/Domain/Grid/Geometry", "/Xdmf/Domain/Grid["),
     "is on each Face": ('Name="facet_tags" AttributeType="Scalar" Center="Cell"',
                         'Name="facet_tags" AttributeType="Scalar" Center="Face"'),
     "a spatial collection holds several meshes": ('"Temporal"', '"Spatial"'),

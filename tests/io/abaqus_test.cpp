@@ -348,8 +348,8 @@ TEST(Abaqus, KeepsNumbersWhereACardMayNameThem) {
   Notes notes;
   Mesh mesh = read_deck(deck, &notes);
   EXPECT_THAT(notes,
-              ElementsAre("all nodes and elements keep their numbers, and only their lines move, as these "
-                          "may name some by number, or go by their order: *NEW LOAD (line 65)"));
+              ElementsAre("all nodes and elements keep their numbers, and only their lines move, since "
+                          "these may refer to their numbers or order: *NEW LOAD (line 65)"));
   const std::vector<std::int64_t> ids = mesh.vertex_ids;
   turn_round(mesh, Ids::renumber);
   EXPECT_EQ(mesh.vertex_ids.front(), 99);
@@ -418,8 +418,8 @@ TEST(Abaqus, SaysWhichElementsAreNoCells) {
   const std::string nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n";
   const std::string users = nodes + "*USER ELEMENT,TYPE=US3,NODES=3\n*ELEMENT,TYPE=US3,ELSET=E\n1,1,2,3\n";
   EXPECT_THAT(test::read_error(folder.file("a.inp", users)),
-              HasSubstr("a.inp: its only elements are of types that are no cells here (US3, line 6); correct "
-                        "TYPE= if it is misspelt; C3D4,"));
+              HasSubstr("a.inp: its only elements are of types that are not cells here (US3, line 6); "
+                        "correct TYPE= if it is misspelt; C3D4,"));
   std::string many = users;
   for (const char* type : {"D", "U1", "U2"}) many += "*ELEMENT,TYPE=" + std::string(type) + "\n7,1,2\n";
   EXPECT_THAT(test::read_error(folder.file("b.inp", many)),
@@ -456,8 +456,7 @@ TEST(Abaqus, ReadsIncludedFiles) {
                                           "*NODE, INPUT=sub/nodes.txt, NSET=all\n*Include, Input=cells.inc\n"
                                           "*NSET, NSET=a\n4\n"),
                               {.notes = &notes});
-  EXPECT_THAT(notes,
-              ElementsAre("included files are part of the deck from here on: sub/nodes.txt, cells.inc"));
+  EXPECT_THAT(notes, ElementsAre("included files are now part of the deck: sub/nodes.txt, cells.inc"));
   EXPECT_EQ(deck_of(mesh),
             "*NODE, NSET=all\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n"
             "*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 4\n*NSET, NSET=a\n4\n");
@@ -753,7 +752,7 @@ TEST(Abaqus, RefusesBrokenFiles) {
        {"bad range", changed("2, 20, 2", "20, 2, 2"), line_of("2, 20, 2") + "the range 20 to 2 is empty"},
        {"long range", changed("2, 20, 2", "2, 20, 2, 1"), "a line of GENERATE has first, last and step"},
        {"huge member", changed("1, 14,\n3\n", "1, 14,\n3000000000\n"), "the number 3000000000 is too large"},
-       {"binary", std::string("*NODE\n1\0", 8), "is no text"}});
+       {"binary", std::string("*NODE\n1\0", 8), "is not a text file"}});
   const Mesh sparse = read_deck(with(std::string(kDeck), "2, 20, 2", "2, 999999999999, 2"));
   EXPECT_EQ(set_of(sparse, "even").members.size(), 3U) << "in time proportional to the elements";
 }

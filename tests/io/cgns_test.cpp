@@ -127,7 +127,7 @@ TEST(Cgns, DataOfARegionGoWithTheMembersOfItsCondition) {
   mesh.sets.erase(mesh.sets.begin() + number(mesh));
   tree = written(notes);
   EXPECT_EQ(find_node(tree.root, "Region"), nullptr);
-  EXPECT_EQ(notes, Notes{"the region 'Region' is left out: it is that of 'fixed', which has no members"});
+  EXPECT_EQ(notes, Notes{"the region 'Region' is left out: it belongs to 'fixed', which has no members"});
 }
 
 TEST(Cgns, WhatItsTypeCannotHoldIsWrittenInAWiderOne) {
@@ -218,7 +218,7 @@ TEST(Cgns, RefusesElementTypesByTheirNumbersInVersion30) {
   EXPECT_EQ(read_mesh(path).cell_count(), test::tetrahedral_bar(1).cell_count());
   write_as_30(test::cells_of_type(Shape::hexahedron, 8, 2));
   const std::string message = test::read_error(path);
-  EXPECT_NE(message.find("by its number in CGNS 3.0"), std::string::npos) << message;
+  EXPECT_NE(message.find("element type number of CGNS 3.0"), std::string::npos) << message;
   EXPECT_NE(message.find("`cgnsupdate IN OUT`"), std::string::npos) << message;
 }
 

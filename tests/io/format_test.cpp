@@ -132,8 +132,7 @@ TEST(FormatOf, SaysWhatToDoWithFilesOfOtherPrograms) {
   };
   EXPECT_EQ(message("a.VTP"),
             "a.VTP: holds VTK's PolyData; save it as .ply or .vtu, in ParaView by Save Data");
-  EXPECT_EQ(message("a.vts"),
-            "a.vts: is structured; its order is its grid's, and there is nothing to reorder");
+  EXPECT_EQ(message("a.vts"), "a.vts: is structured; its order is fixed by the grid; nothing to reorder");
   EXPECT_NE(message("a.geo").find("gmsh IN -3 -o OUT.msh"), std::string::npos);
   // no extension has both advice and a reader
   for (const Format& format : all_formats()) {

@@ -76,7 +76,7 @@ TEST(GmshBroken, FaultsOfNodesAreNamed) {
   expect_broken(
       "mesh.msh",
       {{"too many promised", in_22("5\n1 0 0 0", "6\n1 0 0 0"), ":16: the number of a node is '$EndNodes'"},
-       {"too few promised", in_22("5\n1 0 0 0", "4\n1 0 0 0"), ":15: $Nodes goes on; expected $EndNodes"},
+       {"too few promised", in_22("5\n1 0 0 0", "4\n1 0 0 0"), ":15: $Nodes continues; expected $EndNodes"},
        {"absurd", in_22("5\n1 0 0 0", "1000000000000\n1 0 0 0"), ":10: the number of nodes is 1000000000000"},
        {"large", in_22("5\n1 0 0 0", "2000000000\n1 0 0 0"),
         ":10: the number of nodes is 2000000000, but only"},
@@ -111,7 +111,7 @@ TEST(GmshBroken, FaultsOfVersions1And40AreNamed) {
       {{"no elements", until(kGmsh1, "$ELM"), "the file has no section $Elements"},
        {"number of nodes", in_1("2 4 4 5 4 1", "2 4 4 5 3 1"),
         ":12: element 2 has 3 nodes; elements of type 4 have 4"},
-       {"more nodes", in_1("NOD\n5", "NOD\n4"), ":7: $NOD goes on; expected $ENDNOD"},
+       {"more nodes", in_1("NOD\n5", "NOD\n4"), ":7: $NOD continues; expected $ENDNOD"},
        {"the next section", in_1("$ENDNOD\n", ""), ":8: expected $ENDNOD, found $ELM"},
        {"version 1 in version 4", std::string(kGmsh41) + "$NOD\n0\n$ENDNOD\n", "a second section $NOD"},
        {"node out of range", in_40("7 2 10 20 30", "7 2 10 20 31"), "element 7 names node 31"},

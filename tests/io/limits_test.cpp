@@ -178,8 +178,7 @@ TEST(ReadLimits, CellsOfManyGroupsAreAddedUp) {
                   "{}\n{}$EndElements\n",
                   kGroups, names, kGroups, tags, kCells, kCells, kCells, cells));
   EXPECT_EQ(fault(path), "");
-  EXPECT_THAT(fault(path, {.memory_limit = kMebibyte}),
-              HasSubstr("what belongs to several groups would take"));
+  EXPECT_THAT(fault(path, {.memory_limit = kMebibyte}), HasSubstr("items in several groups would take"));
 }
 
 TEST(ReadLimits, StreamsWithoutAnEndAreLeft) {

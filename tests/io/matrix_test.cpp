@@ -135,7 +135,7 @@ TEST(MatrixMarket, RefusesBrokenFiles) {
   const std::string head = "%%MatrixMarket matrix coordinate real general\n";
   test::expect_broken(
       "a.mtx", {
-                   {"no banner", file.substr(file.find('\n') + 1), ":1: is no Matrix Market file"},
+                   {"no banner", file.substr(file.find('\n') + 1), ":1: is not a Matrix Market file"},
                    {"vector", with(file, "matrix", "vector"), ":1: holds a 'vector'"},
                    {"dense", with(file, "coordinate", "array"), ":1: the matrix is stored as 'array'"},
                    {"field", with(file, "real", "quaternion"), ":1: the field of the matrix is 'quaternion'"},
@@ -360,7 +360,7 @@ TEST(RowPoints, RefuseBrokenFiles) {
       {"1 2\n1 2\n1 2\n", "all points are the same"},
       {"# nothing\n", "has 0 rows of coordinates"},
       {numpy.substr(0, numpy.size() - 1), "a coordinate"},
-      {numpy + "x", "goes on after the last number"},
+      {numpy + "x", "continues after the last number"},
       {numpy_points<double>("<i8", 3, false), "holds '<i8'; 32- or 64-bit real numbers"},
       {with(numpy, "(3, 3)", "(3, 4)"), "a row has 4 numbers"},
       {with(numpy, "(3, 3)", "(9, 1)"), "a row has 1 numbers"},

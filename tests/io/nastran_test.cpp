@@ -277,7 +277,7 @@ TEST(Nastran, ReadsBulkDataAloneAndIncludedFiles) {
   Notes notes;
   const Mesh mesh =
       read_mesh(folder.file("a.nas", "include 'nodes.inc'\r\nCTRIA3,1,1,1,2,3\r\n"), {.notes = &notes});
-  EXPECT_THAT(notes, ElementsAre(HasSubstr("included files are part of the file from here on: nodes.inc")));
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("included files are now part of the file: nodes.inc")));
   write_mesh(mesh, folder.path() / "b.nas");
   EXPECT_EQ(test::content_of(folder.path() / "b.nas"),
             "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\r\nCTRIA3,1,1,1,2,3\r\n");
@@ -437,22 +437,22 @@ TEST(Nastran, RefusesFaultsWithTheirLine) {
       {"CQUAD4  11 ", "CQUAD4  20 ", "30: element 20 is given twice"},
       {"CQUAD4  11              1       4       3       2\n", "CQUAD4,11,,1,4,3\n",
        "29: element 11 has 3 of the 4 nodes of CQUAD4"},
-      {"6+A1\n", "6+B1\n", "24: lines that continue a card are not behind it"},
+      {"6+A1\n", "6+B1\n", "24: continuation lines do not follow their card"},
       {"GRID,99,,5.,5.,5.\n", "GRID,99,,5.,5.,5.\n=,*1,=,*1.,==\n", "24: cards are repeated by '='"},
       {"PSOLID  5       1\n", "BEGIN SUPER=2\n", "28: a second section of bulk data begins"},
       {"PSOLID  5       1\n", "INCLUDE 'x.inc'\n", "28: the included file 'x.inc' does not exist"},
       {"PSOLID  5       1\n", "GRDSET,,3\n", ": the coordinate system 3 is not given"},
       {"PSOLID  5       1\n", "GRDSET,,3\nCORD1R,3,999,1,2\n",
        "29: node 999 of the coordinate system is missing"},
-      {"PSOLID  5       1\n", "GRDSET,,3\nCORD1R,3,1,2,3\n", "29: the coordinate system stands on itself"},
+      {"PSOLID  5       1\n", "GRDSET,,3\nCORD1R,3,1,2,3\n", "29: the coordinate system refers to itself"},
       {"PSOLID  5       1\n", "GRDSET,,3\nCORD2R,3,3,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n",
-       "29: the coordinate system stands on itself"},
+       "29: the coordinate system refers to itself"},
       {"PSOLID  5       1\n", "GRDSET,,3\nCORD2R,3,,0.,0.,0.,0.,0.,1.\n,0.,0.,2.\n",
        "29: the three points of the coordinate system are on a line"},
       {"PSOLID  5       1\n", "CORD2R,3,,0.,0.,x,0.,0.,1.\n,0.,0.,2.\n", "28: a coordinate of CORD2R is 'x'"},
       {"PSOLID  5       1\n", "CORD1S,3,1,2,0\n", "28: field 5 of CORD1S is '0'"},
       {"PSOLID  5       1\n", "CORD1S,3,1,2,3,3,1,2,3\n", "28: the coordinate system 3 is given twice"},
-      {"BEGIN BULK\n", "", ": case control without BEGIN BULK"},
+      {"BEGIN BULK\n", "", "no BEGIN BULK after case control"},
   };
   const TemporaryFolder folder;
   for (const auto& [old, fresh, message] : faults) {
@@ -463,11 +463,11 @@ TEST(Nastran, RefusesFaultsWithTheirLine) {
   EXPECT_THAT(test::read_error(folder.file("a.bdf", "GRID,1,,0.,0.,0.\n")), HasSubstr("has no elements"));
   EXPECT_THAT(
       test::read_error(folder.file("a.bdf", "GRID,1,,0.,0.,0.\nCORD2R,3\nCIHEX1,1,1,1\nCELAS2,2,1.,1\n")),
-      HasSubstr("its only elements are of types that are no cells here (CIHEX1, CELAS2)"));
+      HasSubstr("its only elements are of types that are not cells here (CIHEX1, CELAS2)"));
   EXPECT_THAT(test::read_error(folder.file("a.bdf", "+,1,,0.,0.,0.\n")),
               HasSubstr("a.bdf:1: expected a card"));
   EXPECT_THAT(test::read_error(folder.file("a.bdf", std::string_view("GRID\0,1", 7))),
-              HasSubstr("is no text"));
+              HasSubstr("is not a text file"));
 }
 
 TEST(Nastran, ReadsOrRefusesEveryPartOfAFile) {

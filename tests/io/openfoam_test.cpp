@@ -219,7 +219,7 @@ TEST(OpenFoam, RefusesBrokenFilesWithTheirPlace) {
            {&Files::owner, file_of("labelList", "(0 1)"), "the number of owners is '(0'"},
            {&Files::owner, file_of("labelList", ""), "the file ends before the number of owners"},
            {&Files::owner, with(good.owner, "ascii", "xml"), "owner:5: the format is 'xml'"},
-           {&Files::owner, with(good.owner, "FoamFile", "Foam"), "owner:1: is no file of OpenFOAM"},
+           {&Files::owner, with(good.owner, "FoamFile", "Foam"), "owner:1: is not an OpenFOAM file"},
            {&Files::owner, "FoamFile { version 2.0; class", "the file ends within its header"},
            {&Files::owner, "", "is empty"},
            {&Files::owner, file_of("decomposedBlockData", "11(0)"), "-fileHandler uncollated"},

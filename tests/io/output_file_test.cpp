@@ -278,7 +278,8 @@ TEST(OutputFile, WritesThroughNoPipeThatItDerives) {
   const TemporaryFolder folder;
   const fs::path pipe = folder.path() / "mesh.ele";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THAT(write_fault(FilePath::derived(pipe)), HasSubstr("mesh.ele: is no ordinary file; remove it"));
+  EXPECT_THAT(write_fault(FilePath::derived(pipe)),
+              HasSubstr("mesh.ele: is not an ordinary file; remove it"));
   EXPECT_TRUE(fs::is_fifo(pipe));
 }
 

@@ -345,7 +345,7 @@ TEST(Su2, RefusesBrokenFiles) {
           {"NaN", with(file, "0 2.5 4", "nan 2.5 4"), ":12: a coordinate is not finite"},
           {"infinite", with(file, "0 2.5 4", "0 inf 4"), ":12: a coordinate is not finite"},
           {"no coordinate", with(file, "0 2.5 4", "0"), ":12: the line ends before a coordinate"},
-          {"a word behind a point", with(file, "0 2.5 4", "0 2.5 4 a"), ":12: a number behind the coord"},
+          {"a word behind a point", with(file, "0 2.5 4", "0 2.5 4 a"), ":12: a number after the coord"},
           {"halo points", with(file, "NPOIN= 6", "NPOIN= 6 5"), ":7: only 5 of the 6 points"},
           {"markers", with(file, "NMARK= 3", "NMARK= 4"), "NMARK= 4, but 3 markers follow"},
           {"no count of a marker", with(file, "MARKER_ELEMS= 0\n", ""),

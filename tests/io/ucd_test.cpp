@@ -188,7 +188,7 @@ TEST(Ucd, NumbersCellsByPlacesWhereTheirNumbersAreNone) {
   Notes notes;
   const Mesh mesh = read_ucd(with(std::string(kUcd), "2 7 pyr", "1 7 pyr"), &notes);
   EXPECT_THAT(notes,
-              ElementsAre(HasSubstr(":15: cell 1 is given twice: cells are numbered by their places")));
+              ElementsAre(HasSubstr(":15: cell 1 is given twice; all cells are now numbered by position")));
   EXPECT_THAT(mesh.cell_ids, IsEmpty());
   EXPECT_THAT(ucd_values(mesh, "stress", Association::cells), ElementsAre(80, 10, 20, 30, 40, 50, 60, 70));
 }
@@ -229,7 +229,7 @@ TEST(Ucd, RefusesBrokenFiles) {
        {"no such node", changed("30 9 1 2", "31 9 1 2"), ":25: node 31 does not exist"},
        {"data twice", changed("10 1 0 0", "30 1 0 0"), ":26: the node has data twice"},
        {"too few values", changed("10 1 0 0\n", "10 1 0\n"), "more than it should"},
-       {"data beyond counts", changed("9 8 3 1 2", "9 8 3 1 0"), ":44: the file goes on after its last"}});
+       {"data beyond counts", changed("9 8 3 1 2", "9 8 3 1 0"), ":44: the file continues after its last"}});
 }
 
 }  // namespace

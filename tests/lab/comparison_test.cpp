@@ -183,7 +183,7 @@ TEST(Comparison, NamesWhatSavesHereAndCostsThere) {
   ASSERT_EQ(findings.size(), 2);
   EXPECT_EQ(
       findings[1],
-      "What saves time for certain in one study costs time for certain in the other: Fiedler in falling.");
+      "These save time for certain in one study and cost time for certain in the other: Fiedler in falling.");
 }
 
 TEST(Comparison, IsWrittenWholeOrNotAtAll) {

@@ -127,8 +127,9 @@ TEST(Race, WithoutATimerAGoodOrderStays) {
   options.timer = {};
   const Race result = race(mesh, vertex_graph(mesh), options);
   EXPECT_EQ(result.winner, std::nullopt);
-  EXPECT_EQ(result.reason,
-            "no order is predicted to be faster than the file's by more than predictions tell, for zen3");
+  EXPECT_EQ(
+      result.reason,
+      "no order is predicted to be faster than the file's by more than the error of predictions, for zen3");
 }
 
 TEST(Race, LeavesOutOrdersByCoordinatesForAMatrixWithoutThem) {

@@ -233,7 +233,7 @@ TEST(Vtu, BrokenFilesGiveOneClearError) {
        {"other content", broken("type=\"UnstructuredGrid\"", "type=\"PolyData\""),
         ":2: the type of the file is PolyData"},
        {"a structured grid", broken("type=\"UnstructuredGrid\"", "type=\"ImageData\""),
-        "its order is its grid's"},
+        "its order is fixed by the grid"},
        {"unknown byte order", broken("LittleEndian", "MiddleEndian"), ":2: the byte_order"},
        {"unknown header", broken("version=\"0.1\"", "version=\"0.1\" header_type=\"Int8\""),
         ":2: the header_type"},

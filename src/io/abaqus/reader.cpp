@@ -109,7 +109,8 @@ class DeckReader {
  public:
   DeckReader(const FilePath& path, Notes& notes) : lines_(path), notes_(notes) {
     if (lines_.at().all().find('\0') != std::string_view::npos) {
-      throw InputError(path.string(), "is no text, as decks of Abaqus and CalculiX are", "give its deck");
+      throw InputError(path.string(), "is not a text file, unlike decks of Abaqus and CalculiX",
+                       "give its deck");
     }
     deck_->line_end = lines_.line_end();
   }
@@ -123,7 +124,7 @@ class DeckReader {
         add_line();
       } else {
         lines_.at().fail(fmt::format("expected a keyword such as *NODE, found '{}'", shown(line)),
-                         "the file may be no deck of Abaqus or CalculiX");
+                         "the file may not be a deck of Abaqus or CalculiX");
       }
     }
     finish();
@@ -188,10 +189,10 @@ class DeckReader {
     constexpr std::string_view kRemedy =
         "write the deck without parts and assemblies: in Abaqus/CAE a choice of Model > Edit Attributes";
     if (card.keyword == "PART" && ++parts_ > 1) {
-      lines_.fail(line_, "a second *PART, whose numbers are those of the first", std::string(kRemedy));
+      lines_.fail(line_, "a second *PART, which uses the numbers of the first", std::string(kRemedy));
     }
     if (card.keyword == "INSTANCE" && ++instances_ > 1) {
-      lines_.fail(line_, "a second *INSTANCE, whose numbers are those of the first", std::string(kRemedy));
+      lines_.fail(line_, "a second *INSTANCE, which uses the numbers of the first", std::string(kRemedy));
     }
     if (card.keyword == "ASSEMBLY" || card.keyword == "ENDINSTANCE") in_assembly_ = true;
     if (card.keyword == "ENDASSEMBLY" || card.keyword == "INSTANCE") in_assembly_ = false;
@@ -200,7 +201,7 @@ class DeckReader {
 
   void refuse_in_assembly(std::string_view title) const {
     if (!in_assembly_) return;
-    lines_.fail(line_, fmt::format("{} of the assembly, beside those of its part", title),
+    lines_.fail(line_, fmt::format("{} of the assembly, in addition to the part's", title),
                 "write the deck without parts and assemblies: in Abaqus/CAE a choice of Model > Edit "
                 "Attributes");
   }
@@ -517,7 +518,7 @@ class DeckReader {
     if (deck_->elements.size() == 0) {
       if (!other_types_.empty()) {
         throw InputError(lines_.at().file(),
-                         fmt::format("its only elements are of types that are no cells here ({})",
+                         fmt::format("its only elements are of types that are not cells here ({})",
                                      join(other_types_, std::string_view("; "))),
                          "correct TYPE= if it is misspelt; C3D4, C3D8, C3D10, S3, S4 and the like are cells");
       }
@@ -535,8 +536,7 @@ class DeckReader {
     find_unknown_cards();
     find_dead_references();
     if (!lines_.included().empty()) {
-      notes_.push_back(
-          fmt::format("included files are part of the deck from here on: {}", join(lines_.included())));
+      notes_.push_back(fmt::format("included files are now part of the deck: {}", join(lines_.included())));
     }
     auto metadata = std::make_shared<Metadata>();
     metadata->deck = deck_;

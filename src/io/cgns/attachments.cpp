@@ -416,7 +416,7 @@ class AttachmentReader {
           return number >= 0 && number <= polyhedra.front()->count;
         });
     if (!from_one) {
-      reading_.fail(path, fmt::format("element {} is no cell of the zone", *wrong),
+      reading_.fail(path, fmt::format("element {} is not a cell of the zone", *wrong),
                     "the parents of polygons are polyhedra");
     }
     return polyhedra.front()->first - 1;

@@ -52,7 +52,7 @@ class Hdf5Check {
     const std::string what = fmt::format("{}: the attribute '{}'", path.empty() ? "/" : path, wanted.name);
     const Handle attribute(H5Aopen(group, wanted.name, H5P_DEFAULT), H5Aclose);
     if (!attribute.is_open()) {
-      fail(what + " is not there", "it may be a file of HDF5 that is not one of CGNS");
+      fail(what + " is not there", "it may be an HDF5 file other than CGNS");
     }
     const Handle type(H5Aget_type(attribute.id()), H5Tclose);
     const Handle space(H5Aget_space(attribute.id()), H5Sclose);
@@ -122,7 +122,7 @@ class Hdf5Check {
     std::array<char, 34> text{};
     H5Aread(attribute.id(), type.id(), text.data());
     if (size_of_type(text.data()) != kSizes.at(alternative)) {
-      fail(fmt::format("{} says that its values are of the type '{}', and has others", path, text.data()));
+      fail(fmt::format("{} declares values of the type '{}' but has others", path, text.data()));
     }
   }
 

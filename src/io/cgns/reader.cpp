@@ -99,7 +99,7 @@ class MeshReader {
       }
       base = &node;
     }
-    if (base == nullptr) reading_.fail("", "has no base", "it may be a file that is not one of CGNS");
+    if (base == nullptr) reading_.fail("", "has no base", "it may not be a CGNS file");
     const std::vector<std::int64_t> dimensions = whole_numbers(reading_, *base, "/" + base->name);
     if (dimensions.size() < 2 || dimensions[0] < 1 || dimensions[1] < dimensions[0] ||
         dimensions[1] > kMostDimensions) {
@@ -114,7 +114,7 @@ class MeshReader {
   void read_zone(Node& node, const std::string& path) {
     const Node* const type = node.child_of_label("ZoneType_t");
     if (type == nullptr || type->text() == "Structured") {
-      reading_.fail(path, "is a structured zone, whose order is its grid's",
+      reading_.fail(path, "is a structured zone; its order is fixed by the grid",
                     "convert it to an unstructured zone to reorder it");
     }
     const std::vector<std::int64_t> size = whole_numbers(reading_, node, path);
@@ -124,9 +124,9 @@ class MeshReader {
                     "three numbers are expected, below 2,147,483,648");
     }
     if (size[2] > 0) {
-      reading_.notes.push_back(
-          fmt::format("the zone '{}' has its {} boundary vertices first; that they come first is left out",
-                      node.name, size[2]));
+      reading_.notes.push_back(fmt::format(
+          "the zone '{}' begins with its {} boundary vertices; the file written does not record this",
+          node.name, size[2]));
     }
     const auto z = static_cast<int>(reading_.zones.size());
     reading_.metadata->zones.push_back({node.name, node.type, size[1]});
@@ -206,9 +206,9 @@ class MeshReader {
     found.section.count = static_cast<Index>(numbers[1] - numbers[0] + 1);
     found.section.range_type = range->type;
     if (type.size() > 1 && type[1] != 0) {
-      reading_.notes.push_back(
-          fmt::format("the section '{}' has its {} boundary elements first; that they come first is left out",
-                      node.name, type[1]));
+      reading_.notes.push_back(fmt::format(
+          "the section '{}' begins with its {} boundary elements; the file written does not record this",
+          node.name, type[1]));
       constexpr std::size_t kSecond = 1;
       const std::size_t width = size_of_type(node.type);
       std::fill_n(node.bytes.begin() + static_cast<std::ptrdiff_t>(kSecond * width), width, '\0');
@@ -403,8 +403,7 @@ void refuse_types_of_version_30(const Reading& reading, const Node& node, const 
   if (node.label == "Elements_t" && node.type == "I4" && node.bytes.size() >= sizeof type) {
     std::memcpy(&type, node.bytes.data(), sizeof type);
     if (type > 12 && type < 22) {
-      reading.fail(path,
-                   "has a type of elements by its number in CGNS 3.0, which stands for another one since 3.1",
+      reading.fail(path, "uses an element type number of CGNS 3.0, which means another type since 3.1",
                    "renew the file by `cgnsupdate IN OUT`");
     }
   }
@@ -418,7 +417,7 @@ Mesh read(const FilePath& path, Notes& notes) {
   reading.tree = read_tree(path);
   const Node* const version = reading.tree.root.child_of_label("CGNSLibraryVersion_t");
   if (version == nullptr) {
-    reading.fail("", "does not give the version of CGNS", "it may be a file that is not one of CGNS");
+    reading.fail("", "does not give the version of CGNS", "it may not be a CGNS file");
   }
   if (version_of(*version) > 2.95F && version_of(*version) < 3.05F) {
     refuse_types_of_version_30(reading, reading.tree.root, "");

@@ -204,7 +204,7 @@ class Pruner {
     std::erase_if(zone.children, [&](Node& region) {
       const std::string part = region.label == "ZoneSubRegion_t" ? named_part(region) : "";
       if (gone.contains(part)) {
-        notes_.push_back(fmt::format("the region '{}' is left out: it is that of '{}', which has no members",
+        notes_.push_back(fmt::format("the region '{}' is left out: it belongs to '{}', which has no members",
                                      region.name, part));
         return true;
       }
@@ -319,9 +319,8 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   Filler filler(mesh, *metadata);
   if (!filler.has_vertices_in_order()) {
     notes.push_back(
-        "the vertices are written zone by zone, so that their places in the file are others than those of "
-        "the "
-        "maps; --group-by zone keeps zones together");
+        "the vertices are written zone by zone; positions in the file differ from the maps; --group-by zone "
+        "keeps zones together");
   }
   Tree tree = *metadata->tree;
   Pruner(*metadata, filler, notes).prune(tree.root);

@@ -149,7 +149,8 @@ bool keep_numbers(const FileNumbers& nodes, const FileNumbers& elements, std::in
   require_valid(nodes, "vertex", largest, path);
   require_valid(elements, "cell", largest, path);
   if (unknown.empty()) return false;
-  throw InputError(path.string(), "its numbers cannot change, as these may name some: " + join(unknown),
+  throw InputError(path.string(),
+                   "its numbers cannot change, since these may refer to them: " + join(unknown),
                    "keep them: --ids keep");
 }
 
@@ -158,10 +159,10 @@ void note_kept_numbers(const std::vector<std::string>& unknown, Notes& notes) {
   constexpr std::size_t kShown = 3;
   const std::size_t more = unknown.size() - std::min(kShown, unknown.size());
   const std::vector<std::string> first(unknown.begin(), unknown.end() - static_cast<std::ptrdiff_t>(more));
-  notes.push_back(fmt::format(
-      "all nodes and elements keep their numbers, and only their lines move, as these may name some by "
-      "number, or go by their order: {}{}",
-      join(first), more > 0 ? fmt::format(" and {} more", more) : ""));
+  notes.push_back(
+      fmt::format("all nodes and elements keep their numbers, and only their lines move, since these may "
+                  "refer to their numbers or order: {}{}",
+                  join(first), more > 0 ? fmt::format(" and {} more", more) : ""));
 }
 
 }  // namespace meshorder

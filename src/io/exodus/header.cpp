@@ -89,7 +89,8 @@ class HeaderReader {
 
   std::uint64_t width_of_type() {
     const std::uint64_t type = integer(4);
-    if (type < 1 || type > 11) fail(fmt::format("{} is no type of numbers", type), "the file may be damaged");
+    if (type < 1 || type > 11)
+      fail(fmt::format("{} is not a type of numbers", type), "the file may be damaged");
     return size_of(static_cast<NcType>(type));
   }
 

@@ -336,7 +336,7 @@ std::string NcInput::bytes(const Variable& variable) const {
 std::vector<std::string> NcInput::texts(const Variable& variable) const {
   const std::vector<std::size_t> lengths = shape(variable);
   if (variable.type != kChar || lengths.size() != 2) {
-    fail(variable.name + " is no table of characters", std::string(kDamaged));
+    fail(variable.name + " is not a table of characters", std::string(kDamaged));
   }
   const std::string all = bytes(variable);
   (void)claimed(variable.name, lengths[0], sizeof(std::string));

@@ -147,7 +147,7 @@ void read_counts(Reading& reading) {
   if (wanted.vertices.end > reading.nodes || wanted.cells.end > reading.elements) {
     file.fail(fmt::format("has {} nodes and {} elements, fewer than where it was opened first", reading.nodes,
                           reading.elements),
-              "all processes have to see the same file, which no other may write");
+              "all processes must see the same file, and no other process may write it");
   }
   reading.part.ranges = wanted;
 }
@@ -592,7 +592,7 @@ void read_header(Reading& reading) {
   metadata.name_length = std::clamp<std::size_t>(given, 33, 1024);
   read_steps(reading);
   if (reading.file.find("connect1") == nullptr && reading.file.length("num_elem") == 0) {
-    reading.file.fail("has no blocks of elements", "it may be a file of netCDF that is not one of Exodus");
+    reading.file.fail("has no blocks of elements", "it may be a netCDF file other than Exodus");
   }
   refuse_unknown_kinds(reading.file);
   leave_out_decomposition(reading);

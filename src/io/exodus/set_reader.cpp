@@ -181,7 +181,7 @@ class SetReader {
   void for_numbers(const Variable& variable, const Take& take) const {
     const NcInput& file = reading_.file;
     const std::vector<std::size_t> shape = file.shape(variable);
-    if (shape.size() != 1) file.fail(variable.name + " is no list", "the file may be damaged");
+    if (shape.size() != 1) file.fail(variable.name + " is not a list", "the file may be damaged");
     // twice: for the list and for the set
     const std::size_t count = file.claimed(variable.name, file.size(variable), 2 * sizeof(Index));
     std::vector<std::int32_t> numbers;

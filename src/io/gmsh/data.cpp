@@ -119,7 +119,7 @@ Entries read_entries(ReadContext& reading, const View& view) {
       source.fail("$" + view.section + " names " +
                       (view.association == Association::vertices ? "node " : "element ") +
                       std::to_string(id) + ", which the file does not have",
-                  "give values for what exists");
+                  "give values only for existing nodes and elements");
     }
     entries.rows.push_back(place);
     std::int64_t nodes = 1;

@@ -324,7 +324,7 @@ std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata)
     if (metadata.is_version_2()) entity = {dimension(mesh.cells.shapes[c]), labels.empty() ? 0 : labels[c]};
     const std::vector<Index>* of_cell = table.find(entity);
     if (!of_cell) continue;
-    if (of_cell->size() > 1) claim_memory(of_cell->size() * sizeof(Index), "what belongs to several groups");
+    if (of_cell->size() > 1) claim_memory(of_cell->size() * sizeof(Index), "items in several groups");
     for (const Index s : *of_cell) sets[s].members.push_back(c);
   }
   std::erase_if(sets, [](const EntitySet& set) { return set.members.empty(); });

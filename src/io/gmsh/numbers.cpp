@@ -33,9 +33,9 @@ void expect_end(ReadContext& reading, std::string_view section) {
       source.fail(fmt::format("expected {}, found {}", end, found), "end the section before the next one");
     }
     if (word.front() != '$') {
-      source.fail(fmt::format("${} goes on; expected {}", section, end), "is a count too small?");
+      source.fail(fmt::format("${} continues; expected {}", section, end), "is a count too small?");
     }
-    reading.notes.push_back(fmt::format("{}:{}: {} is read as {}; Gmsh itself skips what comes after it",
+    reading.notes.push_back(fmt::format("{}:{}: {} is read as {}; Gmsh itself skips the text after it",
                                         source.scanner.file(), source.scanner.line(), found, end));
   }
   (void)source.scanner.word(end);

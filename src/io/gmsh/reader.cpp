@@ -48,8 +48,9 @@ std::string_view body(ReadContext& reading, std::string_view section) {
 /// Fails unless the version is supported.
 void check_version(const NumberReader& source, double version) {
   if ((version >= 2 && version < 2.3) || (version >= 4 && version < 4.15)) return;
-  source.fail(fmt::format("version {:.1f} of Gmsh's format is not supported", version),
-              "1, 2.2, 4.0 and 4.1 are; convert the file with gmsh OLD.msh -save -format msh41 -o NEW.msh");
+  source.fail(
+      fmt::format("version {:.1f} of Gmsh's format is not supported", version),
+      "1, 2.2, 4.0 and 4.1 are supported; convert the file with gmsh OLD.msh -save -format msh41 -o NEW.msh");
 }
 
 void read_format(ReadContext& reading) {
@@ -214,7 +215,8 @@ void read_single(ReadContext& reading, const Single& single) {
     reading.source.fail("a second section $" + name, "a file has one of them");
   }
   if (!reading.metadata.has(single.after)) {
-    reading.source.fail("$" + name + " comes before what it names", "put $Nodes and $Elements first");
+    reading.source.fail("$" + name + " comes before the nodes or elements that it names",
+                        "put $Nodes and $Elements first");
   }
   single.read(reading);
   reading.metadata.sections.push_back({single.kind, name, "", 0});
@@ -296,7 +298,7 @@ const ElementType& known_type(const NumberReader& source, std::int64_t number) {
   const ElementType* type = number < 0 || number > 1000 ? nullptr : find_type(static_cast<int>(number));
   if (!type) {
     source.fail("the element type " + std::to_string(number) + " is not supported",
-                "types with a fixed number of nodes are, such as 4 for tetrahedra");
+                "types with a fixed number of nodes are supported, such as 4 for tetrahedra");
   }
   return *type;
 }

@@ -142,10 +142,11 @@ Handle File::open_dataset(const std::string& path) const {
   Handle dataset(H5Dopen2(file_.id(), path.c_str(), access.id()), H5Dclose);
   if (dataset.is_open()) return dataset;
   if (const std::string link = external_link_on(file_.id(), path); !link.empty()) {
-    fail(path, fmt::format("is behind '{}', a link to another file, which is not followed", link),
+    fail(path,
+         fmt::format("is reached through '{}', a link to another file; such links are not followed", link),
          "name that file in the XML, or copy the dataset into this one (h5copy)");
   }
-  fail(path, "is missing or damaged", "`h5ls -r` lists what the file has");
+  fail(path, "is missing or damaged", "`h5ls -r` lists the contents of the file");
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {

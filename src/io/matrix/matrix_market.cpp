@@ -63,7 +63,7 @@ struct MatrixMetadata final : StoredMatrix {
   [[nodiscard]] std::vector<std::string> contents() const override {
     std::vector<std::string> result;
     if (is_half) {
-      result.push_back(fmt::format("that the matrix is {}, of which the file has one half", symmetry));
+      result.push_back(fmt::format("that the matrix is {} and the file holds one half of it", symmetry));
     }
     if (!comments.empty()) result.emplace_back("the matrix's comments");
     return result;
@@ -93,7 +93,7 @@ class MatrixReader {
     if (!in_.at_end()) in_.fail("more entries than the count says", "the count is wrong");
     note_missing_line_end(in_, '%', notes_);
     if (!metadata_->is_half && !is_pattern_symmetric()) {
-      notes_.push_back("the pattern of the matrix A is not symmetric: that of A + A' is ordered");
+      notes_.push_back("the pattern of the matrix A is not symmetric: orders use that of A + A'");
     }
     if (field_ != Field::pattern) {
       const Index components = field_ == Field::complex ? 2 : 1;
@@ -113,7 +113,7 @@ class MatrixReader {
   void read_banner() {
     std::string_view line = in_.peek_line();
     if (!same_but_for_case(next_word(line), kBanner)) {
-      in_.fail("is no Matrix Market file", "its first line must begin with %%MatrixMarket");
+      in_.fail("is not a Matrix Market file", "its first line must begin with %%MatrixMarket");
     }
     if (const std::string_view object = next_word(line); !same_but_for_case(object, "matrix")) {
       in_.fail(fmt::format("holds a '{}'", shown(object)), "only a matrix can be ordered");
@@ -128,7 +128,7 @@ class MatrixReader {
     metadata_->symmetry = to_string(metadata_->stored_as);
     metadata_->is_half = metadata_->stored_as != Symmetry::general;
     if (const std::string_view more = next_word(line); !more.empty()) {
-      in_.fail(fmt::format("the first line goes on with '{}'", shown(more)), "it should end there");
+      in_.fail(fmt::format("the first line continues with '{}'", shown(more)), "it should end there");
     }
     (void)in_.raw_line();
     while (in_.bytes_left() > 0) {

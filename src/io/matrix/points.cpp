@@ -75,7 +75,7 @@ class PointReader {
         in_.fail_at_byte("a coordinate is " + std::to_string(value), "finite numbers are needed");
       }
     });
-    if (in_.bytes_left() > 0) in_.fail_at_byte("goes on after the last number", "write it with numpy.save");
+    if (in_.bytes_left() > 0) in_.fail_at_byte("continues after the last number", "write it with numpy.save");
   }
 
   void read_array() {

@@ -83,7 +83,7 @@ void read_families_of(Reading& reading, Association association) {
       last = numbers[i];
     }
     if (of_last == nullptr) continue;
-    if (of_last->size() > 1) claim_memory(of_last->size() * sizeof(Index), "what belongs to several groups");
+    if (of_last->size() > 1) claim_memory(of_last->size() * sizeof(Index), "items in several groups");
     for (const std::size_t set : *of_last) {
       // a family may name a group twice
       std::vector<Index>& members = sets[set].members;

@@ -79,7 +79,7 @@ void find_mesh(Reading& reading) {
   }
   if (meshes.empty() && !structured.empty()) {
     reading.fail("/ENS_MAA/" + structured.front(), "is structured",
-                 "its order is its grid's, and there is nothing to reorder");
+                 "its order is fixed by the grid; nothing to reorder");
   }
   if (meshes.empty()) {
     throw InputError(file.name(), "has no mesh", "a file of MED has its meshes in the group ENS_MAA");
@@ -113,7 +113,7 @@ void refuse_unknown_kinds(const Reading& reading) {
   const std::string step = layout.mesh_path() + "/" + layout.step;
   for (const auto& [group, words] : {std::pair{"FAC", "faces"}, std::pair{"ARE", "edges"}}) {
     if (reading.file.names(step + "/" + group).empty()) continue;
-    reading.fail(step + "/" + group, fmt::format("has {} by which its cells are described", words),
+    reading.fail(step + "/" + group, fmt::format("describes its cells by {}", words),
                  "write the cells by their nodes");
   }
   for (const std::string& joints : {"/JNT/" + layout.mesh, layout.mesh_path() + "/JNT"}) {
@@ -127,7 +127,7 @@ void refuse_unknown_kinds(const Reading& reading) {
 Index row_count_of(const Reading& reading, const std::string& path, std::size_t width) {
   const std::uint64_t size = reading.file.info(path).size();
   if (size % width != 0) {
-    reading.fail(path, fmt::format("has {} values, which are no rows of {}", size, width),
+    reading.fail(path, fmt::format("has {} values, which do not make rows of {}", size, width),
                  "the file may be damaged");
   }
   if (size / width > static_cast<std::uint64_t>(kMaxIndex)) {

@@ -480,7 +480,7 @@ class Reader {
       if (order == metadata_->places.end()) {
         if (!simplex) {
           notes_.push_back(
-              fmt::format("the nodes of {} are taken to be in VTK's order, as the file does not say",
+              fmt::format("the nodes of {} are taken to be in VTK's order, as the file does not state it",
                           kCellKinds[kind].keyword));
         }
         continue;

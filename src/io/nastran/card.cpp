@@ -112,7 +112,7 @@ class Splitter {
   void check_name(std::string_view name) {
     const std::string_view own = line_name(name);
     if (!own.empty() && !next_name_.empty() && own != next_name_) {
-      result_.fault = "lines that continue a card are not behind it";
+      result_.fault = "continuation lines do not follow their card";
     }
   }
 

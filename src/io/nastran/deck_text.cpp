@@ -61,7 +61,7 @@ void append_without_tabs(std::string& out, std::string_view line) {
 DeckText::DeckText(const FilePath& path) : path_(path.string()), lines_(path) {
   const std::string_view all = lines_.at().all();
   if (all.find('\0') != std::string_view::npos) {
-    throw InputError(path.string(), "is no text, as bulk data of Nastran is", "give its bulk data");
+    throw InputError(path.string(), "is not a text file, unlike bulk data of Nastran", "give its bulk data");
   }
   if (has_begin_bulk(all)) section_ = Section::control;
   text_.reserve(all.size() + 1);
@@ -94,7 +94,7 @@ void DeckText::take_line(std::string_view line) {
     } else if (!word_after_begin(line).empty()) {
       lines_.at().fail("a second section of bulk data begins", "give models without superelements");
     } else if (begins_with(line, "CEND")) {
-      lines_.at().fail("case control without BEGIN BULK behind it", "the file may be cut short");
+      lines_.at().fail("no BEGIN BULK after case control", "the file may be cut short");
     }
   }
   const bool starts_bulk = section_ == Section::control && begins_bulk(line);

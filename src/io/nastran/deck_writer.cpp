@@ -304,7 +304,7 @@ class BulkWriter {
 
   void note_losses() const {
     if (rounded_ > 0) notes_.push_back(rounded_note(rounded_));
-    if (lost_labels_) notes_.emplace_back("labels that are no numbers of properties are not written");
+    if (lost_labels_) notes_.emplace_back("labels that are not property numbers are not written");
     note_arrays_beside_cell_labels(mesh_, "Nastran", notes_);
   }
 

@@ -199,7 +199,7 @@ class DeckReader {
   // ---- other cards
 
   void read_other(const std::string& name) {
-    if (name.starts_with('=')) fail("cards are repeated by '='", "write out the cards that it stands for");
+    if (name.starts_with('=')) fail("cards are repeated by '='", "write out the repeated cards");
     other_since_ = true;
     const auto found = references(name, fields_);
     if (name == "GRDSET" && !fields_.text(2).empty() && fields_.text(2) != "0") {
@@ -255,7 +255,7 @@ class DeckReader {
     if (mesh_.cell_count() == 0) {
       if (const std::vector<std::string> elements = other_elements(); !elements.empty()) {
         throw InputError(path,
-                         "its only elements are of types that are no cells here (" + join(elements) + ")",
+                         "its only elements are of types that are not cells here (" + join(elements) + ")",
                          "nothing can be reordered");
       }
       throw InputError(path, "has no elements that are cells", kNoMesh);
@@ -446,12 +446,11 @@ class DeckReader {
   void note_all() {
     if (without_some_ > 0) {
       notes_.push_back(
-          fmt::format("{} without some of the nodes of edges: the cells have the corners alone",
+          fmt::format("{} without some of the nodes of edges: the cells have only the corners",
                       without_some_ == 1 ? "one element is" : fmt::format("{} elements are", without_some_)));
     }
     if (!file_.included().empty()) {
-      notes_.push_back(
-          fmt::format("included files are part of the file from here on: {}", join(file_.included())));
+      notes_.push_back(fmt::format("included files are now part of the file: {}", join(file_.included())));
     }
     if (!file_.has_end()) notes_.emplace_back("the file has no ENDDATA; it may be cut short");
     note_kept_numbers(deck_->unknown, notes_);

@@ -102,7 +102,8 @@ const CoordinateSystems::Frame& CoordinateSystems::frame_of(System& system,
                                                             const NodePosition& node_position) {
   if (system.has_frame) return system.frame;
   if (system.is_open || open_ >= kMostOpen) {
-    file_.fail(system.byte, "the coordinate system stands on itself, or on too many others", "correct it");
+    file_.fail(system.byte, "the coordinate system refers to itself, or the chain of systems is too long",
+               "correct it");
   }
   system.is_open = true;
   ++open_;

@@ -26,7 +26,8 @@ class PlainBulkWriter {
         vertices_(mesh.vertex_ids, kLargestNumber),
         cells_(mesh.cell_ids, kLargestNumber) {
     if (mesh.vertex_count() > kLargestNumber || mesh.cell_count() > kLargestNumber) {
-      throw InputError(path.string(), "has more than 99999999 vertices or cells", "Nastran numbers no more");
+      throw InputError(path.string(), "has more than 99999999 vertices or cells",
+                       "Nastran cannot number more");
     }
   }
 

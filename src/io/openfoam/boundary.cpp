@@ -17,7 +17,7 @@
 namespace meshorder::openfoam {
 namespace {
 
-constexpr const char* kRemedy = "write the boundary anew; checkMesh checks it";
+constexpr const char* kRemedy = "write the boundary again; checkMesh checks it";
 
 /// The faces of a patch.
 struct Patch {

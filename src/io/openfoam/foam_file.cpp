@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kMostAlike = 1 << 20;
 
 constexpr std::string_view kMarks = "(){};";
-constexpr std::string_view kFormatRemedy = "correct `format` in the header, or write the file anew";
+constexpr std::string_view kFormatRemedy = "correct `format` in the header, or write the file again";
 
 bool is_space(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 bool is_mark(char c) { return kMarks.find(c) != std::string_view::npos; }
@@ -129,7 +129,7 @@ bool FoamFile::at_end() {
 void FoamFile::read_header() {
   if (token() != "FoamFile" || !take('{')) {
     position_ = 0;
-    fail("is no file of OpenFOAM", "these begin with the header FoamFile { … }");
+    fail("is not an OpenFOAM file", "these begin with the header FoamFile { … }");
   }
   int depth = 1;  // of braces
   while (depth > 0) {

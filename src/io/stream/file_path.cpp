@@ -57,7 +57,7 @@ std::string read_sized(InputFile& file, const std::string& name, std::uint64_t w
                      "it may have been written to meanwhile, or the disk fails");
   }
   if (char further = 0; wanted == file.size() && file.read_at(wanted, {&further, 1}) > 0) {
-    throw InputError(name, fmt::format("had {} bytes and goes on after them", file.size()),
+    throw InputError(name, fmt::format("had {} bytes and continues after them", file.size()),
                      "wait until it is written to the end");
   }
   return bytes;

@@ -91,7 +91,7 @@ class Inflation {
       const int status = inflate(&stream_, Z_NO_FLUSH);
       // twice: most numbers take more memory in a mesh than in text
       const std::size_t made = place.size() - stream_.avail_out;
-      claim_memory(2 * made, "what is compressed in it", {.file = file_});
+      claim_memory(2 * made, "the decompressed file", {.file = file_});
       blocks.use(made);
       if (status == Z_STREAM_END) {
         if (bytes_left() == 0) return std::move(blocks).joined();

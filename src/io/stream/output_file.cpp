@@ -124,7 +124,8 @@ void OutputFile::check_written(int error) const {
 
 fs::path OutputFile::temporary() const {
   if (stream_->scratch) return stream_->scratch->file();
-  throw InputError(target_.string(), "is no ordinary file, and its format is not written from start to end",
+  throw InputError(target_.string(),
+                   "is not an ordinary file, and its format cannot be written from start to end",
                    "write an ordinary file, then copy it");
 }
 

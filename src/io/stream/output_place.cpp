@@ -139,7 +139,7 @@ OutputPlace output_place(const FilePath& file) {
   place.exists = true;
   place.is_through = !S_ISREG(status.st_mode);
   if (place.is_through && file.folder())
-    throw InputError(path.string(), "is no ordinary file", "remove it or choose another name");
+    throw InputError(path.string(), "is not an ordinary file", "remove it or choose another name");
   place.other_names = static_cast<unsigned>(status.st_nlink) - 1;
   return place;
 }

@@ -245,7 +245,7 @@ class Su2Reader {
       return;
     }
     has_more_behind_points_ = true;
-    while (!in_.at_line_end()) (void)parse_real(in_, in_.word("a number"), "a number behind the coordinates");
+    while (!in_.at_line_end()) (void)parse_real(in_, in_.word("a number"), "a number after the coordinates");
   }
 
   /// Takes the line end after the last of `count` items.
@@ -374,7 +374,7 @@ class Su2Reader {
     for (const auto& [part, keyword] : kNeeded) {
       if (sections_seen_.contains(part)) continue;
       throw InputError(in_.file(), "has no " + std::string(keyword),
-                       "it may be cut short, or be no mesh of SU2");
+                       "it may be cut short, or may not be a mesh of SU2");
     }
     if (markers_said_ >= 0 && markers_said_ != index_size(names_seen_)) {
       throw InputError(in_.file(),

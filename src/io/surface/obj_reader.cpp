@@ -371,7 +371,7 @@ class Reader {
     }
     for (Index c = 0; c < index_size(groups_.of_cell); ++c) {
       const auto& sets = of_statement[groups_.of_cell[c]];
-      if (sets.size() > 1) claim_memory(sets.size() * sizeof(Index), "what belongs to several groups");
+      if (sets.size() > 1) claim_memory(sets.size() * sizeof(Index), "items in several groups");
       for (std::vector<Index>* set : sets) set->push_back(c);
     }
     for (auto& [name, cells] : members) mesh_.sets.push_back({name, Association::cells, std::move(cells)});

@@ -98,9 +98,8 @@ class Reader {
       const Index id = number("the number of a cell");
       if (cells_are_numbered_ && !cell_numbers_.add(id)) {
         cells_are_numbered_ = false;
-        notes_.push_back(
-            fmt::format("{}:{}: cell {} is given twice: cells are numbered by their places from here on",
-                        in_.file(), in_.line(), id));
+        notes_.push_back(fmt::format("{}:{}: cell {} is given twice; all cells are now numbered by position",
+                                     in_.file(), in_.line(), id));
       }
       materials.push_back(in_.integer<std::int64_t>("the material of a cell"));
       const CellKind& kind = kind_named(in_.word("the type of a cell"));
@@ -211,8 +210,8 @@ class Reader {
   void keep_rest() {
     if (in_.at_end()) return;
     if (metadata_->model_values == 0) {
-      in_.fail("the file goes on after its last line",
-               "the counts of its first line are wrong, or lines are too many");
+      in_.fail("the file continues after its last line",
+               "the counts of its first line are wrong, or there are too many lines");
     }
     metadata_->model_data = in_.all().substr(static_cast<std::size_t>(in_.byte()));
   }

@@ -86,7 +86,7 @@ class UnvReader {
     is_binary_ = after == "b";
     if (code != std::errc{} || dataset_ < 1 || (!after.empty() && !is_binary_)) {
       in_.fail(fmt::format("the number of a dataset is '{}'", shown(trimmed(in_.peek_line()))),
-               "a line of -1 may be missing or too many");
+               "a line of -1 may be missing or superfluous");
     }
     if (is_binary_) binary_fields_ = std::string(line);
     (void)in_.raw_line();
@@ -485,7 +485,7 @@ class UnvReader {
       if (!other_types_.empty()) {
         throw InputError(
             in_.file(),
-            fmt::format("its only elements are of types that are no cells here ({})", join(other_types_)),
+            fmt::format("its only elements are of types that are not cells here ({})", join(other_types_)),
             "nothing can be reordered");
       }
       throw InputError(in_.file(), "has no elements that are cells (dataset 2412 or 780)", no_mesh);

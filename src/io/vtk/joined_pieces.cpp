@@ -142,7 +142,7 @@ class PieceJoiner {
         std::adjacent_find(rows.begin(), rows.end(), [&](Index a, Index b) { return ids[a] == ids[b]; });
     if (twice != rows.end()) {
       throw error_(fmt::format("two cells have the global id {}", ids[*twice]),
-                   "pieces of one mesh number its cells apart, and mark copies in vtkGhostType");
+                   "pieces of one mesh give each cell its own id, and mark copies in vtkGhostType");
     }
     return rows;
   }
@@ -165,7 +165,7 @@ class PieceJoiner {
     const std::vector<std::int64_t> ids = ids_of(Association::vertices);
     if (ids.empty()) {
       notes_.emplace_back(
-          "the points have no global ids: those on the borders of pieces are there once for each piece");
+          "the points have no global ids: points on borders of pieces are repeated in each piece");
     } else {
       std::stable_sort(rows.begin(), rows.end(), [&](Index a, Index b) {
         return ids[a] != ids[b] ? ids[a] < ids[b] : !is_ghost[a] && is_ghost[b];

@@ -182,7 +182,7 @@ void LegacyInput::bits(std::vector<std::uint8_t>& values, std::int64_t count, co
 
 void LegacyInput::texts(std::vector<std::string>& values, std::int64_t count, const std::string& what) {
   if (count > scanner.bytes_left() + 1)
-    fail(what + " of " + std::to_string(count) + " texts cannot be in what follows",
+    fail(what + " of " + std::to_string(count) + " texts cannot be in the rest of the file",
          "the count is wrong or the file is cut short");
   values.reserve(static_cast<std::size_t>(count));
   for (std::int64_t i = 0; i < count; ++i) {

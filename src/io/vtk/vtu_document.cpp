@@ -254,7 +254,7 @@ void VtuDocument::read_root() {
     const bool structured = type == "ImageData" || type == "StructuredGrid" || type == "RectilinearGrid";
     throw error(root_,
                 "the type of the file is " + type.substr(0, 40) +
-                    (structured ? ", which is structured: its order is its grid's" : ""),
+                    (structured ? ", which is structured: its order is fixed by the grid" : ""),
                 "a .vtu file holds an UnstructuredGrid");
   }
   if (const std::string* version = root_.attribute("version")) {

@@ -86,8 +86,9 @@ class VtuReader {
       if (piece == nullptr)
         throw file.error(file.root(), "there is no <UnstructuredGrid>", "a piece holds a part of the mesh");
       if (pieces_ > 0 && (file.version() < kNewOrder) != (version_ < kNewOrder)) {
-        throw file.error(file.root(), "the version is on another side of 2.1 than that of the piece before",
-                         "VTK numbers nodes of higher order otherwise since; save the pieces alike");
+        throw file.error(
+            file.root(), "of this piece and the one before, only one has a version below 2.1",
+            "VTK numbers nodes of higher order differently since 2.1; save all pieces in one version");
       }
       read_grid(file, *piece);
     }

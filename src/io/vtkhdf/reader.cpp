@@ -405,7 +405,7 @@ class VtkHdfReader {
         "FieldData"};
     const auto note = [&](const std::string& path) {
       notes_.push_back(
-          fmt::format("'{}' is ignored: it is no part of an unstructured grid of one step", path));
+          fmt::format("'{}' is ignored: it is not part of an unstructured grid with one step", path));
     };
     for (const std::string& name : file_.names(std::string(kRoot))) {
       if (std::find(kKnown.begin(), kKnown.end(), name) == kKnown.end()) note(path_of(name));

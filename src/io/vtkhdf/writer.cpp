@@ -200,7 +200,9 @@ void write_without_values(const std::filesystem::path& path, const std::string& 
   write_fields(file, metadata.fields, notes);
   for (std::size_t k = 0; k < paths.size(); ++k) {
     const std::optional<std::uint64_t> place = file.place_of_values(paths[k]);
-    if (!place) throw InputError(name, fmt::format("'{}' got no room", paths[k]), "is the disk full?");
+    if (!place)
+      throw InputError(name, fmt::format("no space was allocated for dataset '{}'", paths[k]),
+                       "is the disk full?");
     layout.parts[k].at = static_cast<std::int64_t>(*place);
   }
   file.close();

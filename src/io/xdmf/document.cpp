@@ -169,7 +169,7 @@ const std::vector<pugi::xml_node>& Document::selected(pugi::xml_node from, std::
   std::vector<pugi::xml_node>& found = selected_[path];
   if (!found.empty()) return found;
   if (!is_linear(path)) {
-    throw error(from, fmt::format("the XPath '{}' is too involved", path.substr(0, 100)),
+    throw error(from, fmt::format("the XPath '{}' is too complex", path.substr(0, 100)),
                 "/Xdmf/Domain/Grid[1]/Topology is one that is understood");
   }
   if (selected_.size() * numbers_.size() > kMostVisits) {
@@ -183,7 +183,7 @@ const std::vector<pugi::xml_node>& Document::selected(pugi::xml_node from, std::
       }
     }
   } catch (const pugi::xpath_exception& fault) {
-    throw error(from, fmt::format("'{}' is no XPath ({})", path.substr(0, 100), fault.what()),
+    throw error(from, fmt::format("'{}' is not an XPath ({})", path.substr(0, 100), fault.what()),
                 "/Xdmf/Domain/Grid[1]/Topology is one");
   }
   if (found.empty()) {
@@ -202,7 +202,7 @@ pugi::xml_node Document::resolved(pugi::xml_node element) const {
     const pugi::xml_node next = selected(element, path).front();
     if (std::string_view(next.name()) != element.name()) {
       throw error(element, fmt::format("the <{}> refers to a <{}>", element.name(), next.name()),
-                  "an element refers to one of its name");
+                  "an element can only refer to one of the same name");
     }
     element = next;
   }

@@ -125,7 +125,7 @@ class Expansion {
       } else if (rest.starts_with("<!")) {
         next = skip_declaration(at);
       } else if (rest.starts_with('%')) {
-        fail(at, "the DOCTYPE uses a parameter entity", "write out what it stands for");
+        fail(at, "the DOCTYPE uses a parameter entity", "replace the reference by its text");
       }
       if (next == std::string_view::npos) fail_malformed(at);
       at = next;
@@ -267,7 +267,7 @@ class Expansion {
     added_ += added;
     if (added_ > kMostAdded) {
       fail(place, "the entities in the DOCTYPE make the file more than 16 MiB longer",
-           "write out what they stand for");
+           "replace the references by their text");
     }
     return end + 1;
   }
@@ -281,11 +281,11 @@ class Expansion {
     Entity& entity = found->second;
     if (entity.is_external) {
       fail(place, fmt::format("the entity '{}' is in another file, which is not read", shown(name)),
-           "write out what it stands for");
+           "replace the reference by its text");
     }
     if (entity.is_open || depth >= kDeepest) {
-      fail(place, fmt::format("the entity '{}' refers to itself or lies too deep in others", shown(name)),
-           "write out what it stands for");
+      fail(place, fmt::format("the entity '{}' refers to itself or is nested too deeply", shown(name)),
+           "replace the reference by its text");
     }
     if (!entity.is_expanded) {
       entity.is_open = true;

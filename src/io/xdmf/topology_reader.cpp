@@ -92,7 +92,7 @@ pugi::xml_node TopologyReader::item_of_topology(pugi::xml_node topology) const {
     throw reading_.document.error(
         topology,
         fmt::format("the TopologyType is '{}'{}", shortened(type),
-                    structured ? ", which is structured: its order is its grid's" : ""),
+                    structured ? ", which is structured: its order is fixed by the grid" : ""),
         "types with fixed nodes are understood, from Polyvertex to Hexahedron_1331, and Mixed");
   }
   return reading_.item_of(topology);

@@ -54,7 +54,7 @@ class XdmfWithData final : public SplitFile {
     for (const Field& field : layout_->fields) {
       const std::optional<std::uint64_t> place = file.place_of_values(field.place.dataset);
       if (!place) {
-        throw InputError(name, fmt::format("the dataset '{}' got no room", field.place.dataset),
+        throw InputError(name, fmt::format("no space was allocated for dataset '{}'", field.place.dataset),
                          "is the disk full?");
       }
       places.push_back(static_cast<std::int64_t>(*place));
