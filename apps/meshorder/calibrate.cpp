@@ -120,8 +120,9 @@ void list_machines(const Console& console) {
 void recheck_machine(const CalibrateArguments& arguments, Console& console) {
   const StoredCalibration stored = load_calibration(key_of_this_machine());
   if (!stored.calibration) {
-    throw CommandError(stored.fault.empty() ? "this machine is not calibrated; `meshorder calibrate` does it"
-                                            : stored.fault + "; `meshorder calibrate` measures it again",
+    throw CommandError(stored.fault.empty()
+                           ? "this machine is not calibrated; `meshorder calibrate` calibrates it"
+                           : stored.fault + "; `meshorder calibrate` measures it again",
                        2);
   }
   const Recheck found =

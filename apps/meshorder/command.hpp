@@ -52,7 +52,7 @@ void take_program_to_try(std::vector<std::string>& arguments);
 
 /// Help of --quiet; the second text is for subcommands that only list something.
 inline constexpr const char* kQuiet = "Print nothing but errors, and the object of --json";
-inline constexpr const char* kQuietList = "No warnings; the list is printed all the same";
+inline constexpr const char* kQuietList = "No warnings; the list is still printed";
 
 /// Adds --json, --quiet and --threads.
 void add_common(CLI::App& subcommand, Common& common, const std::string& quiet = kQuiet);

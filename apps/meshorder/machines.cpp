@@ -63,8 +63,8 @@ MachineChoice calibrated(MachineChoice choice, bool all_threads, Progress& progr
   const Calibration calibration =
       in_call(run, [] { return measure_machine(effort_of(seconds_to_calibrate())); });
   if (const std::string doubt = reason_to_doubt(calibration.steadiness); !doubt.empty()) {
-    notes.push_back("this machine was calibrated while it was busy; `meshorder calibrate` does it again: " +
-                    doubt);
+    notes.push_back(
+        "this machine was calibrated while it was busy; `meshorder calibrate` calibrates it again: " + doubt);
   }
   try {
     (void)save_calibration(calibration);

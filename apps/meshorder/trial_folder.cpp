@@ -93,10 +93,10 @@ void TrialFolder::find_companions(const fs::path& folder, const std::vector<std:
     sizes.emplace_back(is_file ? entry.file_size(ignored) : kMostCopied, name);
     companions_[name].source = entry.path();
     if (companions_.size() <= kMostFiles) return;
-    throw InvalidArgument(fmt::format(
-        "{}: more than {} files are beside the mesh; name those that the program needs by --with, or "
-        "put the mesh and them into a folder of their own",
-        folder.string(), kMostFiles));
+    throw InvalidArgument(
+        fmt::format("{}: more than {} files are beside the mesh; name those that the program needs by "
+                    "--with, or put them and the mesh into a separate folder",
+                    folder.string(), kMostFiles));
   };
   if (with.empty()) for_each_file(folder, enters, add);
   for (const std::string& name : with) {

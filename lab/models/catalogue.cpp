@@ -156,8 +156,8 @@ void make_kept(const std::string& name, bool force, const Report& progress, cons
 /// Throws InvalidArgument if a size is given for a model that has one.
 void check_size(std::string_view name, const MakeOptions& options) {
   if (!options.size) return;
-  throw InvalidArgument(fmt::format("model {}: has a size of its own; leave out --size, which is for {}",
-                                    name, join(kRules, [](const Rule& rule) { return rule.name; })));
+  throw InvalidArgument(fmt::format("model {}: has a fixed size; leave out --size, which is for {}", name,
+                                    join(kRules, [](const Rule& rule) { return rule.name; })));
 }
 
 }  // namespace

@@ -366,7 +366,7 @@ int uniform_width(const CellArrays& cells, const char* caller) {
     const bool other_shape = !cells.shapes.empty() && cells.shapes[c] != cells.shapes[0];
     if (cells.offsets[c + 1] - cells.offsets[c] == width && !other_shape) continue;
     throw InvalidArgument(std::string(caller) + ": cell " + std::to_string(c) +
-                          " is of another type than cell 0; take the cells of each type apart");
+                          " is of another type than cell 0; pass the cells of each type separately");
   }
   return static_cast<int>(width);
 }

@@ -110,7 +110,7 @@ Patches patches(const CellsView& cells, std::size_t vertex_count, int size, cons
     const int most = std::numeric_limits<std::uint16_t>::max() / std::max(width, 1);
     if (most < 2) {
       throw InvalidArgument("patches: cells of " + std::to_string(width) +
-                            " vertices are too large to be two in a patch");
+                            " vertices are too large: a patch must hold two");
     }
     if (size < 2 || size > most) {
       throw InvalidArgument("patches: " + std::to_string(size) + " cells each; between 2 and " +

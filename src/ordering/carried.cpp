@@ -96,8 +96,8 @@ VertexChanges changes_of(const IndexView& previous, Index size, Index count) {
   if (previous.empty()) {
     if (size == 0) changes.removed = count;
     if (size > 0 && count > 0 && size != count) {
-      throw InvalidArgument("previous: none for " + std::to_string(size) +
-                            " vertices, where the last update had " + std::to_string(count));
+      throw InvalidArgument("previous: is missing; there are " + std::to_string(size) +
+                            " vertices, and the last update had " + std::to_string(count));
     }
     return changes;
   }

@@ -59,7 +59,7 @@ def test_arrays_that_share_a_compressed_block(command, tmp_path):
     (tmp_path / "a.vtu").write_bytes(file)
     assert len(file) < 100_000
     line = refused(tmp_path, "info", "a.vtu")
-    assert line.startswith("meshorder: a.vtu:") and "would take 256 MiB beside 256 MiB, more than the limit of 26" in line
+    assert line.startswith("meshorder: a.vtu:") and "would take 256 MiB in addition to 256 MiB, more than the limit of 26" in line
     assert line.endswith(REMEDY)
     done = run_within(1, tmp_path, "info", "a.vtu", "--limit-memory", "none")
     assert done.returncode == 1 and "out of memory" in done.stderr
@@ -72,7 +72,7 @@ def test_a_gzip_file_of_blanks(tmp_path):
     packed = gzip.compress(b"OFF\n" + b" " * (300 << 20), 9)
     (tmp_path / "a.off.gz").write_bytes(packed)
     line = refused(tmp_path, "info", "a.off.gz")
-    assert line.startswith("meshorder: a.off.gz: the decompressed file would take 8 MiB beside ")
+    assert line.startswith("meshorder: a.off.gz: the decompressed file would take 8 MiB in addition to ")
     assert line.endswith(REMEDY)
 
 
@@ -94,7 +94,7 @@ def test_datasets_of_values_that_are_not_there(tmp_path):
     arrays = "".join(array.format(k, points) for k in range(400))
     (tmp_path / "b.xdmf").write_text(XDMF.format(points, "HDF", "a.h5:/p", arrays))
     line = refused(tmp_path, "info", "b.xdmf")
-    assert line.startswith("meshorder: a.h5: the dataset '/u' ") and " beside 256 MiB, more than " in line and line.endswith(REMEDY)
+    assert line.startswith("meshorder: a.h5: the dataset '/u' ") and " in addition to 256 MiB, more than " in line and line.endswith(REMEDY)
 
 
 def test_dimensions_of_netcdf(tmp_path):

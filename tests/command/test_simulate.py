@@ -371,7 +371,7 @@ def test_damaged_checkpoints_are_refused(command, tmp_path):
     for size in (1, 15, 16, 20, 24, 31, 32, 100, len(good) // 2, len(good) - 1):
         refused(good[:size])
     assert f"byte {len(good) // 2}: ends here" in refused(good[:len(good) // 2])
-    assert f"byte {len(good)}: goes on" in refused(good + b"x")
+    assert f"byte {len(good)}: continues" in refused(good + b"x")
     for place in (40, 60, 80, len(good) // 2, len(good) - 1):
         assert "checksum" in refused(good[:place] + bytes([good[place] ^ 1]) + good[place + 1:])
     assert "is not a checkpoint" in refused(b"solid cube" * 10)
@@ -391,7 +391,7 @@ def test_interrupted_run_leaves_a_checkpoint(command, tmp_path):
     running.send_signal(signal.SIGINT)
     _, log = running.communicate(timeout=60)
     assert running.returncode == 130
-    stopped = re.search(r"stopped after step (\d+) of 200000; --resume state goes on", log)
+    stopped = re.search(r"stopped after step (\d+) of 200000; --resume state continues from there", log)
     step = int(stopped.group(1))
     assert len(frames(tmp_path / "frames")) == step // 5 + 1
     result = command.json("simulate", scenario, "--resume", "state", "--steps", step + 1)

@@ -205,7 +205,7 @@ TEST(Layouts, AreRefusedWithTheFault) {
               HasSubstr("neither triangles nor tetrahedra"));
   const std::vector<Index> wide(40000, 0);
   EXPECT_THAT(refusal([&] { (void)patches(CellsView::uniform(Shape::polygon, 40000, wide), 1); }),
-              HasSubstr("too large to be two in a patch"));
+              HasSubstr("too large: a patch must hold two"));
   const std::vector<Index> many(300, 0);
   EXPECT_THAT(refusal([&] { (void)gather_lists(CellsView::uniform(Shape::polygon, 300, many), 1); }),
               HasSubstr("300 vertices, more than 256"));

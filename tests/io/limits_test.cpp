@@ -82,7 +82,7 @@ TEST(ReadLimits, AddUpClaimsAndGrowWithTheFiles) {
   // each counts four times
   EXPECT_EQ(refused_claim(75 * kMebibyte, "a list"), "");
   EXPECT_EQ(refused_claim(25 * kMebibyte, "a list"),
-            "a list would take 100 MiB beside 300 MiB, more than the limit of 356 MiB");
+            "a list would take 100 MiB in addition to 300 MiB, more than the limit of 356 MiB");
   EXPECT_EQ(refused_claim(std::numeric_limits<std::uint64_t>::max(), "a list").substr(0, 17),
             "a list would take");
   EXPECT_EQ(refused_for_a_while(56 * kMebibyte, "a chunk"), "");
@@ -134,7 +134,7 @@ TEST(ReadLimits, ArraysThatShareTheirBytesAreAddedUp) {
                                              "<AppendedData encoding=\"raw\">_" + size +
                                              std::string(kBytes, '\1') + "</AppendedData></VTKFile>");
   EXPECT_THAT(fault(path), AllOf(HasSubstr("a.vtu:91"), HasSubstr(": the array 'f8"),
-                                 HasSubstr("would take 4 MiB beside 35"), EndsWith(kRemedy)));
+                                 HasSubstr("would take 4 MiB in addition to 35"), EndsWith(kRemedy)));
   EXPECT_EQ(fault(path, {.memory_limit = 1600 * kMebibyte}), "");
   EXPECT_NE(fault(path, {.memory_limit = 1599 * kMebibyte}), "");
 }

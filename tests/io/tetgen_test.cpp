@@ -454,7 +454,7 @@ TEST(TetGen, RefusesWhatItCannotHoldBeforeWritingAnything) {
   both.cells.push_back(Shape::tetrahedron, std::array<Index, 4>{0, 1, 2, 3});
   EXPECT_THAT(write_error(both, path), AllOf(HasSubstr("tetrahedron10"), HasSubstr("one kind")));
   EXPECT_THAT(write_error(test::cells_of_type(Shape::line, 3, 1), path), HasSubstr("second order"));
-  EXPECT_THAT(write_error(test::cells_of_type(Shape::line, 2, 1), path), HasSubstr("beside"));
+  EXPECT_THAT(write_error(test::cells_of_type(Shape::line, 2, 1), path), HasSubstr("together"));
   EXPECT_THAT(write_error(test::cells_of_type(Shape::triangle, 3, 1), path), HasSubstr("plane"));
   EXPECT_THAT(folder.names(), IsEmpty());
 }

@@ -95,7 +95,7 @@ class MeshReader {
       if (node.label != "CGNSBase_t") continue;
       if (base != nullptr) {
         reading_.fail("", fmt::format("has two bases, '{}' and '{}'", base->name, node.name),
-                      "give each a file of its own");
+                      "give each a separate file");
       }
       base = &node;
     }

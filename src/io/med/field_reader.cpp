@@ -114,7 +114,7 @@ class FieldReader {
       if (item < 1 || item > count || seen[static_cast<std::size_t>(item) - 1]) {
         reading_.fail(path,
                       fmt::format("names item {}, which {}", item,
-                                  item < 1 || item > count ? "does not exist" : "it named before"),
+                                  item < 1 || item > count ? "does not exist" : "it has already named"),
                       fmt::format("'{}' has values for 1 to {}", piece.support, count));
       }
       seen[static_cast<std::size_t>(item) - 1] = true;

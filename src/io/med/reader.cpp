@@ -86,7 +86,7 @@ void find_mesh(Reading& reading) {
   }
   if (meshes.size() > 1) {
     throw InputError(file.name(), fmt::format("has {} meshes: {}", meshes.size(), fmt::join(meshes, ", ")),
-                     "save each in a file of its own");
+                     "save each in a separate file");
   }
   Layout& layout = *reading.layout;
   layout.mesh = meshes.front();
@@ -102,7 +102,7 @@ void find_mesh(Reading& reading) {
   if (steps.empty()) reading.fail(mesh, "has no nodes", "the file may be damaged");
   if (steps.size() > 1) {
     reading.fail(mesh, fmt::format("changes over {} steps", steps.size()),
-                 "save one of its steps in a file of its own");
+                 "save one of its steps in a separate file");
   }
   layout.step = steps.front();
 }

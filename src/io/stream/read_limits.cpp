@@ -83,7 +83,8 @@ std::string refused_for_a_while(std::uint64_t bytes, std::string_view what) {
   const std::uint64_t before = reading != nullptr ? reading->claimed_ : 0;
   if (bytes <= limit && before <= limit - bytes) return {};
   return fmt::format("{} would take {}{}, more than the limit of {}", what, size_text(bytes),
-                     before > 0 ? fmt::format(" beside {}", size_text(before)) : "", size_text(limit));
+                     before > 0 ? fmt::format(" in addition to {}", size_text(before)) : "",
+                     size_text(limit));
 }
 
 void claim_memory(std::uint64_t bytes, std::string_view what, Location where) {

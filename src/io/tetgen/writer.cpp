@@ -91,10 +91,10 @@ std::string conflict(const Mesh& mesh) {
   const bool second_order = nodes_of(Shape::tetrahedron) == 10 || nodes_of(Shape::triangle) == 6 ||
                             (own && (own->nodes_in_ele == 10 || own->nodes_in_ele == 6));
   if (nodes_of(Shape::line) == 3 && !second_order) {
-    return "TetGen holds lines of 3 points only beside cells of second order";
+    return "TetGen holds lines of 3 points only together with cells of second order";
   }
   if (own || nodes_of(Shape::tetrahedron) > 0) return {};
-  if (nodes_of(Shape::triangle) == 0) return "TetGen holds lines only beside tetrahedra or triangles";
+  if (nodes_of(Shape::triangle) == 0) return "TetGen holds lines only together with tetrahedra or triangles";
   return is_plane(mesh) ? "" : "TetGen holds triangles alone only in the plane z = 0";
 }
 

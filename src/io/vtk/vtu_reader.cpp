@@ -396,7 +396,7 @@ class VtuReader {
 
   void refuse_time_steps(const VtuElement& array) const {
     if (array.attribute("TimeStep") != nullptr)
-      throw file_->error(array, "the file holds several time steps", "save each step as a file of its own");
+      throw file_->error(array, "the file holds several time steps", "save each step as a separate file");
   }
 
   /// Reads an array of PointData, CellData or FieldData.

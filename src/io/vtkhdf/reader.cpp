@@ -148,7 +148,7 @@ class VtkHdfReader {
     const std::optional<std::int64_t> steps = file_.integer_attribute(path_of("Steps"), "NSteps");
     if (steps && *steps > 1) {
       throw InputError(file_.name(), fmt::format("holds {} time steps", *steps),
-                       "save each step as a file of its own");
+                       "save each step as a separate file");
     }
   }
 

@@ -123,7 +123,7 @@ DataPlace DataReader::place_of(pugi::xml_node item) {
   const std::string kind = attribute(item, "ItemType", "Type");
   if (!kind.empty() && !same_but_for_case(kind, "Uniform")) {
     throw document_.error(item, fmt::format("the DataItem is a {}", kind.substr(0, 40)),
-                          "only whole arrays can be reordered: write the values as an array of their own");
+                          "only whole arrays can be reordered: write the values as a separate array");
   }
   DataPlace place;
   place.item = document_.number(item);
@@ -174,7 +174,7 @@ void DataReader::find_dataset(pugi::xml_node item, DataPlace& place) {
   const std::string_view text = whole_text.view();
   if (text.find('|') != std::string_view::npos) {
     throw document_.error(item, "the DataItem selects a part of a dataset",
-                          "only whole arrays can be reordered: write the values as an array of their own");
+                          "only whole arrays can be reordered: write the values as a separate array");
   }
   std::tie(place.file, place.dataset) = split_hdf5_name(text);
   if (place.file.empty()) {

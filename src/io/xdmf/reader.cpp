@@ -117,7 +117,7 @@ std::vector<GridElement> grids_of(const Document& document) {
   if (!domain) throw document.error(root, "there is no <Domain>", "the file may be cut short");
   if (domain.next_sibling("Domain")) {
     throw document.error(domain.next_sibling("Domain"), "the file has several <Domain>s",
-                         "save each as a file of its own");
+                         "save each as a separate file");
   }
   std::vector<GridElement> grids;
   int series = 0;
@@ -371,7 +371,7 @@ class XdmfReader {
       if (grid.series < 0 || points.size() != reading_.mesh.points.size()) {
         throw reading_.document.error(
             geometry, "the Grid has other points than the first",
-            "several meshes in one file are not understood: save each as a file of its own");
+            "several meshes in one file are not understood: save each as a separate file");
       }
       return arrays_.add_moved_points(grid, fields, std::move(points), dimension);
     }

@@ -246,7 +246,7 @@ int TopologyReader::part_of(const GridElement& grid, pugi::xml_node topology, Pi
       if (is_part(known->second, piece)) return known->second;
       throw reading_.document.error(
           topology, fmt::format("the cells change in time step {}", grid.step),
-          "a series needs one mesh for all steps: save each mesh as a file of its own");
+          "a series needs one mesh for all steps: save each mesh as a separate file");
     }
     if (!reading_.layout->parts.empty() && is_part(0, piece)) return series_parts_[grid.series] = 0;
   }
