@@ -321,7 +321,7 @@ void add_report(CLI::App& subcommand) {
       "  meshorder report dragon.veg -o dragon.html   your mesh as it is and in other orders, and what\n"
       "                                               each is worth; takes about half a minute\n"
       "  meshorder report results/                    a study: writes its tables, figures and page again\n"
-      "  meshorder report mine/ theirs/results.json   two studies: what orders save on both machines");
+      "  meshorder report mine/ theirs/results.json   two studies: savings of orders on both machines");
   const auto arguments = std::make_shared<ReportArguments>();
   subcommand
       .add_option(

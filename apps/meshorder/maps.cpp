@@ -148,7 +148,7 @@ Identity read_identity(const std::string& path) {
     }
     return identity;
   } catch (const std::exception&) {
-    throw InputError(path, "is not what `order --maps` wrote",
+    throw InputError(path, "was not written by `order --maps`",
                      "order again, or remove it: without it, maps are applied unchecked");
   }
 }

@@ -136,7 +136,7 @@ void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
   subcommand
       .add_option(
           "--time", arguments.time,
-          "What counts: `cpu`, the processor time of the program and all that it starts; `wall`, the\n"
+          "Time to compare: `cpu`, the processor time of the program and all that it starts; `wall`, the\n"
           "time by the clock; or a regular expression with a group: the last number that the group\n"
           "captures in the program's output")
       ->type_name("TIME")
