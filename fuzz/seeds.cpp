@@ -90,9 +90,9 @@ void add_meshes(Seeds& seeds) {
 Mesh stored_so(const VtuEncoding& encoding) {
   Mesh mesh = test::tetrahedral_bar(1);
   mesh.format = "vtu";
-  vtk::Metadata metadata;
+  vtk::VtkMetadata metadata;
   metadata.vtu = encoding;
-  mesh.format_metadata = std::make_shared<vtk::Metadata>(metadata);
+  mesh.format_metadata = std::make_shared<vtk::VtkMetadata>(metadata);
   return mesh;
 }
 
@@ -112,11 +112,11 @@ void add_encodings(Seeds& seeds) {
     for (const bool binary : {false, true}) {
       Mesh mesh = test::tetrahedral_bar(1);
       mesh.format = "vtk";
-      vtk::Metadata metadata;
+      vtk::VtkMetadata metadata;
       vtk::LegacyLayout& layout = metadata.legacy.emplace();
       layout.version = version;
       layout.binary = binary;
-      mesh.format_metadata = std::make_shared<vtk::Metadata>(metadata);
+      mesh.format_metadata = std::make_shared<vtk::VtkMetadata>(metadata);
       seeds.add("vtk", write_mesh_to_memory(mesh, "vtk", "mesh.vtk").files.front().bytes);
     }
   }

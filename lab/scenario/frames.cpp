@@ -39,9 +39,10 @@ std::vector<DataArray> own_arrays(const Mesh& mesh, const MeshOrder& order) {
 }
 
 /// Returns the metadata of the .vtu files: those of the mesh if it was read from VTK, with compression.
-std::shared_ptr<vtk::Metadata> metadata_of(const Mesh& mesh) {
-  const auto* const own = dynamic_cast<const vtk::Metadata*>(mesh.format_metadata.get());
-  auto metadata = own != nullptr ? std::make_shared<vtk::Metadata>(*own) : std::make_shared<vtk::Metadata>();
+std::shared_ptr<vtk::VtkMetadata> metadata_of(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const vtk::VtkMetadata*>(mesh.format_metadata.get());
+  auto metadata =
+      own != nullptr ? std::make_shared<vtk::VtkMetadata>(*own) : std::make_shared<vtk::VtkMetadata>();
   metadata->legacy.reset();
   metadata->float_points = true;
   // raw bytes would be a quarter smaller but are not XML: meshio 5.0 misreads one file in some hundreds

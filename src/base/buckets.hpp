@@ -30,7 +30,7 @@ class Buckets {
     while (chunk_count(keys, width()) > kMostBuckets) ++log2_width_;
     for_each_chunk(rows, rows_of_part, [&](Index k, Index begin, Index end) {
       const auto for_each_entry = entries_of(k, begin, end);
-      Part& part = parts_[k];
+      SortedPart& part = parts_[k];
       std::vector<Offset> next(std::size_t(size()) + 1, 0);
       for_each_entry([&](const Entry& entry) { ++next[bucket_of(key(entry)) + 1]; });
       std::partial_sum(next.begin(), next.end(), next.begin());
@@ -41,7 +41,7 @@ class Buckets {
       });
     });
     starts_.assign(std::size_t(size()) + 1, 0);
-    for (const Part& part : parts_) {
+    for (const SortedPart& part : parts_) {
       for (Index bucket = 0; bucket < size(); ++bucket) starts_[bucket + 1] += std::ssize(part[bucket]);
     }
     std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
@@ -69,13 +69,13 @@ class Buckets {
   /// Calls `visit(entry)` for the entries of the bucket, in the order in which they came.
   template <class Visit>
   void for_each(Index bucket, const Visit& visit) const {
-    for (const Part& part : parts_) std::ranges::for_each(part[bucket], visit);
+    for (const SortedPart& part : parts_) std::ranges::for_each(part[bucket], visit);
   }
 
  private:
   static constexpr Index kMostBuckets = 2048;
 
-  struct Part {
+  struct SortedPart {
     std::vector<Entry> entries;
     std::vector<Offset> starts;  ///< where each bucket begins, and the end
 
@@ -89,7 +89,7 @@ class Buckets {
 
   Index keys_;
   int log2_width_ = 10;  ///< of the number of keys in a bucket
-  std::vector<Part> parts_;
+  std::vector<SortedPart> parts_;
   std::vector<Offset> starts_;  ///< where each bucket begins in all parts together, and the end
 };
 

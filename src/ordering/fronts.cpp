@@ -22,10 +22,10 @@ constexpr Index kAheadOfPlaces = 4;
 
 /// Renumbers the chunks of a section one after the other. Loops over neighbours write without branches, which
 /// would be unpredictable.
-class Section {
+class SectionRenumbering {
  public:
   /// @param places  maps each place in the old order to the new one, where that is known
-  Section(GraphRef graph, const Permutation& order, Index begin, std::span<Index> places)
+  SectionRenumbering(GraphRef graph, const Permutation& order, Index begin, std::span<Index> places)
       : graph_(graph), order_(order), begin_(begin), places_(places) {}
 
   void renumber_chunk(Index begin, Index end) {
@@ -109,7 +109,7 @@ Permutation in_fronts(GraphRef graph, const Permutation& order) {
   std::vector<Index> places(order.new_to_old().size());
   std::vector<Index> new_to_old(places.size());
   for_each_chunk(order.size(), kInSection, [&](Index /*section*/, Index begin, Index end) {
-    Section section(graph, order, begin, places);
+    SectionRenumbering section(graph, order, begin, places);
     for (Index next = begin; next < end;) {
       const Index chunk = std::exchange(next, next + std::min(kInChunk, end - next));
       section.renumber_chunk(chunk, next);

@@ -15,13 +15,13 @@ namespace meshorder {
 namespace {
 
 /// A part of a graph, with local numbers for its vertices.
-class Part {
+class PartOfGraph {
  public:
   /// @param part_of   the part of each vertex of the graph
   /// @param vertices  the vertices of this part, ascending
   /// @param local     has a number for each vertex of the graph; those of `vertices` are written
-  Part(const Laplacian& laplacian, std::span<const Index> part_of, std::span<const double> masses,
-       std::span<const Index> vertices, std::span<Index> local)
+  PartOfGraph(const Laplacian& laplacian, std::span<const Index> part_of, std::span<const double> masses,
+              std::span<const Index> vertices, std::span<Index> local)
       : laplacian_(laplacian), of_(part_of), masses_(masses), vertices_(vertices), local_(local) {
     for (Index k = 0; k < size(); ++k) local[vertices[k]] = k;
   }
@@ -51,7 +51,7 @@ class Part {
 /// Returns an aggregate's slack if joining vertices spread their mass over all edges to founding members.
 ///
 /// @param least  weight of a founding member's edge to the founder
-double spread_slack(const Part& part, Index founder, double least) {
+double spread_slack(const PartOfGraph& part, Index founder, double least) {
   std::vector<double> founding_weight(static_cast<std::size_t>(part.size()));
   std::vector<double> hanging(founding_weight.size());
   part.for_each_edge(founder, [&](Index member, double weight) {
@@ -100,7 +100,7 @@ bool has_two_negative_pivots(std::vector<double>& rows, Index size) {
 }
 
 /// Returns whether L x = μ M x on the part has more than one eigenvalue below `bound`; true if uncertain.
-bool has_two_below(const Part& part, double bound) {
+bool has_two_below(const PartOfGraph& part, double bound) {
   const Index size = part.size();
   std::vector<double> rows(static_cast<std::size_t>(size) * size);
   for (Index k = 0; k < size; ++k) {
@@ -129,7 +129,7 @@ bool may_hide(const Laplacian& laplacian, const Aggregation& aggregation, std::s
   std::atomic<bool> found = false;
   for_each_chunk(index_size(suspects), 1, [&](Index k, Index, Index) {
     if (found) return;
-    const Part part(laplacian, aggregation.aggregate_of, masses, members.of(suspects[k]), local);
+    const PartOfGraph part(laplacian, aggregation.aggregate_of, masses, members.of(suspects[k]), local);
     const Index founder = aggregation.founders[suspects[k]];
     const double least = strong_weight(laplacian, founder, aggregation.strength);
     if (eigenvalue * spread_slack(part, part.local(founder), least) <= kDoubtful) return;
@@ -143,7 +143,7 @@ bool has_two_below(const Laplacian& laplacian, std::span<const double> masses, d
   std::iota(vertices.begin(), vertices.end(), Index{0});
   std::vector<Index> local(vertices.size());
   const std::vector<Index> part_of(vertices.size());
-  return has_two_below(Part(laplacian, part_of, masses, vertices, local), bound);
+  return has_two_below(PartOfGraph(laplacian, part_of, masses, vertices, local), bound);
 }
 
 }  // namespace meshorder

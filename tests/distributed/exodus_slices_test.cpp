@@ -169,8 +169,8 @@ Mesh compressed(const Mesh& mesh) {
   const test::TemporaryFolder folder;
   (void)write_mesh(mesh, folder.path() / "a.e");
   Mesh result = read_mesh(folder.path() / "a.e");
-  auto metadata =
-      std::make_shared<exodus::Metadata>(dynamic_cast<const exodus::Metadata&>(*result.format_metadata));
+  auto metadata = std::make_shared<exodus::ExodusMetadata>(
+      dynamic_cast<const exodus::ExodusMetadata&>(*result.format_metadata));
   constexpr int kNetcdf4 = 3;
   metadata->storage = {kNetcdf4, 5, true};
   result.format_metadata = metadata;

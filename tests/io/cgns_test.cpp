@@ -225,7 +225,7 @@ TEST(Cgns, RefusesElementTypesByTheirNumbersInVersion30) {
 TEST(Cgns, RefusesPolyhedraThatAreNotThoseOfTheirFile) {
   for (const Shape shape : {Shape::polygon, Shape::polyhedron}) {
     Mesh mesh = test::cells_of_type(shape, 7, 2);
-    auto metadata = std::make_shared<cgns::Metadata>();
+    auto metadata = std::make_shared<cgns::CgnsMetadata>();
     metadata->cell_of_polygon = {0};
     metadata->cell_of_polyhedron = {0};
     mesh.format_metadata = std::move(metadata);

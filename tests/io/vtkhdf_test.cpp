@@ -41,7 +41,7 @@ Mesh grid() {
                {"big", Association::cells, 1, std::vector<std::uint64_t>{1, UINT64_MAX, 3}, {}, {}},
                {"small", Association::cells, 1, std::vector<std::int8_t>{-1, 2, 3}, {}, {}}};
   mesh.sets = {{"held", Association::vertices, {1, 4}}, {"skin", Association::cells, {2, 0}}};
-  auto metadata = std::make_shared<vtk::Metadata>();
+  auto metadata = std::make_shared<vtk::VtkMetadata>();
   metadata->fields = {
       {"pairs", Association::vertices, 2, std::vector<std::int32_t>{1, 2, 3, 4}, {}, {}},
       {"title", Association::vertices, 1, std::vector<std::string>{"a", "", "three  "}, {}, {}}};
@@ -63,8 +63,8 @@ TEST(VtkHdf, KeepsArraysSetsFieldsAndRoles) {
   const Mesh read = through_vtkhdf(mesh, &notes);
   EXPECT_THAT(notes, IsEmpty());
   test::expect_same(read, mesh);
-  const auto& metadata = dynamic_cast<const vtk::Metadata&>(*read.format_metadata);
-  EXPECT_EQ(metadata.fields, dynamic_cast<const vtk::Metadata&>(*mesh.format_metadata).fields);
+  const auto& metadata = dynamic_cast<const vtk::VtkMetadata&>(*read.format_metadata);
+  EXPECT_EQ(metadata.fields, dynamic_cast<const vtk::VtkMetadata&>(*mesh.format_metadata).fields);
   ASSERT_EQ(metadata.roles.size(), 2U);
   EXPECT_EQ(metadata.roles[0].array, "heat");
   EXPECT_EQ(metadata.roles[0].role, vtk::Role::scalars);
@@ -90,11 +90,11 @@ TEST(VtkHdf, TheSameMeshIsTheSameBytes) {
 
 TEST(VtkHdf, FloatsStayFloatsOnlyWithoutLoss) {
   Mesh mesh = grid();
-  auto metadata = std::make_shared<vtk::Metadata>();
+  auto metadata = std::make_shared<vtk::VtkMetadata>();
   metadata->float_points = true;
   mesh.format_metadata = metadata;
   const auto are_floats = [](const Mesh& read) {
-    return dynamic_cast<const vtk::Metadata&>(*read.format_metadata).float_points;
+    return dynamic_cast<const vtk::VtkMetadata&>(*read.format_metadata).float_points;
   };
   EXPECT_FALSE(are_floats(through_vtkhdf(mesh)));  // 0.1 is no float
   mesh.points.back()[2] = 0.5;
@@ -122,7 +122,7 @@ TEST(VtkHdf, NamesThatHdf5CannotHoldAreChanged) {
 
 TEST(VtkHdf, SoAreThoseOfFields) {
   Mesh mesh = grid();
-  auto metadata = std::make_shared<vtk::Metadata>();
+  auto metadata = std::make_shared<vtk::VtkMetadata>();
   for (const char* const name : {"a/b", "a_b", ""}) {
     metadata->fields.push_back({name, Association::vertices, 1, std::vector<std::int32_t>{1, 2}, {}, {}});
   }
@@ -130,7 +130,7 @@ TEST(VtkHdf, SoAreThoseOfFields) {
   Notes notes;
   const Mesh read = through_vtkhdf(mesh, &notes);
   std::vector<std::string> names;
-  for (const DataArray& field : dynamic_cast<const vtk::Metadata&>(*read.format_metadata).fields) {
+  for (const DataArray& field : dynamic_cast<const vtk::VtkMetadata&>(*read.format_metadata).fields) {
     names.push_back(field.name);
   }
   EXPECT_THAT(names, ElementsAre("a_b", "a_b_2", "array"));
@@ -143,7 +143,7 @@ TEST(VtkHdf, TellsWhatItHasNoPlaceFor) {
   Mesh mesh = grid();
   mesh.data[1].component_names = {"x", "y"};
   mesh.data[2].values = std::vector<std::string>{"a", "b", "c"};
-  auto metadata = std::make_shared<vtk::Metadata>();
+  auto metadata = std::make_shared<vtk::VtkMetadata>();
   metadata->facts[{Association::vertices, "heat"}] = {
       Association::vertices, "heat", {}, {}, "<InformationKey/>"};
   mesh.format_metadata = metadata;

@@ -77,7 +77,7 @@ TEST(WithoutCompression, ArraysOfTextAreReadWhateverTheCompressor) {
 TEST(WithoutCompression, ACompressedMeshIsWrittenWithoutAndThatIsNoted) {
   const TemporaryFolder folder;
   Mesh mesh = tetrahedral_bar(1);
-  auto metadata = std::make_shared<vtk::Metadata>();
+  auto metadata = std::make_shared<vtk::VtkMetadata>();
   metadata->vtu = VtuEncoding{.compressor = VtuEncoding::Compressor::zlib};
   mesh.format_metadata = metadata;
   Notes notes;

@@ -19,34 +19,34 @@ using Shape = BranchMotions::Shape;
 using Motion = BranchMotions::Motion;
 
 /// A padded vertex in as many registers as it takes.
-using Part = hn::CappedTag<double, kPaddedStride>;
-constexpr Index kParts = kPaddedStride / static_cast<Index>(MaxLanes(Part()));
+using RowTag = hn::CappedTag<double, kPaddedStride>;
+constexpr Index kParts = kPaddedStride / static_cast<Index>(MaxLanes(RowTag()));
 
 struct Padded {
-  hn::Vec<Part> parts[kParts];
+  hn::Vec<RowTag> parts[kParts];
 
   static HWY_INLINE Padded load(const double* from) {
     Padded result;
     MESHORDER_UNROLL
     for (Index i = 0; i < kParts; ++i)
-      result.parts[i] = hn::Load(Part(), from + i * (kPaddedStride / kParts));
+      result.parts[i] = hn::Load(RowTag(), from + i * (kPaddedStride / kParts));
     return result;
   }
   static HWY_INLINE Padded set(double value) {
     Padded result;
-    for (hn::Vec<Part>& part : result.parts) part = hn::Set(Part(), value);
+    for (hn::Vec<RowTag>& part : result.parts) part = hn::Set(RowTag(), value);
     return result;
   }
   HWY_INLINE void store(double* to) const {
     MESHORDER_UNROLL
-    for (Index i = 0; i < kParts; ++i) hn::Store(parts[i], Part(), to + i * (kPaddedStride / kParts));
+    for (Index i = 0; i < kParts; ++i) hn::Store(parts[i], RowTag(), to + i * (kPaddedStride / kParts));
   }
   /// Returns this + factor · other.
   HWY_INLINE Padded plus(double factor, const Padded& other) const {
     Padded result;
     MESHORDER_UNROLL
     for (Index i = 0; i < kParts; ++i)
-      result.parts[i] = hn::MulAdd(hn::Set(Part(), factor), other.parts[i], parts[i]);
+      result.parts[i] = hn::MulAdd(hn::Set(RowTag(), factor), other.parts[i], parts[i]);
     return result;
   }
   /// Takes the smaller or larger numbers, ignoring NaN.

@@ -43,7 +43,7 @@ class WholeGrid {
       rows.push_back(blank_row(array->name, array->association, array->values.index(), array->components,
                                array->component_names));
     }
-    vtk::Metadata metadata = context_.metadata;
+    vtk::VtkMetadata metadata = context_.metadata;
     metadata.float_points = context_.points_are_floats();
     return mold_of(std::move(rows), std::move(metadata),
                    std::any_of(context_.types.begin(), context_.types.end(), vtk::is_higher_order_hexahedron),

@@ -20,7 +20,7 @@ DataArray blank_row(std::string name, Association association, std::size_t type,
           std::move(component_names)};
 }
 
-std::string mold_of(std::vector<DataArray> arrays, vtk::Metadata metadata, bool in_order_of_vtk_9,
+std::string mold_of(std::vector<DataArray> arrays, vtk::VtkMetadata metadata, bool in_order_of_vtk_9,
                     Notes& notes) {
   Mesh mold;
   mold.points.resize(1);
@@ -30,7 +30,7 @@ std::string mold_of(std::vector<DataArray> arrays, vtk::Metadata metadata, bool 
                              .compressor = VtuEncoding::Compressor::none,
                              .order = std::endian::native,
                              .wide_headers = true};
-  mold.format_metadata = std::make_shared<vtk::Metadata>(std::move(metadata));
+  mold.format_metadata = std::make_shared<vtk::VtkMetadata>(std::move(metadata));
   TextStore store;
   vtk::write_vtu(mold, FilePath("mold.vtu", store), notes);
   std::string text = store.text();

@@ -21,7 +21,7 @@ namespace meshorder::distributed {
 /// @param metadata  of the mesh; its encoding of .vtu files is ignored
 /// @param in_order_of_vtk_9  whether higher-order hexahedra have VTK 9's node order; sets the file's version
 /// @param notes     receives notes on data that .vtu files store in another form
-[[nodiscard]] std::string mold_of(std::vector<DataArray> arrays, vtk::Metadata metadata,
+[[nodiscard]] std::string mold_of(std::vector<DataArray> arrays, vtk::VtkMetadata metadata,
                                   bool in_order_of_vtk_9, Notes& notes);
 
 }  // namespace meshorder::distributed

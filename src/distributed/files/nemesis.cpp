@@ -39,21 +39,21 @@ std::string nemesis_name(const std::string& name, Index parts, Index part) {
 namespace {
 
 using exodus::BlockRecord;
-using exodus::Metadata;
+using exodus::ExodusMetadata;
 using exodus::SetRecord;
 
 /// Attribute by which a later run recognises the files.
 constexpr std::string_view kMark = "pieces_written_by";
 constexpr std::string_view kMaker = "meshorder";
 
-const Metadata* exodus_metadata(const Mesh& mesh) {
-  return dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+const ExodusMetadata* exodus_metadata(const Mesh& mesh) {
+  return dynamic_cast<const ExodusMetadata*>(mesh.format_metadata.get());
 }
 
 // ---- the whole mesh as an Exodus II file
 
 /// Returns whether the metadata name all sets of the mesh, and the mesh has all sets and arrays they name.
-bool knows_all(const Mesh& mesh, const Metadata& metadata) {
+bool knows_all(const Mesh& mesh, const ExodusMetadata& metadata) {
   const NamedParts parts(mesh);
   const auto has_set = [&](const SetRecord& record, Association association) {
     return parts.set(record.in_mesh, association) != nullptr;
@@ -92,12 +92,12 @@ std::string bytes_of_numbers(const std::vector<std::int64_t>& values) {
 }
 
 /// Adds a dimension unless its length is 0, which netCDF takes for an unlimited one.
-void add_dimension(Metadata& metadata, std::string_view name, std::size_t length) {
+void add_dimension(ExodusMetadata& metadata, std::string_view name, std::size_t length) {
   if (length > 0) metadata.dimensions.push_back({std::string(name), length});
 }
 
 /// Adds integers along a dimension, or one integer if `dimension` is empty; nothing without values.
-void add_integers(Metadata& metadata, std::string_view name, std::string_view dimension,
+void add_integers(ExodusMetadata& metadata, std::string_view name, std::string_view dimension,
                   const std::vector<std::int64_t>& values) {
   if (values.empty()) return;
   std::vector<exodus::Dimension> dimensions;
@@ -135,7 +135,7 @@ struct MapNames {
 };
 
 /// Adds communication maps, one for each other part. A map's id is the number of that part.
-void add_maps(Metadata& metadata, const MapNames& names,
+void add_maps(ExodusMetadata& metadata, const MapNames& names,
               const std::map<Index, std::vector<std::int64_t>>& maps) {
   std::vector<std::int64_t> ids;
   std::vector<std::int64_t> ends;
@@ -191,7 +191,7 @@ SideCounts counts_of_sides(const Mesh& mesh, const SetRecord& record, const exod
 
 /// Returns the counts of members and of distribution factors of each set of nodes, then those of each set of
 /// sides.
-std::vector<std::int64_t> counts_of_sets(const Mesh& mesh, const Metadata& metadata) {
+std::vector<std::int64_t> counts_of_sets(const Mesh& mesh, const ExodusMetadata& metadata) {
   std::vector<std::int64_t> counts;
   const exodus::SideNodes nodes(mesh, metadata);
   const NamedParts parts(mesh);
@@ -236,7 +236,7 @@ struct Blocks {
 
 /// Returns the blocks of a whole mesh; none if its cells are not in blocks of the metadata or not in their
 /// order.
-Blocks blocks_of(const Mesh& mesh, const Metadata& metadata) {
+Blocks blocks_of(const Mesh& mesh, const ExodusMetadata& metadata) {
   Blocks blocks;
   const CellDivision division = exodus::divide(mesh);
   const BlockRecord* next = metadata.blocks.data();
@@ -260,7 +260,7 @@ Blocks blocks_of(const Mesh& mesh, const Metadata& metadata) {
 }
 
 /// Returns the blocks of a file that have cells.
-Blocks blocks_of(const Metadata& metadata, const std::vector<GlobalIndex>& ends) {
+Blocks blocks_of(const ExodusMetadata& metadata, const std::vector<GlobalIndex>& ends) {
   Blocks blocks;
   for (std::size_t b = 0; b < metadata.blocks.size(); ++b) {
     if (ends[b + 1] == ends[b]) continue;
@@ -300,19 +300,19 @@ class NemesisPieces {
  private:
   void count_whole();
   void write_piece(Index part, const exodus::UnfinishedFile& file);
-  [[nodiscard]] exodus::Metadata metadata_of(const Mesh& piece) const;
+  [[nodiscard]] exodus::ExodusMetadata metadata_of(const Mesh& piece) const;
   void add_numbers(Index part, Mesh& piece) const;
-  void add_load_balance(Index part, exodus::Metadata& metadata) const;
-  void add_node_maps(Index part, exodus::Metadata& metadata) const;
-  void add_element_maps(Index part, exodus::Metadata& metadata) const;
+  void add_load_balance(Index part, exodus::ExodusMetadata& metadata) const;
+  void add_node_maps(Index part, exodus::ExodusMetadata& metadata) const;
+  void add_element_maps(Index part, exodus::ExodusMetadata& metadata) const;
 
   const Communicator& communicator_;
   OrderedMesh source_;
-  const exodus::Metadata& metadata_;
+  const exodus::ExodusMetadata& metadata_;
   MeshParts parts_;
   std::vector<std::vector<BorderFacet>> borders_;
   PartCutter cutter_;
-  exodus::Metadata whole_;  ///< data on the whole mesh, the same in all pieces
+  exodus::ExodusMetadata whole_;  ///< data on the whole mesh, the same in all pieces
 };
 
 NemesisPieces::NemesisPieces(const Communicator& communicator, OrderedMesh source,
@@ -394,11 +394,11 @@ void NemesisPieces::write_piece(Index part, const exodus::UnfinishedFile& file) 
     });
   }
   add_numbers(part, piece);
-  Metadata metadata = metadata_of(piece);
+  ExodusMetadata metadata = metadata_of(piece);
   add_load_balance(part, metadata);
   add_node_maps(part, metadata);
   add_element_maps(part, metadata);
-  piece.format_metadata = std::make_shared<const Metadata>(std::move(metadata));
+  piece.format_metadata = std::make_shared<const ExodusMetadata>(std::move(metadata));
   Notes ignored;  // the same as for the whole mesh
   exodus::write(piece, file, ignored);
 }
@@ -422,8 +422,8 @@ void NemesisPieces::add_numbers(Index part, Mesh& piece) const {
 }
 
 /// Returns the metadata of a piece: those of the whole mesh, without the arrays that have no rows in it.
-Metadata NemesisPieces::metadata_of(const Mesh& piece) const {
-  Metadata metadata = metadata_;
+ExodusMetadata NemesisPieces::metadata_of(const Mesh& piece) const {
+  ExodusMetadata metadata = metadata_;
   const auto has = [&](const std::string& array) {
     return find_array(piece, array, Association::cells) != nullptr;
   };
@@ -444,7 +444,7 @@ Metadata NemesisPieces::metadata_of(const Mesh& piece) const {
 }
 
 /// Adds the lists of nodes and elements inside the part and at its border.
-void NemesisPieces::add_load_balance(Index part, Metadata& metadata) const {
+void NemesisPieces::add_load_balance(Index part, ExodusMetadata& metadata) const {
   const auto add = [&](std::size_t count, const auto& is_at_border, const Names& names) {
     std::vector<std::int64_t> internal;
     std::vector<std::int64_t> border;
@@ -468,7 +468,7 @@ void NemesisPieces::add_load_balance(Index part, Metadata& metadata) const {
 
 /// Adds the communication maps of nodes, one for each part that shares some. A map has places in the piece,
 /// sorted by the nodes' numbers in the whole mesh, so that the maps of both parts match.
-void NemesisPieces::add_node_maps(Index part, Metadata& metadata) const {
+void NemesisPieces::add_node_maps(Index part, ExodusMetadata& metadata) const {
   const auto vertices = parts_.vertices(part);
   std::vector<Index> ascending = index_range(0, index_size(vertices));
   std::sort(ascending.begin(), ascending.end(), [&](Index a, Index b) { return vertices[a] < vertices[b]; });
@@ -482,7 +482,7 @@ void NemesisPieces::add_node_maps(Index part, Metadata& metadata) const {
 }
 
 /// Adds the communication maps of elements, one for each part that shares a side with some.
-void NemesisPieces::add_element_maps(Index part, Metadata& metadata) const {
+void NemesisPieces::add_element_maps(Index part, ExodusMetadata& metadata) const {
   const auto cells = parts_.cells(part);
   std::map<Index, std::vector<std::int64_t>> maps;
   std::vector<std::int64_t> sides;
@@ -527,7 +527,7 @@ GlobalIndex write_held(const Mesh& mesh, const ShareNumbers& numbers,
                        const std::vector<GlobalIndex>& element_numbers,
                        const std::vector<GlobalIndex>& part_starts, const std::vector<std::string>& paths,
                        const std::vector<std::string>& names) {
-  const Metadata& metadata = *exodus_metadata(mesh);
+  const ExodusMetadata& metadata = *exodus_metadata(mesh);
   Blocks blocks = blocks_of(mesh, metadata);
   if (blocks.records.empty())
     throw TooLarge("pieces of Exodus II have up to 10,000 blocks of elements; give a folder for .vtu pieces");
@@ -545,7 +545,7 @@ GlobalIndex write_nemesis_pieces(const Mesh& mesh, const std::vector<GlobalIndex
                                  const std::vector<std::string>& paths, const std::vector<std::string>& names,
                                  Notes& notes) {
   const ShareNumbers numbers = ShareNumbers::of_whole(mesh);
-  const Metadata* const own = exodus_metadata(mesh);
+  const ExodusMetadata* const own = exodus_metadata(mesh);
   if (own != nullptr && !blocks_of(mesh, *own).records.empty() && knows_all(mesh, *own))
     return write_held(mesh, numbers, numbers.cells, part_starts, paths, names);
   const Held as_held = held(mesh, notes);

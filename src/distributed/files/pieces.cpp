@@ -299,7 +299,7 @@ std::vector<DataArray> field_arrays(const PieceSchema& schema) {
   TextStore store(schema.fields_alone());
   Notes ignored;
   const Mesh mesh = vtk::read_vtu(FilePath("the fields of the mesh", store), ignored);
-  return dynamic_cast<const vtk::Metadata&>(*mesh.format_metadata).fields;
+  return dynamic_cast<const vtk::VtkMetadata&>(*mesh.format_metadata).fields;
 }
 
 }  // namespace
@@ -325,7 +325,7 @@ PiecesReport write_pieces_to_vtkhdf(const Communicator& communicator, const Grid
       layout.parts.back().number = layout.names.size();
       layout.names.push_back(array.name);
     }
-    vtk::Metadata metadata;
+    vtk::VtkMetadata metadata;
     metadata.roles = schema.roles();
     metadata.fields = field_arrays(schema);
     vtkhdf::write_without_values(path, name, partitions, layout, metadata, report.notes);

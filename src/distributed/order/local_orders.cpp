@@ -64,7 +64,7 @@ Departure departing(const GlobalGraph& graph, const Curve& curve, const HaloValu
 }
 
 /// A part in the form that serial methods take: its vertices are numbered 0, 1, … along the curve.
-struct Part {
+struct LocalPart {
   std::vector<GlobalIndex> names;  ///< numbers in the whole graph, ascending
   CsrGraph graph;
   std::vector<Point> points;
@@ -73,8 +73,8 @@ struct Part {
 };
 
 /// Returns the part whose vertices are the rows `members`, ascending.
-Part part_of_rows(const Rows& rows, std::span<const Offset> members) {
-  Part part;
+LocalPart part_of_rows(const Rows& rows, std::span<const Offset> members) {
+  LocalPart part;
   part.names.reserve(members.size());
   for (const Offset row : members) part.names.push_back(rows[row][kVertex]);
   for (const Offset row : members) {
@@ -114,7 +114,7 @@ void put_interface_last(std::vector<Index>& places, const std::vector<char>& is_
 }
 
 /// Returns the new place of each vertex of a part within the part.
-std::vector<Index> places_in(const Part& part, std::string_view method, InterfacePlace interface_place,
+std::vector<Index> places_in(const LocalPart& part, std::string_view method, InterfacePlace interface_place,
                              const OrderOptions& options) {
   const Order order = in_call(options.run, [&] {
     return order_graph(method, {.graph = part.graph, .points = part.points, .pull = part.pull}, options);
@@ -164,7 +164,7 @@ PartOrders ordered_in_parts(const Communicator& communicator, const GlobalGraph&
     for (Offset row = 0; row < rows.size(); ++row)
       members[static_cast<std::size_t>(rows[row][kPart] - first_part)].push_back(row);
     for (std::size_t k = 0; k < part_count; ++k) {
-      const Part part = part_of_rows(rows, members[k]);
+      const LocalPart part = part_of_rows(rows, members[k]);
       const std::vector<Index> places = places_in(part, method, interface_place, options);
       result.interfaces[static_cast<std::size_t>(first_part) + k] =
           std::count(part.is_interface.begin(), part.is_interface.end(), 1);

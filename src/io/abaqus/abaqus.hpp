@@ -18,11 +18,11 @@ namespace meshorder::abaqus {
 
 inline constexpr std::int64_t kLargest = 999'999'999;  ///< largest number of a node or element
 
-enum class Part : std::uint8_t { text, nodes, elements };
+enum class CardKind : std::uint8_t { text, nodes, elements };
 
 /// A card of a deck.
-struct Section {
-  Part part = Part::text;
+struct DeckCard {
+  CardKind part = CardKind::text;
   /// All lines of the card, as in the file. For nodes and elements: only the keyword lines and the comments
   /// between the data lines.
   std::string text = {};
@@ -33,7 +33,7 @@ struct Section {
 
 /// The contents of a deck, in its own order.
 struct Deck {
-  std::vector<Section> sections;
+  std::vector<DeckCard> sections;
   IdMap nodes;                  ///< numbers in the order of the file
   IdMap elements;               ///< likewise, of the elements that are cells
   std::vector<EntitySet> sets;  ///< of the deck; members are positions in the file
@@ -49,15 +49,15 @@ struct Deck {
 };
 
 /// A deck, and the positions of its nodes and elements in the mesh.
-using Metadata = DeckMetadata<Deck>;
+using AbaqusMetadata = DeckMetadata<Deck>;
 
 /// Returns the deck that a mesh was read from; null if there is none or if the mesh no longer fits it. Valid
 /// as long as the mesh. O(cells).
-const Metadata* own_deck(const Mesh& mesh);
+const AbaqusMetadata* own_deck(const Mesh& mesh);
 
 Mesh read(const FilePath& path, Notes& notes);
 
 /// Writes a mesh as its deck, in the present order; notes the parts of the mesh that have no place in it.
-void write_into_deck(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes);
+void write_into_deck(const Mesh& mesh, const AbaqusMetadata& own, const FilePath& path, Notes& notes);
 
 }  // namespace meshorder::abaqus

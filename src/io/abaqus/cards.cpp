@@ -193,20 +193,35 @@ namespace {
 
 /// Which fields of a data line are nodes (n), elements (e) or neither (-). A final + repeats the last letter
 /// for all further fields.
-struct Layout {
+struct LineFields {
   std::string_view keyword;
   std::string_view fields;
 };
 
 constexpr std::array kLayouts{
-    Layout{"BOUNDARY", "n"},       Layout{"BOUNDARYF", "e"},    Layout{"CFLUX", "n"},
-    Layout{"CLOAD", "n"},          Layout{"DFLUX", "e"},        Layout{"DISTRIBUTINGCOUPLING", "n"},
-    Layout{"DLOAD", "e"},          Layout{"DSFLUX", ""},        Layout{"DSLOAD", ""},
-    Layout{"ELSET", "e+"},         Layout{"FILM", "e"},         Layout{"KINEMATICCOUPLING", "n"},
-    Layout{"MASSFLOW", "e"},       Layout{"MODELCHANGE", "e+"}, Layout{"MPC", "-n+"},
-    Layout{"NODALTHICKNESS", "n"}, Layout{"NORMAL", "en"},      Layout{"NSET", "n+"},
-    Layout{"RADIATE", "e"},        Layout{"RELEASE", "e"},      Layout{"RETAINEDNODALDOFS", "n"},
-    Layout{"SUBMODEL", "n+"},      Layout{"TEMPERATURE", "n"},
+    LineFields{"BOUNDARY", "n"},
+    LineFields{"BOUNDARYF", "e"},
+    LineFields{"CFLUX", "n"},
+    LineFields{"CLOAD", "n"},
+    LineFields{"DFLUX", "e"},
+    LineFields{"DISTRIBUTINGCOUPLING", "n"},
+    LineFields{"DLOAD", "e"},
+    LineFields{"DSFLUX", ""},
+    LineFields{"DSLOAD", ""},
+    LineFields{"ELSET", "e+"},
+    LineFields{"FILM", "e"},
+    LineFields{"KINEMATICCOUPLING", "n"},
+    LineFields{"MASSFLOW", "e"},
+    LineFields{"MODELCHANGE", "e+"},
+    LineFields{"MPC", "-n+"},
+    LineFields{"NODALTHICKNESS", "n"},
+    LineFields{"NORMAL", "en"},
+    LineFields{"NSET", "n+"},
+    LineFields{"RADIATE", "e"},
+    LineFields{"RELEASE", "e"},
+    LineFields{"RETAINEDNODALDOFS", "n"},
+    LineFields{"SUBMODEL", "n+"},
+    LineFields{"TEMPERATURE", "n"},
 };
 
 /// Keywords whose lines name no node and no element by number.
@@ -270,7 +285,7 @@ std::optional<std::string_view> fields_of(const Card& card) {
   if (has_other_file(card)) return {};
   if (with_parameter) return with_parameter;
   if (const auto fields = fields_by_parameters(card)) return fields;
-  for (const Layout& layout : kLayouts) {
+  for (const LineFields& layout : kLayouts) {
     if (layout.keyword == card.keyword) return layout.fields;
   }
   return {};
@@ -432,7 +447,7 @@ std::vector<NamedSet> named_sets(const Card& card, std::string_view lines) {
 
 std::string suggested_keyword(const Card& card) {
   std::vector<std::string> names{"EQUATION", "INITIALCONDITIONS", "ORIENTATION", "SURFACE"};
-  for (const Layout& layout : kLayouts) names.emplace_back(layout.keyword);
+  for (const LineFields& layout : kLayouts) names.emplace_back(layout.keyword);
   names.insert(names.end(), kPlain.begin(), kPlain.end());
   if (std::find(names.begin(), names.end(), card.keyword) != names.end()) return {};
   for (std::string& name : names) name.insert(0, "*");

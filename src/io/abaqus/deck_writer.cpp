@@ -24,7 +24,7 @@ namespace meshorder::abaqus {
 namespace {
 
 /// Returns whether the cells of a card's elements still have the type of the card.
-bool has_kind(const Mesh& mesh, const Metadata& metadata, const Section& section) {
+bool has_kind(const Mesh& mesh, const AbaqusMetadata& metadata, const DeckCard& section) {
   for (Index k = section.first; k < section.first + section.count; ++k) {
     const Index c = metadata.cell(k);
     if (ElementKind{mesh.cells.shapes[c], mesh.cells.vertex_count(c)} != section.kind) return false;
@@ -37,7 +37,7 @@ std::string next_word_in_capitals(std::string_view& text) { return capitals(next
 
 class DeckWriter {
  public:
-  DeckWriter(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes)
+  DeckWriter(const Mesh& mesh, const AbaqusMetadata& own, const FilePath& path, Notes& notes)
       : mesh_(mesh),
         deck_(*own.deck),
         nodes_(deck_.nodes, own.vertex_of, mesh.vertex_ids),
@@ -53,14 +53,15 @@ class DeckWriter {
     const auto after_last = [&](auto is_wanted) {
       return std::find_if(deck_.sections.rbegin(), deck_.sections.rend(), is_wanted).base();
     };
-    const auto after_mesh = after_last([](const Section& section) { return section.part != Part::text; });
-    const auto after_nodes =
-        after_last([](const Section& section) { return section.part == Part::nodes && section.count > 0; });
+    const auto after_mesh =
+        after_last([](const DeckCard& section) { return section.part != CardKind::text; });
+    const auto after_nodes = after_last(
+        [](const DeckCard& section) { return section.part == CardKind::nodes && section.count > 0; });
     for (auto section = deck_.sections.begin();; ++section) {
       if (section == after_nodes) write_sets_of_cards();
       if (section == after_mesh) write_new_sets();
       if (section == deck_.sections.end()) break;
-      if (section->part == Part::text && may_use_set_of_cards(section->text)) write_sets_of_cards();
+      if (section->part == CardKind::text && may_use_set_of_cards(section->text)) write_sets_of_cards();
       write(*section);
     }
     file_.commit();
@@ -98,19 +99,19 @@ class DeckWriter {
     }
   }
 
-  void write(const Section& section) {
+  void write(const DeckCard& section) {
     switch (section.part) {
-      case Part::nodes:
+      case CardKind::nodes:
         return write_nodes(section);
-      case Part::elements:
+      case CardKind::elements:
         return write_elements(section);
-      case Part::text:
+      case CardKind::text:
         return same_numbers_ ? out_.text(section.text) : write_renumbered(section.text);
     }
   }
 
   /// Returns the positions in the mesh of a card's items, ascending.
-  static std::vector<Index> places_of(const Section& section, const FileNumbers& numbers) {
+  static std::vector<Index> places_of(const DeckCard& section, const FileNumbers& numbers) {
     std::vector<Index> places(static_cast<std::size_t>(section.count));
     std::iota(places.begin(), places.end(), section.first);
     for (Index& place : places) place = numbers.place(place);
@@ -126,7 +127,7 @@ class DeckWriter {
 
   /// Writes as many nodes as the card had, in the order of the mesh. If these are no longer the card's own
   /// nodes, its NSET is left out, and `write_sets_of_cards` writes the set.
-  void write_nodes(const Section& section) {
+  void write_nodes(const DeckCard& section) {
     if (has_its_nodes(section)) {
       out_.text(section.text);
     } else {
@@ -147,7 +148,7 @@ class DeckWriter {
         });
   }
 
-  [[nodiscard]] bool has_its_nodes(const Section& section) const {
+  [[nodiscard]] bool has_its_nodes(const DeckCard& section) const {
     const std::vector<Index> places = places_of(section, nodes_);
     return places.empty() ||
            (places.front() == section.first && index_size(places) == places.back() + 1 - section.first);
@@ -174,7 +175,7 @@ class DeckWriter {
     words_of_sets_.clear();
   }
 
-  void write_elements(const Section& section) {
+  void write_elements(const DeckCard& section) {
     out_.text(section.text);
     const std::vector<Index> places = places_of(section, elements_);
     out_.elements(section.count, [&](DeckOutput::Row& row, Index i) {
@@ -259,24 +260,24 @@ class DeckWriter {
   TextByPlace more_of_nodes_;
   TextByPlace more_of_elements_;
   bool same_numbers_;
-  std::vector<std::pair<std::string, const Section*>> sets_of_cards_;  ///< sets still to be written
+  std::vector<std::pair<std::string, const DeckCard*>> sets_of_cards_;  ///< sets still to be written
   std::unordered_set<std::string> words_of_sets_;  ///< first word of each of their names, in capitals
 };
 
 }  // namespace
 
-const Metadata* own_deck(const Mesh& mesh) {
-  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+const AbaqusMetadata* own_deck(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const AbaqusMetadata*>(mesh.format_metadata.get());
   if (own == nullptr || !own->whole) return nullptr;
   const Deck& deck = *own->deck;
   if (deck.nodes.size() != mesh.vertex_count() || deck.elements.size() != mesh.cell_count()) return nullptr;
-  const bool fits = std::all_of(deck.sections.begin(), deck.sections.end(), [&](const Section& section) {
-    return section.part != Part::elements || has_kind(mesh, *own, section);
+  const bool fits = std::all_of(deck.sections.begin(), deck.sections.end(), [&](const DeckCard& section) {
+    return section.part != CardKind::elements || has_kind(mesh, *own, section);
   });
   return fits ? own : nullptr;
 }
 
-void write_into_deck(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes) {
+void write_into_deck(const Mesh& mesh, const AbaqusMetadata& own, const FilePath& path, Notes& notes) {
   DeckWriter(mesh, own, path, notes).write();
   for (const DataArray& array : mesh.data) note_array_unsupported(array, "Abaqus", notes);
 }

@@ -134,10 +134,10 @@ class DeckReader {
  private:
   // ---- cards
 
-  Section& begin_section(Part part, std::string text, std::int64_t line) {
+  DeckCard& begin_section(CardKind part, std::string text, std::int64_t line) {
     lines_of_sections_.push_back(line);
     files_of_sections_.push_back(file_number());
-    Section& section = deck_->sections.emplace_back();
+    DeckCard& section = deck_->sections.emplace_back();
     section.part = part;
     section.text = std::move(text);
     return section;
@@ -145,8 +145,8 @@ class DeckReader {
 
   /// Takes a line and appends it to the text of the last card.
   void add_line() {
-    if (deck_->sections.empty() || deck_->sections.back().part != Part::text) {
-      begin_section(Part::text, {}, lines_.at().line());
+    if (deck_->sections.empty() || deck_->sections.back().part != CardKind::text) {
+      begin_section(CardKind::text, {}, lines_.at().line());
     }
     deck_->sections.back().text += lines_.take();
   }
@@ -173,7 +173,7 @@ class DeckReader {
     if (card.keyword == "NODE") return read_nodes(card, std::move(text));
     if (card.keyword == "ELEMENT") return read_elements(card, std::move(text));
     follow_parts(card);
-    begin_section(Part::text, std::move(text), line_);
+    begin_section(CardKind::text, std::move(text), line_);
     if (card.keyword == "NSET" || card.keyword == "ELSET") {
       return read_set(card, {file, line_});
     }
@@ -249,7 +249,7 @@ class DeckReader {
 
   /// Makes a section of the comments after the last data line, if there are any.
   void end_data(std::string comments) {
-    if (!comments.empty()) begin_section(Part::text, std::move(comments), lines_.at().line());
+    if (!comments.empty()) begin_section(CardKind::text, std::move(comments), lines_.at().line());
   }
 
   /// Takes the number of a node or element from the front of a line.
@@ -284,7 +284,7 @@ class DeckReader {
     const std::string set(card.value("NSET"));
     text = with_input(card, std::move(text));
     const std::size_t place = deck_->sections.size();
-    begin_section(Part::nodes, std::move(text), line_).first = mesh_.vertex_count();
+    begin_section(CardKind::nodes, std::move(text), line_).first = mesh_.vertex_count();
     std::string comments;
     std::string_view line;
     while (peek_data(line, comments)) {
@@ -293,7 +293,7 @@ class DeckReader {
       read_node(line);
       (void)lines_.take();
     }
-    Section& section = deck_->sections[place];
+    DeckCard& section = deck_->sections[place];
     section.count = mesh_.vertex_count() - section.first;
     if (!set.empty()) sets_.add_block(Association::vertices, set, section.first, section.count);
     end_data(std::move(comments));
@@ -354,7 +354,7 @@ class DeckReader {
     if (!kind) return keep_elements(type, card, std::move(text));
     text = with_input(card, std::move(text));
     const std::size_t place = deck_->sections.size();
-    Section& begun = begin_section(Part::elements, std::move(text), line_);
+    DeckCard& begun = begin_section(CardKind::elements, std::move(text), line_);
     begun.first = mesh_.cell_count();
     begun.kind = *kind;
     std::string comments;
@@ -364,7 +364,7 @@ class DeckReader {
       if (read_regular_elements(*kind)) continue;
       read_element(*kind, type, line, deck_->sections[place].text);
     }
-    Section& section = deck_->sections[place];
+    DeckCard& section = deck_->sections[place];
     section.count = mesh_.cell_count() - section.first;
     if (section.count > 0) mesh_.cell_blocks.push_back(section.first);
     if (!set.empty()) sets_.add_block(Association::cells, set, section.first, section.count);
@@ -463,7 +463,7 @@ class DeckReader {
   /// Keeps the lines of elements of an unknown type as text.
   void keep_elements(const std::string& type, const Card& card, std::string text) {
     text = with_input(card, std::move(text));
-    begin_section(Part::text, std::move(text), line_);
+    begin_section(CardKind::text, std::move(text), line_);
     deck_->unknown.push_back(fmt::format("elements of type {} (line {})", shown(type), line_));
     deck_->contents.push_back(fmt::format("elements of type {}", shown(type)));
     if (other_types_.size() < kShownTypes)
@@ -538,7 +538,7 @@ class DeckReader {
     if (!lines_.included().empty()) {
       notes_.push_back(fmt::format("included files are now part of the deck: {}", join(lines_.included())));
     }
-    auto metadata = std::make_shared<Metadata>();
+    auto metadata = std::make_shared<AbaqusMetadata>();
     metadata->deck = deck_;
     mesh_.format_metadata = std::move(metadata);
   }
@@ -563,8 +563,8 @@ class DeckReader {
     std::vector<std::string> titles;
     std::set<std::string> known_titles;
     std::vector<std::string> surfaces;
-    for (const Section& section : deck_->sections) {
-      if (section.part != Part::text || !is_keyword(trimmed(section.text))) continue;
+    for (const DeckCard& section : deck_->sections) {
+      if (section.part != CardKind::text || !is_keyword(trimmed(section.text))) continue;
       const Card card = parse_card(section.text);
       if (card.keyword == "SURFACE") surfaces.push_back(fmt::format("'{}'", shown(card.value("NAME"))));
       const bool elsewhere =
@@ -581,8 +581,8 @@ class DeckReader {
   /// Lists the cards that may name nodes or elements in places that `references` does not know.
   void find_unknown_cards() {
     for (std::size_t i = 0; i < deck_->sections.size(); ++i) {
-      const Section& section = deck_->sections[i];
-      if (section.part != Part::text || !is_keyword(trimmed(section.text))) continue;
+      const DeckCard& section = deck_->sections[i];
+      if (section.part != CardKind::text || !is_keyword(trimmed(section.text))) continue;
       const Card card = parse_card(section.text);
       const bool is_set = card.keyword == "NSET" || card.keyword == "ELSET";
       if (card.keyword == "ELEMENT" || (is_set && !has_other_file(card))) continue;
@@ -605,8 +605,8 @@ class DeckReader {
   /// Notes the nodes, elements and sets that cards name but the deck does not have.
   void find_dead_references() {
     for (std::size_t i = 0; i < deck_->sections.size(); ++i) {
-      const Section& section = deck_->sections[i];
-      if (section.part != Part::text || !is_keyword(trimmed(section.text))) continue;
+      const DeckCard& section = deck_->sections[i];
+      if (section.part != CardKind::text || !is_keyword(trimmed(section.text))) continue;
       const Card card = parse_card(section.text);
       if (card.keyword == "NSET" || card.keyword == "ELSET" || card.keyword == "ELEMENT") continue;
       const std::string which =

@@ -582,7 +582,7 @@ class AttachmentReader {
   }
 
   Reading& reading_;
-  Metadata& metadata_;
+  CgnsMetadata& metadata_;
   int zone_ = 0;
   bool has_named_part_ = false;  // a ZoneSubRegion_t of the zone has data for a list of another node
   std::map<std::pair<int, Association>, std::shared_ptr<const std::vector<Index>>> rows_;

@@ -149,7 +149,7 @@ struct Field {
 };
 
 /// The nodes of a file, without the values that the mesh holds, and the fields that these values belong to.
-struct Metadata final : FormatMetadata {
+struct CgnsMetadata final : FormatMetadata {
   std::shared_ptr<const Tree> tree;
   int cell_dimension = 3;
   bool has_labels = false;  ///< sections hold the labels of their cells
@@ -192,15 +192,15 @@ std::string name_of_label(const ElementType& type, std::int64_t label);
 inline constexpr std::string_view kSectionValues = "CellValues";
 
 /// Returns the metadata of a mesh that was read from CGNS, null for other meshes.
-const Metadata* own_metadata(const Mesh& mesh);
+const CgnsMetadata* own_metadata(const Mesh& mesh);
 
 /// Makes the nodes of a file for a mesh of another format: one zone with a section for each type and label.
 /// Sets and arrays are left to `add_missing`.
-std::shared_ptr<Metadata> layout_of(const Mesh& mesh);
+std::shared_ptr<CgnsMetadata> layout_of(const Mesh& mesh);
 
 /// Adds nodes to `metadata` for the arrays and sets that have no fields or lists there. Notes the arrays and
 /// sets that CGNS has no place for.
-void add_missing(const Mesh& mesh, Metadata& metadata, Notes& notes);
+void add_missing(const Mesh& mesh, CgnsMetadata& metadata, Notes& notes);
 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);

@@ -13,7 +13,7 @@
 
 namespace meshorder::cgns {
 
-Filler::Filler(const Mesh& mesh, const Metadata& metadata)
+Filler::Filler(const Mesh& mesh, const CgnsMetadata& metadata)
     : mesh_(mesh), metadata_(metadata), polyhedra_(metadata) {
   place_vertices();
   place_cells();

@@ -13,7 +13,7 @@ namespace meshorder::cgns {
 /// Fills the nodes of a file with their values, in the present order of the mesh.
 class Filler {
  public:
-  Filler(const Mesh& mesh, const Metadata& metadata);
+  Filler(const Mesh& mesh, const CgnsMetadata& metadata);
   /// Returns whether the vertices are in the order of their zones.
   [[nodiscard]] bool has_vertices_in_order() const;
   void fill(Node& node);
@@ -59,7 +59,7 @@ class Filler {
   void fill_parents(Node& node, const Parents& parents) const;
 
   const Mesh& mesh_;
-  const Metadata& metadata_;
+  const CgnsMetadata& metadata_;
   PolyhedraOrder polyhedra_;
   std::vector<std::vector<Index>> vertices_of_zone_;
   std::vector<Index> number_of_vertex_;  ///< in its zone, from 1; empty for one zone

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kLongestName = 32;
 
-int bind(Metadata& metadata, Field field) {
+int bind(CgnsMetadata& metadata, Field field) {
   metadata.fields.push_back(std::move(field));
   return static_cast<int>(metadata.fields.size()) - 1;
 }
@@ -86,12 +86,12 @@ bool needs_three_coordinates(const Mesh& mesh, int cell_dimension) {
          std::any_of(mesh.points.begin(), mesh.points.end(), [](const Point& p) { return p[2] != 0; });
 }
 
-class Layout {
+class MetadataMaker {
  public:
-  explicit Layout(const Mesh& mesh) : mesh_(mesh) {}
+  explicit MetadataMaker(const Mesh& mesh) : mesh_(mesh) {}
 
-  std::shared_ptr<Metadata> make() {
-    Metadata& metadata = *metadata_;
+  std::shared_ptr<CgnsMetadata> make() {
+    CgnsMetadata& metadata = *metadata_;
     metadata.cell_dimension = std::max(1, mesh_.cells.highest_dimension());
     metadata.zones.push_back({"Zone", "I4", 0});
     const int coordinates = needs_three_coordinates(mesh_, metadata.cell_dimension) ? 3 : 2;
@@ -187,7 +187,7 @@ class Layout {
   }
 
   const Mesh& mesh_;
-  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  std::shared_ptr<CgnsMetadata> metadata_ = std::make_shared<CgnsMetadata>();
 };
 
 // ---- arrays and sets that the file did not have
@@ -226,7 +226,7 @@ std::string_view location_name(int dimension, int cell_dimension) {
 
 class Addition {
  public:
-  Addition(const Mesh& mesh, Metadata& metadata, Notes& notes)
+  Addition(const Mesh& mesh, CgnsMetadata& metadata, Notes& notes)
       : mesh_(mesh), metadata_(metadata), notes_(notes), tree_(*metadata.tree) {
     for (Node& base : tree_.root.children) {
       if (base.label != "CGNSBase_t") continue;
@@ -480,7 +480,7 @@ class Addition {
   }
 
   const Mesh& mesh_;
-  Metadata& metadata_;
+  CgnsMetadata& metadata_;
   Notes& notes_;
   Tree tree_;
   std::vector<Node*> zones_;
@@ -499,9 +499,9 @@ std::string name_of_label(const ElementType& type, std::int64_t label) {
   return fmt::format("{}_{}", type.name, label);
 }
 
-std::shared_ptr<Metadata> layout_of(const Mesh& mesh) { return Layout(mesh).make(); }
+std::shared_ptr<CgnsMetadata> layout_of(const Mesh& mesh) { return MetadataMaker(mesh).make(); }
 
-void add_missing(const Mesh& mesh, Metadata& metadata, Notes& notes) {
+void add_missing(const Mesh& mesh, CgnsMetadata& metadata, Notes& notes) {
   Addition(mesh, metadata, notes).add();
 }
 

@@ -13,7 +13,7 @@ namespace {
 /// Compares cells with the corners of the faces of polyhedra.
 class CornersOfPolyhedra {
  public:
-  CornersOfPolyhedra(const Metadata& metadata, Index vertex_count)
+  CornersOfPolyhedra(const CgnsMetadata& metadata, Index vertex_count)
       : metadata_(metadata), polyhedron_with_(static_cast<std::size_t>(vertex_count), -1) {}
 
   /// Returns whether the vertices of a cell are the corners of a polyhedron's faces, each once. Call it only
@@ -34,13 +34,13 @@ class CornersOfPolyhedra {
   }
 
  private:
-  const Metadata& metadata_;
+  const CgnsMetadata& metadata_;
   std::vector<Index> polyhedron_with_;  ///< for each vertex, the last polyhedron that has it as a corner
 };
 
 }  // namespace
 
-bool polyhedra_fit(const Mesh& mesh, const Metadata& metadata) {
+bool polyhedra_fit(const Mesh& mesh, const CgnsMetadata& metadata) {
   if (metadata.polyhedra == nullptr) return true;
   Index cells = 0;
   for (Index p = 0; p < index_size(metadata.cell_of_polygon); ++p) {
@@ -66,7 +66,7 @@ bool polyhedra_fit(const Mesh& mesh, const Metadata& metadata) {
   return cells == wanted;
 }
 
-PolyhedraOrder::PolyhedraOrder(const Metadata& metadata)
+PolyhedraOrder::PolyhedraOrder(const CgnsMetadata& metadata)
     : metadata_(metadata), polygons_(metadata.sections.size()), ranks_(metadata.cell_of_polygon.size(), -1) {
   if (ranks_.empty()) return;
   const Polyhedra& polyhedra = *metadata.polyhedra;

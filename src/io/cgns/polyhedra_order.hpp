@@ -12,7 +12,7 @@ namespace meshorder::cgns {
 
 /// Returns whether the polygons and polyhedra of the metadata are cells of the mesh with the same vertices.
 /// O(size of the mesh).
-bool polyhedra_fit(const Mesh& mesh, const Metadata& metadata);
+bool polyhedra_fit(const Mesh& mesh, const CgnsMetadata& metadata);
 
 /// The polygons and polyhedra of a file in their new order.
 ///
@@ -23,7 +23,7 @@ bool polyhedra_fit(const Mesh& mesh, const Metadata& metadata);
 class PolyhedraOrder {
  public:
   /// `metadata` must outlive this object and fit its mesh, see `polyhedra_fit`. O(polygons · log polygons).
-  explicit PolyhedraOrder(const Metadata& metadata);
+  explicit PolyhedraOrder(const CgnsMetadata& metadata);
 
   /// Returns the polygons of a section in their new order.
   [[nodiscard]] const std::vector<Index>& polygons_of(int section) const { return polygons_[section]; }
@@ -44,7 +44,7 @@ class PolyhedraOrder {
   void order_section(int section, const std::vector<std::pair<Index, Index>>& sides, bool are_moved);
   [[nodiscard]] int section_of(Index polygon) const;
 
-  const Metadata& metadata_;
+  const CgnsMetadata& metadata_;
   std::vector<std::vector<Index>> polygons_;  ///< by section
   std::vector<Index> ranks_;                  ///< by polygon
   std::vector<Index> polyhedron_of_cell_;     ///< −1: the cell is not a polyhedron

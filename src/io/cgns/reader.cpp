@@ -246,7 +246,7 @@ class MeshReader {
 
   void read_section(ZonePlaces& zone, FoundSection& found, PolyhedraReader& polyhedra) {
     Mesh& mesh = reading_.mesh;
-    Metadata& metadata = *reading_.metadata;
+    CgnsMetadata& metadata = *reading_.metadata;
     const auto s = static_cast<int>(metadata.sections.size());
     Node* const connectivity = found.node->child("ElementConnectivity");
     if (connectivity == nullptr)

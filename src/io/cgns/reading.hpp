@@ -50,7 +50,7 @@ struct Reading {
   Notes& notes;
   Mesh mesh = {};
   Tree tree = {};
-  std::shared_ptr<Metadata> metadata = std::make_shared<Metadata>();
+  std::shared_ptr<CgnsMetadata> metadata = std::make_shared<CgnsMetadata>();
   std::vector<ZonePlaces> zones = {};
   std::vector<Piece> pieces = {};
   std::shared_ptr<Polyhedra> polyhedra = std::make_shared<Polyhedra>();

@@ -25,7 +25,7 @@ struct Node {
   std::vector<std::int64_t> dimensions = {};  ///< the first one runs fastest
   std::string bytes = {};                     ///< values in the machine's byte order
   std::vector<Node> children = {};
-  int field = -1;  ///< index in `Metadata::fields` of the field with the values; −1: they are in `bytes`
+  int field = -1;  ///< index in `CgnsMetadata::fields` of the field with the values; −1: they are in `bytes`
 
   /// Returns the number of values.
   [[nodiscard]] std::uint64_t size() const;

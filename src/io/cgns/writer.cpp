@@ -62,7 +62,7 @@ std::vector<Index> unique_members(const std::vector<Index>& members) {
 }
 
 /// Returns whether the vertices, the cells and their types still agree with the metadata.
-bool still_fits(const Mesh& mesh, const Metadata& metadata) {
+bool still_fits(const Mesh& mesh, const CgnsMetadata& metadata) {
   if (index_size(metadata.section_of_cell) != mesh.cell_count()) return false;
   if (!metadata.zone_of_vertex.empty() && index_size(metadata.zone_of_vertex) != mesh.vertex_count()) {
     return false;
@@ -82,7 +82,7 @@ bool still_fits(const Mesh& mesh, const Metadata& metadata) {
 
 /// Updates the lists whose sets have changed in the mesh, and marks them as shortened. Clears the lists whose
 /// sets are gone.
-void take_sets(const Mesh& mesh, Metadata& metadata) {
+void take_sets(const Mesh& mesh, CgnsMetadata& metadata) {
   for (PointList& list : metadata.lists) {
     if (list.set.empty()) continue;
     const auto set = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const EntitySet& one) {
@@ -108,7 +108,7 @@ void take_sets(const Mesh& mesh, Metadata& metadata) {
 /// The fields with the values of an array, and the vertices or cells that they cover.
 class ArrayFields {
  public:
-  explicit ArrayFields(const Metadata& metadata) : metadata_(metadata) {}
+  explicit ArrayFields(const CgnsMetadata& metadata) : metadata_(metadata) {}
 
   void add(const Field& field) {
     if (field.section >= 0) {
@@ -139,14 +139,14 @@ class ArrayFields {
                                      dimension(mesh.cells.shapes[item]) == metadata_.cell_dimension);
   }
 
-  const Metadata& metadata_;
+  const CgnsMetadata& metadata_;
   std::set<int> zones_;
   std::set<int> sections_;
   std::unordered_set<Index> listed_;
 };
 
 /// Releases the fields of each array that no longer fits into its fields.
-void release_arrays(const Mesh& mesh, Metadata& metadata) {
+void release_arrays(const Mesh& mesh, CgnsMetadata& metadata) {
   std::map<std::pair<Association, std::string>, ArrayFields> by_array;
   for (const Field& field : metadata.fields) {
     if (field.role != Field::Role::values || field.has_left) continue;
@@ -167,7 +167,7 @@ void release_arrays(const Mesh& mesh, Metadata& metadata) {
 /// members, and arrays that are gone. Also removes data in the order of a list that changed, with a note.
 class Pruner {
  public:
-  Pruner(const Metadata& metadata, const Filler& filler, Notes& notes)
+  Pruner(const CgnsMetadata& metadata, const Filler& filler, Notes& notes)
       : metadata_(metadata), filler_(filler), notes_(notes) {}
 
   void prune(Node& node) const {
@@ -247,7 +247,7 @@ class Pruner {
     return nullptr;
   }
 
-  const Metadata& metadata_;
+  const CgnsMetadata& metadata_;
   const Filler& filler_;
   Notes& notes_;
 };
@@ -255,7 +255,7 @@ class Pruner {
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
   const ElementType* const type = element_type_of(shape, vertices);
   constexpr int kLastOfSecondOrder = 21;
-  const Metadata* const own = own_metadata(mesh);
+  const CgnsMetadata* const own = own_metadata(mesh);
   if (type == nullptr) {
     return own != nullptr && ((shape == Shape::polygon && !own->cell_of_polygon.empty()) ||
                               (shape == Shape::polyhedron && !own->cell_of_polyhedron.empty()));
@@ -270,13 +270,13 @@ Permutation places(const Mesh& mesh, std::vector<Index>& blocks) {
 
 }  // namespace
 
-const Metadata* own_metadata(const Mesh& mesh) {
-  return dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+const CgnsMetadata* own_metadata(const Mesh& mesh) {
+  return dynamic_cast<const CgnsMetadata*>(mesh.format_metadata.get());
 }
 
-std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> vertices,
-                                                      std::span<const Index> cells) const {
-  auto result = std::make_shared<Metadata>(*this);
+std::shared_ptr<const FormatMetadata> CgnsMetadata::moved(std::span<const Index> vertices,
+                                                          std::span<const Index> cells) const {
+  auto result = std::make_shared<CgnsMetadata>(*this);
   for (PointList& list : result->lists) {
     const std::span<const Index> places = list.association == Association::vertices ? vertices : cells;
     if (places.empty()) continue;
@@ -303,10 +303,10 @@ std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> ver
 }
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  const Metadata* const own = own_metadata(mesh);
-  std::shared_ptr<Metadata> metadata;
+  const CgnsMetadata* const own = own_metadata(mesh);
+  std::shared_ptr<CgnsMetadata> metadata;
   if (own != nullptr && still_fits(mesh, *own)) {
-    metadata = std::make_shared<Metadata>(*own);
+    metadata = std::make_shared<CgnsMetadata>(*own);
     take_sets(mesh, *metadata);
     release_arrays(mesh, *metadata);
   } else {

@@ -11,7 +11,7 @@
 namespace meshorder::exodus {
 
 CellDivision divide(const Mesh& mesh) {
-  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  const auto* const own = dynamic_cast<const ExodusMetadata*>(mesh.format_metadata.get());
   if (own == nullptr) return divide_cells(mesh, {.sets = true});
   // if the file already has 64-bit ids, its kind of netCDF can hold them
   const bool has_wide_labels =
@@ -20,7 +20,7 @@ CellDivision divide(const Mesh& mesh) {
   return divide_cells(mesh, {.wide_labels = has_wide_labels});
 }
 
-SideNodes::SideNodes(const Mesh& mesh, const Metadata& metadata)
+SideNodes::SideNodes(const Mesh& mesh, const ExodusMetadata& metadata)
     : mesh_(mesh), labels_(labels_of(mesh, Association::cells).values) {
   for (const BlockRecord& block : metadata.blocks) {
     if (block.nodes > 0) types_.try_emplace({block.label, block.shape, block.nodes}, block.type);

@@ -152,7 +152,7 @@ inline constexpr std::size_t kElementSets = 2;
 std::string title(const SetKind& kind, std::string_view in_mesh);
 
 /// Data of a file beyond the mesh.
-struct Metadata final : FormatMetadata {
+struct ExodusMetadata final : FormatMetadata {
   Storage storage{0};
   std::vector<Attribute> attributes;  ///< of the file
   std::vector<Dimension> dimensions;  ///< dimensions whose lengths do not depend on the mesh
@@ -227,7 +227,7 @@ CellDivision divide(const Mesh& mesh);
 class SideNodes {
  public:
   /// @param metadata  gives the types of blocks; `mesh` must outlive this object. O(cells)
-  SideNodes(const Mesh& mesh, const Metadata& metadata);
+  SideNodes(const Mesh& mesh, const ExodusMetadata& metadata);
 
   /// Returns the number of nodes of side `side`, counted from 1; 0 if there is none. O(log blocks).
   [[nodiscard]] int count(Index cell, int side) const;

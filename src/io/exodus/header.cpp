@@ -131,7 +131,7 @@ class HeaderReader {
     return bytes;
   }
 
-  struct Part {
+  struct VariablePart {
     std::string name;
     std::uint64_t begin;
     std::uint64_t bytes;
@@ -140,11 +140,11 @@ class HeaderReader {
 
   void read_variables() {
     const std::uint64_t variables = list(11, 28, "variables");
-    std::vector<Part> parts;
+    std::vector<VariablePart> parts;
     std::uint64_t record = 0;
     std::uint64_t record_variables = 0;
     for (std::uint64_t i = 0; i < variables; ++i) {
-      Part part{text(), 0, 0, false};
+      VariablePart part{text(), 0, 0, false};
       const std::uint64_t rank = count();
       if (rank > lengths_.size() + 1024)
         fail(part.name + " has too many dimensions", "the file may be damaged");
@@ -162,7 +162,7 @@ class HeaderReader {
       }
       parts.push_back(std::move(part));
     }
-    for (const Part& part : parts) {
+    for (const VariablePart& part : parts) {
       // the records of a single variable follow each other without gaps
       const std::uint64_t step = record_variables == 1 ? part.bytes : record;
       if (part.in_records && (records_ == 0 || part.bytes == 0)) continue;

@@ -154,7 +154,7 @@ void read_counts(Reading& reading) {
 
 void read_points(Reading& reading) {
   const NcInput& file = reading.file;
-  Metadata& metadata = *reading.metadata;
+  ExodusMetadata& metadata = *reading.metadata;
   std::vector<Point>& points = reading.part.mesh.points;
   const auto nodes = static_cast<std::size_t>(reading.nodes);
   const auto dimension = static_cast<std::size_t>(metadata.coordinates);
@@ -295,7 +295,7 @@ void read_attributes(Reading& reading, std::size_t b, std::map<std::string, Attr
 
 /// Gives the cells labels: the blocks' ids, or the values of a property that holds labels.
 void label_cells(Reading& reading) {
-  Metadata& metadata = *reading.metadata;
+  ExodusMetadata& metadata = *reading.metadata;
   auto& names = metadata.block_properties;
   const auto property = std::find(names.begin(), names.end(), kLabelProperty);
   if (property != names.end()) {
@@ -383,7 +383,7 @@ void read_block(Reading& reading, std::size_t b, const Variable* connect) {
 /// Reads the records of the blocks, without elements.
 void read_blocks(Reading& reading) {
   const NcInput& file = reading.file;
-  Metadata& metadata = *reading.metadata;
+  ExodusMetadata& metadata = *reading.metadata;
   const std::size_t count = file.count("num_el_blk");
   const std::vector<std::int64_t> ids = read_ids(reading, "eb_prop1", count);
   metadata.names_blocks = file.find("eb_names") != nullptr;
@@ -484,7 +484,7 @@ void read_named_maps(Reading& reading, const std::string& word, const char* pref
 void read_maps(Reading& reading) {
   constexpr const char* kNodeNumbers = "node_num_map";
   constexpr const char* kElementNumbers = "elem_num_map";
-  Metadata& metadata = *reading.metadata;
+  ExodusMetadata& metadata = *reading.metadata;
   MeshPart& part = reading.part;
   part.mesh.vertex_ids =
       read_numbers(reading, kNodeNumbers, Association::vertices, metadata.has_node_numbers);
@@ -526,7 +526,7 @@ bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension)
 /// Keeps the variables and dimensions that are not understood, unless they depend on the order of the mesh.
 void keep_others(Reading& reading) {
   const NcInput& file = reading.file;
-  Metadata& metadata = *reading.metadata;
+  ExodusMetadata& metadata = *reading.metadata;
   std::vector<std::string> lost;
   std::set<int> used;
   for (const Variable& variable : file.variables()) {
@@ -586,7 +586,7 @@ void read_steps(Reading& reading) {
 
 /// Reads the sizes of the mesh and its blocks, but no values.
 void read_header(Reading& reading) {
-  Metadata& metadata = *reading.metadata;
+  ExodusMetadata& metadata = *reading.metadata;
   metadata.storage = reading.file.storage();
   const std::size_t given = std::max(reading.file.length("len_name"), reading.file.length("len_string"));
   metadata.name_length = std::clamp<std::size_t>(given, 33, 1024);

@@ -17,7 +17,7 @@ namespace meshorder::exodus {
 struct Reading {
   /// @param wanted  the ranges to read; null: all. Must outlive this object
   Reading(const FilePath& path, const MeshRanges* wanted, Notes& warnings)
-      : file(path), ranges_wanted(wanted), metadata(std::make_shared<Metadata>()), notes(warnings) {}
+      : file(path), ranges_wanted(wanted), metadata(std::make_shared<ExodusMetadata>()), notes(warnings) {}
 
   /// Returns the variable of that name, null if there is none, and marks it as understood.
   const Variable* take(const std::string& name);
@@ -54,7 +54,7 @@ struct Reading {
   NcInput file;
   const MeshRanges* ranges_wanted;
   MeshPart part;
-  std::shared_ptr<Metadata> metadata;
+  std::shared_ptr<ExodusMetadata> metadata;
   Notes& notes;
   std::set<std::string> taken;
   Index nodes = 0;                   ///< of the whole mesh

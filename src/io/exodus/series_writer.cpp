@@ -60,7 +60,7 @@ class SeriesPlanner {
   SeriesPlanner(Writing& writing, Association association) : writing_(writing), association_(association) {}
 
   std::vector<SeriesPlan> plans() && {
-    const Metadata& of_file = writing_.metadata;
+    const ExodusMetadata& of_file = writing_.metadata;
     for (const Series& series : association_ == Association::vertices ? of_file.nodal : of_file.elements) {
       add(series);
     }

@@ -498,7 +498,7 @@ std::string name_or_number(const std::string& name, std::size_t v) {
 
 void read_nodal(Reading& reading) {
   const NcInput& file = reading.file;
-  Metadata& metadata = *reading.metadata;
+  ExodusMetadata& metadata = *reading.metadata;
   const auto nodes = static_cast<std::size_t>(reading.nodes);
   const MeshRange own = reading.part.ranges.vertices;
   const auto first = static_cast<std::size_t>(own.first);
@@ -592,7 +592,7 @@ ElementVariable find_element_variable(Reading& reading, std::size_t v, const std
 
 void read_elemental(Reading& reading) {
   const NcInput& file = reading.file;
-  Metadata& metadata = *reading.metadata;
+  ExodusMetadata& metadata = *reading.metadata;
   const std::size_t count = file.count("num_elem_var");
   const std::vector<std::string> names = reading.take_names("name_elem_var", count);
   const std::size_t blocks = metadata.blocks.size();

@@ -101,8 +101,8 @@ std::vector<std::int64_t> whole_values(const Values& values) {
 
 namespace {
 
-const Metadata* own_metadata(const Mesh& mesh) {
-  return dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+const ExodusMetadata* own_metadata(const Mesh& mesh) {
+  return dynamic_cast<const ExodusMetadata*>(mesh.format_metadata.get());
 }
 
 Attribute integer_attribute(std::string name, std::int32_t value) {
@@ -118,9 +118,9 @@ bool is_large(const Mesh& mesh) {
 }
 
 /// Returns the metadata of a new file, for a mesh of another format.
-Metadata new_metadata(const Mesh& mesh) {
+ExodusMetadata new_metadata(const Mesh& mesh) {
   constexpr float kVersion = 7.14F;
-  Metadata result;
+  ExodusMetadata result;
   result.storage = plain_storage(is_large(mesh));
   result.coordinates = mesh.dimension;
   result.attributes = {
@@ -354,7 +354,7 @@ void write_attributes_of_file(Writing& writing, const std::vector<std::string>& 
 
 }  // namespace
 
-std::vector<std::string> Metadata::contents() const {
+std::vector<std::string> ExodusMetadata::contents() const {
   std::vector<std::string> result;
   const auto count = [&](std::size_t number, std::string_view one, std::string_view many) {
     if (number > 0) result.push_back(fmt::format("{} {}", number, number == 1 ? one : many));
@@ -387,8 +387,8 @@ namespace {
 /// Writes a mesh to a path, on disk or in a store, or to a file that the caller puts in place.
 template <class Target>
 void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
-  const Metadata* const own = own_metadata(mesh);
-  Metadata metadata = own != nullptr ? *own : new_metadata(mesh);
+  const ExodusMetadata* const own = own_metadata(mesh);
+  ExodusMetadata metadata = own != nullptr ? *own : new_metadata(mesh);
   NcOutput file(target, metadata.storage);
   Writing writing(mesh, metadata, file, notes);
 
@@ -455,7 +455,7 @@ void write_to(const Target& target, const Mesh& mesh, Notes& notes) {
 
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
   if (!type_of(shape, vertices).empty()) return true;
-  const Metadata* const own = own_metadata(mesh);
+  const ExodusMetadata* const own = own_metadata(mesh);
   return own != nullptr && std::any_of(own->blocks.begin(), own->blocks.end(), [&](const BlockRecord& block) {
            return block.shape == shape && block.nodes == vertices;
          });
@@ -463,7 +463,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
 
 /// Returns why a piece of a decomposed mesh cannot be written: its communication maps would become wrong.
 std::string conflict(const Mesh& mesh) {
-  const Metadata* const own = own_metadata(mesh);
+  const ExodusMetadata* const own = own_metadata(mesh);
   if (own == nullptr || own->piece.empty()) return {};
   return "Exodus cannot hold " + own->piece +
          " in another order, as it is a piece of a decomposed mesh: order the whole mesh before it is "

@@ -25,7 +25,7 @@ struct BlockPlan {
 
 /// A file that is being written, and the results so far.
 struct Writing {
-  Writing(const Mesh& written, const Metadata& of_file, NcOutput& out, Notes& warnings)
+  Writing(const Mesh& written, const ExodusMetadata& of_file, NcOutput& out, Notes& warnings)
       : mesh(written), metadata(of_file), file(out), notes(warnings) {}
 
   /// Returns the array of that name and adds it to `placed`; null if it does not exist or cannot be written.
@@ -45,7 +45,7 @@ struct Writing {
                       NcType type = kInt);
 
   const Mesh& mesh;
-  const Metadata& metadata;
+  const ExodusMetadata& metadata;
   NcOutput& file;
   Notes& notes;
   std::vector<BlockPlan> blocks;

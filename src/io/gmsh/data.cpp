@@ -303,8 +303,8 @@ Index components_of_view(const DataArray& array, Notes& notes) {
 
 }  // namespace
 
-void refit_views(Metadata& layout, const NamedParts& parts, Notes& notes) {
-  for (Section& section : layout.sections) {
+void refit_views(GmshMetadata& layout, const NamedParts& parts, Notes& notes) {
+  for (MshSection& section : layout.sections) {
     if (section.kind != SectionKind::view) continue;
     View& view = layout.views[section.view];
     const DataArray* const array = view.array ? parts.array(*view.array, view.association) : nullptr;
@@ -321,7 +321,7 @@ void refit_views(Metadata& layout, const NamedParts& parts, Notes& notes) {
   }
 }
 
-bool add_view(Metadata& layout, const DataArray& array, Notes& notes) {
+bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes) {
   if (!has_place(array)) {
     note_array_unsupported(array, "Gmsh", notes);
     return false;

@@ -100,7 +100,7 @@ using EmptyBlock = std::array<std::int32_t, 3>;
 
 enum class SectionKind : std::uint8_t { format, verbatim, nodes, elements, periodic, ghosts, view };
 
-struct Section {
+struct MshSection {
   SectionKind kind;
   std::string name;
   std::string text;  ///< for SectionKind::verbatim: between the lines $Name and $EndName
@@ -110,13 +110,13 @@ struct Section {
 using Entity = std::pair<std::int32_t, std::int32_t>;  ///< dimension and tag
 
 /// The parts of a Gmsh file that do not depend on the order of its nodes and elements.
-struct Metadata : FormatMetadata {
+struct GmshMetadata : FormatMetadata {
   double version = 4.1;
   bool binary = false;
   std::endian order =
       std::endian::native;  ///< byte order of the file's numbers, also of those in verbatim sections
   std::string header = "4.1 0 8";
-  std::vector<Section> sections;
+  std::vector<MshSection> sections;
   std::vector<View> views;
   std::vector<PeriodicLink> periodic;
   std::vector<PhysicalName> names;
@@ -127,7 +127,7 @@ struct Metadata : FormatMetadata {
   [[nodiscard]] std::vector<std::string> contents() const override;
   [[nodiscard]] bool has(SectionKind kind) const {
     return std::any_of(sections.begin(), sections.end(),
-                       [kind](const Section& section) { return section.kind == kind; });
+                       [kind](const MshSection& section) { return section.kind == kind; });
   }
   [[nodiscard]] bool is_version_1() const { return version < 2; }
   /// Returns whether elements have tags of their own: versions 1 and 2.
@@ -149,7 +149,7 @@ struct ReadContext {
 
   NumberReader source;
   Mesh mesh;
-  Metadata metadata;
+  GmshMetadata metadata;
   IdMap nodes;
   IdMap elements;
   std::vector<std::size_t> view_arrays;  ///< index of each view's array in `mesh.data`, if it has one
@@ -212,10 +212,10 @@ void read_ghosts(ReadContext& reading);
 void name_views(ReadContext& reading);
 
 /// Returns the named physical groups that have cells, as sets of cells.
-std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata);
+std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metadata);
 
 /// Returns the first physical group of each cell's entity, 0 for none; empty if no cell has one.
-std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const Metadata& metadata);
+std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshMetadata& metadata);
 
 // ---- writing
 
@@ -292,7 +292,7 @@ void write_rows(NumberWriter& sink, Index count, const Row& row) {
 /// The input of the writer: a mesh and its layout, which was read with the mesh or made for it.
 struct WriteContext {
   const Mesh& mesh;
-  const Metadata& layout;
+  const GmshMetadata& layout;
   std::vector<const ElementType*> types;      ///< of each cell
   std::vector<std::int64_t> node_ids;         ///< empty: 1, 2, 3 …
   std::vector<std::int64_t> cell_ids;         ///< empty: 1, 2, 3 …
@@ -314,14 +314,14 @@ const std::vector<double>* parameters_of(const Mesh& mesh);
 
 /// Makes entities, physical groups and their names for a mesh without a Gmsh layout, from its labels, its
 /// sets of cells and the entities that it may have kept from an earlier conversion.
-void classify(Metadata& layout, WriteContext& output, Notes& notes);
+void classify(GmshMetadata& layout, WriteContext& output, Notes& notes);
 
 /// Adds a view for an array that has none yet; returns false, with a note, if Gmsh has no place for it.
-bool add_view(Metadata& layout, const DataArray& array, Notes& notes);
+bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes);
 
 /// Adapts the views of arrays that were replaced to the components of the new arrays. A view that has no
 /// place for its new array loses the array. Notes changes.
-void refit_views(Metadata& layout, const NamedParts& parts, Notes& notes);
+void refit_views(GmshMetadata& layout, const NamedParts& parts, Notes& notes);
 
 /// Returns a name that fits between double quotes in one line.
 std::string name_in_quotes(std::string_view name);

@@ -293,7 +293,7 @@ std::vector<PhysicalName> groups_by_sets(const Mesh& mesh, Groups& groups,
 
 }  // namespace
 
-std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata) {
+std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metadata) {
   // groups of different dimensions with the same name become one set
   std::vector<EntitySet> sets;
   std::map<std::string, Index> set_of_name;
@@ -331,7 +331,7 @@ std::vector<EntitySet> physical_sets(const Mesh& mesh, const Metadata& metadata)
   return sets;
 }
 
-std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const Metadata& metadata) {
+std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshMetadata& metadata) {
   if (metadata.physicals.empty()) return {};
   const CellEntities entities(mesh);
   EntityTable<std::vector<std::int32_t>> table(metadata.physicals);
@@ -347,7 +347,7 @@ std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const Metadata& m
   return labels;
 }
 
-void classify(Metadata& layout, WriteContext& output, Notes& notes) {
+void classify(GmshMetadata& layout, WriteContext& output, Notes& notes) {
   const Mesh& mesh = output.mesh;
   const std::vector<std::int32_t> labels = labels_for_groups(mesh, notes);
   if (!labels.empty()) output.placed.push_back(find_array(mesh, kLabel, Association::cells));

@@ -18,7 +18,9 @@ const EntitySet* find_set(const Mesh& mesh, const std::string& name) {
 
 constexpr std::int64_t kAffine = -1;  // precedes the coefficients in binary files of 4.0
 
-bool has_affine_line(const Metadata& metadata) { return metadata.is_version_2() || metadata.is_version_40(); }
+bool has_affine_line(const GmshMetadata& metadata) {
+  return metadata.is_version_2() || metadata.is_version_40();
+}
 
 /// Reads the affine map into `link` and returns the number of pairs. In versions 2.2 and 4.0 an optional line
 /// "Affine …" has the 16 coefficients; in 4.1 their number precedes them.

@@ -270,7 +270,7 @@ void finish(ReadContext& reading) {
   name_views(reading);
   std::vector<EntitySet> sets = physical_sets(mesh, reading.metadata);
   std::move(sets.begin(), sets.end(), std::back_inserter(mesh.sets));
-  mesh.format_metadata = std::make_shared<Metadata>(std::move(reading.metadata));
+  mesh.format_metadata = std::make_shared<GmshMetadata>(std::move(reading.metadata));
 }
 
 }  // namespace

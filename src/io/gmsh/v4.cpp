@@ -49,7 +49,7 @@ Entity read_entity(ReadContext& reading) {
 }
 
 /// Returns how many parametric coordinates a node has in a parametric block of that dimension.
-int parameters_4(const Metadata& metadata, std::int32_t dimension) {
+int parameters_4(const GmshMetadata& metadata, std::int32_t dimension) {
   return metadata.is_version_40() && dimension == 3 ? 0 : dimension;
 }
 

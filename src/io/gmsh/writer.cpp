@@ -48,14 +48,14 @@ std::vector<std::int64_t> usable_ids(const std::vector<std::int64_t>& ids, std::
   return {};
 }
 
-bool is_parametric_2(const Metadata& layout) {
+bool is_parametric_2(const GmshMetadata& layout) {
   return layout.is_version_2() &&
          std::any_of(layout.sections.begin(), layout.sections.end(),
-                     [](const Section& section) { return section.name == "ParametricNodes"; });
+                     [](const MshSection& section) { return section.name == "ParametricNodes"; });
 }
 
 /// Returns whether the mesh still has the arrays that a file of this layout needs.
-bool still_fits(const Mesh& mesh, const Metadata& layout) {
+bool still_fits(const Mesh& mesh, const GmshMetadata& layout) {
   const DataArray* entities = find_array(mesh, kNodeEntity, Association::vertices);
   const bool has_node_entities =
       entities && entities->components == 2 && !integers_of(mesh, kNodeEntity, Association::vertices).empty();
@@ -65,7 +65,7 @@ bool still_fits(const Mesh& mesh, const Metadata& layout) {
 }
 
 /// Fills `output` with the ids, entities and tags of a mesh that came from a Gmsh file.
-void take_layout(const Metadata& layout, WriteContext& output, Notes& notes) {
+void take_layout(const GmshMetadata& layout, WriteContext& output, Notes& notes) {
   const Mesh& mesh = output.mesh;
   const auto place = [&](std::string_view name, Association association) {
     output.placed.push_back(find_array(mesh, name, association));
@@ -105,7 +105,7 @@ void take_layout(const Metadata& layout, WriteContext& output, Notes& notes) {
 }
 
 /// Notes the sets that differ from the physical groups and periodic nodes of the layout.
-void note_sets(const Mesh& mesh, const Metadata& layout, Notes& notes) {
+void note_sets(const Mesh& mesh, const GmshMetadata& layout, Notes& notes) {
   const std::vector<EntitySet> of_layout = physical_sets(mesh, layout);
   using Name = std::pair<Association, std::string_view>;
   std::multimap<Name, const EntitySet*> physical;
@@ -124,7 +124,7 @@ void note_sets(const Mesh& mesh, const Metadata& layout, Notes& notes) {
 }
 
 /// Adds a data section for every array that has no place in the file yet.
-void add_views(Metadata& layout, const WriteContext& output, Notes& notes) {
+void add_views(GmshMetadata& layout, const WriteContext& output, Notes& notes) {
   std::set<std::pair<Association, std::string>> viewed;
   for (const View& view : layout.views) {
     if (view.array) viewed.emplace(view.association, *view.array);
@@ -137,14 +137,14 @@ void add_views(Metadata& layout, const WriteContext& output, Notes& notes) {
   }
 }
 
-void write_format(NumberWriter& sink, const Metadata& layout) {
+void write_format(NumberWriter& sink, const GmshMetadata& layout) {
   sink.out.print("{}\n", layout.header);
   if (!layout.binary) return;
   sink.int32(1);
   sink.out.write("\n");
 }
 
-void write_section(NumberWriter& sink, const WriteContext& output, const Section& section) {
+void write_section(NumberWriter& sink, const WriteContext& output, const MshSection& section) {
   if (section.name.empty()) return;  // version 1 has no section of the format
   const bool version_2 = output.layout.is_version_2();
   sink.out.print("${}\n", section.name);
@@ -178,9 +178,9 @@ void write_section(NumberWriter& sink, const WriteContext& output, const Section
 }
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  const auto* own = dynamic_cast<const GmshMetadata*>(mesh.format_metadata.get());
   const bool keeps_layout = own && still_fits(mesh, *own);
-  Metadata layout = keeps_layout ? *own : Metadata{};
+  GmshMetadata layout = keeps_layout ? *own : GmshMetadata{};
   WriteContext output{mesh, layout, types_of_cells(mesh), {}, {}, {}, {}, {}, {}, NamedParts(mesh)};
   output.placed.push_back(find_array(mesh, kCellType, Association::cells));
   if (keeps_layout) {
@@ -198,19 +198,19 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   OutputFile out(path);
   const std::string file = path.string();
   NumberWriter sink(out, file, layout.binary, layout.order);
-  for (const Section& section : layout.sections) write_section(sink, output, section);
+  for (const MshSection& section : layout.sections) write_section(sink, output, section);
   out.commit();
 }
 
 }  // namespace
 
-std::vector<std::string> Metadata::contents() const {
+std::vector<std::string> GmshMetadata::contents() const {
   std::vector<std::string> result;
   std::set<std::string> known;
   const auto add = [&](std::string what) {
     if (known.insert(what).second) result.push_back(std::move(what));
   };
-  for (const Section& section : sections) {
+  for (const MshSection& section : sections) {
     if (section.kind != SectionKind::verbatim) continue;
     // other formats keep the groups as labels and sets, but not their numbers
     const bool has_names = section.name == "PhysicalNames";

@@ -56,7 +56,7 @@ std::vector<Family> families_in(const Reading& reading, const std::string& root)
 }
 
 void read_families_of(Reading& reading, Association association) {
-  Layout& layout = *reading.layout;
+  MedLayout& layout = *reading.layout;
   std::vector<Family>& families = layout.families[place_of(association)];
   families = families_in(reading, layout.families_path(association));
   Mesh& mesh = reading.mesh;
@@ -182,7 +182,7 @@ class FamilyWriter {
  private:
   /// Returns the family of each item in the MED file that the mesh came from; 0 for meshes of other formats.
   std::vector<std::int64_t> start() {
-    const Layout& layout = writing_.layout;
+    const MedLayout& layout = writing_.layout;
     std::vector<std::int64_t> none(item_count(writing_.mesh, association_), 0);
     if (layout.is_made) return none;
     (void)writing_.take(layout.families_array, association_);
@@ -284,7 +284,7 @@ class FamilyWriter {
 
 }  // namespace
 
-std::string Layout::families_path(Association association) const {
+std::string MedLayout::families_path(Association association) const {
   return fmt::format("/FAS/{}/{}", mesh, association == Association::vertices ? "NOEUD" : "ELEME");
 }
 

@@ -93,7 +93,7 @@ struct Items {
 };
 
 /// Data of a file beyond the mesh.
-struct Layout final : FormatMetadata {
+struct MedLayout final : FormatMetadata {
   std::shared_ptr<const std::string> file;  ///< bytes, without the values that depend on the mesh
   std::string mesh;                         ///< name
   std::string step;                         ///< name of the group of its only step
@@ -125,7 +125,7 @@ std::string utf8(std::string text);
 std::string profile_path(const std::string& profile);
 
 /// Returns the layout of a file for a mesh of another format.
-Layout new_layout(const Mesh& mesh);
+MedLayout new_layout(const Mesh& mesh);
 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
@@ -146,7 +146,7 @@ struct Reading {
   void take(const std::string& path) { taken.insert(hdf5::normal_path(path)); }
 
   hdf5::File file;
-  std::shared_ptr<Layout> layout = std::make_shared<Layout>();
+  std::shared_ptr<MedLayout> layout = std::make_shared<MedLayout>();
   Mesh mesh;
   std::map<const GeometryType*, std::pair<Index, Index>> ranges;  ///< first cell and number of each type
   std::set<std::string> taken;
@@ -164,7 +164,7 @@ void read_fields(Reading& reading);
 /// A file that is being written.
 struct Writing {
   const Mesh& mesh;
-  const Layout& layout;
+  const MedLayout& layout;
   hdf5::File& file;
   Notes& notes;
   std::map<const GeometryType*, std::vector<Index>> cells;  ///< of each type that the mesh has

@@ -88,7 +88,7 @@ void find_mesh(Reading& reading) {
     throw InputError(file.name(), fmt::format("has {} meshes: {}", meshes.size(), fmt::join(meshes, ", ")),
                      "save each in a separate file");
   }
-  Layout& layout = *reading.layout;
+  MedLayout& layout = *reading.layout;
   layout.mesh = meshes.front();
   if (!structured.empty()) {
     reading.notes.push_back(fmt::format("the mesh '{}' is read; structured ones stay as they are: {}",
@@ -109,7 +109,7 @@ void find_mesh(Reading& reading) {
 
 /// Refuses meshes described by faces or edges, and pieces of a larger mesh.
 void refuse_unknown_kinds(const Reading& reading) {
-  const Layout& layout = *reading.layout;
+  const MedLayout& layout = *reading.layout;
   const std::string step = layout.mesh_path() + "/" + layout.step;
   for (const auto& [group, words] : {std::pair{"FAC", "faces"}, std::pair{"ARE", "edges"}}) {
     if (reading.file.names(step + "/" + group).empty()) continue;
@@ -137,7 +137,7 @@ Index row_count_of(const Reading& reading, const std::string& path, std::size_t 
 }
 
 void read_points(Reading& reading) {
-  Layout& layout = *reading.layout;
+  MedLayout& layout = *reading.layout;
   Mesh& mesh = reading.mesh;
   const auto axes = reading.file.integer_attribute(layout.mesh_path(), "ESP").value_or(3);
   if (axes < 1 || axes > 3) {
@@ -304,7 +304,7 @@ class ItemReader {
   ItemReader(Reading& reading, Association association) : reading_(reading), association_(association) {}
 
   void read(const GeometryType* type) {
-    const Layout& layout = *reading_.layout;
+    const MedLayout& layout = *reading_.layout;
     const bool on_vertices = type == nullptr;
     const std::string group =
         on_vertices ? layout.nodes_path() : fmt::format("{}/{}", layout.cells_path(), type->name);
@@ -480,7 +480,7 @@ Mesh read_all(const FilePath& path, Notes& notes) {
   read_fields(reading);
   read_equivalences(reading);
   note_others(reading);
-  Layout& layout = *reading.layout;
+  MedLayout& layout = *reading.layout;
   std::set<std::string> changing = std::move(reading.taken);
   for (const std::string& group :
        {std::string("/CHA"), std::string("/PROFILS"), layout.cells_path(),

@@ -53,7 +53,7 @@ void mark_whole(hdf5::File& file, const std::string& group) {
 }
 
 void write_points(Writing& writing) {
-  const Layout& layout = writing.layout;
+  const MedLayout& layout = writing.layout;
   hdf5::File& file = writing.file;
   const std::string mesh = layout.mesh_path();
   const int axes = coordinates_of(writing.mesh.points, layout.axes);
@@ -235,7 +235,7 @@ void write_nodes(Writing& writing) {
 }
 
 void write_cells(Writing& writing) {
-  const Layout& layout = writing.layout;
+  const MedLayout& layout = writing.layout;
   hdf5::File& file = writing.file;
   ItemWriter items(writing, Association::cells);
   for (const GeometryType& type : geometry_types()) {
@@ -319,10 +319,10 @@ void Writing::put_integers(const std::string& path, const std::vector<std::int64
   put(path, held, rows);
 }
 
-std::shared_ptr<const FormatMetadata> Layout::moved(std::span<const Index> new_vertices,
-                                                    std::span<const Index> new_cells) const {
+std::shared_ptr<const FormatMetadata> MedLayout::moved(std::span<const Index> new_vertices,
+                                                       std::span<const Index> new_cells) const {
   if (equivalences.empty()) return nullptr;
-  auto result = std::make_shared<Layout>(*this);
+  auto result = std::make_shared<MedLayout>(*this);
   for (Equivalence& equivalence : result->equivalences) {
     const std::span<const Index> places = equivalence.type == nullptr ? new_vertices : new_cells;
     if (places.empty()) continue;
@@ -337,8 +337,8 @@ std::shared_ptr<const FormatMetadata> Layout::moved(std::span<const Index> new_v
   return result;
 }
 
-Layout new_layout(const Mesh& mesh) {
-  Layout layout;
+MedLayout new_layout(const Mesh& mesh) {
+  MedLayout layout;
   layout.is_made = true;
   layout.mesh = "mesh";
   layout.step = kStep;
@@ -375,8 +375,8 @@ Layout new_layout(const Mesh& mesh) {
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const hdf5::Session session;
-  const auto* const own = dynamic_cast<const Layout*>(mesh.format_metadata.get());
-  const Layout layout = own != nullptr ? *own : new_layout(mesh);
+  const auto* const own = dynamic_cast<const MedLayout*>(mesh.format_metadata.get());
+  const MedLayout layout = own != nullptr ? *own : new_layout(mesh);
   hdf5::write_from(path, *layout.file, [&](hdf5::File& file) {
     Writing writing{mesh, layout, file, notes, {}, {}};
     std::vector<Index>* of_type = nullptr;  // neighbouring cells mostly have the same type

@@ -136,8 +136,8 @@ inline constexpr std::array kSizeKinds{SizeKind{"hVertices", 1}, SizeKind{"Metri
                                        SizeKind{"h1h2VpVertices", 4}};
 
 /// Data of Medit files beyond the mesh.
-struct Metadata final : FormatMetadata {
-  struct Section {
+struct MeditMetadata final : FormatMetadata {
+  struct VerbatimSection {
     std::string keyword;
     std::string text;  ///< verbatim, from the keyword on
     bool before_vertices;
@@ -152,7 +152,7 @@ struct Metadata final : FormatMetadata {
   std::int64_t version = 2;
   std::string comments_before;
   std::string after_end;
-  std::vector<Section> sections;  ///< sections that do not depend on the order
+  std::vector<VerbatimSection> sections;  ///< sections that do not depend on the order
   std::vector<Rows> rows;
   std::vector<std::size_t> empty_sections;  ///< kinds of cells whose section is empty
   /// For kinds whose node order the file gives: the position in the file of each node in VTK's order.

@@ -374,7 +374,7 @@ class Reader {
   /// Reads a section of lines with positions in some columns.
   void read_rows(std::string_view columns) {
     const Index rows = in_.count(what_count(), 2 * static_cast<std::int64_t>(columns.size()));
-    Metadata::Rows section{last_keyword_, std::string(columns), {}, {}};
+    MeditMetadata::Rows section{last_keyword_, std::string(columns), {}, {}};
     const std::string what = what_number();
     for (Index row = 0; row < rows; ++row) {
       const bool of_triangle = columns.starts_with(".t");
@@ -507,7 +507,7 @@ class Reader {
   Scanner in_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  std::shared_ptr<MeditMetadata> metadata_ = std::make_shared<MeditMetadata>();
   std::int64_t begin_ = 0;  // of the section
   std::string last_keyword_;
   std::unordered_set<std::string> kinds_seen_;

@@ -59,17 +59,17 @@ Reference reference(Shape shape) {
 
 }  // namespace
 
-std::vector<std::string> Metadata::contents() const {
+std::vector<std::string> MeditMetadata::contents() const {
   std::vector<std::string> result;
-  for (const Section& section : sections) result.push_back("Medit's " + section.keyword);
+  for (const VerbatimSection& section : sections) result.push_back("Medit's " + section.keyword);
   for (const Rows& section : rows) result.push_back("Medit's " + section.keyword);
   return result;
 }
 
-std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> vertices,
-                                                      std::span<const Index> cells) const {
+std::shared_ptr<const FormatMetadata> MeditMetadata::moved(std::span<const Index> vertices,
+                                                           std::span<const Index> cells) const {
   if (rows.empty()) return nullptr;
-  auto result = std::make_shared<Metadata>(*this);
+  auto result = std::make_shared<MeditMetadata>(*this);
   for (Rows& section : result->rows) {
     std::size_t next = 0;
     while (next < section.items.size()) {

@@ -18,7 +18,7 @@ namespace meshorder::medit {
 namespace {
 
 /// The order of the sections, the cells of each and the position of each cell.
-struct Layout {
+struct SectionOrder {
   std::array<std::vector<Index>, kCellKinds.size()> cells;
   std::array<Index, kCellKinds.size()> counts{};
   std::vector<std::size_t> kinds;
@@ -27,8 +27,8 @@ struct Layout {
 
 /// Orders sections by their first cells; if types are interleaved, from volumes to edges as
 /// group_cells_by_type does.
-Layout layout_of(const Mesh& mesh) {
-  Layout layout;
+SectionOrder layout_of(const Mesh& mesh) {
+  SectionOrder layout;
   layout.place.reserve(mesh.cell_count());
   bool together = true;
   std::size_t last = kCellKinds.size();
@@ -56,8 +56,8 @@ Layout layout_of(const Mesh& mesh) {
 
 struct WriteContext {
   const Mesh& mesh;
-  const Metadata* own;  ///< nullptr if the mesh comes from another format
-  Layout layout;
+  const MeditMetadata* own;  ///< nullptr if the mesh comes from another format
+  SectionOrder layout;
   Labels vertex_labels;
   Labels cell_labels;
 };
@@ -145,7 +145,7 @@ void print_value(OutputFile& out, const Values& values, Offset at) {
 }
 
 /// Writes a section, except lines that name a vertex or cell without a position in the file.
-void write_section_rows(OutputFile& out, const WriteContext& from, const Metadata::Rows& section,
+void write_section_rows(OutputFile& out, const WriteContext& from, const MeditMetadata::Rows& section,
                         Notes& notes) {
   const std::string_view columns = section.columns;
   const auto others = static_cast<std::size_t>(std::count(columns.begin(), columns.end(), '.'));
@@ -217,7 +217,7 @@ void write_array(OutputFile& out, const WriteContext& from, const DataArray& arr
 
 void write_sections(OutputFile& out, const WriteContext& from, bool before_vertices) {
   if (!from.own) return;
-  for (const Metadata::Section& section : from.own->sections) {
+  for (const MeditMetadata::VerbatimSection& section : from.own->sections) {
     if (section.before_vertices == before_vertices) out.print("\n{}\n", section.text);
   }
 }
@@ -247,8 +247,9 @@ bool holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
 }  // namespace
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  const WriteContext from{mesh, dynamic_cast<const Metadata*>(mesh.format_metadata.get()), layout_of(mesh),
-                          labels_of(mesh, Association::vertices), labels_of(mesh, Association::cells)};
+  const WriteContext from{mesh, dynamic_cast<const MeditMetadata*>(mesh.format_metadata.get()),
+                          layout_of(mesh), labels_of(mesh, Association::vertices),
+                          labels_of(mesh, Association::cells)};
   OutputFile out(path);
   if (from.own) out.write(from.own->comments_before);
   out.print("MeshVersionFormatted {}\nDimension {}\n", version(from), mesh.dimension);
@@ -260,7 +261,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
     if (&array != label_array(mesh, array.association)) write_array(out, from, array, notes);
   }
   if (from.own) {
-    for (const Metadata::Rows& section : from.own->rows) write_section_rows(out, from, section, notes);
+    for (const MeditMetadata::Rows& section : from.own->rows) write_section_rows(out, from, section, notes);
   }
   write_sections(out, from, false);
   out.print("\nEnd{}\n", from.own ? from.own->after_end : "");

@@ -63,10 +63,10 @@ DeckText::DeckText(const FilePath& path) : path_(path.string()), lines_(path) {
   if (all.find('\0') != std::string_view::npos) {
     throw InputError(path.string(), "is not a text file, unlike bulk data of Nastran", "give its bulk data");
   }
-  if (has_begin_bulk(all)) section_ = Section::control;
+  if (has_begin_bulk(all)) section_ = DeckSection::control;
   text_.reserve(all.size() + 1);
   read();
-  if (section_ != Section::end) bulk_.end = text_.size();
+  if (section_ != DeckSection::end) bulk_.end = text_.size();
 }
 
 void DeckText::read() {
@@ -76,7 +76,7 @@ void DeckText::read() {
       file_ = &lines_.at();
       origins_.push_back({text_.size(), file_->file(), file_->line()});
     }
-    if (section_ != Section::end && begins_with(line, "INCLUDE")) {
+    if (section_ != DeckSection::end && begins_with(line, "INCLUDE")) {
       include();
     } else {
       take_line(line);
@@ -87,9 +87,9 @@ void DeckText::read() {
 /// Takes the next line. `line` is the same line without the blanks around it.
 void DeckText::take_line(std::string_view line) {
   const std::size_t begin = text_.size();
-  if (section_ == Section::bulk) {
+  if (section_ == DeckSection::bulk) {
     if (begins_with(line, "ENDDATA")) {
-      section_ = Section::end;
+      section_ = DeckSection::end;
       bulk_.end = begin;
     } else if (!word_after_begin(line).empty()) {
       lines_.at().fail("a second section of bulk data begins", "give models without superelements");
@@ -97,18 +97,18 @@ void DeckText::take_line(std::string_view line) {
       lines_.at().fail("no BEGIN BULK after case control", "the file may be cut short");
     }
   }
-  const bool starts_bulk = section_ == Section::control && begins_bulk(line);
+  const bool starts_bulk = section_ == DeckSection::control && begins_bulk(line);
   const std::string_view content = line.substr(0, line.find('$'));
   const bool is_fixed = !content.empty() && content.find(',') == std::string_view::npos;
   const std::string_view taken = lines_.take();
-  if (section_ == Section::bulk && is_fixed && taken.find('\t') != std::string_view::npos) {
+  if (section_ == DeckSection::bulk && is_fixed && taken.find('\t') != std::string_view::npos) {
     append_without_tabs(text_, taken);
   } else {
     text_ += taken;
   }
   if (text_.back() != '\n' && text_.back() != '\r') text_ += lines_.line_end();
   if (starts_bulk) {
-    section_ = Section::bulk;
+    section_ = DeckSection::bulk;
     bulk_.begin = text_.size();
   }
 }

@@ -25,7 +25,7 @@ class DeckText {
   /// Returns the lines between BEGIN BULK and ENDDATA; all up to ENDDATA if there is no BEGIN BULK.
   [[nodiscard]] Piece bulk() const { return bulk_; }
   /// Returns false for a file with BEGIN BULK, but without ENDDATA.
-  [[nodiscard]] bool has_end() const { return section_ == Section::end || bulk_.begin == 0; }
+  [[nodiscard]] bool has_end() const { return section_ == DeckSection::end || bulk_.begin == 0; }
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] const std::string& line_end() const { return lines_.line_end(); }
   [[nodiscard]] const std::vector<std::string>& included() const { return lines_.included(); }
@@ -43,7 +43,7 @@ class DeckText {
     std::string file;
     std::int64_t line;
   };
-  enum class Section : std::uint8_t { control, bulk, end };
+  enum class DeckSection : std::uint8_t { control, bulk, end };
 
   void read();
   void take_line(std::string_view line);
@@ -52,7 +52,7 @@ class DeckText {
 
   std::string path_;
   DeckLines lines_;
-  Section section_ = Section::bulk;
+  DeckSection section_ = DeckSection::bulk;
   std::string text_;
   Piece bulk_;
   std::vector<Origin> origins_;

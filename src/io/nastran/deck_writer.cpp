@@ -16,7 +16,7 @@ namespace meshorder::nastran {
 namespace {
 
 /// Returns whether the cell of each element of the deck has the element's shape and number of nodes.
-bool has_cells_of(const Mesh& mesh, const Metadata& metadata) {
+bool has_cells_of(const Mesh& mesh, const BulkMetadata& metadata) {
   const Deck& deck = *metadata.deck;
   for (Index k = 0; k < mesh.cell_count(); ++k) {
     const Index c = metadata.cell(k);
@@ -37,7 +37,7 @@ std::vector<Index> items_at(const FileNumbers& numbers) {
 
 class BulkWriter {
  public:
-  BulkWriter(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes)
+  BulkWriter(const Mesh& mesh, const BulkMetadata& own, const FilePath& path, Notes& notes)
       : mesh_(mesh),
         deck_(*own.deck),
         nodes_(deck_.node_numbers, own.vertex_of, mesh.vertex_ids),
@@ -325,8 +325,8 @@ class BulkWriter {
 
 }  // namespace
 
-const Metadata* own_deck(const Mesh& mesh) {
-  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+const BulkMetadata* own_deck(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const BulkMetadata*>(mesh.format_metadata.get());
   if (own == nullptr || !own->whole) return nullptr;
   const Deck& deck = *own->deck;
   if (deck.node_numbers.size() != mesh.vertex_count() || deck.element_numbers.size() != mesh.cell_count()) {
@@ -335,7 +335,7 @@ const Metadata* own_deck(const Mesh& mesh) {
   return has_cells_of(mesh, *own) ? own : nullptr;
 }
 
-void write_into_deck(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes) {
+void write_into_deck(const Mesh& mesh, const BulkMetadata& own, const FilePath& path, Notes& notes) {
   BulkWriter(mesh, own, path, notes).write();
 }
 

@@ -52,11 +52,11 @@ struct Deck {
 };
 
 /// A deck, and where its nodes and elements are in the mesh.
-using Metadata = DeckMetadata<Deck>;
+using BulkMetadata = DeckMetadata<Deck>;
 
 /// Returns the deck that a mesh can be written into; null if the mesh came from elsewhere or no longer fits.
 /// Valid as long as the mesh. O(cells).
-const Metadata* own_deck(const Mesh& mesh);
+const BulkMetadata* own_deck(const Mesh& mesh);
 
 /// The words before the name of a set, in the comment above its SET3.
 constexpr std::string_view kSetComment = "$ set: ";
@@ -64,7 +64,7 @@ constexpr std::string_view kSetComment = "$ set: ";
 Mesh read(const FilePath& path, Notes& notes);
 
 /// Writes a mesh into its deck; notes the parts that have no place in it.
-void write_into_deck(const Mesh& mesh, const Metadata& own, const FilePath& path, Notes& notes);
+void write_into_deck(const Mesh& mesh, const BulkMetadata& own, const FilePath& path, Notes& notes);
 
 /// Appends a set as SET3, with its name in a comment. Notes a set without members, which is left out, and a
 /// name that changes.

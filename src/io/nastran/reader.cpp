@@ -276,7 +276,7 @@ class DeckReader {
     note_all();
     deck_->points = mesh_.points;
     deck_->text = std::move(file_.text());
-    auto metadata = std::make_shared<Metadata>();
+    auto metadata = std::make_shared<BulkMetadata>();
     metadata->deck = deck_;
     mesh_.format_metadata = std::move(metadata);
   }

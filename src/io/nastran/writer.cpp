@@ -122,7 +122,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
 }
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  if (const Metadata* const own = own_deck(mesh)) return write_into_deck(mesh, *own, path, notes);
+  if (const BulkMetadata* const own = own_deck(mesh)) return write_into_deck(mesh, *own, path, notes);
   PlainBulkWriter(mesh, path, notes).write();
 }
 

@@ -17,7 +17,7 @@ constexpr std::size_t kPartsAtOnce = 64;
 constexpr std::size_t kRecordBytes = 64;  // bytes of text examined first for each record left
 
 /// Some whole lines of a text.
-struct Part {
+struct TextPart {
   std::size_t begin = 0;
   std::size_t end = 0;
   std::int64_t lines = 0;
@@ -31,7 +31,7 @@ struct Part {
 };
 
 /// Counts all lines of a part, and lines with a word, as a Scanner does.
-void count_lines(std::string_view text, char comment, Part& part) {
+void count_lines(std::string_view text, char comment, TextPart& part) {
   const std::string_view whole = text.substr(part.begin, part.end - part.begin);
   const bool has_returns = whole.find('\r') != std::string_view::npos;
   for (std::size_t at = 0; at < whole.size();) {
@@ -51,8 +51,9 @@ void count_lines(std::string_view text, char comment, Part& part) {
 
 /// Divides the text from `begin` on into parts, up to the usual end of so many records. A file may have many
 /// short runs of records, and none of them may cost a pass over the rest of the text.
-std::vector<Part> divided(std::string_view text, std::size_t begin, std::size_t bytes, std::size_t records) {
-  std::vector<Part> parts;
+std::vector<TextPart> divided(std::string_view text, std::size_t begin, std::size_t bytes,
+                              std::size_t records) {
+  std::vector<TextPart> parts;
   const std::size_t last = std::min(text.size(), begin + records * kRecordBytes);
   while (parts.size() < kPartsAtOnce && begin < last) {
     std::size_t end = std::min(begin + bytes, last);
@@ -70,14 +71,14 @@ Index read_regular_records(Scanner& in, Index count, const std::function<bool(Sc
   const std::string_view text = in.all();
   std::int64_t done = 0;
   while (done < count) {
-    std::vector<Part> parts = divided(text, static_cast<std::size_t>(in.byte()), part_bytes,
-                                      static_cast<std::size_t>(count - done));
+    std::vector<TextPart> parts = divided(text, static_cast<std::size_t>(in.byte()), part_bytes,
+                                          static_cast<std::size_t>(count - done));
     for_each_chunk(index_size(parts), 1, [&](Index k, Index, Index) {
       count_lines(text, in.comment(), parts[static_cast<std::size_t>(k)]);
     });
     std::int64_t line = in.line();
     std::int64_t record = done;
-    for (Part& part : parts) {
+    for (TextPart& part : parts) {
       part.first_line = line;
       part.first_record = record;
       line += part.lines;
@@ -85,7 +86,7 @@ Index read_regular_records(Scanner& in, Index count, const std::function<bool(Sc
     }
     std::vector<Scanner> ends(parts.size(), in);
     for_each_chunk(index_size(parts), 1, [&](Index k, Index, Index) {
-      Part& part = parts[static_cast<std::size_t>(k)];
+      TextPart& part = parts[static_cast<std::size_t>(k)];
       if (part.has_other_ends) return;
       Scanner at = in.at(static_cast<std::int64_t>(part.begin), part.first_line);
       const std::int64_t last = std::min<std::int64_t>(count, part.first_record + part.records);

@@ -21,7 +21,7 @@
 namespace meshorder::su2 {
 namespace {
 
-using Part = Metadata::Part;
+using SectionKind = Su2Metadata::SectionKind;
 
 constexpr char kComment = '%';
 
@@ -87,17 +87,17 @@ class Su2Reader {
     } else if (keyword_ == "NDIME") {
       read_dimension();
     } else if (keyword_ == "NELEM") {
-      begin_section(Part::elements);
+      begin_section(SectionKind::elements);
       const Index count = take_count(4);
       (void)in_.raw_line();
       mesh_.cell_blocks.push_back(0);
       read_elements(count, mesh_.dimension, metadata_->numbers_elements);
       elements_ = mesh_.cell_count();
     } else if (keyword_ == "NPOIN") {
-      begin_section(Part::points);
+      begin_section(SectionKind::points);
       read_points();
     } else if (keyword_ == "NMARK") {
-      begin_section(Part::marker_count);
+      begin_section(SectionKind::marker_count);
       markers_said_ = take_count(0);
       (void)in_.raw_line();
     } else if (keyword_ == "MARKER_TAG") {
@@ -113,12 +113,12 @@ class Su2Reader {
 
   /// Makes a section of the lines that were kept since the last one.
   void keep_lines() {
-    if (!lines_.empty()) metadata_->sections.push_back({Part::verbatim, std::exchange(lines_, {})});
+    if (!lines_.empty()) metadata_->sections.push_back({SectionKind::verbatim, std::exchange(lines_, {})});
   }
 
-  void begin_section(Part part) {
+  void begin_section(SectionKind part) {
     if (!sections_seen_.insert(part).second) in_.fail("a second " + keyword_ + "=", "it may appear once");
-    if (part != Part::dimension && !sections_seen_.contains(Part::dimension)) {
+    if (part != SectionKind::dimension && !sections_seen_.contains(SectionKind::dimension)) {
       in_.fail(keyword_ + "= comes before NDIME=", "NDIME= 2 or NDIME= 3 must come first");
     }
     keep_lines();
@@ -157,7 +157,8 @@ class Su2Reader {
     if (!has_points_) in_.fail(keyword_ + "= comes before NPOIN=", "the points must come first");
     keep_lines();
     metadata_->keywords.push_back("SU2's " + keyword_ + "=");
-    Metadata::Section& section = metadata_->sections.emplace_back(Metadata::Section{Part::surface_points});
+    Su2Metadata::FileSection& section =
+        metadata_->sections.emplace_back(Su2Metadata::FileSection{SectionKind::surface_points});
     const Index count = take_count(4);
     (void)in_.raw_line();
     for (Index k = 0; k < count; ++k) {
@@ -180,7 +181,7 @@ class Su2Reader {
   }
 
   void read_dimension() {
-    begin_section(Part::dimension);
+    begin_section(SectionKind::dimension);
     mesh_.dimension = parse_integer<std::int32_t>(in_, value_, "NDIME=");
     if (mesh_.dimension != 2 && mesh_.dimension != 3) {
       in_.fail(fmt::format("NDIME= {}", mesh_.dimension), "2 or 3 are possible");
@@ -339,11 +340,11 @@ class Su2Reader {
       in_.fail("the marker SEND_RECEIVE belongs to one part of a mesh", "give the whole mesh");
     }
     if (!names_seen_.insert(name).second) in_.fail("a second marker " + shown(name), "names must differ");
-    if (!sections_seen_.contains(Part::elements))
+    if (!sections_seen_.contains(SectionKind::elements))
       in_.fail("MARKER_TAG= comes before NELEM=", "the elements must come first");
-    if (!sections_seen_.contains(Part::marker_count)) begin_section(Part::marker_count);
+    if (!sections_seen_.contains(SectionKind::marker_count)) begin_section(SectionKind::marker_count);
     keep_lines();
-    metadata_->sections.push_back({Part::marker, name});
+    metadata_->sections.push_back({SectionKind::marker, name});
     (void)in_.raw_line();
     while (in_.bytes_left() > 0 && !find_keyword()) keep_line();
     metadata_->sections.back().comments = std::exchange(lines_, {});
@@ -369,8 +370,9 @@ class Su2Reader {
   // ---- the end
 
   void check_complete() {
-    constexpr std::array kNeeded{std::pair{Part::dimension, "NDIME="}, std::pair{Part::elements, "NELEM="},
-                                 std::pair{Part::points, "NPOIN="}};
+    constexpr std::array kNeeded{std::pair{SectionKind::dimension, "NDIME="},
+                                 std::pair{SectionKind::elements, "NELEM="},
+                                 std::pair{SectionKind::points, "NPOIN="}};
     for (const auto& [part, keyword] : kNeeded) {
       if (sections_seen_.contains(part)) continue;
       throw InputError(in_.file(), "has no " + std::string(keyword),
@@ -381,8 +383,8 @@ class Su2Reader {
                        fmt::format("NMARK= {}, but {} markers follow", markers_said_, names_seen_.size()),
                        "the number is wrong or the file is cut short");
     }
-    if (sections_seen_.contains(Part::marker_count)) return;
-    metadata_->sections.push_back({Part::marker_count});
+    if (sections_seen_.contains(SectionKind::marker_count)) return;
+    metadata_->sections.push_back({SectionKind::marker_count});
     notes_.push_back(in_.file() + " has no NMARK=: if it was cut short, its markers are missing");
   }
 
@@ -416,11 +418,11 @@ class Su2Reader {
   Scanner in_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  std::shared_ptr<Su2Metadata> metadata_ = std::make_shared<Su2Metadata>();
   std::string keyword_;  // of the last line with one, in capitals
   std::string value_;
   std::string lines_;  // to be kept
-  std::unordered_set<Part> sections_seen_;
+  std::unordered_set<SectionKind> sections_seen_;
   std::unordered_set<std::string> names_seen_;
   std::vector<std::int64_t> labels_;  // of the cells so far; empty if none has one
   Index elements_ = 0;                // of the highest dimension

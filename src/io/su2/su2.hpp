@@ -39,8 +39,8 @@ inline constexpr std::array kElementKinds{
 inline constexpr std::array<int, 6> kWedge{0, 2, 1, 3, 5, 4};
 
 /// Data of SU2's files beyond the mesh.
-struct Metadata final : FormatMetadata {
-  enum class Part : std::uint8_t {
+struct Su2Metadata final : FormatMetadata {
+  enum class SectionKind : std::uint8_t {
     dimension,
     elements,
     points,
@@ -55,13 +55,13 @@ struct Metadata final : FormatMetadata {
     Index vertex;
     std::string after;  ///< the point's place in the box
   };
-  struct Section {
-    Part part;
+  struct FileSection {
+    SectionKind part;
     std::string text = {};      ///< the name of a marker; the lines that are kept as they are
     std::string comments = {};  ///< the lines between MARKER_TAG= and MARKER_ELEMS=
     std::vector<SurfacePoint> surface_points = {};
   };
-  std::vector<Section> sections;        ///< in the order of the file
+  std::vector<FileSection> sections;    ///< in the order of the file
   std::vector<std::string> keywords;    ///< of the lines that are kept as they are
   bool counts_physical_points = false;  ///< NPOIN= gives a second number
   bool numbers_elements = false;        ///< lines of elements end with a number, from 0; so do the next two

@@ -19,7 +19,7 @@
 namespace meshorder::su2 {
 namespace {
 
-using Part = Metadata::Part;
+using SectionKind = Su2Metadata::SectionKind;
 
 constexpr std::string_view kUnmarked = "unmarked";
 
@@ -169,36 +169,38 @@ class Su2Writer {
   Su2Writer(const Mesh& mesh, const Markers& markers, int dimension, OutputFile& out)
       : mesh_(mesh),
         markers_(markers),
-        own_(dynamic_cast<const Metadata*>(mesh.format_metadata.get())),
+        own_(dynamic_cast<const Su2Metadata*>(mesh.format_metadata.get())),
         dimension_(dimension),
         out_(out),
         written_(markers.markers.size(), false) {}
 
   void write() {
-    static const std::vector<Metadata::Section> plain{
-        {Part::dimension}, {Part::elements}, {Part::points}, {Part::marker_count}};
-    for (const Metadata::Section& section : own_ != nullptr ? own_->sections : plain) write(section);
+    static const std::vector<Su2Metadata::FileSection> plain{{SectionKind::dimension},
+                                                             {SectionKind::elements},
+                                                             {SectionKind::points},
+                                                             {SectionKind::marker_count}};
+    for (const Su2Metadata::FileSection& section : own_ != nullptr ? own_->sections : plain) write(section);
     for (std::size_t i = 0; i < markers_.markers.size(); ++i) {
       if (!written_[i]) write(markers_.markers[i], {});
     }
   }
 
  private:
-  void write(const Metadata::Section& section) {
+  void write(const Su2Metadata::FileSection& section) {
     switch (section.part) {
-      case Part::dimension:
+      case SectionKind::dimension:
         return out_.print("NDIME= {}\n", dimension_);
-      case Part::elements:
+      case SectionKind::elements:
         return write_elements();
-      case Part::points:
+      case SectionKind::points:
         return write_points();
-      case Part::marker_count:
+      case SectionKind::marker_count:
         return out_.print("NMARK= {}\n", markers_.markers.size() + empty_labels());
-      case Part::marker:
+      case SectionKind::marker:
         return write_marker(section);
-      case Part::surface_points:
+      case SectionKind::surface_points:
         return write_surface_points(section.surface_points);
-      case Part::verbatim:
+      case SectionKind::verbatim:
         return out_.write(section.text);
     }
   }
@@ -240,9 +242,9 @@ class Su2Writer {
     });
   }
 
-  void write_surface_points(const std::vector<Metadata::SurfacePoint>& points) {
+  void write_surface_points(const std::vector<Su2Metadata::SurfacePoint>& points) {
     out_.print("FFD_SURFACE_POINTS= {}\n", points.size());
-    for (const Metadata::SurfacePoint& point : points) {
+    for (const Su2Metadata::SurfacePoint& point : points) {
       out_.integer(point.before, point.vertex);
       out_.write(point.after);
       out_.write("\n");
@@ -259,14 +261,15 @@ class Su2Writer {
   /// Returns the number of the file's markers without cells whose names are labels.
   [[nodiscard]] std::size_t empty_labels() const {
     if (own_ == nullptr) return 0;
-    return static_cast<std::size_t>(
-        std::count_if(own_->sections.begin(), own_->sections.end(), [&](const Metadata::Section& section) {
-          return section.part == Part::marker && label_of_name(section.text) != 0 && !place_of(section.text);
+    return static_cast<std::size_t>(std::count_if(
+        own_->sections.begin(), own_->sections.end(), [&](const Su2Metadata::FileSection& section) {
+          return section.part == SectionKind::marker && label_of_name(section.text) != 0 &&
+                 !place_of(section.text);
         }));
   }
 
   /// Writes a marker of the file that the mesh came from.
-  void write_marker(const Metadata::Section& section) {
+  void write_marker(const Su2Metadata::FileSection& section) {
     if (const auto place = place_of(section.text)) {
       write(markers_.markers[*place], section.comments);
       written_[*place] = true;
@@ -284,7 +287,7 @@ class Su2Writer {
 
   const Mesh& mesh_;
   const Markers& markers_;
-  const Metadata* own_;  // nullptr if the mesh comes from another format
+  const Su2Metadata* own_;  // nullptr if the mesh comes from another format
   int dimension_;
   OutputFile& out_;
   std::vector<bool> written_;  // of markers
@@ -292,11 +295,11 @@ class Su2Writer {
 
 }  // namespace
 
-std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> vertices,
-                                                      std::span<const Index> /*cells*/) const {
-  auto result = std::make_shared<Metadata>(*this);
+std::shared_ptr<const FormatMetadata> Su2Metadata::moved(std::span<const Index> vertices,
+                                                         std::span<const Index> /*cells*/) const {
+  auto result = std::make_shared<Su2Metadata>(*this);
   if (vertices.empty()) return result;
-  for (Section& section : result->sections) {
+  for (FileSection& section : result->sections) {
     for (SurfacePoint& point : section.surface_points)
       point.vertex = vertices[static_cast<std::size_t>(point.vertex)];
   }
@@ -316,7 +319,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
     if (!is_marked) note_array_unsupported(array, "SU2", notes);
   }
   note_ids_unsupported(mesh, "SU2", notes);
-  if (dynamic_cast<const Metadata*>(mesh.format_metadata.get()) == nullptr) {
+  if (dynamic_cast<const Su2Metadata*>(mesh.format_metadata.get()) == nullptr) {
     note_metadata_unsupported(mesh, "SU2", notes);
   }
 }

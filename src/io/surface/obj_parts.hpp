@@ -43,7 +43,7 @@ inline std::string corner_array(std::string_view what, Index corners) {
   return "obj:" + std::string(what) + std::to_string(corners);
 }
 
-struct Metadata : FormatMetadata {
+struct ObjMetadata : FormatMetadata {
   std::string comments;   ///< whole lines, all of the file
   std::string libraries;  ///< whole lines: mtllib, maplib, shadow_obj, trace_obj
   std::string texture;    ///< the lines vt

@@ -379,7 +379,7 @@ class Reader {
 
   Scanner scanner_;
   Mesh mesh_;
-  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  std::shared_ptr<ObjMetadata> metadata_ = std::make_shared<ObjMetadata>();
   List vertices_{"v"};
   List texture_{"vt"};
   List normals_{"vn"};

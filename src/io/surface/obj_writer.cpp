@@ -45,7 +45,7 @@ class ObjWriter {
   ObjWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
       : mesh_(mesh),
         notes_(notes),
-        native_(dynamic_cast<const obj::Metadata*>(mesh.format_metadata.get())),
+        native_(dynamic_cast<const obj::ObjMetadata*>(mesh.format_metadata.get())),
         out_(path) {}
 
   void write() {
@@ -297,7 +297,7 @@ class ObjWriter {
 
   const Mesh& mesh_;
   Notes& notes_;
-  const obj::Metadata* native_;
+  const obj::ObjMetadata* native_;
   OutputFile out_;
   std::set<const DataArray*> written_;
   GatheredVector colors_;
@@ -320,7 +320,7 @@ void write_obj(const Mesh& mesh, const FilePath& path, Notes& notes) { ObjWriter
 
 /// Returns the groups of cells with the same states and sets, see `Format::together`. O(cells + members).
 std::vector<Index> cells_of_equal_statements(const Mesh& mesh) {
-  const bool is_native = dynamic_cast<const obj::Metadata*>(mesh.format_metadata.get()) != nullptr;
+  const bool is_native = dynamic_cast<const obj::ObjMetadata*>(mesh.format_metadata.get()) != nullptr;
   std::vector<Checksum> statements(mesh.cells.shapes.size());
   for (std::size_t i = 0; i < kStates.size(); ++i) {
     if (!is_native && i != obj::kMaterial) continue;

@@ -30,7 +30,7 @@ struct OffMetadata : FormatMetadata {
 };
 
 /// Numbers after the coordinates of a vertex.
-struct Layout {
+struct VertexColumns {
   bool normals = false;
   bool colors = false;
   bool texture = false;
@@ -54,8 +54,8 @@ bool is_count(std::string_view word) {
 }
 
 /// Reads the optional keyword up to the first count, which may follow without a blank.
-Layout read_keyword(Scanner& scanner) {
-  Layout layout;
+VertexColumns read_keyword(Scanner& scanner) {
+  VertexColumns layout;
   const std::string_view word = scanner.peek_word();
   if (is_count(word)) return layout;
   std::string_view rest = word;
@@ -87,7 +87,7 @@ int words_on_line(std::string_view line) {
 }
 
 /// Completes the layout from the first vertex's line: further numbers are a colour of 3 or 4, even without C.
-void measure_vertices(Scanner& scanner, Layout& layout) {
+void measure_vertices(Scanner& scanner, VertexColumns& layout) {
   if (scanner.at_end()) return;
   const int numbers = words_on_line(scanner.peek_line());
   const int others = 3 + (layout.normals ? 3 : 0) + (layout.texture ? 2 : 0);
@@ -128,7 +128,7 @@ struct Numbers {
   }
 };
 
-void read_vertices(Scanner& scanner, Index count, const Layout& layout, Mesh& mesh) {
+void read_vertices(Scanner& scanner, Index count, const VertexColumns& layout, Mesh& mesh) {
   mesh.points.resize(count);
   std::array<Numbers, 3> columns;  // normals, colours, texture coordinates
   const std::array<int, 3> widths{layout.normals ? 3 : 0, layout.color_width, layout.texture ? 2 : 0};
@@ -235,7 +235,7 @@ Mesh read_off(const FilePath& path, Notes&) {
   Scanner scanner(path, '#');
   auto metadata = std::make_shared<OffMetadata>();
   take_comment_lines(scanner, metadata->comments);
-  Layout layout = read_keyword(scanner);
+  VertexColumns layout = read_keyword(scanner);
   if (scanner.at_line_end()) take_comment_lines(scanner, metadata->comments);
 
   constexpr int kMinVertex = 6;  // "0 0 0" and a line end

@@ -57,7 +57,7 @@ inline std::string array_name(const Element& element, const Property& property) 
   return element.role == Role::rows_of_faces ? element.name + "." + property.name : property.name;
 }
 
-struct Metadata : FormatMetadata {
+struct PlyMetadata : FormatMetadata {
   Encoding encoding = Encoding::ascii;
   std::vector<std::string> comments;  ///< whole lines, obj_info as well
   std::vector<Element> elements;

@@ -200,7 +200,7 @@ void leave_header(Scanner& scanner) {
 }
 
 /// Keeps the role rows_of_faces only if the element follows the only element of faces, of as many rows.
-void check_rows_of_faces(Metadata& header) {
+void check_rows_of_faces(PlyMetadata& header) {
   const Element* faces = nullptr;
   Element* rows = nullptr;
   bool fit = true;
@@ -218,7 +218,7 @@ void check_rows_of_faces(Metadata& header) {
   }
 }
 
-void check_elements(const Scanner& scanner, Metadata& header) {
+void check_elements(const Scanner& scanner, PlyMetadata& header) {
   const auto count = [&](Role role) {
     return std::count_if(header.elements.begin(), header.elements.end(),
                          [&](const Element& element) { return element.role == role; });
@@ -241,7 +241,7 @@ void check_elements(const Scanner& scanner, Metadata& header) {
   }
 }
 
-void read_header(Scanner& scanner, Metadata& header) {
+void read_header(Scanner& scanner, PlyMetadata& header) {
   if (trimmed(scanner.peek_line()) != "ply")
     scanner.fail("the file does not begin with 'ply'", "PLY files do");
   (void)scanner.raw_line();
@@ -624,7 +624,7 @@ class Reader {
     }
   }
 
-  std::shared_ptr<Metadata> header_ = std::make_shared<Metadata>();
+  std::shared_ptr<PlyMetadata> header_ = std::make_shared<PlyMetadata>();
   BodyReader body_;
   Mesh mesh_;
   Index vertex_count_ = 0;

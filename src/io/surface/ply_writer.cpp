@@ -97,7 +97,7 @@ Role usual_role(Shape shape) {
 }
 
 /// Returns whether the elements of the file fit the cells of the mesh, block by block.
-bool elements_fit(const ply::Metadata& metadata, const Mesh& mesh) {
+bool elements_fit(const ply::PlyMetadata& metadata, const Mesh& mesh) {
   Index cell = 0;
   for (const Element& element : metadata.elements) {
     if (element.role == Role::vertices && element.count != mesh.vertex_count()) return false;
@@ -113,7 +113,7 @@ bool elements_fit(const ply::Metadata& metadata, const Mesh& mesh) {
   return cell == mesh.cell_count();
 }
 
-std::vector<Table> tables_of_file(const ply::Metadata& metadata) {
+std::vector<Table> tables_of_file(const ply::PlyMetadata& metadata) {
   std::vector<Table> tables;
   Index cell = 0;
   Index first_face = 0;
@@ -205,7 +205,7 @@ class Columns {
 
   /// Returns whether the array belongs to an element whose rows go with the faces.
   [[nodiscard]] bool is_of_rows(const DataArray& array) const {
-    const auto* metadata = dynamic_cast<const ply::Metadata*>(mesh_.format_metadata.get());
+    const auto* metadata = dynamic_cast<const ply::PlyMetadata*>(mesh_.format_metadata.get());
     return metadata != nullptr &&
            std::any_of(metadata->elements.begin(), metadata->elements.end(), [&](const Element& element) {
              return element.role == Role::rows_of_faces && array.name.starts_with(element.name + ".");
@@ -349,7 +349,7 @@ void write_property(OutputFile& out, const Property& property) {
   out.print("{} {}\n", property.type.word, property.name);
 }
 
-void write_header(OutputFile& out, Encoding encoding, const ply::Metadata* metadata,
+void write_header(OutputFile& out, Encoding encoding, const ply::PlyMetadata* metadata,
                   const std::vector<Table>& tables) {
   constexpr std::array<std::string_view, 3> kNames{"ascii", "binary_little_endian", "binary_big_endian"};
   out.print("ply\nformat {} 1.0\n", kNames[static_cast<std::size_t>(encoding)]);
@@ -484,7 +484,7 @@ bool ply_holds(const Mesh& mesh, Shape shape, int vertices) {
 }
 
 /// Notes the elements and properties that the reader did not understand.
-void note_left_out(const ply::Metadata& metadata, Notes& notes) {
+void note_left_out(const ply::PlyMetadata& metadata, Notes& notes) {
   for (const Element& element : metadata.elements) {
     if (!element.why_left_out.empty())
       notes.push_back(fmt::format("not written: the element '{}': {}", element.name, element.why_left_out));
@@ -505,7 +505,7 @@ void note_losses(const Mesh& mesh, const std::set<const DataArray*>& written, No
 }
 
 void write_ply(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  const auto* metadata = dynamic_cast<const ply::Metadata*>(mesh.format_metadata.get());
+  const auto* metadata = dynamic_cast<const ply::PlyMetadata*>(mesh.format_metadata.get());
   const bool as_file = metadata && elements_fit(*metadata, mesh);
   std::vector<Table> tables = as_file ? tables_of_file(*metadata) : usual_tables(mesh);
   std::set<const DataArray*> written;

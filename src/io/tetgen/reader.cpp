@@ -24,7 +24,7 @@ namespace {
 constexpr char kComment = '#';
 
 /// The content of one file of cells.
-struct Part {
+struct CellFile {
   Index count = 0;
   IdMap numbering;
   std::vector<std::int64_t> markers;  // one for each cell, or none
@@ -35,9 +35,9 @@ struct Part {
 struct ReadContext {
   Mesh mesh;
   IdMap points;
-  std::array<Part, 4> parts;
+  std::array<CellFile, 4> parts;
   std::string mark;  ///< of the file of points
-  std::shared_ptr<Metadata> metadata = std::make_shared<Metadata>();
+  std::shared_ptr<TetGenMetadata> metadata = std::make_shared<TetGenMetadata>();
   bool second_order = false;
 };
 
@@ -149,7 +149,7 @@ std::string take_mark(std::string& comments) {
 }
 
 /// Keeps the comments of a file and returns its mark; fails if other text follows the last record.
-std::string end_file(Scanner& in, Metadata::Part& part, Notes& notes) {
+std::string end_file(Scanner& in, TetGenMetadata::FileComments& part, Notes& notes) {
   if (!in.at_end()) in.fail("unexpected text after the last record", "correct the number in the header");
   part.present = true;
   part.comments_before = comments_before(in.all(), kComment);
@@ -235,7 +235,7 @@ void read_cell_points(Scanner& in, const IdMap& points, std::span<const int> pla
 
 /// Reads all cells of a file after its header; every line has `nodes` points, attributes and a marker.
 void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, ReadContext& to) {
-  Part& part = to.parts[file];
+  CellFile& part = to.parts[file];
   const std::span<const int> order = places(file, nodes, false);
   Cells& cells = to.mesh.cells;
   const Index first = cells.size();
@@ -269,7 +269,7 @@ void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, Rea
 }
 
 /// Makes a label of TetGen's region attribute, one whole number for each cell. Other attributes stay.
-void take_regions_as_markers(Part& part) {
+void take_regions_as_markers(CellFile& part) {
   using Limits = std::numeric_limits<std::int32_t>;
   const bool regions = part.attributes_per_cell == 1 &&
                        std::all_of(part.attributes.begin(), part.attributes.end(), [](double x) {
@@ -290,7 +290,7 @@ void read_ele(Scanner& in, ReadContext& to) {
             plane ? "3 or 6 are possible in two dimensions"
                   : "4 or 10 (tetrahedra) or 3 or 6 (triangles) are possible");
   }
-  Part& part = to.parts[kEle];
+  CellFile& part = to.parts[kEle];
   part.attributes_per_cell = static_cast<Index>(checked_attributes(in, attributes));
   part.count = checked_records(in, records, "the number of cells", 1 + nodes + attributes);
   to.metadata->nodes_in_ele = static_cast<int>(nodes);
@@ -322,7 +322,7 @@ void read_boundary(Scanner& in, File file, ReadContext& to) {
   const auto [records, has_markers] = header<2>(in, {0, 0});
   const bool marked = checked_markers(in, has_markers);
   const int least = file == kFace ? 3 : 2;
-  Part& part = to.parts[file];
+  CellFile& part = to.parts[file];
   part.count = checked_records(in, records, "the number of cells", 1 + least + has_markers);
   if (part.count == 0) return;
 
@@ -393,11 +393,11 @@ void settle_face_order(ReadContext& to) {
 void set_cell_ids(ReadContext& to) {
   const int base = to.metadata->base;
   if (std::all_of(to.parts.begin(), to.parts.end(),
-                  [&](const Part& part) { return part.numbering.runs_from(base); })) {
+                  [&](const CellFile& part) { return part.numbering.runs_from(base); })) {
     return;
   }
   for (const File file : kCellFiles) {
-    const Part& part = to.parts[file];
+    const CellFile& part = to.parts[file];
     for (Index c = 0; c < part.count; ++c) to.mesh.cell_ids.push_back(part.numbering.id(c));
   }
 }
@@ -406,7 +406,7 @@ void set_cell_data(ReadContext& to) {
   Mesh& mesh = to.mesh;
 
   // only cells of .ele have attributes
-  Part& ele = to.parts[kEle];
+  CellFile& ele = to.parts[kEle];
   if (ele.attributes_per_cell > 0 && ele.count > 0) {
     DataArray array{"attribute", Association::cells, ele.attributes_per_cell, std::move(ele.attributes), {},
                     {}};
@@ -419,7 +419,7 @@ void set_cell_data(ReadContext& to) {
   std::vector<Index> rows;
   Index first = 0;
   for (const File file : kCellFiles) {
-    const Part& part = to.parts[file];
+    const CellFile& part = to.parts[file];
     labels.insert(labels.end(), part.markers.begin(), part.markers.end());
     for (Index c = 0; c < index_size(part.markers); ++c) rows.push_back(first + c);
     first += part.count;

@@ -25,13 +25,13 @@ inline constexpr std::array<std::string_view, 4> kExtensions{".node", ".ele", ".
 inline constexpr std::array kCellFiles{kEle, kFace, kEdge};
 
 /// Data of TetGen's files beyond the mesh.
-struct Metadata final : FormatMetadata {
-  struct Part {
+struct TetGenMetadata final : FormatMetadata {
+  struct FileComments {
     bool present = false;
     std::string comments_before;
     std::string comments_after;
   };
-  std::array<Part, 4> parts;
+  std::array<FileComments, 4> parts;
   int base = 1;  ///< the number of the first point
   int nodes_in_ele = 4;
   /// Whether .face lists second-order nodes by opposite edges, corner 1's first, as TetGen's -f does.

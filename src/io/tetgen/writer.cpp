@@ -53,7 +53,7 @@ namespace {
 // ---- the cells of each file
 
 /// The cells of each file, in their order, and how many points each has.
-struct Layout {
+struct CellsOfFiles {
   std::array<std::vector<Index>, 4> cells;
   std::array<int, 4> nodes{0, 0, 0, 0};
   int dimension = 3;
@@ -76,7 +76,7 @@ bool is_plane(const Mesh& mesh) {
 /// Returns why the cells cannot be one mesh of TetGen or Triangle; an empty text if they can. Programs read
 /// such a mesh by its .ele file, so it needs tetrahedra, or triangles in a plane.
 std::string conflict(const Mesh& mesh) {
-  const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  const auto* own = dynamic_cast<const TetGenMetadata*>(mesh.format_metadata.get());
   std::array<int, kShapes> nodes{};
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const Shape shape = mesh.cells.shapes[c];
@@ -98,9 +98,9 @@ std::string conflict(const Mesh& mesh) {
   return is_plane(mesh) ? "" : "TetGen holds triangles alone only in the plane z = 0";
 }
 
-Layout layout_of(const Mesh& mesh, const Metadata& metadata, bool own) {
+CellsOfFiles layout_of(const Mesh& mesh, const TetGenMetadata& metadata, bool own) {
   const bool solid = has_shape(mesh, Shape::tetrahedron);
-  Layout layout;
+  CellsOfFiles layout;
   layout.dimension = solid ? 3 : own ? mesh.dimension : 2;
   layout.nodes[kEle] = metadata.nodes_in_ele;
   // triangles are the cells of a plane mesh and the boundary of a solid one
@@ -117,7 +117,7 @@ Layout layout_of(const Mesh& mesh, const Metadata& metadata, bool own) {
 }
 
 /// Fails if a file of an earlier mesh would be read as part of this one.
-void refuse_leftovers(const Layout& layout, const Metadata& metadata, const FilePath& path) {
+void refuse_leftovers(const CellsOfFiles& layout, const TetGenMetadata& metadata, const FilePath& path) {
   for (const File file : kCellFiles) {
     const FilePath other = path.companion(kExtensions[file]);
     if (!layout.cells[file].empty() || metadata.parts[file].present || !other.exists()) continue;
@@ -216,8 +216,8 @@ constexpr std::int64_t kLargestNumber = std::numeric_limits<std::int64_t>::max()
 
 struct WriteContext {
   const Mesh& mesh;
-  const Metadata& metadata;
-  Layout layout;
+  const TetGenMetadata& metadata;
+  CellsOfFiles layout;
   bool own_ids;     // the ids came from TetGen's files; others are not written
   bool vertex_ids;  // the ids of vertices are written
   Labels vertex_labels;
@@ -314,8 +314,8 @@ std::string mark_of(const WriteContext& from) {
 }  // namespace
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  const Metadata standard;
-  const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  const TetGenMetadata standard;
+  const auto* own = dynamic_cast<const TetGenMetadata*>(mesh.format_metadata.get());
   WriteContext from{mesh,
                     own ? *own : standard,
                     {},
@@ -330,7 +330,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   std::vector<OutputFile> files;
   files.reserve(kExtensions.size());
   for (const File file : {kNode, kEle, kFace, kEdge}) {
-    const Metadata::Part& part = from.metadata.parts[file];
+    const TetGenMetadata::FileComments& part = from.metadata.parts[file];
     if (file != kNode && !part.present && from.layout.cells[file].empty()) continue;
     OutputFile& out = files.emplace_back(path.companion(kExtensions[file]));
     out.write(part.comments_before);
@@ -360,7 +360,7 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
 }
 
 std::int64_t first_number_of(const Mesh& mesh, Association /*of*/) {
-  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  const auto* const own = dynamic_cast<const TetGenMetadata*>(mesh.format_metadata.get());
   return own == nullptr ? 0 : own->base;
 }
 

@@ -219,7 +219,7 @@ class Reader {
   Scanner in_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  std::shared_ptr<UcdMetadata> metadata_ = std::make_shared<UcdMetadata>();
   IdMap node_numbers_;
   IdMap cell_numbers_;
   bool cells_are_numbered_ = true;  // whether all numbers of cells differ

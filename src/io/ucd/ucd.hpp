@@ -38,7 +38,7 @@ inline constexpr std::array kCellKinds{
 };
 
 /// Data of the files beyond the mesh.
-struct Metadata final : FormatMetadata {
+struct UcdMetadata final : FormatMetadata {
   std::string comments_before;
   /// The lines "label, unit" of the file, by the names of their arrays.
   std::map<std::pair<Association, std::string>, std::string> labels;

@@ -34,7 +34,7 @@ class Writer {
  public:
   Writer(const Mesh& mesh, const FilePath& path, Notes& notes)
       : mesh_(mesh),
-        own_(dynamic_cast<const Metadata*>(mesh.format_metadata.get())),
+        own_(dynamic_cast<const UcdMetadata*>(mesh.format_metadata.get())),
         notes_(notes),
         out_(path),
         nodes_(mesh.vertex_ids, kMaxIndex, 0),
@@ -162,7 +162,7 @@ class Writer {
   }
 
   const Mesh& mesh_;
-  const Metadata* own_;  // nullptr if the mesh comes from another format
+  const UcdMetadata* own_;  // nullptr if the mesh comes from another format
   Notes& notes_;
   OutputFile out_;
   NewNumbers nodes_;
@@ -173,7 +173,7 @@ class Writer {
 
 }  // namespace
 
-std::vector<std::string> Metadata::contents() const {
+std::vector<std::string> UcdMetadata::contents() const {
   std::vector<std::string> result;
   for (const auto& [array, line] : labels) {
     const std::size_t comma = line.find(',');

@@ -113,8 +113,8 @@ class UnvReader {
     keep_dataset();
   }
 
-  Section& begin_section(Part part, Index first) {
-    Section& section = file_->sections.emplace_back();
+  Dataset& begin_section(DatasetKind part, Index first) {
+    Dataset& section = file_->sections.emplace_back();
     section.part = part;
     section.dataset = dataset_;
     section.first = first;
@@ -123,7 +123,7 @@ class UnvReader {
 
   /// Makes a section of the lines since `begin_`.
   void add_text(int dataset) {
-    Section& section = file_->sections.emplace_back();
+    Dataset& section = file_->sections.emplace_back();
     section.dataset = dataset;
     section.text = since(begin_);
   }
@@ -201,7 +201,7 @@ class UnvReader {
 
   void read_nodes() {
     const std::size_t place = file_->sections.size();
-    begin_section(Part::nodes, mesh_.vertex_count());
+    begin_section(DatasetKind::nodes, mesh_.vertex_count());
     std::int64_t number = 0;
     while (begin_record(number, "the number of a node")) {
       if (!file_->nodes.add(checked_number(number, "the number of a node"))) {
@@ -220,7 +220,7 @@ class UnvReader {
       end_record("the node");
       mesh_.points.push_back(point);
     }
-    Section& section = file_->sections[place];
+    Dataset& section = file_->sections[place];
     section.count = mesh_.vertex_count() - section.first;
   }
 
@@ -239,7 +239,7 @@ class UnvReader {
 
   void read_elements() {
     const std::size_t place = file_->sections.size();
-    begin_section(Part::elements, mesh_.cell_count());
+    begin_section(DatasetKind::elements, mesh_.cell_count());
     std::int64_t number = 0;
     while (begin_record(number, "the number of an element")) {
       (void)checked_number(number, "the number of an element");
@@ -268,7 +268,7 @@ class UnvReader {
       }
       end_record("the element");
     }
-    Section& section = file_->sections[place];
+    Dataset& section = file_->sections[place];
     section.count = mesh_.cell_count() - section.first;
   }
 
@@ -308,7 +308,7 @@ class UnvReader {
     mesh_.cells.push_back(kind.shape, {cell.data(), nodes});
   }
 
-  void read_other(OtherElement element, std::int64_t nodes, Section& section) {
+  void read_other(OtherElement element, std::int64_t nodes, Dataset& section) {
     const Index count = in_.checked_count(nodes, "the number of its nodes", 2);
     for (Index k = 0; k < count; ++k) element.nodes.push_back(next_node());
     other_elements_.insert(element.number);
@@ -351,7 +351,7 @@ class UnvReader {
       file_->groups.push_back(std::move(group));
       members_.push_back(std::move(members));
     }
-    Section& section = begin_section(Part::groups, static_cast<Index>(groups_before));
+    Dataset& section = begin_section(DatasetKind::groups, static_cast<Index>(groups_before));
     section.count = index_size(file_->groups) - section.first;
     return true;
   }
@@ -440,7 +440,7 @@ class UnvReader {
       end_record("the node or element");
     }
     found.all = since(begin_);
-    begin_section(Part::results, index_size(results_));
+    begin_section(DatasetKind::results, index_size(results_));
     section_of_results_.push_back(file_->sections.size() - 1);
     results_.push_back(std::move(found));
     return true;
@@ -453,14 +453,14 @@ class UnvReader {
     for (std::size_t r = 0; r < results_.size(); ++r) {
       FoundResults& found = results_[r];
       const std::pair key{found.results.association, found.name};
-      Section& section = file_->sections[section_of_results_[r]];
+      Dataset& section = file_->sections[section_of_results_[r]];
       const bool of_nodes = found.results.association == Association::vertices;
       found.results.name = found.name;
       found.results.array = steps[key] > 1 ? fmt::format("{} step {}", found.name, ++step[key]) : found.name;
       auto array = array_of(found, of_nodes ? file_->nodes : file_->elements);
       const bool is_taken = find_array(mesh_, found.results.array, found.results.association) != nullptr;
       if (!array || is_taken) {
-        section.part = Part::text;
+        section.part = DatasetKind::text;
         section.text = found.all;
         const std::string name = fmt::format("dataset {}", section.dataset);
         file_->unknown.push_back(fmt::format("{} (line {})", name, found.line));
@@ -499,7 +499,7 @@ class UnvReader {
     make_arrays();
     list_losses();
     note_kept_numbers(file_->unknown, notes_);
-    auto metadata = std::make_shared<Metadata>();
+    auto metadata = std::make_shared<UnvMetadata>();
     metadata->deck = file_;
     mesh_.format_metadata = std::move(metadata);
   }
@@ -519,8 +519,8 @@ class UnvReader {
 
   /// Refuses nodes with coordinates in a system of the file that is not the global one.
   void check_systems() {
-    for (const Section& section : file_->sections) {
-      if (section.part != Part::text || section.dataset != kSystems) continue;
+    for (const Dataset& section : file_->sections) {
+      if (section.part != DatasetKind::text || section.dataset != kSystems) continue;
       for (const std::int64_t system : local_systems(section.text)) {
         const auto& used = file_->node_fields.different();
         if (std::none_of(used.begin(), used.end(),

@@ -116,11 +116,11 @@ struct Results {
   bool integers = false;                ///< whether the values are whole numbers
 };
 
-enum class Part : std::uint8_t { text, nodes, elements, groups, results };
+enum class DatasetKind : std::uint8_t { text, nodes, elements, groups, results };
 
 /// A dataset, or the lines between two datasets.
-struct Section {
-  Part part = Part::text;
+struct Dataset {
+  DatasetKind part = DatasetKind::text;
   int dataset = 0;
   std::string text = {};  ///< all lines, if kept as they are; for results, the lines before the values
   Index first = 0;        ///< first node, element, group or result of the file in it
@@ -130,7 +130,7 @@ struct Section {
 
 /// The contents of a universal file, in its order.
 struct Contents {
-  std::vector<Section> sections;
+  std::vector<Dataset> sections;
   IdMap nodes;     ///< numbers in the order of the file
   IdMap elements;  ///< numbers of the elements that are cells
   FieldTable<NodeFields> node_fields;
@@ -146,7 +146,7 @@ struct Contents {
 };
 
 /// A universal file, and where its nodes and elements are in the mesh.
-using Metadata = DeckMetadata<Contents>;
+using UnvMetadata = DeckMetadata<Contents>;
 
 /// Name of the array on cells that holds the numbers of materials, if they differ.
 inline constexpr std::string_view kMaterial = "material";
@@ -159,6 +159,6 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
 /// Returns the metadata of the file that a mesh came from, if the mesh can still be written into that file;
 /// else null. Valid as long as the mesh. O(cells).
-const Metadata* own_file(const Mesh& mesh);
+const UnvMetadata* own_file(const Mesh& mesh);
 
 }  // namespace meshorder::unv

@@ -106,12 +106,12 @@ class Lines {
 /// Returns the contents of a file for a mesh that came from elsewhere: nodes, then elements.
 Contents plain_contents(const Mesh& mesh) {
   Contents file;
-  Section& nodes = file.sections.emplace_back();
-  nodes.part = Part::nodes;
+  Dataset& nodes = file.sections.emplace_back();
+  nodes.part = DatasetKind::nodes;
   nodes.dataset = kNodes;
   nodes.count = mesh.vertex_count();
-  Section& elements = file.sections.emplace_back();
-  elements.part = Part::elements;
+  Dataset& elements = file.sections.emplace_back();
+  elements.part = DatasetKind::elements;
   elements.dataset = kElements;
   elements.count = mesh.cell_count();
   return file;
@@ -153,7 +153,7 @@ class UnvWriter {
   }
 
   void write() {
-    for (const Section& section : file_.sections) write(section);
+    for (const Dataset& section : file_.sections) write(section);
     write_new_groups();
     write_new_results();
     out_.commit();
@@ -161,17 +161,17 @@ class UnvWriter {
   }
 
  private:
-  void write(const Section& section) {
+  void write(const Dataset& section) {
     switch (section.part) {
-      case Part::text:
+      case DatasetKind::text:
         return lines_.text(section.text);
-      case Part::nodes:
+      case DatasetKind::nodes:
         return write_nodes(section);
-      case Part::elements:
+      case DatasetKind::elements:
         return write_elements(section);
-      case Part::groups:
+      case DatasetKind::groups:
         return write_groups(section);
-      case Part::results:
+      case DatasetKind::results:
         return write_results(section);
     }
   }
@@ -183,7 +183,7 @@ class UnvWriter {
     return file_.node_fields[file_node_.empty() ? v : file_node_[v]];
   }
 
-  void write_nodes(const Section& section) {
+  void write_nodes(const Dataset& section) {
     lines_.begin_dataset(section.dataset);
     const bool single = section.dataset == kNodesInSingle;
     for (Index v = section.first; v < section.first + section.count; ++v) {
@@ -215,7 +215,7 @@ class UnvWriter {
     return fields;
   }
 
-  void write_elements(const Section& section) {
+  void write_elements(const Dataset& section) {
     lines_.begin_dataset(section.dataset);
     std::vector<std::int64_t> nodes;
     for (Index c = section.first; c < section.first + section.count; ++c) {
@@ -237,7 +237,7 @@ class UnvWriter {
     lines_.delimiter();
   }
 
-  void write_element(const Section& section, std::int64_t number, const ElementFields& fields,
+  void write_element(const Dataset& section, std::int64_t number, const ElementFields& fields,
                      const std::vector<std::int64_t>& nodes) {
     const bool of_old = section.dataset == kElementsOfOld;
     lines_.integer(number);
@@ -289,7 +289,7 @@ class UnvWriter {
     }
   }
 
-  void write_groups(const Section& section) {
+  void write_groups(const Dataset& section) {
     lines_.begin_dataset(section.dataset);
     for (Index g = section.first; g < section.first + section.count; ++g) {
       const Group& group = file_.groups[g];
@@ -362,7 +362,7 @@ class UnvWriter {
   /// files.
   [[nodiscard]] int dataset_of_groups() const {
     const auto own = std::find_if(file_.sections.begin(), file_.sections.end(),
-                                  [](const Section& section) { return section.part == Part::groups; });
+                                  [](const Dataset& section) { return section.part == DatasetKind::groups; });
     return own == file_.sections.end() ? kGroups : own->dataset;
   }
 
@@ -376,7 +376,7 @@ class UnvWriter {
     });
   }
 
-  void write_results(const Section& section) {
+  void write_results(const Dataset& section) {
     const Results& results = file_.results[section.first];
     const DataArray* const array = find_array(mesh_, results.array, results.association);
     if (array == nullptr || array->components != results.components || are_texts(array->values)) {
@@ -495,7 +495,7 @@ class UnvWriter {
   }
 
   const Mesh& mesh_;
-  const Metadata* own_;  // null if the mesh comes from elsewhere
+  const UnvMetadata* own_;  // null if the mesh comes from elsewhere
   Contents plain_;
   const Contents& file_;
   Notes& notes_;
@@ -521,8 +521,8 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
 
 }  // namespace
 
-const Metadata* own_file(const Mesh& mesh) {
-  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+const UnvMetadata* own_file(const Mesh& mesh) {
+  const auto* const own = dynamic_cast<const UnvMetadata*>(mesh.format_metadata.get());
   if (own == nullptr || !own->whole) return nullptr;
   const Contents& file = *own->deck;
   if (file.nodes.size() != mesh.vertex_count() || file.elements.size() != mesh.cell_count()) return nullptr;

@@ -19,7 +19,7 @@ inline constexpr std::string_view kAttributes = "attributes";
 enum class Kind : std::uint8_t { vertices, elements, material, set, region, other };
 
 /// A section of the file and the comments before it.
-struct Section {
+struct VegaSection {
   Kind kind = Kind::other;
   std::string comments;            ///< whole lines
   std::string title;               ///< name of a material; keyword's line of an unknown section
@@ -29,8 +29,8 @@ struct Section {
   std::string region_material;
 };
 
-struct Metadata : FormatMetadata {
-  std::vector<Section> sections;
+struct VegaMetadata : FormatMetadata {
+  std::vector<VegaSection> sections;
   std::string closing_comments;
   std::string element_word = "TET";
   int vertex_base = 1;
@@ -42,7 +42,7 @@ struct Metadata : FormatMetadata {
 
   [[nodiscard]] std::vector<std::string> contents() const override {
     std::vector<std::string> result;
-    for (const Section& section : sections) {
+    for (const VegaSection& section : sections) {
       if (section.kind == Kind::material) result.push_back("the material '" + section.title + "'");
       if (section.kind == Kind::region) {
         result.push_back("the region of '" + section.region_set + "' and '" + section.region_material + "'");
@@ -55,7 +55,7 @@ struct Metadata : FormatMetadata {
 
 /// Returns for each cell the number, from 1, of the last region that contains it, 0 for none. Empty without
 /// regions.
-std::vector<std::int32_t> region_numbers(const Metadata& metadata, const Mesh& mesh);
+std::vector<std::int32_t> region_numbers(const VegaMetadata& metadata, const Mesh& mesh);
 
 Mesh read(const FilePath& path, Notes& notes);
 

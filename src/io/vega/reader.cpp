@@ -58,7 +58,7 @@ class Reader {
 
  private:
   void read_section(std::string_view line) {
-    Section section;
+    VegaSection section;
     section.comments = lines_.take_comments();
     std::string_view name = line;
     const std::string keyword(next_word(name, " \t"));
@@ -254,7 +254,7 @@ class Reader {
   }
 
   /// Reads the lines up to the next keyword, verbatim.
-  void read_lines(Section& section) {
+  void read_lines(VegaSection& section) {
     std::string_view line;
     while (lines_.peek(line) && line.front() != '*') {
       section.lines.emplace_back(line);
@@ -262,7 +262,7 @@ class Reader {
     }
   }
 
-  void read_material(Section& section, const std::string& name) {
+  void read_material(VegaSection& section, const std::string& name) {
     if (name.empty()) lines_.at().fail("a material without a name", "write *MATERIAL and a name");
     section.kind = Kind::material;
     section.title = name;
@@ -272,7 +272,7 @@ class Reader {
     materials_.insert(name);
   }
 
-  void read_set(Section& section, const std::string& name) {
+  void read_set(VegaSection& section, const std::string& name) {
     if (name.empty()) lines_.at().fail("a set without a name", "write *SET and a name");
     if (!has_elements_) lines_.at().fail("*SET before *ELEMENTS", "elements come first");
     section.kind = Kind::set;
@@ -294,7 +294,7 @@ class Reader {
     mesh_.sets.push_back(std::move(set));
   }
 
-  void read_region(Section& section) {
+  void read_region(VegaSection& section) {
     if (!has_elements_) lines_.at().fail("*REGION before *ELEMENTS", "elements come first");
     section.kind = Kind::region;
     lines_.take();
@@ -315,7 +315,7 @@ class Reader {
   }
 
   /// Keeps an unknown section verbatim; fails if it has whole numbers, which could name elements or vertices.
-  void read_other(Section& section, const std::string& title) {
+  void read_other(VegaSection& section, const std::string& title) {
     section.title = title;
     const std::int64_t where = lines_.at().line();
     const std::string file = lines_.at().file();
@@ -340,7 +340,7 @@ class Reader {
   VegaLines lines_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  std::shared_ptr<VegaMetadata> metadata_ = std::make_shared<VegaMetadata>();
   IdMap vertices_;
   IdMap elements_;
   std::set<std::string> materials_;
@@ -357,11 +357,11 @@ void Reader::label_by_region() {
 
 }  // namespace
 
-std::vector<std::int32_t> region_numbers(const Metadata& metadata, const Mesh& mesh) {
+std::vector<std::int32_t> region_numbers(const VegaMetadata& metadata, const Mesh& mesh) {
   // of regions of one set, the last counts
   std::map<std::string_view, std::int32_t> region_of_set;
   std::int32_t number = 0;
-  for (const Section& section : metadata.sections) {
+  for (const VegaSection& section : metadata.sections) {
     if (section.kind == Kind::region) region_of_set[section.region_set] = ++number;
   }
   if (number == 0) return {};

@@ -25,7 +25,7 @@
 namespace meshorder {
 namespace {
 using vega::Kind;
-using vega::Section;
+using vega::VegaSection;
 
 bool vega_holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
   return (shape == Shape::tetrahedron && vertices == 4) || (shape == Shape::hexahedron && vertices == 8);
@@ -41,7 +41,7 @@ class VegaWriter {
       : mesh_(mesh),
         parts_(mesh),
         notes_(notes),
-        native_(dynamic_cast<const vega::Metadata*>(mesh.format_metadata.get())),
+        native_(dynamic_cast<const vega::VegaMetadata*>(mesh.format_metadata.get())),
         vertices_(native_ ? mesh.vertex_ids : none_, kLargestNumber, 0, native_ ? native_->vertex_base : 1),
         elements_(native_ ? mesh.cell_ids : none_, kLargestNumber, 0, native_ ? native_->element_base : 1),
         out_(path) {}
@@ -49,12 +49,12 @@ class VegaWriter {
   void write() {
     choose_sections();
     note_losses();
-    for (const Section& section : sections_) {
+    for (const VegaSection& section : sections_) {
       if (section.kind != Kind::set) continue;
       const EntitySet& set = set_of(section);
       names_.emplace(&set, name_of(set));
     }
-    for (const Section& section : sections_) write_section(section);
+    for (const VegaSection& section : sections_) write_section(section);
     if (native_) out_.write(native_->closing_comments);
     out_.commit();
   }
@@ -63,7 +63,7 @@ class VegaWriter {
   void choose_sections() {
     std::vector<bool> has_section(mesh_.sets.size(), false);
     if (native_) {
-      for (const Section& section : native_->sections) {
+      for (const VegaSection& section : native_->sections) {
         if (section.kind == Kind::set && !is_cell_set(section.set)) continue;
         if (section.kind == Kind::region && !has_set(section.region_set)) {
           notes_.push_back("the region of the set '" + section.region_set +
@@ -83,7 +83,7 @@ class VegaWriter {
   }
 
   void add_section(Kind kind, std::size_t set = 0) {
-    Section& section = sections_.emplace_back();
+    VegaSection& section = sections_.emplace_back();
     section.kind = kind;
     section.set = set;
   }
@@ -163,7 +163,7 @@ class VegaWriter {
     return fits ? array : nullptr;
   }
 
-  void write_section(const Section& section) {
+  void write_section(const VegaSection& section) {
     out_.write(section.comments);
     switch (section.kind) {
       case Kind::vertices:
@@ -229,7 +229,7 @@ class VegaWriter {
     return fits ? native_->element_word : usual;
   }
 
-  [[nodiscard]] const EntitySet& set_of(const Section& section) const {
+  [[nodiscard]] const EntitySet& set_of(const VegaSection& section) const {
     return section.set < mesh_.sets.size() ? mesh_.sets[section.set]
                                            : label_sets_[section.set - mesh_.sets.size()];
   }
@@ -263,13 +263,13 @@ class VegaWriter {
   const Mesh& mesh_;
   NamedParts parts_;
   Notes& notes_;
-  const vega::Metadata* native_;
+  const vega::VegaMetadata* native_;
   std::vector<std::int64_t> none_;
   // a mesh from a Vega file keeps the file's numbers, although Vega itself counts lines when it reads
   NewNumbers vertices_;
   NewNumbers elements_;
   OutputFile out_;
-  std::vector<Section> sections_;
+  std::vector<VegaSection> sections_;
   std::vector<EntitySet> label_sets_;
   DistinctNames set_names_;
   std::map<const EntitySet*, std::string> names_;  ///< the name that each set gets in the file
@@ -287,7 +287,7 @@ void write_vega(const Mesh& mesh, const FilePath& path, Notes& notes) {
 }
 
 std::int64_t first_number_of(const Mesh& mesh, Association of) {
-  const auto* const own = dynamic_cast<const vega::Metadata*>(mesh.format_metadata.get());
+  const auto* const own = dynamic_cast<const vega::VegaMetadata*>(mesh.format_metadata.get());
   if (own == nullptr) return 1;
   return of == Association::vertices ? own->vertex_base : own->element_base;
 }

@@ -272,7 +272,7 @@ Index first_unfit_polyhedron(const Cells& cells, const std::vector<std::uint8_t>
 }
 
 bool has_polyhedra(const Mesh& mesh) {
-  const auto* const own = dynamic_cast<const Metadata*>(mesh.format_metadata.get());
+  const auto* const own = dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get());
   return own != nullptr && !own->polyhedra.empty();
 }
 

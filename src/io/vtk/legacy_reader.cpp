@@ -536,7 +536,7 @@ class LegacyReader {
   LegacyInput in_;
   Mesh mesh_;
   UniqueNames names_;  // of arrays
-  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  std::shared_ptr<VtkMetadata> metadata_ = std::make_shared<VtkMetadata>();
   LegacyLayout layout_;
   int version_ = 0;
   bool has_points_ = false;

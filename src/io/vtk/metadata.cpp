@@ -85,10 +85,10 @@ class Names {
 };
 
 /// Returns the metadata of a mesh that came from VTK, or empty metadata; notes metadata of another format.
-const Metadata& metadata_of(const Mesh& mesh, Notes& notes) {
-  static const Metadata none;
+const VtkMetadata& metadata_of(const Mesh& mesh, Notes& notes) {
+  static const VtkMetadata none;
   if (!mesh.format_metadata) return none;
-  if (const auto* own = dynamic_cast<const Metadata*>(mesh.format_metadata.get())) return *own;
+  if (const auto* own = dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get())) return *own;
   note_metadata_unsupported(mesh, "VTK", notes);
   return none;
 }
@@ -104,7 +104,7 @@ DataArray full_array(const DataArray& array, Index count) {
   return copy;
 }
 
-std::vector<std::string> Metadata::contents() const {
+std::vector<std::string> VtkMetadata::contents() const {
   std::vector<std::string> result;
   for (const DataArray& field : fields) result.push_back("the field '" + field.name + "' of the whole mesh");
   if (legacy) {
@@ -117,15 +117,15 @@ std::vector<std::string> Metadata::contents() const {
   return result;
 }
 
-std::shared_ptr<const FormatMetadata> Metadata::moved(std::span<const Index> new_vertices,
-                                                      std::span<const Index> new_cells) const {
+std::shared_ptr<const FormatMetadata> VtkMetadata::moved(std::span<const Index> new_vertices,
+                                                         std::span<const Index> new_cells) const {
   if (polyhedra.empty()) return nullptr;
-  auto result = std::make_shared<Metadata>(*this);
+  auto result = std::make_shared<VtkMetadata>(*this);
   result->polyhedra = polyhedra.moved(new_vertices, new_cells);
   return result;
 }
 
-const ArrayFacts* find_facts(const Metadata& metadata, std::optional<Association> association,
+const ArrayFacts* find_facts(const VtkMetadata& metadata, std::optional<Association> association,
                              std::string_view array) {
   const auto found = metadata.facts.find({association, std::string(array)});
   return found == metadata.facts.end() ? nullptr : &found->second;
@@ -192,7 +192,7 @@ std::string name_in_hdf5(std::string name) {
 }
 
 bool is_from_vtk(const Mesh& mesh) {
-  return dynamic_cast<const Metadata*>(mesh.format_metadata.get()) != nullptr;
+  return dynamic_cast<const VtkMetadata*>(mesh.format_metadata.get()) != nullptr;
 }
 
 WriteContext::WriteContext(const Mesh& written, Notes& warnings, NamePlace names)

@@ -138,7 +138,7 @@ struct LegacyLayout {
 using FactsOfArrays = std::map<std::pair<std::optional<Association>, std::string>, ArrayFacts>;
 
 /// Data of VTK's files beyond the mesh, kept by the readers for the writers.
-struct Metadata : FormatMetadata {
+struct VtkMetadata : FormatMetadata {
   std::vector<DataArray> fields;  ///< arrays of the whole mesh; their association and indices mean nothing
   std::vector<ArrayRole> roles;
   FactsOfArrays facts;
@@ -154,7 +154,7 @@ struct Metadata : FormatMetadata {
 };
 
 /// Returns the facts of an array, or nullptr. O(log facts).
-const ArrayFacts* find_facts(const Metadata& metadata, std::optional<Association> association,
+const ArrayFacts* find_facts(const VtkMetadata& metadata, std::optional<Association> association,
                              std::string_view array);
 
 // ---- cells
@@ -269,7 +269,7 @@ struct WriteContext {
 
   const Mesh& mesh;
   Notes& notes;
-  const Metadata& metadata;              ///< of a mesh that came from VTK; else empty
+  const VtkMetadata& metadata;           ///< of a mesh that came from VTK; else empty
   std::vector<std::uint8_t> types;       ///< of the cells
   std::vector<const DataArray*> arrays;  ///< full arrays with distinct names, in order
 

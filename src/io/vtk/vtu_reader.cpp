@@ -517,7 +517,7 @@ class VtuReader {
   bool is_first_ = true;                       ///< whether the file that is being read is the first
   int pieces_ = 0;                             ///< that are not empty
   Mesh mesh_;
-  std::shared_ptr<Metadata> metadata_ = std::make_shared<Metadata>();
+  std::shared_ptr<VtkMetadata> metadata_ = std::make_shared<VtkMetadata>();
   std::vector<DataArray> arrays_;
   std::map<std::pair<Association, std::string>, std::size_t> places_;  // of arrays
   FileCells cells_;

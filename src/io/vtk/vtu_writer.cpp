@@ -48,7 +48,7 @@ struct Array {
 };
 
 /// A part of the file with arrays: its opening and closing tags.
-struct Section {
+struct ArraySection {
   std::string begin;
   std::string end;
   std::vector<Array> arrays;
@@ -74,7 +74,7 @@ class VtuWriter {
     choose_headers();
     if (appended()) place();
     write_header();
-    for (const Section& section : sections_) write_section(section);
+    for (const ArraySection& section : sections_) write_section(section);
     out_.write("    </Piece>\n  </UnstructuredGrid>\n");
     if (appended()) write_appended();
     out_.write("</VTKFile>\n");
@@ -104,7 +104,8 @@ class VtuWriter {
 
   void collect() {
     if (!from_.metadata.fields.empty()) {
-      Section& fields = sections_.emplace_back(Section{"    <FieldData>\n", "    </FieldData>\n", {}});
+      ArraySection& fields =
+          sections_.emplace_back(ArraySection{"    <FieldData>\n", "    </FieldData>\n", {}});
       for (const DataArray& field : from_.metadata.fields) fields.arrays.push_back(array_of(field, {}));
     }
     collect_data(Association::vertices);
@@ -114,7 +115,7 @@ class VtuWriter {
   }
 
   void collect_data(Association association) {
-    Section section;
+    ArraySection section;
     const std::string_view name = association == Association::vertices ? "PointData" : "CellData";
     section.begin = fmt::format("      <{}{}>\n", name, roles(association));
     section.end = fmt::format("      </{}>\n", name);
@@ -341,7 +342,7 @@ class VtuWriter {
   // ---- the file
 
   void choose_headers() {
-    for (const Section& section : sections_) {
+    for (const ArraySection& section : sections_) {
       for (const Array& array : section.arrays) {
         if (byte_count(array) > 0xFFFFFFFFU) encoding_.wide_headers = true;
       }
@@ -351,7 +352,7 @@ class VtuWriter {
   /// Computes the offsets of appended arrays.
   void place() {
     std::uint64_t offset = 0;
-    for (Section& section : sections_) {
+    for (ArraySection& section : sections_) {
       for (Array& array : section.arrays) {
         array.offset = offset;
         const auto length = [&](std::uint64_t bytes) { return coded() ? base64_length(bytes) : bytes; };
@@ -390,7 +391,7 @@ class VtuWriter {
                from_.mesh.cell_count());
   }
 
-  void write_section(const Section& section) {
+  void write_section(const ArraySection& section) {
     out_.write(section.begin);
     for (const Array& array : section.arrays) {
       out_.print("        {} format=\"", array.tag);
@@ -418,7 +419,7 @@ class VtuWriter {
 
   void write_appended() {
     out_.print("  <AppendedData encoding=\"{}\">\n_", coded() ? "base64" : "raw");
-    for (const Section& section : sections_) {
+    for (const ArraySection& section : sections_) {
       for (const Array& array : section.arrays) write_bytes(array);
     }
     out_.write("\n  </AppendedData>\n");
@@ -427,7 +428,7 @@ class VtuWriter {
   WriteContext from_;
   VtuEncoding encoding_;
   OutputFile out_;
-  std::vector<Section> sections_;
+  std::vector<ArraySection> sections_;
 
   // numbers of arrays that the mesh does not have
   std::vector<std::shared_ptr<std::string>> texts_;

@@ -418,7 +418,7 @@ class VtkHdfReader {
   hdf5::File file_;
   Notes& notes_;
   Mesh mesh_;
-  std::shared_ptr<vtk::Metadata> metadata_ = std::make_shared<vtk::Metadata>();
+  std::shared_ptr<vtk::VtkMetadata> metadata_ = std::make_shared<vtk::VtkMetadata>();
   std::vector<Partition> partitions_;
   std::int64_t full_partitions_ = 0;  ///< partitions that have points or cells
   vtk::FileCells cells_;              ///< of all partitions, like the arrays

@@ -42,7 +42,7 @@ struct Partition {
 /// offsets are the ends of the cells.
 struct RawGrid {
   FileLayout layout;
-  vtk::Metadata metadata;  ///< fields and roles
+  vtk::VtkMetadata metadata;  ///< fields and roles
 };
 
 /// Finds the bytes of the values in a file on disk. Returns nothing if only libhdf5 can read the file, or if
@@ -63,7 +63,7 @@ std::optional<RawGrid> find_raw(const FilePath& path);
 /// @throws InputError if it cannot be written
 void write_without_values(const std::filesystem::path& path, const std::string& name,
                           const std::vector<Partition>& partitions, FileLayout& layout,
-                          const vtk::Metadata& metadata, Notes& notes);
+                          const vtk::VtkMetadata& metadata, Notes& notes);
 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);

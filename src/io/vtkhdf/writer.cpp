@@ -173,7 +173,7 @@ void note_lacking(const vtk::WriteContext& from, Notes& notes) {
 
 void write_without_values(const std::filesystem::path& path, const std::string& name,
                           const std::vector<Partition>& partitions, FileLayout& layout,
-                          const vtk::Metadata& metadata, Notes& notes) {
+                          const vtk::VtkMetadata& metadata, Notes& notes) {
   const hdf5::Session session;
   const std::string bytes = empty_file();
   std::ofstream(path, std::ios::binary).write(bytes.data(), std::ssize(bytes));

@@ -71,7 +71,7 @@ void Writer::add_others() {
 std::set<std::pair<Association, std::string>> Writer::placed_sets() const {
   std::set<std::pair<Association, std::string>> placed;
   if (layout_.is_made) return placed;
-  for (const Part& part : layout_.parts) {
+  for (const TopologyPart& part : layout_.parts) {
     if (!part.set.empty()) placed.emplace(Association::cells, part.set);
   }
   for (const Field& field : layout_.fields) {

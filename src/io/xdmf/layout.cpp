@@ -44,8 +44,8 @@ int below_of(std::string_view grid) {
   return found == kGridNames.end() ? 0 : static_cast<int>(found - kGridNames.begin());
 }
 
-Layout layout_of(const Mesh& mesh, const FilePath& path) {
-  Layout layout;
+XdmfLayout layout_of(const Mesh& mesh, const FilePath& path) {
+  XdmfLayout layout;
   layout.is_made = true;
   layout.stem = path.path().stem().string();
   const std::string file = layout.stem + ".h5";
@@ -82,7 +82,7 @@ Layout layout_of(const Mesh& mesh, const FilePath& path) {
   return layout;
 }
 
-std::vector<std::vector<Index>> cells_of_parts(const Mesh& mesh, const Layout& layout) {
+std::vector<std::vector<Index>> cells_of_parts(const Mesh& mesh, const XdmfLayout& layout) {
   if (layout.is_made) {
     std::vector<int> dimensions;
     return cells_by_dimension(mesh, dimensions);

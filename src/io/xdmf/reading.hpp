@@ -41,7 +41,7 @@ struct Reading {
   DataReader data;
   Notes& notes;
   Mesh mesh = {};
-  std::shared_ptr<Layout> layout = std::make_shared<Layout>();
+  std::shared_ptr<XdmfLayout> layout = std::make_shared<XdmfLayout>();
   vtk::FileCells cells = {};
   std::vector<std::vector<Index>> rows = {};  ///< cells of each part, in the order of the file
   pugi::xml_node where_cells_are = {};

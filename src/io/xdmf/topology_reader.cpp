@@ -252,7 +252,7 @@ int TopologyReader::part_of(const GridElement& grid, pugi::xml_node topology, Pi
   }
   const auto number = static_cast<int>(reading_.layout->parts.size());
   if (grid.series >= 0) series_parts_[grid.series] = number;
-  Part part;
+  TopologyPart part;
   part.grid = reading_.document.number(grid.element);
   part.name = grid.element.attribute("Name").value();
   if (part.name.empty()) part.name = fmt::format("grid {}", number);

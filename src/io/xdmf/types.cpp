@@ -106,7 +106,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices) {
   const TopologyType* const type = topology_type_of(shape, vertices);
   if (type == nullptr || (shape == Shape::vertex && vertices != 1)) return false;
   return type->number < kFirstOfHigherOrder ||
-         dynamic_cast<const Layout*>(mesh.format_metadata.get()) != nullptr;
+         dynamic_cast<const XdmfLayout*>(mesh.format_metadata.get()) != nullptr;
 }
 
 }  // namespace meshorder::xdmf

@@ -15,7 +15,7 @@
 
 namespace meshorder::xdmf {
 
-Writer::Writer(const Mesh& mesh, const Layout& layout, std::vector<std::vector<Index>> rows,
+Writer::Writer(const Mesh& mesh, const XdmfLayout& layout, std::vector<std::vector<Index>> rows,
                const FilePath& path, Notes& notes)
     : mesh_(mesh),
       layout_(layout),

@@ -42,8 +42,8 @@ struct Hdf5Output {
 class Writer {
  public:
   /// `rows`: the cells of each part.
-  Writer(const Mesh& mesh, const Layout& layout, std::vector<std::vector<Index>> rows, const FilePath& path,
-         Notes& notes);
+  Writer(const Mesh& mesh, const XdmfLayout& layout, std::vector<std::vector<Index>> rows,
+         const FilePath& path, Notes& notes);
   /// Writes the file and the files of values that it names.
   void write();
   /// See `SplitFile`; `mark` is the result of `mark_of` for its checksum.
@@ -139,7 +139,7 @@ class Writer {
 
   const Mesh& mesh_;
   const NamedParts parts_{mesh_};
-  const Layout& layout_;
+  const XdmfLayout& layout_;
   std::vector<Field> fields_;
   FilePath path_;
   std::string stem_;

@@ -16,11 +16,11 @@ namespace meshorder::xdmf {
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const hdf5::Session session;  // for the whole function: failures in it count at its end
-  if (const auto* const own = dynamic_cast<const Layout*>(mesh.format_metadata.get())) {
+  if (const auto* const own = dynamic_cast<const XdmfLayout*>(mesh.format_metadata.get())) {
     std::vector<std::vector<Index>> rows = cells_of_parts(mesh, *own);
     if (!rows.front().empty()) return Writer(mesh, *own, std::move(rows), path, notes).write();
   }
-  const Layout layout = layout_of(mesh, path);
+  const XdmfLayout layout = layout_of(mesh, path);
   Writer(mesh, layout, cells_of_parts(mesh, layout), path, notes).write();
   note_metadata_unsupported(mesh, "XDMF", notes);
 }
@@ -32,7 +32,7 @@ namespace {
 /// Makes the files of a layout that has all values in one HDF5 file.
 class XdmfWithData final : public SplitFile {
  public:
-  explicit XdmfWithData(std::shared_ptr<const Layout> layout) : layout_(std::move(layout)) {}
+  explicit XdmfWithData(std::shared_ptr<const XdmfLayout> layout) : layout_(std::move(layout)) {}
 
   [[nodiscard]] std::string data_of(const std::string& document) const override {
     return with_writer(document, [&](Writer& writer) {
@@ -72,12 +72,12 @@ class XdmfWithData final : public SplitFile {
     return work(writer);
   }
 
-  std::shared_ptr<const Layout> layout_;
+  std::shared_ptr<const XdmfLayout> layout_;
 };
 
 }  // namespace
 
-std::shared_ptr<const SplitFile> with_data(std::shared_ptr<const Layout> layout) {
+std::shared_ptr<const SplitFile> with_data(std::shared_ptr<const XdmfLayout> layout) {
   return std::make_shared<XdmfWithData>(std::move(layout));
 }
 

@@ -53,7 +53,7 @@ bool holds(const Mesh& mesh, Shape shape, int vertices);
 // ---- contents of a file
 
 /// The cells of one Topology.
-struct Part {
+struct TopologyPart {
   std::string name;           ///< of its Grid
   std::string set;            ///< set of its cells, in the order of the file; empty for the first part, and
                               ///< for a Grid that `layout_of` added
@@ -76,11 +76,11 @@ struct Field {
 };
 
 /// Data of XDMF's files beyond the mesh.
-struct Layout final : FormatMetadata {
+struct XdmfLayout final : FormatMetadata {
   std::string stem;                         ///< of the name of the .xdmf file
   std::string xml;                          ///< without values
   std::map<std::string, std::string> hdf5;  ///< bytes of files without values, by their names in the XML
-  std::vector<Part> parts;
+  std::vector<TopologyPart> parts;
   std::vector<Field> fields;
   std::vector<std::string> words;  ///< see `contents`
   bool inward_wedges = false;      ///< linear wedges in the order of VTK 9.7
@@ -90,23 +90,24 @@ struct Layout final : FormatMetadata {
 };
 
 /// Returns the maker of the files of a layout that has all values in one HDF5 file.
-std::shared_ptr<const SplitFile> with_data(std::shared_ptr<const Layout> layout);
+std::shared_ptr<const SplitFile> with_data(std::shared_ptr<const XdmfLayout> layout);
 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);
 
 /// Returns the layout of a file for a mesh from another format: a Grid for the cells of the highest
 /// dimension, and a Grid for the cells of each lower dimension.
-Layout layout_of(const Mesh& mesh, const FilePath& path);
+XdmfLayout layout_of(const Mesh& mesh, const FilePath& path);
 
 /// Name of the element <Information> that marks a Grid which `layout_of` added: readers make no set of this
 /// Grid.
 inline constexpr std::string_view kAdded = "cells of a lower dimension";
-/// Returns the value of `Part::below` for a Grid that `layout_of` added, by its name; 0 for any other name.
+/// Returns the value of `TopologyPart::below` for a Grid that `layout_of` added, by its name; 0 for any other
+/// name.
 int below_of(std::string_view grid);
 
 /// Returns the cells of each part, in the order of the file.
-std::vector<std::vector<Index>> cells_of_parts(const Mesh& mesh, const Layout& layout);
+std::vector<std::vector<Index>> cells_of_parts(const Mesh& mesh, const XdmfLayout& layout);
 
 /// Returns the places of the cells in a file of `layout_of`, by dimension, highest first. `blocks` receives
 /// the first cell of each dimension.
