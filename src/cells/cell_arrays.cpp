@@ -5,13 +5,11 @@
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
 #include "base/text.hpp"
-#include "cells/cell_widths.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>
 #include <atomic>
 #include <numeric>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>

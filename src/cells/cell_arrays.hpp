@@ -6,6 +6,7 @@
 #include <meshorder/view.hpp>
 
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,6 +48,11 @@ std::optional<Shape> shape_of_vtk_type(int type);
 ///
 /// @throws InvalidArgument if both are given and differ, or if there are cells and neither is given
 std::size_t vertex_count_of(const MeshView& mesh);
+
+/// Returns the usual numbers of vertices of a shape: complete cells up to order 10, cells whose vertices are
+/// all on edges, and a few others that programs use. Empty for shapes that take any number of vertices, such
+/// as lines. O(1).
+std::set<int> cell_widths(Shape shape);
 
 /// Converts a view of cells, and checks it unless `check` is none: sizes match, offsets ascend, VTK types are
 /// known, cells have at least as many vertices as their shape has corners, cells of blocks have a number of

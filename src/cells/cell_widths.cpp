@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "cells/cell_widths.hpp"
+#include "cells/cell_arrays.hpp"
 
 namespace meshorder {
 namespace {

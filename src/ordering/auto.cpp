@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/auto.hpp"
-
 #include "base/point.hpp"
+#include "base/text.hpp"
 #include "metrics/edge_span.hpp"
 #include "metrics/measures.hpp"
 #include "ordering/all_methods.hpp"
@@ -18,6 +17,26 @@
 #include <vector>
 
 namespace meshorder {
+
+// The names of workloads.
+template <>
+struct EnumNames<Workload> {
+  static constexpr std::string_view kind = "workload";
+  static constexpr std::array names{
+      std::pair{Workload::all, "all"},         std::pair{Workload::element, "element"},
+      std::pair{Workload::spmv, "spmv"},       std::pair{Workload::assembly, "assembly"},
+      std::pair{Workload::springs, "springs"}, std::pair{Workload::bandwidth, "bandwidth"},
+      std::pair{Workload::fill, "fill"},       std::pair{Workload::gpu, "gpu"},
+  };
+};
+
+inline namespace v0_3 {
+
+std::string_view to_string(Workload workload) { return to_string<Workload>(workload); }
+Workload parse_workload(std::string_view name) { return parse<Workload>(name); }
+
+}  // namespace v0_3
+
 namespace {
 
 /// A lattice, cut into cells of any shape; else a graph with or without coordinates.

@@ -1,8 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/fronts.hpp"
-
 #include "base/parallel.hpp"
 #include "graph/row_access.hpp"
+#include "ordering/all_methods.hpp"
 
 #include <algorithm>
 #include <array>

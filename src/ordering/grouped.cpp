@@ -2,7 +2,7 @@
 #include "ordering/grouped.hpp"
 
 #include "base/point.hpp"
-#include "ordering/auto.hpp"
+#include "ordering/method.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>

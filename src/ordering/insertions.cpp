@@ -1,8 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/insertions.hpp"
-
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
+#include "ordering/arrangement_graph.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -4,7 +4,6 @@
 #include "base/run_scope.hpp"
 #include "base/text.hpp"
 #include "ordering/all_methods.hpp"
-#include "ordering/fronts.hpp"
 #include <meshorder/error.hpp>
 
 #include <array>

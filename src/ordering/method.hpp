@@ -46,6 +46,14 @@ Order order_graph(std::string_view method, const VertexInput& input, const Order
 /// Orders elements by the method of that name; throws as `order_graph`.
 Order order_incidence(std::string_view method, const ElementInput& input, const OrderOptions& options = {});
 
+/// Returns the vertex method that measurements favour for this graph and workload: never `auto` itself, and a
+/// method that needs coordinates only if coordinates distinguish the vertices. docs/auto.md has the evidence.
+/// O(n).
+MethodChoice choose_vertex_method(const VertexInput& input, Workload workload);
+
+/// Returns the element method that measurements favour for that workload. O(1).
+MethodChoice choose_element_method(const ElementInput& input, Workload workload);
+
 /// Returns a registered method of that name, empty if there is none. Thread-safe.
 VertexMethod registered_vertex_method(std::string_view name);
 ElementMethod registered_element_method(std::string_view name);

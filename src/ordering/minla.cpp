@@ -5,7 +5,6 @@
 #include "base/run_scope.hpp"
 #include "ordering/all_methods.hpp"
 #include "ordering/arrangement_graph.hpp"
-#include "ordering/insertions.hpp"
 
 #include <limits>
 #include <numeric>

@@ -2,8 +2,8 @@
 #include "ordering/order_cells.hpp"
 
 #include "cells/facets.hpp"
-#include "ordering/auto.hpp"
 #include "ordering/grouped.hpp"
+#include "ordering/method.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>

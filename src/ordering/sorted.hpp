@@ -57,28 +57,41 @@ std::vector<Index> sorted_items(const Buckets<Entry>& buckets, const Key& key, c
   return items;
 }
 
-/// Returns the numbers 0 … n−1 sorted by rising `value_of(i)`, ties by number. On all threads; each value is
-/// computed once. O(n log n) at worst, O(n) if values are evenly spread over the places.
+/// A number 0 … n−1 and the value that it is sorted by.
+template <class Value>
+struct ValuedItem {
+  Value value;
+  Index item;
+
+  bool operator<(const ValuedItem& other) const {
+    return value < other.value || (value == other.value && item < other.item);
+  }
+};
+
+/// Sorts by value, ties by number.
+struct SortByValue {
+  template <class Value>
+  void operator()(std::span<ValuedItem<Value>> entries) const {
+    std::sort(entries.begin(), entries.end());
+  }
+};
+
+/// Returns the numbers 0 … n−1 sorted by the places of their values. On all threads; each value is computed
+/// once. O(n log n) at worst, O(n) if values are evenly spread over the places.
 ///
 /// @param places    number of places for values
 /// @param place_of  `place_of(value)` returns the place of a value, 0 … places − 1, and never falls
-template <class ValueOf, class PlaceOf>
-Permutation sorted_by(Index n, const ValueOf& value_of, Index places, const PlaceOf& place_of) {
+/// @param sort      `sort(entries)` sorts the entries of one place, a `std::span<ValuedItem>` of two or more
+template <class ValueOf, class PlaceOf, class Sort = SortByValue>
+Permutation sorted_by(Index n, const ValueOf& value_of, Index places, const PlaceOf& place_of,
+                      const Sort& sort = {}) {
   constexpr Index kPart = 65536;  // numbers taken by a thread at a time
-  struct Entry {
-    decltype(value_of(n)) value;
-    Index item;
-  };
+  using Entry = ValuedItem<decltype(value_of(n))>;
   const auto place = [&](const Entry& entry) { return place_of(entry.value); };
   const auto entries_of = [&](Index /*part*/, Index begin, Index end) {
     std::vector<Entry> entries(std::size_t(end - begin));
     for (Index i = begin; i < end; ++i) entries[i - begin] = {value_of(i), i};
     return [entries = std::move(entries)](const auto& call) { std::ranges::for_each(entries, call); };
-  };
-  const auto sort = [](std::span<Entry> entries) {
-    std::ranges::sort(entries, [](const Entry& a, const Entry& b) {
-      return a.value < b.value || (a.value == b.value && a.item < b.item);
-    });
   };
   return Permutation::from_new_to_old(
       sorted_items(Buckets<Entry>(n, kPart, places, entries_of, place), place, sort));

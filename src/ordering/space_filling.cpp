@@ -251,11 +251,7 @@ constexpr int kFirstBits = 30;  // of a point's number along a curve; few points
 /// few do.
 template <class Key>
 Permutation sorted_along(const PointsView& points, const Key& key) {
-  constexpr Index kPart = 65536;  // points taken by a thread at a time
-  struct Entry {
-    std::uint32_t number;  ///< its first bits
-    Index item;
-  };
+  using Entry = ValuedItem<std::uint32_t>;
   const Index n = index_size(points);
   const Lattice lattice = lattice_of(points);
   const int axes = lattice.axes();
@@ -265,17 +261,12 @@ Permutation sorted_along(const PointsView& points, const Key& key) {
     for (std::uint32_t& x : cell) x >>= static_cast<unsigned>(lattice.bits() - scales);
     return key(cell, axes, scales);
   };
-  const auto entries_of = [&](Index /*part*/, Index begin, Index end) {
-    std::vector<Entry> entries(std::size_t(end - begin));
-    for (Index i = begin; i < end; ++i)
-      entries[i - begin] = {static_cast<std::uint32_t>(number_of(i, first_scales)), i};
-    return [entries = std::move(entries)](const auto& call) { std::ranges::for_each(entries, call); };
-  };
+  const auto first_bits = [&](Index i) { return static_cast<std::uint32_t>(number_of(i, first_scales)); };
 
   const int bits = std::min(axes * first_scales, static_cast<int>(std::bit_width(std::uint32_t(n))) + 1);
   const int shift = axes * first_scales - bits;
-  const auto place = [shift](const Entry& entry) {
-    return static_cast<Index>(entry.number >> static_cast<unsigned>(shift));
+  const auto place = [shift](std::uint32_t number) {
+    return static_cast<Index>(number >> static_cast<unsigned>(shift));
   };
   const auto sort_equal = [&](std::span<Entry> entries) {
     std::vector<std::pair<std::uint64_t, Index>> whole;
@@ -285,14 +276,13 @@ Permutation sorted_along(const PointsView& points, const Key& key) {
     for (std::size_t k = 0; k < entries.size(); ++k) entries[k].item = whole[k].second;
   };
   const auto sort = [&](std::span<Entry> entries) {
-    std::ranges::sort(entries, {}, &Entry::number);
+    std::ranges::sort(entries, {}, &Entry::value);
     for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
-      while (end < entries.size() && entries[end].number == entries[begin].number) ++end;
+      while (end < entries.size() && entries[end].value == entries[begin].value) ++end;
       if (end - begin > 1) sort_equal(entries.subspan(begin, end - begin));
     }
   };
-  return Permutation::from_new_to_old(
-      sorted_items(Buckets<Entry>(n, kPart, Index{1} << bits, entries_of, place), place, sort));
+  return sorted_by(n, first_bits, Index{1} << bits, place, sort);
 }
 
 Permutation along_hilbert_curve(const PointsView& points) { return sorted_along(points, hilbert_key); }

@@ -9,7 +9,7 @@
 #include "mesh/stored_matrix.hpp"
 #include "metrics/edge_span.hpp"
 #include "metrics/measures.hpp"
-#include "ordering/auto.hpp"
+#include "ordering/method.hpp"
 #include "payoff/cost_model.hpp"
 #include "payoff/shared_work.hpp"
 #include <meshorder/error.hpp>

@@ -1,8 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "spectral/hierarchy.hpp"
 
-#include "spectral/dense.hpp"
 #include "spectral/hiding.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +74,7 @@ Eigen::MatrixXd dense_inverse(const Laplacian& laplacian) {
   const double scale = shifted.diagonal().maxCoeff();
   if (!(scale > 0)) return Eigen::MatrixXd::Zero(n, n);  // one vertex
   shifted.array() += scale / n;                          // moves the constant vector out of the null space
-  return inverse(shifted);
+  return shifted.llt().solve(Eigen::MatrixXd::Identity(n, n));
 }
 
 template <int M, class RightSide>
@@ -226,10 +228,10 @@ VectorBlock<M> Hierarchy::coarsest_eigenvectors() const {
   const Eigen::VectorXd scale = Eigen::VectorXd::NullaryExpr(
       n, [&](Eigen::Index v) { return 1 / std::sqrt(coarsest.mass(static_cast<Index>(v))); });
   const Eigen::MatrixXd scaled = scale.asDiagonal() * dense(coarsest.laplacian) * scale.asDiagonal();
-  const Eigenpairs pairs = eigenpairs(scaled);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs(scaled);
   VectorBlock<M> result(n, std::array<double, M>{});
   for (int m = 0; m < std::min<int>(M, n - 1); ++m) {
-    for (Index v = 0; v < n; ++v) result[v][m] = scale[v] * pairs.vectors(v, m + 1);
+    for (Index v = 0; v < n; ++v) result[v][m] = scale[v] * pairs.eigenvectors()(v, m + 1);
   }
   return result;
 }

@@ -2,7 +2,8 @@
 #include "spectral/lobpcg.hpp"
 
 #include "base/memory.hpp"
-#include "spectral/dense.hpp"
+
+#include <Eigen/Eigenvalues>
 
 #include <cmath>
 #include <utility>
@@ -118,20 +119,22 @@ Ritz rayleigh_ritz(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& energy, i
   const Eigen::Index size = gram.rows();
   Eigen::VectorXd scale = gram.diagonal();
   for (Eigen::Index i = 0; i < size; ++i) scale[i] = scale[i] > 0 ? 1 / std::sqrt(scale[i]) : 0;
-  const Eigenpairs independent = eigenpairs(scale.asDiagonal() * gram * scale.asDiagonal());
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * gram * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> independent(scaled);
   Eigen::Index kept = 0;
   Eigen::MatrixXd basis(size, size);
   for (Eigen::Index i = size - 1; i >= 0; --i) {
-    const double eigenvalue = independent.values[i];
+    const double eigenvalue = independent.eigenvalues()[i];
     if (eigenvalue < kDependent) break;
-    basis.col(kept++) = scale.asDiagonal() * independent.vectors.col(i) / std::sqrt(eigenvalue);
+    basis.col(kept++) = scale.asDiagonal() * independent.eigenvectors().col(i) / std::sqrt(eigenvalue);
   }
   basis.conservativeResize(Eigen::NoChange, kept);
-  const Eigenpairs projected = eigenpairs(basis.transpose() * energy * basis);
+  const Eigen::MatrixXd energy_in_basis = basis.transpose() * energy * basis;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> projected(energy_in_basis);
   Ritz ritz{Eigen::MatrixXd::Zero(size, wanted), Eigen::VectorXd::Zero(wanted)};
   for (Eigen::Index m = 0; m < std::min<Eigen::Index>(wanted, kept); ++m) {
-    ritz.coefficients.col(m) = basis * projected.vectors.col(m);
-    ritz.values[m] = projected.values[m];
+    ritz.coefficients.col(m) = basis * projected.eigenvectors().col(m);
+    ritz.values[m] = projected.eigenvalues()[m];
   }
   return ritz;
 }

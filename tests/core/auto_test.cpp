@@ -1,9 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/auto.hpp"
-
 #include "metrics/edge_span.hpp"
 #include "metrics/measures.hpp"
 #include "ordering/judgement.hpp"
+#include "ordering/method.hpp"
 #include "ordering/moved.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"

@@ -1,8 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/fronts.hpp"
-
 #include "metrics/edge_span.hpp"
 #include "metrics/measures.hpp"
+#include "ordering/all_methods.hpp"
 #include "ordering/method.hpp"
 #include "support/graph_orders.hpp"
 #include "support/sample_graphs.hpp"

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "ordering/grouped.hpp"
 
-#include "ordering/auto.hpp"
+#include "ordering/method.hpp"
 #include "support/sample_graphs.hpp"
 #include <meshorder/error.hpp>
 

@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/insertions.hpp"
-
+#include "ordering/arrangement_graph.hpp"
 #include "support/arrangements.hpp"
 #include "support/sample_graphs.hpp"
 #include "support/sample_meshes.hpp"

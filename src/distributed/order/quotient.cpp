@@ -2,7 +2,6 @@
 #include "distributed/order/quotient.hpp"
 
 #include "ordering/arrangement_graph.hpp"
-#include "ordering/insertions.hpp"
 #include <meshorder/order.hpp>
 
 #include <algorithm>
