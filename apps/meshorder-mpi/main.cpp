@@ -5,7 +5,7 @@
 #include "interruption.hpp"
 #include "launcher.hpp"
 #ifdef MESHORDER_HAS_HDF5
-#include "io/hdf5/process_end.hpp"
+#include "io/hdf5/mutex.hpp"
 #endif
 #include "io/stream/scratch.hpp"
 #include "order.hpp"

@@ -5,7 +5,7 @@
 #include "distributed/files/nemesis.hpp"
 #include "io/all_formats.hpp"
 #include "io/format.hpp"
-#include "io/stream/system_fault.hpp"
+#include "io/stream/descriptor.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 
 #include "base/text.hpp"
 #include "io/format.hpp"
+#include "io/stream/descriptor.hpp"
 #include "io/stream/file_path.hpp"
-#include "io/stream/system_fault.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

@@ -11,7 +11,7 @@
 #include "machines.hpp"
 #include "matrix_points.hpp"
 #include "matrix_report.hpp"
-#include "mesh/degenerate.hpp"
+#include "mesh/cells.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "mesh_files.hpp"

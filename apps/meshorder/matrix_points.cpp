@@ -2,7 +2,7 @@
 #include "matrix_points.hpp"
 
 #include "base/text.hpp"
-#include "io/matrix/points.hpp"
+#include "io/matrix/matrix.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "ordering/method.hpp"
 #include <meshorder/error.hpp>

@@ -2,10 +2,10 @@
 #include "output_deputy.hpp"
 
 #include "io/format.hpp"
+#include "io/stream/descriptor.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/stream/output_place.hpp"
 #include "io/stream/output_set.hpp"
-#include "io/stream/system_fault.hpp"
 #include <meshorder/error.hpp>
 
 #include <fcntl.h>

@@ -6,7 +6,7 @@
 #include "help_format.hpp"
 #include "interruption.hpp"
 #ifdef MESHORDER_HAS_HDF5
-#include "io/hdf5/process_end.hpp"
+#include "io/hdf5/mutex.hpp"
 #endif
 #include "io/stream/scratch.hpp"
 #include "standard_streams.hpp"

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "io/stream/private_folder.hpp"
+#include "io/stream/scratch.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -7,7 +7,7 @@
 #include "io/stream/gzip.hpp"
 #include "io/stream/output_set.hpp"
 #include "io/stream/read_limits.hpp"
-#include "mesh/degenerate.hpp"
+#include "mesh/cells.hpp"
 #include "mesh/reorder.hpp"
 #include "mesh/stored_matrix.hpp"
 #include <meshorder/error.hpp>

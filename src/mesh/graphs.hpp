@@ -2,20 +2,33 @@
 #pragma once
 
 #include "cells/cell_arrays.hpp"
+#include "cells/facets.hpp"
+#include "cells/vertex_joins.hpp"
 #include <meshorder/mesh.hpp>
 
 namespace meshorder {
 
 /// Returns the cells of a mesh in the form that the orderings take. Refers to the mesh. O(blocks).
-CellArrays cell_arrays(const Mesh& mesh);
+inline CellArrays cell_arrays(const Mesh& mesh) {
+  CellArrays arrays;
+  arrays.vertex_count = mesh.vertex_count();
+  arrays.offsets = mesh.cells.offsets;
+  arrays.vertices = mesh.cells.vertices;
+  arrays.shapes = mesh.cells.shapes;
+  arrays.block_starts = mesh.cell_blocks;
+  return arrays;
+}
 
 /// Returns the graph that joins any two vertices of a common element, or of a piece of it (vertex_joins.hpp).
 /// Vertices without elements have no neighbours. O(sum of piece sizes squared · log degree).
-CsrGraph vertex_graph(const Mesh& mesh);
+inline CsrGraph vertex_graph(const Mesh& mesh) { return vertex_graph(cell_arrays(mesh)); }
 
 /// Returns the graph of elements that share a facet, numbered in the order of cells: a face for volumes, an
 /// edge for surfaces, an end for lines. Facets are the same if their corners are, in any order. O(facets ·
 /// log facets at a vertex).
-CsrGraph facet_graph(const Mesh& mesh);
+inline CsrGraph facet_graph(const Mesh& mesh) {
+  const CellArrays cells = cell_arrays(mesh);
+  return joined_by_facet(cells, CellSelection::elements(cells));
+}
 
 }  // namespace meshorder

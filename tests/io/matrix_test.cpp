@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "io/matrix/matrix.hpp"
+
 #include "io/format.hpp"
-#include "io/matrix/points.hpp"
 #include "io/npy.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "support/files.hpp"

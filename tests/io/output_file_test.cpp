@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/output_file.hpp"
 
+#include "io/stream/descriptor.hpp"
 #include "io/stream/folder_locks.hpp"
 #include "io/stream/output_set.hpp"
 #include "io/stream/scratch.hpp"
-#include "io/stream/system_fault.hpp"
 #include "io/stream/text_rows.hpp"
 #include "support/files.hpp"
 #include <meshorder/error.hpp>

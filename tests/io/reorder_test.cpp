@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "mesh/reorder.hpp"
 
-#include "mesh/degenerate.hpp"
+#include "mesh/cells.hpp"
 #include "mesh/graphs.hpp"
 #include "ordering/order_cells.hpp"
 #include "support/sample_meshes.hpp"

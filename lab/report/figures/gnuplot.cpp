@@ -3,7 +3,7 @@
 
 #include "base/text.hpp"
 #include "io/stream/file_path.hpp"
-#include "io/stream/private_folder.hpp"
+#include "io/stream/scratch.hpp"
 #include "lab/report/figures/figures.hpp"
 #include "lab/support/process.hpp"
 #include <meshorder/error.hpp>

@@ -4,7 +4,7 @@
 #include "io/stream/file_path.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/vtk/vtk.hpp"
-#include "mesh/degenerate.hpp"
+#include "mesh/cells.hpp"
 #ifdef MESHORDER_HAS_NETCDF
 #include "io/exodus/exodus.hpp"
 #endif

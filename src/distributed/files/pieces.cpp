@@ -9,7 +9,6 @@
 #include "distributed/files/text_store.hpp"
 #include "distributed/order/parts.hpp"
 #include "io/stream/descriptor.hpp"
-#include "io/stream/system_fault.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
 #ifdef MESHORDER_HAS_HDF5

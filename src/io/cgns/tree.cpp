@@ -6,9 +6,8 @@
 #include "io/hdf5/session.hpp"
 #include "io/stream/descriptor.hpp"
 #include "io/stream/output_file.hpp"
-#include "io/stream/private_folder.hpp"
 #include "io/stream/read_limits.hpp"
-#include "io/stream/system_fault.hpp"
+#include "io/stream/scratch.hpp"
 #include <meshorder/error.hpp>
 
 #include <fcntl.h>

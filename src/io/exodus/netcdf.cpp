@@ -4,8 +4,8 @@
 #include "base/memory.hpp"
 #include "io/exact_values.hpp"
 #include "io/exodus/netcdf_library.hpp"
+#include "io/stream/descriptor.hpp"
 #include "io/stream/read_limits.hpp"
-#include "io/stream/system_fault.hpp"
 #include "mesh/values.hpp"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
-#include "io/coordinates.hpp"
+#include "io/exact_values.hpp"
 #include "io/exodus/exodus.hpp"
 #include "io/exodus/library.hpp"
 #include "io/exodus/writing.hpp"

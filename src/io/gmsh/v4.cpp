@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/memory.hpp"
-#include "io/append_cells.hpp"
 #include "io/gmsh/gmsh.hpp"
 #include "io/stream/regular_records.hpp"
+#include "mesh/cells.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
-#include "io/hdf5/library.hpp"
+#include "io/hdf5/session.hpp"
 
 #include <utility>
 
@@ -15,7 +15,7 @@ class Handle {
 
   Handle() = default;
   Handle(hid_t id, Close closing) : id_(id), close_(closing) {}
-  ~Handle();
+  ~Handle() { (void)close(); }
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Handle& operator=(Handle&& other) noexcept {
     std::swap(id_, other.id_);
@@ -29,7 +29,11 @@ class Handle {
   [[nodiscard]] bool is_open() const noexcept { return id_ >= 0; }
 
   /// Closes the handle now. Returns a negative number if that fails; closing is not tried again.
-  [[nodiscard]] herr_t close();
+  [[nodiscard]] herr_t close() {
+    if (id_ < 0) return 0;
+    const Session session;
+    return close_(std::exchange(id_, -1));
+  }
 
  private:
   hid_t id_ = -1;

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/hdf5/session.hpp"
 
-#include "io/hdf5/process_end.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>

@@ -2,9 +2,8 @@
 //
 // Matrix Market's dense arrays: R. Boisvert, R. Pozo and K. Remington, "The Matrix Market exchange formats:
 // initial design", NISTIR 5935 (1996).
-#include "io/matrix/points.hpp"
-
 #include "base/text.hpp"
+#include "io/matrix/matrix.hpp"
 #include "io/npy.hpp"
 #include "io/stream/scanner.hpp"
 #include <meshorder/error.hpp>

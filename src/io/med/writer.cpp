@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
 #include "io/all_formats.hpp"
-#include "io/coordinates.hpp"
+#include "io/exact_values.hpp"
 #include "io/hdf5/session.hpp"
 #include "io/med/med.hpp"
 #include "io/unsupported.hpp"

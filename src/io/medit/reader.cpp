@@ -1,11 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
-#include "io/append_cells.hpp"
 #include "io/labels.hpp"
 #include "io/medit/medit.hpp"
 #include "io/stream/regular_records.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
+#include "mesh/cells.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

@@ -1,9 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Format: OpenFOAM User Guide, "Mesh description": "2 ( inlet { type patch; nFaces 20; startFace 760; } … )".
-#include "io/openfoam/boundary.hpp"
-
 #include "io/openfoam/foam_file.hpp"
+#include "io/openfoam/poly_mesh.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

@@ -5,7 +5,6 @@
 #include "io/openfoam/poly_mesh.hpp"
 
 #include "base/point.hpp"
-#include "io/openfoam/boundary.hpp"
 #include "io/openfoam/foam_file.hpp"
 #include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>

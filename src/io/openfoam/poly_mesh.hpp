@@ -2,9 +2,11 @@
 #pragma once
 
 #include "graph/csr_graph.hpp"
+#include "io/stream/file_path.hpp"
 #include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -31,5 +33,13 @@ struct PolyMesh {
 /// @note O(faces · log faces of a cell); about 30 bytes a face besides the files' own size.
 PolyMesh read_poly_mesh(const std::filesystem::path& of_case, const std::filesystem::path& folder,
                         bool with_centres, Notes& notes);
+
+/// Checks that the patches of a file `boundary` cover the faces after the internal ones, one after another.
+/// Patches without faces may begin anywhere. Does not check a file that refers to other numbers by `$` or
+/// `#`. O(bytes of the file).
+///
+/// @throws InputError for a file that is no list of patches, for a patch without `nFaces` or `startFace`, and
+///         for patches that leave a gap, overlap or end too early or too late
+void check_boundary(const FilePath& path, std::int64_t faces, std::int64_t internal_faces);
 
 }  // namespace meshorder::openfoam

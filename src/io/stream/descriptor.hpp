@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -42,5 +43,17 @@ class Descriptor {
 
 /// Waits until the names in a folder are on the disk.
 [[nodiscard]] int sync_folder(const std::filesystem::path& folder) noexcept;
+
+/// The reason why a system call failed, as a clause, and a remedy.
+struct SystemFault {
+  std::string reason;
+  std::string remedy;
+};
+
+/// Returns reason and remedy for an `errno` of calls that write or replace files.
+SystemFault system_fault(int error);
+
+/// Throws InputError "FILE: WHAT: REASON; REMEDY" for an `errno`.
+[[noreturn]] void throw_system_fault(const std::string& file, const std::string& what, int error);
 
 }  // namespace meshorder

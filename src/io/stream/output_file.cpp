@@ -5,7 +5,6 @@
 #include "io/stream/output_place.hpp"
 #include "io/stream/output_set.hpp"
 #include "io/stream/scratch.hpp"
-#include "io/stream/system_fault.hpp"
 #include <meshorder/error.hpp>
 
 #include <fcntl.h>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/output_place.hpp"
 
-#include "io/stream/system_fault.hpp"
+#include "io/stream/descriptor.hpp"
 #include <meshorder/error.hpp>
 
 #include <sys/stat.h>

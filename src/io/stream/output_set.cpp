@@ -1,10 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/output_set.hpp"
 
+#include "io/stream/descriptor.hpp"
 #include "io/stream/folder_locks.hpp"
 #include "io/stream/output_place.hpp"
 #include "io/stream/scratch.hpp"
-#include "io/stream/system_fault.hpp"
 #include <meshorder/error.hpp>
 
 #include <fcntl.h>

@@ -1,12 +1,13 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/stream/scratch.hpp"
 
+#include "io/stream/descriptor.hpp"
 #include "io/stream/output_place.hpp"
-#include "io/stream/system_fault.hpp"
 
 #include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is POSIX's
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -214,6 +215,19 @@ void remove_unfinished_outputs() noexcept {
   for (std::atomic<char*>& slot : unfinished) {
     if (const char* const folder = slot.exchange(nullptr); folder != nullptr) remove_own(folder);
   }
+}
+
+PrivateFolder::PrivateFolder() {
+  std::string name = (fs::temp_directory_path() / "meshorder-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) {
+    throw_system_fault(name, "the folder for temporary files cannot be made", errno);
+  }
+  path_ = name;
+}
+
+PrivateFolder::~PrivateFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
 }
 
 }  // namespace meshorder

@@ -55,4 +55,21 @@ void remove_dead_scratches(const std::filesystem::path& folder);
 /// system functions that are safe there.
 void remove_unfinished_outputs() noexcept;
 
+/// A folder for temporary files that only this user can read; the destructor removes it and its content.
+class PrivateFolder {
+ public:
+  /// Throws InputError if it cannot be made.
+  PrivateFolder();
+  ~PrivateFolder();
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder(PrivateFolder&&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(PrivateFolder&&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
 }  // namespace meshorder

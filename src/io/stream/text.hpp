@@ -4,13 +4,16 @@
 #include "io/stream/byte_order.hpp"
 #include "io/stream/digits.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 #include <type_traits>
 
@@ -24,7 +27,9 @@ class Text {
   void print(fmt::format_string<Args...> format, Args&&... args) {
     print_all(format, fmt::make_format_args(args...));
   }
-  void print_all(fmt::string_view format, fmt::format_args args);
+  void print_all(fmt::string_view format, fmt::format_args args) {
+    fmt::vformat_to(std::back_inserter(buffer_), format, args);
+  }
 
   void write(std::string_view bytes) { buffer_.append(bytes.data(), bytes.data() + bytes.size()); }
 
@@ -36,7 +41,11 @@ class Text {
   }
 
   /// Appends `before` and the number as `print` does for `{}`, but faster.
-  void real(std::string_view before, double value);
+  void real(std::string_view before, double value) {
+    constexpr std::size_t kMostCharacters = 32;
+    char* const at = std::copy(before.begin(), before.end(), room(before.size() + kMostCharacters));
+    written(fmt::format_to(at, FMT_COMPILE("{}"), value));
+  }
 
   /// Appends `before` and a number of any type as `print` does for `{}`, by the fastest of these functions.
   template <class Number>
@@ -70,7 +79,11 @@ class Text {
   void clear() noexcept { buffer_.clear(); }
 
  private:
-  void put_long(std::string_view before, std::int64_t value);
+  void put_long(std::string_view before, std::int64_t value) {
+    constexpr std::size_t kMostDigits = 20;
+    char* const digits = std::copy(before.begin(), before.end(), room(before.size() + kMostDigits));
+    written(std::to_chars(digits, digits + kMostDigits, value).ptr);
+  }
 
   fmt::memory_buffer buffer_;
 };

@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
-#include "io/append_cells.hpp"
 #include "io/format.hpp"
 #include "io/labels.hpp"
 #include "io/stream/id_map.hpp"
@@ -8,6 +7,7 @@
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/tetgen/tetgen.hpp"
+#include "mesh/cells.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

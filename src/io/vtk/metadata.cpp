@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/memory.hpp"
 #include "base/text.hpp"
-#include "io/coordinates.hpp"
+#include "io/exact_values.hpp"
 #include "io/labels.hpp"
 #include "io/names.hpp"
 #include "io/unsupported.hpp"

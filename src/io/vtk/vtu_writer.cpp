@@ -14,13 +14,16 @@
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include "io/vtk/vtu_document.hpp"
+#include "io/vtu.hpp"
 #include "mesh/values.hpp"
+#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -443,6 +446,19 @@ class VtuWriter {
 void write_vtu(const Mesh& mesh, const FilePath& path, Notes& notes) { VtuWriter(mesh, path, notes).write(); }
 
 }  // namespace meshorder::vtk
+
+void meshorder::write_pvd(std::span<const PvdEntry> entries, const FilePath& path) {
+  OutputFile out(path);
+  out.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n");
+  for (const PvdEntry& entry : entries) {
+    if (!std::isfinite(entry.time))
+      throw InvalidArgument("collection: the time of '" + entry.file + "' is not finite");
+    out.print("    <DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", entry.time,
+              xml_escaped(entry.file));
+  }
+  out.write("  </Collection>\n</VTKFile>\n");
+  out.commit();
+}
 
 meshorder::Format meshorder::vtu_format() {
   return {"VTU", {".vtu", ".pvtu"}, false, vtk::read_vtu, vtk::write_vtu, vtk::holds};

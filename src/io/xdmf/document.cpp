@@ -3,7 +3,6 @@
 
 #include "base/memory.hpp"
 #include "base/text.hpp"
-#include "io/xdmf/entities.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/xdmf/entities.hpp"
-
+#include "io/xdmf/document.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/index.hpp"
 #include "base/text.hpp"
-#include "io/coordinates.hpp"
+#include "io/exact_values.hpp"
 #include "io/unsupported.hpp"
 #include "io/xdmf/writer.hpp"
 #include "mesh/values.hpp"

@@ -17,4 +17,7 @@ std::vector<Index> degenerate_cells(const Cells& cells);
 /// @param first  number of the first such cell
 std::string note_of_degenerate(std::int64_t count, std::int64_t first);
 
+/// Appends `count` cells of one shape with `nodes` vertices each, all of them vertex 0. O(cells · nodes).
+void append_cells(Cells& cells, Shape shape, int nodes, Index count);
+
 }  // namespace meshorder

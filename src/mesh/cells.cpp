@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "mesh/degenerate.hpp"
+#include "mesh/cells.hpp"
 
+#include "base/memory.hpp"
 #include "base/parallel.hpp"
 
 #include <algorithm>
@@ -50,6 +51,15 @@ std::string note_of_degenerate(std::int64_t count, std::int64_t first) {
   return std::to_string(count) +
          (count == 1 ? " cell names a vertex twice and is kept" : " cells name a vertex twice and are kept") +
          ": the first is cell " + std::to_string(first) + ", counted from 0";
+}
+
+void append_cells(Cells& cells, Shape shape, int nodes, Index count) {
+  const Index first = cells.size();
+  const Offset begin = cells.offsets.back();
+  cells.shapes.resize(static_cast<std::size_t>(Offset{first} + count), shape);
+  resize_large(cells.offsets, static_cast<std::size_t>(Offset{first} + count + 1));
+  for (Offset c = 1; c <= count; ++c) cells.offsets[static_cast<std::size_t>(first + c)] = begin + c * nodes;
+  resize_large(cells.vertices, static_cast<std::size_t>(begin + Offset{count} * nodes));
 }
 
 }  // namespace meshorder
