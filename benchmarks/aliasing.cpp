@@ -8,7 +8,7 @@
 #include "io/format.hpp"
 #include "kernels/elasticity.hpp"
 #include "kernels/positions.hpp"
-#include "kernels/spmv.hpp"
+#include "kernels/block_csr.hpp"
 #include "kernels/springs.hpp"
 #include "measuring.hpp"
 #include "mesh/graphs.hpp"

@@ -13,7 +13,7 @@
 #include "kernels/half_block_csr.hpp"
 #include "kernels/owned_batches.hpp"
 #include "kernels/positions.hpp"
-#include "kernels/spmv.hpp"
+#include "kernels/block_csr.hpp"
 #include "lab/implicit/elastic_system.hpp"
 #include "lab/linear/cg/solve.hpp"
 #include "lab/linear/preconditioners/preconditioner.hpp"

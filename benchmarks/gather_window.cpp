@@ -6,7 +6,7 @@
 #include "base/median.hpp"
 #include "base/random.hpp"
 #include "base/stopwatch.hpp"
-#include "kernels/spmv.hpp"
+#include "kernels/block_csr.hpp"
 
 #include <fmt/core.h>
 

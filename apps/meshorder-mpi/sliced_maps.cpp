@@ -4,7 +4,7 @@
 #include "base/checksum.hpp"
 #include "distributed/comm/halo.hpp"
 #include "distributed/files/shared_file.hpp"
-#include "distributed/order/parts.hpp"
+#include "distributed/order/partition.hpp"
 #include "io/npy.hpp"
 #include "io/stream/byte_order.hpp"
 #include "shared_output.hpp"

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "whole_mesh.hpp"
 
-#include "distributed/order/parts.hpp"
+#include "distributed/order/partition.hpp"
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"

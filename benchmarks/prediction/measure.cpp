@@ -18,7 +18,7 @@
 #include "payoff/kernel_timing.hpp"
 #include "payoff/machine.hpp"
 #include "payoff/machine_choice.hpp"
-#include "payoff/shared_work.hpp"
+#include "payoff/kernel_bench.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include "base/stopwatch.hpp"
 #include "kernels/half_block_csr.hpp"
 #include "kernels/positions.hpp"
-#include "kernels/spmv.hpp"
+#include "kernels/block_csr.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

@@ -4,10 +4,13 @@
 #include "base/index.hpp"
 #include "base/point.hpp"
 #include "kernels/aligned.hpp"
+#include <meshorder/error.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
+#include <string>
 
 namespace meshorder {
 
@@ -15,14 +18,27 @@ namespace meshorder {
 /// stays 0, so that a vertex never straddles a cache line and aligned vector loads can read it.
 inline constexpr Index kPaddedStride = 4;
 
-/// Returns the points in that layout. O(n).
-AlignedVector<double> padded_positions(std::span<const Point> points);
-
 /// Returns n vertices at zero in that layout. O(n).
-AlignedVector<double> padded_zeros(Index n);
+inline AlignedVector<double> padded_zeros(Index n) { return AlignedVector<double>(Offset{kPaddedStride} * n, 0.0); }
+
+/// Returns the points in that layout. O(n).
+inline AlignedVector<double> padded_positions(std::span<const Point> points) {
+  AlignedVector<double> result = padded_zeros(index_size(points));
+  auto place = result.begin();
+  for (const Point& point : points) {
+    std::copy(point.begin(), point.end(), place);
+    place += kPaddedStride;
+  }
+  return result;
+}
 
 /// Throws InvalidArgument, naming `function`, unless positions and forces have the same size.
-void check_same_size(std::span<const double> positions, std::span<const double> forces, const char* function);
+inline void check_same_size(std::span<const double> positions, std::span<const double> forces,
+                     const char* function) {
+  if (positions.size() != forces.size()) {
+    throw InvalidArgument(std::string(function) + ": positions and forces must have the same size");
+  }
+}
 
 /// Returns vertex v of padded positions.
 inline Point point_of(std::span<const double> positions, Index v) {

@@ -11,7 +11,7 @@
 #include "metrics/measures.hpp"
 #include "ordering/method.hpp"
 #include "payoff/cost_model.hpp"
-#include "payoff/shared_work.hpp"
+#include "payoff/kernel_bench.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

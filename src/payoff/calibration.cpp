@@ -13,7 +13,7 @@
 #include "payoff/kernel_timing.hpp"
 #include "payoff/least_squares.hpp"
 #include "payoff/machine.hpp"
-#include "payoff/shared_work.hpp"
+#include "payoff/kernel_bench.hpp"
 
 #include <fmt/format.h>
 

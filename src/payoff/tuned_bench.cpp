@@ -5,7 +5,7 @@
 #include "kernels/apart.hpp"
 #include "kernels/elasticity.hpp"
 #include "kernels/positions.hpp"
-#include "kernels/spmv.hpp"
+#include "kernels/block_csr.hpp"
 
 #include <algorithm>
 #include <utility>

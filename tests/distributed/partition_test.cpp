@@ -3,7 +3,6 @@
 
 #include "distributed/order/balance.hpp"
 #include "distributed/order/curve.hpp"
-#include "distributed/order/quotient.hpp"
 #include "mesh/procedural.hpp"
 #include "slices.hpp"
 

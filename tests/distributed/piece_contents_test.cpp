@@ -2,7 +2,7 @@
 #include "distributed/files/piece_contents.hpp"
 
 #include "distributed/comm/halo.hpp"
-#include "distributed/order/parts.hpp"
+#include "distributed/order/partition.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"
-#include "payoff/shared_work.hpp"
+#include "payoff/kernel_bench.hpp"
 #include <meshorder/error.hpp>
 
 #include <gtest/gtest.h>

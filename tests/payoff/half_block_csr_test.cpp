@@ -2,7 +2,7 @@
 #include "kernels/half_block_csr.hpp"
 
 #include "base/random.hpp"
-#include "kernels/spmv.hpp"
+#include "kernels/block_csr.hpp"
 #include "payoff/deformed.hpp"
 #include <meshorder/error.hpp>
 

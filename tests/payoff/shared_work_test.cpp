@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "payoff/shared_work.hpp"
 
 #include "kernels/owned_batches.hpp"
 #include "mesh/graphs.hpp"

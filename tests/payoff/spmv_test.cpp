@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "kernels/spmv.hpp"
+#include "kernels/block_csr.hpp"
 
 #include "base/random.hpp"
 #include "payoff/deformed.hpp"

@@ -3,7 +3,7 @@
 
 #include "kernels/elasticity.hpp"
 #include "kernels/positions.hpp"
-#include "kernels/spmv.hpp"
+#include "kernels/block_csr.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "support/sample_graphs.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "elastic_system.hpp"
-#include "kernels/spmv.hpp"
+#include "kernels/block_csr.hpp"
 #include "lab/linear/cg/solve.hpp"
 #include "lab/linear/preconditioners/preconditioner.hpp"
 #include "mesh/procedural.hpp"

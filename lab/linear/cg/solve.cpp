@@ -3,7 +3,7 @@
 
 #include "base/parallel.hpp"
 #include "kernels/owned_batches.hpp"
-#include "kernels/spmv.hpp"
+#include "kernels/block_csr.hpp"
 #include "lab/linear/cg/vector_passes.hpp"
 #include "lab/linear/preconditioners/jacobi.hpp"
 #include <meshorder/error.hpp>

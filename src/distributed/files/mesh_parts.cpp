@@ -4,7 +4,7 @@
 #include "base/index.hpp"
 #include "distributed/comm/rows.hpp"
 #include "distributed/files/piece_contents.hpp"
-#include "distributed/order/parts.hpp"
+#include "distributed/order/partition.hpp"
 #include "io/kept_cells.hpp"
 #include "mesh/values.hpp"
 

@@ -7,7 +7,7 @@
 #include "distributed/comm/number_types.hpp"
 #include "distributed/comm/rows.hpp"
 #include "distributed/files/piece_contents.hpp"
-#include "distributed/order/parts.hpp"
+#include "distributed/order/partition.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -2,7 +2,7 @@
 #include "distributed/files/piece_contents.hpp"
 
 #include "distributed/comm/number_set.hpp"
-#include "distributed/order/parts.hpp"
+#include "distributed/order/partition.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -7,7 +7,7 @@
 #include "distributed/files/piece_contents.hpp"
 #include "distributed/files/shared_file.hpp"
 #include "distributed/files/text_store.hpp"
-#include "distributed/order/parts.hpp"
+#include "distributed/order/partition.hpp"
 #include "io/stream/descriptor.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"

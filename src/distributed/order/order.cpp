@@ -10,7 +10,7 @@
 #include "distributed/order/curve.hpp"
 #include "distributed/order/fiedler.hpp"
 #include "distributed/order/local_orders.hpp"
-#include "distributed/order/quotient.hpp"
+#include "distributed/order/partition.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/registry.hpp>
 

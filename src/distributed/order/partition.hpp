@@ -1,12 +1,16 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "base/index.hpp"
 #include "base/text.hpp"
 #include "distributed/comm/communicator.hpp"
+#include "distributed/comm/halo.hpp"
 #include "distributed/order/global_graph.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -87,5 +91,36 @@ enum class ScotchStrategy : std::uint8_t { speed, quality };
 [[nodiscard]] bool cut_by_ptscotch(const Communicator& communicator, const GlobalGraph& graph, Index parts,
                                    const std::vector<GlobalIndex>& weights, ScotchStrategy strategy,
                                    std::vector<Index>& part_of);
+
+/// Returns the part of a vertex by its new number. Vertices that no element uses come after the last part and
+/// are counted in it. O(log parts).
+///
+/// @param starts  first new number of each part, then the end of the last part
+[[nodiscard]] inline Index part_of(GlobalIndex vertex, const std::vector<GlobalIndex>& starts) {
+  const auto behind = std::upper_bound(starts.begin() + 1, starts.end() - 1, vertex);
+  return static_cast<Index>(behind - starts.begin()) - 1;
+}
+
+/// Returns the part of a cell: that of the largest new number of its vertices (at least one), so that the
+/// parts of cells in the order `lexmax` ascend. O(vertices + log parts).
+template <class Number>
+[[nodiscard]] Index part_of_cell(std::span<const Number> vertices, const std::vector<GlobalIndex>& starts) {
+  return part_of(*std::max_element(vertices.begin(), vertices.end()), starts);
+}
+
+/// An order of the parts of a graph.
+struct Quotient {
+  std::vector<Index> place_of;  ///< place of each part in the order
+  GlobalIndex cut = 0;          ///< number of edges between parts
+};
+
+/// Orders the parts by the Fiedler vector of their quotient graph, whose weights are the numbers of edges
+/// between parts, and then moves single parts while that brings strongly joined parts nearer. Every rank has
+/// to call it; the root solves. O(entries + cut · log cut).
+///
+/// @param part_of  part of each vertex in the graph's rows, 0 … parts − 1
+/// @throws as `Communicator::exchange`
+[[nodiscard]] Quotient order_of_parts(const Communicator& communicator, const GlobalGraph& graph,
+                                      const HaloValues<Index>& part_of, Index parts);
 
 }  // namespace meshorder::distributed
