@@ -3,9 +3,9 @@
 
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
+#include "kernels/block_csr.hpp"
 #include "kernels/half_block_csr.hpp"
 #include "kernels/positions.hpp"
-#include "kernels/block_csr.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

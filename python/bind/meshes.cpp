@@ -2,7 +2,7 @@
 //
 // Bindings for orders of meshes that are given as arrays, and for meshes of files.
 #include "cells.hpp"
-#include "mesh/boundary.hpp"
+#include "mesh/simplices.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "module.hpp"
 #include "options.hpp"

@@ -19,7 +19,9 @@ namespace meshorder {
 inline constexpr Index kPaddedStride = 4;
 
 /// Returns n vertices at zero in that layout. O(n).
-inline AlignedVector<double> padded_zeros(Index n) { return AlignedVector<double>(Offset{kPaddedStride} * n, 0.0); }
+inline AlignedVector<double> padded_zeros(Index n) {
+  return AlignedVector<double>(Offset{kPaddedStride} * n, 0.0);
+}
 
 /// Returns the points in that layout. O(n).
 inline AlignedVector<double> padded_positions(std::span<const Point> points) {
@@ -34,7 +36,7 @@ inline AlignedVector<double> padded_positions(std::span<const Point> points) {
 
 /// Throws InvalidArgument, naming `function`, unless positions and forces have the same size.
 inline void check_same_size(std::span<const double> positions, std::span<const double> forces,
-                     const char* function) {
+                            const char* function) {
   if (positions.size() != forces.size()) {
     throw InvalidArgument(std::string(function) + ": positions and forces must have the same size");
   }

@@ -1,6 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "kernels/rotation-inl.hpp"
+
 #include <array>
 
 namespace meshorder {
@@ -12,6 +14,18 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;
 /// is the rotation of F's polar decomposition. It exists for every F. If it is not unique (F = 0, or σ₂ + σ₃
 /// = 0 for the signed singular values), returns one of them: the identity for F = 0. NaN if an entry is not
 /// finite. The error is about 1e-15 σ₁ / (σ₂ + σ₃).
-Matrix3 closest_rotation(const Matrix3& f);
+inline Matrix3 closest_rotation(const Matrix3& f) {
+  double from[3][3];
+  double to[3][3];
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) from[i][j] = f[i][j];
+  }
+  HWY_NAMESPACE::closest_rotations<HWY_NAMESPACE::OneLane>(from, to);
+  Matrix3 result{};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) result[i][j] = to[i][j];
+  }
+  return result;
+}
 
 }  // namespace meshorder

@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "kernels/block_csr.hpp"
-
 #include <meshorder/error.hpp>
 
 #include <algorithm>

@@ -1,9 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "mesh/boundary.hpp"
-
 #include "base/point.hpp"
 #include "cells/facets.hpp"
 #include "mesh/graphs.hpp"
+#include "mesh/simplices.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "ordering/smoothed_bisection.hpp"
+#include "ordering/all_methods.hpp"
 
 #include <algorithm>
 #include <numeric>

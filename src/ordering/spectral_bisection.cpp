@@ -6,7 +6,6 @@
 #include "base/run_scope.hpp"
 #include "graph/traversal.hpp"
 #include "ordering/all_methods.hpp"
-#include "ordering/smoothed_bisection.hpp"
 #include "ordering/sorted.hpp"
 #include "spectral/fiedler.hpp"
 

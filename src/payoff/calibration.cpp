@@ -10,10 +10,10 @@
 #include "mesh/graphs.hpp"
 #include "mesh/simplices.hpp"
 #include "payoff/calibration_lattices.hpp"
+#include "payoff/kernel_bench.hpp"
 #include "payoff/kernel_timing.hpp"
 #include "payoff/least_squares.hpp"
 #include "payoff/machine.hpp"
-#include "payoff/kernel_bench.hpp"
 
 #include <fmt/format.h>
 

@@ -19,7 +19,7 @@ inline std::string with_commas(long long number) {
 
 /// Returns 0.0123 s as "12.3 ms", 75 s as "1 min 15 s".
 inline std::string duration(double seconds) {
-  if (seconds < 0.9995) return fmt::format("{:.3g} ms", seconds * 1e3);  // what is above rounds to 1 s
+  if (seconds < 0.9995) return fmt::format("{:.3g} ms", seconds * 1e3);  // larger values round to 1 s
   if (seconds < 59.95) return fmt::format("{:.1f} s", seconds);
   const auto whole = std::llround(seconds);
   return fmt::format("{} min {} s", whole / 60, whole % 60);

@@ -3,9 +3,9 @@
 
 #include "base/parallel.hpp"
 #include "kernels/apart.hpp"
+#include "kernels/block_csr.hpp"
 #include "kernels/elasticity.hpp"
 #include "kernels/positions.hpp"
-#include "kernels/block_csr.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/stream/regular_numbers.hpp"
-
+#include "io/stream/regular_text.hpp"
 #include "support/files.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "kernels/block_csr.hpp"
-
 #include "base/random.hpp"
+#include "kernels/block_csr.hpp"
 #include "payoff/deformed.hpp"
 #include <meshorder/error.hpp>
 

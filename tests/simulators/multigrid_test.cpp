@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/linear/multigrid/multigrid.hpp"
 
+#include "kernels/block_csr.hpp"
 #include "kernels/elasticity.hpp"
 #include "kernels/positions.hpp"
-#include "kernels/block_csr.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "support/sample_graphs.hpp"

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/contact/search/body_surface.hpp"
 
-#include "mesh/boundary.hpp"
+#include "mesh/simplices.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 #include "lab/linear/cg/solve.hpp"
 
 #include "base/parallel.hpp"
-#include "kernels/owned_batches.hpp"
 #include "kernels/block_csr.hpp"
+#include "kernels/owned_batches.hpp"
 #include "lab/linear/cg/vector_passes.hpp"
 #include "lab/linear/preconditioners/jacobi.hpp"
 #include <meshorder/error.hpp>

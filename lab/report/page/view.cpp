@@ -2,7 +2,7 @@
 #include "lab/report/page/view.hpp"
 
 #include "lab/scenario/vertex_choice.hpp"
-#include "mesh/boundary.hpp"
+#include "mesh/simplices.hpp"
 
 #include <meshoptimizer.h>
 

@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "distributed/order/partition.hpp"
-
 #include "ordering/arrangement_graph.hpp"
 #include <meshorder/order.hpp>
 

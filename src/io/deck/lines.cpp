@@ -2,7 +2,7 @@
 #include "io/deck/lines.hpp"
 
 #include "io/stream/read_limits.hpp"
-#include "io/stream/regular_records.hpp"
+#include "io/stream/regular_text.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/gmsh/gmsh.hpp"
-#include "io/stream/regular_records.hpp"
+#include "io/stream/regular_text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/memory.hpp"
 #include "io/gmsh/gmsh.hpp"
-#include "io/stream/regular_records.hpp"
+#include "io/stream/regular_text.hpp"
 #include "mesh/cells.hpp"
 
 #include <algorithm>

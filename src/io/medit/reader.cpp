@@ -2,7 +2,7 @@
 #include "base/text.hpp"
 #include "io/labels.hpp"
 #include "io/medit/medit.hpp"
-#include "io/stream/regular_records.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "mesh/cells.hpp"

@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/stream/regular_records.hpp"
-
 #include "base/parallel.hpp"
+#include "io/stream/regular_text.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>

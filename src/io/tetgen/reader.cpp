@@ -3,7 +3,7 @@
 #include "io/format.hpp"
 #include "io/labels.hpp"
 #include "io/stream/id_map.hpp"
-#include "io/stream/regular_records.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/tetgen/tetgen.hpp"

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/vtk/joined_pieces.hpp"
+#include "io/vtk/vtk.hpp"
 
 #include <fmt/format.h>
 

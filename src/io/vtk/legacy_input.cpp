@@ -4,7 +4,7 @@
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/stream/byte_order.hpp"
-#include "io/stream/regular_numbers.hpp"
+#include "io/stream/regular_text.hpp"
 #include "mesh/values.hpp"
 
 #include <fmt/format.h>

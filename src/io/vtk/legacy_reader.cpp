@@ -8,7 +8,7 @@
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/names.hpp"
-#include "io/stream/regular_numbers.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/vtk/legacy_input.hpp"
 #include "io/vtk/vtk.hpp"
 

@@ -7,7 +7,6 @@
 // damaged arrays, cannot read the NaN that VTK writes as text, and reports faults on standard error.
 #include "base/memory.hpp"
 #include "io/stream/read_limits.hpp"
-#include "io/vtk/joined_pieces.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_document.hpp"
 #include "mesh/values.hpp"

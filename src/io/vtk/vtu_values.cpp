@@ -7,7 +7,7 @@
 #include "io/stream/base64.hpp"
 #include "io/stream/byte_order.hpp"
 #include "io/stream/read_limits.hpp"
-#include "io/stream/regular_numbers.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/vtk/vtk.hpp"
 #include "io/vtk/vtu_compressor.hpp"
 #include "io/vtk/vtu_document.hpp"

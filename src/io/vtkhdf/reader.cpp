@@ -5,7 +5,7 @@
 #include "base/memory.hpp"
 #include "io/hdf5/hdf5_file.hpp"
 #include "io/hdf5/session.hpp"
-#include "io/vtk/joined_pieces.hpp"
+#include "io/vtk/vtk.hpp"
 #include "io/vtkhdf/vtkhdf.hpp"
 #include <meshorder/error.hpp>
 
