@@ -12,6 +12,7 @@ import pytest
 import scipy.io
 import scipy.sparse as sp
 from meshorder import InputError, InvalidArgument
+from meshorder._meshes import _WIDTHS
 
 MESHES = pathlib.Path(__file__).parents[3] / "shared" / "meshes"
 
@@ -254,6 +255,16 @@ def test_cells_of_second_order_in_the_plane_need_a_type(width):
         meshorder.make_mesh(points, [range(width)])
     kind = {6: "triangle", 8: "quad", 10: "triangle"}[width]
     assert meshorder.make_mesh(points, {f"{kind}{width}": [range(width)]}).cells[0][0] == kind
+
+
+@pytest.mark.parametrize("shape", _WIDTHS)
+def test_the_library_takes_each_number_of_vertices_that_a_name_stands_for(shape):
+    for width in _WIDTHS[shape]:
+        points = np.random.default_rng(width).random((width, 3))
+        assert len(meshorder.order_mesh(points, {shape: [range(width)]}).cells.permutation) == 1
+    if shape != "line":  # which alone may have 23 vertices
+        with pytest.raises(InvalidArgument, match="23 vertices"):
+            meshorder.order_mesh(np.random.default_rng(7).random((23, 3)), {f"{shape}23": [range(23)]})
 
 
 @pytest.mark.parametrize("cells", [[], (), {}, np.zeros((0, 4), int), ([0], [])])
