@@ -28,7 +28,7 @@ HWY_INLINE typename Lanes::Value logarithm(typename Lanes::Value a) {
 
 /// F plus an isotropic law's stress over the bulk modulus is A F + b cof F + γ R, with R the rotation closest
 /// to F (see proximal-inl.hpp). A, b and γ are functions of p = (σ₁ + σ₂ + σ₃, σ₁σ₂ + σ₁σ₃ + σ₂σ₃, σ₁σ₂σ₃).
-/// The derivatives that a law has are given too.
+/// Each law sets the derivatives that it needs.
 template <class Lanes>
 struct StressFactors {
   typename Lanes::Value a, b, shift;

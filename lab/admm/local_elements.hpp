@@ -13,8 +13,8 @@ struct LocalLaw;
 /// Rest data of elements for the local steps: springs on two corners or tetrahedra on four, in the batches of
 /// LocalPass. The last batch is filled up with elements without weight, which have no force.
 ///
-/// A tetrahedron that is flat to rounding (see RestShapes) has no deformation gradient: it gets the corners
-/// and shape of a nearby one that has one, and no weight.
+/// A tetrahedron that is flat to rounding (see RestShapes) has no deformation gradient: it gets weight 0, and
+/// the corners and shape of a nearby tetrahedron that is not flat.
 template <class Real>
 struct LocalElements {
   Offset count = 0;
@@ -37,7 +37,7 @@ struct LocalElements {
   /// gradients. Returns w².
   double load(Offset element, double (&d)[4][3]) const;
 
-  /// Returns where the numbers of an element begin, if each element has `numbers` of them.
+  /// Returns the index of an element's first number in an array of `numbers` numbers for each element.
   [[nodiscard]] static Offset place(Offset element, Index numbers) {
     return element / kLocalBatch<Real> * numbers * kLocalBatch<Real> + element % kLocalBatch<Real>;
   }

@@ -10,8 +10,8 @@ namespace meshorder {
 
 enum class LocalModel : std::uint8_t;
 
-/// Returns Σ U(D x) of all elements: see LocalSteps::energy. On all threads, one element at a time; the same
-/// bits for any number of them.
+/// Returns Σ U(D x) of all elements: see LocalSteps::energy. Runs on all threads, one element at a time, with
+/// the same bits for any number of threads.
 template <class Real>
 double energy_of(LocalModel model, const LocalElements<Real>& elements, std::span<const Real> positions);
 

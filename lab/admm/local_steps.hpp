@@ -17,16 +17,16 @@ namespace meshorder {
 /// Element models of ADMM projective dynamics: an energy U of a linear function D x of the positions, and the
 /// weight w² of its local step.
 ///
-/// The local step of springs and strain is their one minimum in closed form, halfway to the rest length or to
-/// the closest rotation; for q = 0 it goes along the rest edge or to the identity, so that a body can unfold
-/// from a point. That of the hyperelastic models is the minimum near rest where the objective is convex, to
-/// about 1e-13 (of floats 2e-6; of stvk 1e-5 at Poisson's ratio 0.3 and 1e-4 at 0), and a local one
-/// elsewhere; singular values beyond 1e4 count as 1e4. Finite q never give NaN.
+/// Springs and strain have a single minimum in closed form: halfway to the rest length or to the closest
+/// rotation. For q = 0 the step goes along the rest edge or to the identity: a body can unfold from a point.
+/// The step of a hyperelastic model is the minimum where the objective is convex (near rest), and a local
+/// minimum elsewhere. Near rest it is accurate to about 1e-13 (floats 2e-6; floats of stvk 1e-5 at Poisson's
+/// ratio 0.3 and 1e-4 at 0). Singular values above 1e4 count as 1e4. Finite q never give NaN.
 enum class LocalModel : std::uint8_t {
   springs,  ///< on every edge: D x = x_a − x_b, U = ½k(‖D x‖ − ℓ₀)², w² = k
   strain,  ///< linear tetrahedral strain: D x = F, U = ½kV‖F − R‖², w² = kV (Narain, Overby, Brown 2016)
   stvk,         ///< D x = F, U = VΨ(F) of MaterialModel::stvk, w² = V times the bulk modulus
-  neo_hookean,  ///< the same of MaterialModel::neo_hookean
+  neo_hookean,  ///< the same with MaterialModel::neo_hookean
   log_neo_hookean,  ///< ½μ(‖F‖² − 3) − μ log J + ½λ log² J, infinite for J ≤ 0 (Bonet, Wood 1997)
 };
 
@@ -85,7 +85,7 @@ class LocalSteps {
   /// Returns the duals, 9 of each tetrahedron (row by row) and 3 of each spring, in an order that does not
   /// depend on the number of threads, for a checkpoint.
   [[nodiscard]] std::vector<Real> duals() const;
-  /// Throws InvalidArgument unless there are as many as `duals` returns and all are finite.
+  /// Throws InvalidArgument unless `duals` has as many numbers as duals() and all are finite.
   void set_duals(std::span<const Real> duals);
 
   /// Returns Σ U(D x) in J, infinite if a law is. O(elements).

@@ -19,7 +19,7 @@ namespace {
 constexpr Index kVertices = 4096;  // in a chunk
 /// Maximum number of repetitions of the last global step while vertices have new contacts.
 constexpr int kLastRounds = 8;
-/// Part of ContactOptions::reach that a vertex may remain inside.
+/// Depth at which a vertex may remain inside, as a share of ContactOptions::reach.
 constexpr double kAllowedDepth = 1e-2;
 
 const ProjectiveOptions& checked(const ProjectiveOptions& options, Index vertex_count) {
@@ -158,7 +158,7 @@ void ProjectiveDynamics<Real>::predict() {
   });
 }
 
-/// Computes both residuals of the last iteration, at whose positions the local steps were taken.
+/// Computes both residuals of the last iteration, whose positions the local steps used.
 template <class Real>
 bool ProjectiveDynamics<Real>::has_converged(const LocalResidual& local, StepReport& report) {
   const std::span<const Real> forces(right_side_.data(), x_.size());

@@ -19,7 +19,7 @@
 namespace meshorder {
 namespace {
 
-constexpr double kMostVolumeGain = 0.02;  ///< share of the volume that is won back in a step at most
+constexpr double kMostVolumeGain = 0.02;  ///< most volume that a step restores, as a share
 constexpr double kReach = 1.3;            ///< spacings within which particles are moved apart
 
 /// Sets to 0 the components that point through a particle's walls.
@@ -37,8 +37,8 @@ void move_rows(const Permutation& order, std::vector<T>& rows) {
   rows = std::move(moved);
 }
 
-/// Throws InvalidArgument unless these are the numbers that a state keeps of n particles: pressures, walls
-/// and places, the last time step, and the bytes of the order's state.
+/// Throws InvalidArgument unless `memory` is that of a state of n particles: pressures, walls and places, the
+/// last time step, and the bytes of the order's state.
 void check_memory(std::span<const double> memory, std::size_t n) {
   const auto all_within = [&](std::size_t begin, std::size_t end, double least, double most) {
     return std::all_of(memory.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -124,7 +124,7 @@ void Fluid::set_state(const MotionState& state) {
   check_memory(state.memory, n);
   std::vector<Index> numbers(n);
   for (std::size_t i = 0; i < n; ++i) numbers[i] = static_cast<Index>(state.memory[2 * n + i]);
-  (void)Permutation::from_new_to_old(IndexView(numbers));  // throws unless each is there once
+  (void)Permutation::from_new_to_old(IndexView(numbers));  // throws unless each number occurs once
   std::vector<std::byte> order(state.memory.size() - 3 * n - 1);
   std::transform(state.memory.begin() + static_cast<std::ptrdiff_t>(3 * n + 1), state.memory.end(),
                  order.begin(), [](double byte) { return static_cast<std::byte>(byte); });
@@ -212,7 +212,7 @@ void Fluid::project(double kick, double dt, StepReport& report) {
   Stopwatch stopwatch;
   std::vector<double> b = divergence(mesh_, positions_, velocities_);
   const bool has_surface = std::ranges::find(mesh_.free, 1) != mesh_.free.end();
-  // a uniform source wins back the volume that was lost
+  // a uniform source restores lost volume
   const double lost = has_surface && volume_ > 0 ? (volume_at_start_ - volume_) / volume_ : 0;
   const double source = std::clamp(options_.volume_gain * lost, -kMostVolumeGain, kMostVolumeGain) / dt;
   const double scale = options_.density / kick;
@@ -236,7 +236,7 @@ void Fluid::project(double kick, double dt, StepReport& report) {
   report.seconds.motion += stopwatch.seconds();
 }
 
-/// Returns how inner particles move so that their distances become more even, m.
+/// Returns shifts of the inner particles that make their distances more even, m.
 std::vector<Point> Fluid::evening() const {
   const std::span<const Offset> offsets = system_.pattern.offsets();
   const std::span<const Index> neighbours = system_.pattern.neighbours();

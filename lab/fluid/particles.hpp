@@ -10,20 +10,20 @@
 
 namespace meshorder {
 
-/// Water in a basin whose walls are planes, and how it is simulated. `MotionOptions::time_step` is the
+/// Water in a basin with plane walls, and the options of its simulation. `MotionOptions::time_step` is the
 /// longest step; forces and prescribed motions are not used.
 struct FluidOptions : MotionOptions {
   Point basin{};             ///< its extent from the origin, m: y is the height of its walls
   bool lid = false;          ///< whether the basin is closed at the top
   Point column{};            ///< extent of the water in the corner at the origin, m
   double spacing = 0;        ///< of the particles at the start, m
-  double jitter = 0.2;       ///< most that a particle is moved along each axis at the start, in spacings
+  double jitter = 0.2;       ///< largest shift of a particle along each axis at the start, in spacings
   double wave = 0;           ///< height of a wave cos(πx / L) of the surface, as a share of the column's
   double density = 1000;     ///< kg/m³
   double viscosity = 0;      ///< kinematic, m²/s
-  double courant = 0.5;      ///< most that a particle moves in a step, in spacings
+  double courant = 0.5;      ///< largest distance that a particle moves in a step, in spacings
   double evening = 0.05;     ///< largest distance by which a step moves particles apart, in spacings
-  double volume_gain = 0.2;  ///< share of lost volume that is won back in a step
+  double volume_gain = 0.2;  ///< share of lost volume that a step restores
   SolveOptions solve{.tolerance = 1e-5, .max_iterations = 2000};  ///< of the pressure
 };
 

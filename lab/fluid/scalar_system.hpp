@@ -13,8 +13,8 @@
 namespace meshorder {
 
 /// Linear elements of a mesh of tetrahedra with one unknown for each vertex: the matrix K of ∫ ∇q·∇p and the
-/// lumped masses M of ∫ q. Sums run along rising numbers of tetrahedra, so they are the same for any number
-/// of threads.
+/// lumped masses M of ∫ q. Sums add tetrahedra by ascending number, so they are the same for any number of
+/// threads.
 struct ScalarSystem {
   Graph pattern;                 ///< of K without its diagonal
   std::vector<double> values;    ///< of K, one for each neighbour, m

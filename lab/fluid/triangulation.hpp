@@ -23,12 +23,13 @@ struct Triangulation {
 /// differ does not depend on their numbers.
 using Triangulate = std::function<Triangulation(std::span<const Point>)>;
 
-/// Returns whether there is the program `meshorder-delaunay`.
+/// Returns whether the program `meshorder-delaunay` is found.
 bool has_delaunay_program();
 
-/// Returns a function that triangulates by the program `meshorder-delaunay`, which is started once. Its calls
-/// throw Error if the program ended. Throws Error if there is no such program. Looks for it beside this
-/// program and on PATH, never where a scenario says, and trusts it like this program. Checks its answers.
+/// Returns a function that triangulates by the program `meshorder-delaunay`, which is started once. The
+/// function checks the program's answers, and throws Error if the program has ended. Throws Error if the
+/// program is not found. It must be beside this program or on PATH, and is trusted like this program; a
+/// scenario cannot name another.
 Triangulate delaunay_program();
 
 }  // namespace meshorder

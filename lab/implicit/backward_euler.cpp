@@ -68,7 +68,7 @@ BackwardEuler::BackwardEuler(std::span<const Point> points, const Body& body, Im
   if (options_.stiffness_damping > 0.0 && (options_.newton_iterations > 1 || moves)) {
     damping_ = system_.matrix();
   }
-  // a preconditioner may keep parts of its first matrix, so that must not depend on where a run is resumed
+  // a preconditioner may keep parts of its first matrix: that matrix must not depend on where a run resumes
   StepReport report;
   collect_loads(options_, steps_, system_.mass().vertices, loads_, held_);
   assemble(0, system_.elasticity().tangent, report);
@@ -91,7 +91,7 @@ MotionState BackwardEuler::state() const {
 void BackwardEuler::set_state(const MotionState& state) {
   check_state(state, system_.vertex_count());
   steps_ = state.step;
-  // copied into the memory that is apart from the forces (see kApart)
+  // copied into memory at a distance from the forces (see kApart)
   const AlignedVector<double> positions = padded_positions(state.positions);
   std::copy(positions.begin(), positions.end(), positions_.begin());
   for (Index v = 0; v < system_.vertex_count(); ++v)

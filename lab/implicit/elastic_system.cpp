@@ -60,7 +60,7 @@ ElasticSystem::ElasticSystem(std::span<const Point> points, const Body& body, Ma
     shares_.push_back({std::move(batches[part]), std::move(blocks)});
   }
   matrix_.values.resize(9 * static_cast<std::size_t>(shares_.back().blocks.room), 0.0);
-  // allocated last, so that positions made next are apart from them (see kApart)
+  // allocated last: positions allocated next are then at a distance from the forces (see kApart)
   forces_ = padded_zeros(shares_.back().batches.room);
 }
 

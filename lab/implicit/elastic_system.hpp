@@ -18,8 +18,8 @@ struct Body {
   std::vector<double> densities;  ///< kg/m³: one, or one for each simplex
 };
 
-/// The mass, forces and matrix of an elastic body, assembled by all threads in the order in which vertices
-/// and simplices come: each thread adds to rows of its own (see owned_batches). Same bits for any number.
+/// The mass, forces and matrix of an elastic body, assembled by all threads in the order of vertices and
+/// simplices: each thread adds to its own rows (see owned_batches). Same bits for any number of threads.
 class ElasticSystem {
  public:
   /// Throws InvalidArgument for a body that is not of tetrahedra, or a vertex without mass that a tetrahedron

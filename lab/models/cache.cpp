@@ -63,7 +63,7 @@ MakingLock::MakingLock(const fs::path& folder, std::string_view name)
     : file_(::open((folder / ("." + std::string(name) + ".lock")).c_str(),
                    O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644)) {
   if (file_ < 0) refuse(folder, "cannot be written: " + std::generic_category().message(errno));
-  // on a file system without locks (ENOLCK) there is none
+  // on a file system without locks (ENOLCK), continues without one
   while (::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
   }
 }
@@ -90,7 +90,7 @@ Counts counts_of(const fs::path& node_file) {
 }
 
 void publish(const fs::path& from, const fs::path& to) {
-  // the .node file comes last: without it the model does not exist, also where an older one was replaced
+  // the .node file is removed first and moved last: without it the model does not exist
   std::error_code ignored;
   fs::remove(fs::path(to) += ".node", ignored);
   for (const std::string_view extension : {".ele", ".node"}) {

@@ -32,7 +32,7 @@ class MakingLock {
 };
 
 /// An empty folder for unfinished files, `folder/.NAME.making`, to be used under the lock of that name.
-/// Removed by the destructor; the constructor removes what an interrupted process left.
+/// Removed by the destructor; the constructor removes files that an interrupted process left.
 class ScratchFolder {
  public:
   ScratchFolder(const std::filesystem::path& folder, std::string_view name);

@@ -35,7 +35,8 @@ std::vector<Model> list_models();
 inline constexpr Index kUsualSize = 20;
 
 struct MakeOptions {
-  /// Lattice cubes across a procedural model without a size in its name; else kUsualSize. Others take none.
+  /// Lattice cubes across a procedural model without a size in its name; by default kUsualSize. Other models
+  /// take no size.
   std::optional<Index> size = {};
   bool force = false;  ///< make it again if it exists
   /// Called with each step as it begins and the fraction of the time that has passed (below 0: unknown).

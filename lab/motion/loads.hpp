@@ -19,12 +19,12 @@ class HeldVertices {
 
   /// Sets the velocities of the held vertices in a vector of 3 doubles for each vertex. O(held).
   void set(std::span<double> velocities) const;
-  /// Sets their entries to 0. O(held).
+  /// Sets the entries of the held vertices to 0. O(held).
   void set_zero(std::span<double> vector) const;
   /// Returns the held vertices, in the order in which they were given.
   [[nodiscard]] std::span<const Index> vertices() const noexcept { return vertices_; }
 
-  /// Calls `work(vertex, velocity)` for them in that order.
+  /// Calls `work(vertex, velocity)` for the held vertices in that order.
   template <class Work>
   void for_each(Work work) const {
     for (std::size_t i = 0; i < vertices_.size(); ++i) work(vertices_[i], velocities_[i]);

@@ -19,9 +19,9 @@ struct EmbeddedVertex {
   std::array<double, 4> weights{};
 };
 
-/// Embeds the nodes on edges, on faces and inside of volume cells: each in the tetrahedron of its cells that
-/// it lies deepest in, the first of several. `simplices` are the mesh's tetrahedra. Vertices that belong to
-/// no volume cell, or only to flat ones, are not embedded. O(tetrahedra · nodes of a cell).
+/// Embeds the nodes on edges, on faces and inside of volume cells. Of the tetrahedra of its cells, each node
+/// takes the one in which it lies deepest, then the first. `simplices` are the mesh's tetrahedra. Vertices
+/// that belong to no volume cell, or only to flat ones, are not embedded. O(tetrahedra · nodes of a cell).
 std::vector<EmbeddedVertex> embed_vertices(const Mesh& mesh, const Simplices& simplices);
 
 /// Sets positions and velocities of embedded vertices from those of the corners. `rest` are the positions of

@@ -64,8 +64,8 @@ struct MotionRecord {
   std::vector<WarningRecord> warnings;
 };
 
-/// Adds a warning of a step and returns true. If the warnings hold one that differs only in its numbers,
-/// counts that once more instead and returns false.
+/// Adds a warning of a step and returns true. If a warning in the list differs only in its numbers,
+/// increments that one's count instead and returns false.
 bool add_warning(const std::string& warning, Index step, std::vector<WarningRecord>& warnings);
 
 /// Adds a step, with the shape distance and balance after it.

@@ -18,7 +18,7 @@ namespace meshorder {
 namespace {
 
 constexpr Offset kMostExact = 1'000'000;
-/// About the share of the time that orders and simulated caches take if kernels are timed.
+/// Approximate share of the time for orders and simulated caches, if kernels are timed.
 constexpr double kUntilTiming = 0.5;
 
 /// Returns the seconds of the call on the arena's threads, the best of three if one takes less than a second.

@@ -14,7 +14,7 @@ namespace meshorder {
 namespace {
 
 constexpr double kConfidence = 0.95;
-/// Ratio of the variance of the runs' sums to the one that turns explain, above which whole runs differ.
+/// Ratio of the variance of the runs' sums to the variance that turns explain; above this whole runs differ.
 constexpr double kRunsDiffer = 3.0;
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
@@ -46,7 +46,7 @@ std::vector<double> turns_of(const RunRecord& run, Index turn) {
   return turns;
 }
 
-/// Returns for each position the values that the lists, all of the same length, have there.
+/// Returns, for each position, the values of all lists there. The lists must have the same length.
 std::vector<std::vector<double>> transposed(const std::vector<std::vector<double>>& lists) {
   std::vector<std::vector<double>> result(lists.front().size());
   for (const std::vector<double>& list : lists) {
@@ -75,7 +75,7 @@ double half_width_of_runs(const std::vector<std::vector<double>>& saved_by_run) 
   return student_t(index_size(saved_by_run.front()) * more_runs, kConfidence) * std::sqrt(of_turns / runs);
 }
 
-/// Returns the same for one run, from its turns in an order and in the reference.
+/// Returns half the interval's width in seconds for one run, from its turns in an order and in the reference.
 double half_width_of_ratio(const std::vector<double>& turns, const std::vector<double>& reference) {
   const double ratio = sum(turns) / sum(reference);
   double squares = 0;

@@ -45,7 +45,7 @@ struct StudyPlan {
 std::string mesh_of_size(std::string_view size, const std::string& mesh);
 
 /// Returns the names of the built-in scenarios that a study runs: those of the paper's simulators, and the
-/// fluid that it wishes for.
+/// fluid, which the paper names as future work.
 std::vector<std::string> study_scenarios();
 
 /// Returns the spacing (m) of a fluid's particles in a study of that size: the fluid's own for "paper", else

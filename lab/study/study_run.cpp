@@ -119,7 +119,7 @@ class Study {
     subjects_.push_back(std::move(subject));
   }
 
-  /// Makes the mesh and its orders and runs the first step, so that errors show before hours are spent.
+  /// Makes the mesh and its orders and runs the first step: errors appear before the long runs begin.
   void prepare(Subject& subject, const Share& share) {
     subject.mesh_path = subject.scenario.mesh;
     if (!subject.scenario.is_fluid() && names_a_model(subject.mesh_path)) {

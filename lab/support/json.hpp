@@ -60,7 +60,7 @@ class JsonValue {
   }
 
   // ---- objects
-  /// Throws unless it is an object with no keys but these.
+  /// Throws unless this is an object with no other keys than these.
   void expect_keys(std::initializer_list<std::string_view> known) const;
   void expect_keys(std::span<const std::string_view> known) const;
   [[nodiscard]] bool has(std::string_view key) const { return value_->contains(key); }

@@ -12,7 +12,7 @@
 
 namespace meshorder {
 
-/// An axis-aligned box; by default one that contains nothing.
+/// An axis-aligned box, by default empty.
 struct Box {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

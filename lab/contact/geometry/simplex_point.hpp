@@ -11,8 +11,8 @@ namespace meshorder {
 
 /// The point of a triangle nearest to another point.
 struct TrianglePoint {
-  /// Feature of the triangle it lies on: corner 0 … 2, the edge from corner 0, 1 or 2 to the next, or the
-  /// interior.
+  /// The part of the triangle on which the point lies: corner 0 … 2, the edge from corner 0, 1 or 2 to the
+  /// next, or the interior.
   enum class On : std::uint8_t { corner0, corner1, corner2, edge0, edge1, edge2, face };
 
   Point at{};
@@ -25,11 +25,11 @@ struct TrianglePoint {
 /// 5.1.5). Triangles may be degenerate.
 TrianglePoint nearest_on_triangle(const Point& x, const Point& a, const Point& b, const Point& c);
 
-/// Returns the barycentric coordinates of x in a tetrahedron, if x is strictly inside: in the bounding box of
-/// the corners, and spanning with each face a volume of more than a millionth of the whole plus a bound of
-/// rounding errors (1e-12 / 6 of the cube of the longest side of that box). So a point that touches the
-/// surface is not inside, nor is anything inside a tetrahedron that is flat or oriented unlike the unit
-/// tetrahedron (0, e₁, e₂, e₃). Nothing is inside where a number is NaN.
+/// Returns the barycentric coordinates of x in a tetrahedron, if x is strictly inside: if x is in the
+/// bounding box of the corners, and spans with each face a volume of more than a millionth of the whole plus
+/// a bound of rounding errors (1e-12 / 6 of the cube of the longest side of that box). A point that touches
+/// the surface is not inside. A tetrahedron that is flat, or not oriented like the unit tetrahedron (0, e₁,
+/// e₂, e₃), has no inside. If a number is NaN, x is not inside.
 std::optional<std::array<double, 4>> weights_inside(const Point& x, const std::array<Point, 4>& corners);
 
 }  // namespace meshorder

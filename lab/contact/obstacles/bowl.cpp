@@ -30,7 +30,7 @@ class Bowl : public Obstacle {
     const double length = norm(way);
     const double d = length - half_thickness_;
     if (!(d <= reach)) return std::nullopt;
-    // in the middle of the wall one side is as near as the other
+    // in the middle of the wall both sides are equally near
     const Point normal =
         length > 0.0 ? scaled(1.0 / length, way) : scaled(side_of(minus(from, center_)) / radius_, middle);
     return SurfacePoint{plus_scaled(center_, 1.0, plus_scaled(middle, half_thickness_, normal)), normal, d};
@@ -78,8 +78,8 @@ class Bowl : public Obstacle {
     return SurfacePoint{plus_scaled(center_, 1.0, at), normal, dot(normal, minus(p, at))};
   }
 
-  /// Returns where the segment from `a` to `b` first crosses the middle. The sides on which its ends lie
-  /// decide whether it does, so that rounding never takes a touch for a crossing.
+  /// Returns where the segment from `a` to `b` first crosses the middle. Only the sides of its ends decide
+  /// whether it crosses: rounding cannot turn a touch into a crossing.
   [[nodiscard]] std::optional<Point> first_crossing(const Point& a, const Point& b) const {
     const bool from_within = side_of(a) < 0.0;
     const bool to_within = side_of(b) < 0.0;

@@ -198,7 +198,7 @@ class ClosedSurface : public Obstacle {
       const std::array<Point, 3> corner{minus(points_[triangles_[t][0]], a),
                                         minus(points_[triangles_[t][1]], a),
                                         minus(points_[triangles_[t][2]], a)};
-      std::array<double, 3> around{};  // volumes that say on which side of each edge the line passes
+      std::array<double, 3> around{};  // volumes; their signs: on which side of each edge the line passes
       for (int k = 0; k < 3; ++k) around[k] = dot(way, cross(corner[k], corner[(k + 1) % 3]));
       const bool in = around[0] <= 0.0 && around[1] <= 0.0 && around[2] <= 0.0;
       const bool out = around[0] >= 0.0 && around[1] >= 0.0 && around[2] >= 0.0;
@@ -213,15 +213,15 @@ class ClosedSurface : public Obstacle {
     return result;
   }
 
-  /// Returns the point where x went in, if x came from outside and went through the body, or so deep into it
-  /// that its nearest point `natural` is not on the side that it came from.
+  /// Returns the point where the path from `from` to x enters the body, if x came from outside and either
+  /// left the body again or is so deep that its nearest point `natural` is on another side.
   [[nodiscard]] std::optional<SurfacePoint> back_through_surface(const Point& x, const Point& from,
                                                                  const SurfacePoint& natural) const {
     Point start = from;
     const double moved = norm(minus(x, from));
     const SurfacePoint before = nearest_point(from);
     if (before.distance > moved) return std::nullopt;
-    // a vertex that rests on the surface may have been inside by a tolerance
+    // a vertex that rests on the surface may have been inside by less than the tolerance
     if (before.distance <= touching_) {
       if (-before.distance > moved) return std::nullopt;
       start = plus_scaled(before.at, std::max(-before.distance, touching_), before.normal);
@@ -233,7 +233,7 @@ class ClosedSurface : public Obstacle {
     const Point& normal = face_normals_[entry->triangle];
     const Point way = minus(x, start);
     if (natural.distance > 0.0) {
-      // outside again; but rounding can take a path along the surface in and out
+      // outside again; but a path along the surface may go in and out by rounding errors
       const auto exit = std::find_if(entry, on_the_way.end(), [](const Crossing& c) { return !c.in; });
       const double middle = 0.5 * (entry->part + (exit == on_the_way.end() ? 1.0 : exit->part));
       if (!(nearest_point(plus_scaled(start, middle, way)).distance < -touching_)) return std::nullopt;

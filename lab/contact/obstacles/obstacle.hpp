@@ -23,9 +23,9 @@ struct SurfacePoint {
 /// thread-safe.
 class Obstacle : public Polymorphic {
  public:
-  /// Returns the nearest point of the surface if it is within `reach` (m) of `x` or x is inside. A vertex
-  /// that was at `from`, outside, when the step began must be led back to the side that it came from: where x
-  /// has passed through a thin wall, the point is on the wall's first side, and `distance` is negative.
+  /// Returns the nearest point of the surface if it is within `reach` (m) of `x` or x is inside. The vertex
+  /// was at `from`, outside, when the step began. If it has passed through a thin wall since, the returned
+  /// point is on the side of the wall that the vertex came from, and `distance` is negative.
   [[nodiscard]] virtual std::optional<SurfacePoint> nearest(const Point& x, const Point& from,
                                                             double reach) const = 0;
 

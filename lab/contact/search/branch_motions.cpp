@@ -143,7 +143,7 @@ Matrix inverse(const Matrix& m) {
 
 double frobenius(const Matrix& m) { return std::sqrt(dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2])); }
 
-/// Returns at least the spectral norm, and close to it for nearly orthogonal matrices: by the rows of m mᵀ.
+/// Returns an upper bound of the spectral norm from the rows of m mᵀ, close for nearly orthogonal matrices.
 double norm_bound(const Matrix& m) {
   double square = 0.0;
   for (int i = 0; i < 3; ++i) {

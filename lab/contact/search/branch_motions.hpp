@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// Motions of branches of tetrahedra from their rest shape. Each is nearly an affine map, under which points
-/// stay inside or outside. The deviation from the map bounds how much that can change.
+/// Motions of branches of tetrahedra from their rest shape. Each motion is nearly an affine map, and an
+/// affine map keeps points inside or outside. The deviation from the map bounds the error.
 class BranchMotions {
  public:
   /// x = constant + columns · X for a corner at X at rest, to within the deviation.

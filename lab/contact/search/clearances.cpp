@@ -15,8 +15,8 @@ namespace {
 using Doubles = hn::CappedTag<double, kBatch>;
 constexpr Index kDoubles = static_cast<Index>(MaxLanes(Doubles()));
 
-/// Returns the points whose clearance is not greater than the sum of their own distance and the deviation of
-/// the branch's corners from the affine motion, mapped back to rest.
+/// Returns the points that may be inside: those whose clearance is at most the sum of two distances, mapped
+/// back to rest: the point's distance from the affine motion, and the deviation of the branch's corners.
 std::uint64_t points_in_doubt(const PointCluster& cluster, const double* rest, const float* clearances,
                               const BranchMotions::Motion& motion) {
   const Doubles d;
@@ -108,7 +108,7 @@ Clearances::Clearances(TetrahedronLeaves& tetrahedra, BranchMotions& motions,
     update_boxes(tetrahedra, branch, positions);
   }
   for (Index leaf = 0; leaf < tetrahedra.leaves; ++leaf) update_planes(tetrahedra, leaf, positions);
-  // of branches further away nothing is known; nearly all that boxes meet in motion are nearer
+  // nothing is known of branches further away; nearly all branches whose boxes meet in motion are nearer
   const auto margin = static_cast<float>(0.125 * mean_side(tetrahedra));
   const float known_margin = margin - static_cast<float>(largest_coordinate(rest) * 0x1p-21);
   for_each_chunk(index_size(clusters), kClustersAtOnce, [&](Index /*chunk*/, Index begin, Index end) {

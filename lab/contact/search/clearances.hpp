@@ -10,13 +10,13 @@
 
 namespace meshorder {
 
-/// Distances at rest between vertices and tetrahedra. They show for most vertices in motion that they are
+/// Distances at rest between vertices and tetrahedra. They prove for most moving vertices that the vertex is
 /// still outside.
 ///
 /// If a vertex has the clearance c from a tetrahedron, a plane at the distance c from the vertex separates
-/// them. The image of the plane under an affine map separates their images. So the vertex is outside if its
-/// own distance from its image and the largest distance of a corner from its image add up to less than c
-/// divided by the norm of the inverse map.
+/// the two. The image of the plane under an affine map separates their images. So the vertex is outside if d
+/// + e < c / ‖inverse map‖, where d is the distance of the vertex from its image, and e the largest distance
+/// of a corner from its image.
 class Clearances {
  public:
   /// Computes the clearances of clusters at rest from the branches near them.

@@ -31,7 +31,7 @@ Contact contact_with(Index vertex, const SurfacePoint& place, double friction, s
 }
 
 /// Returns whether an obstacle is out of reach of a box around some vertices and their earlier positions.
-/// Then none is near it or went through it, since a distance changes by at most the path length.
+/// Then no vertex is near the obstacle or went through it: a distance changes by at most the path length.
 bool out_of_reach(const Obstacle& obstacle, const Box& box, double reach) {
   constexpr double kAboveRounding = 1.0 + 1e-9;
   const Point center = scaled(0.5, plus_scaled(box.lower, 1.0, box.upper));

@@ -46,8 +46,8 @@ class ContactFinder {
 
   /// Finds the contacts of the surface's vertices at `positions`; the vertices were at `from` when the step
   /// began. Both have kPaddedStride numbers for each vertex (see padded_positions). Sorted by first vertex
-  /// and then obstacle, the body itself last. A vertex inside a tetrahedron that it is no corner of is in
-  /// contact with the point of the surface that is nearest to its place in the rest shape.
+  /// and then obstacle, the body itself last. A vertex inside a tetrahedron of other vertices has a place in
+  /// the rest shape; it is in contact with the surface point nearest to that place.
   void find(std::span<const double> positions, std::span<const double> from, std::vector<Contact>& contacts);
 
   [[nodiscard]] Penetration penetration(std::span<const double> positions);

@@ -25,7 +25,8 @@ double required_gap(double gap, double tolerance) {
   return std::min(kClearance * tolerance, (gap < 0.0 ? (1.0 - kWayOut) * gap : gap) + tolerance);
 }
 
-/// Turns a contact with the body itself with its triangle. Returns false if the triangle is flat.
+/// Sets the normal of a contact with the body itself to that of its triangle. Returns false if the triangle
+/// is flat.
 bool follow_triangle(std::span<const double> positions, Contact& contact) {
   const std::optional<Point> normal =
       triangle_normal(positions, contact.vertices[1], contact.vertices[2], contact.vertices[3]);
@@ -50,7 +51,7 @@ bool ContactSet::update(std::span<const double> positions, std::span<const doubl
   const bool violates = std::any_of(found_.begin(), found_.end(), [&](const Contact& contact) {
     return depth(contact, positions) > tolerance;
   });
-  // keeps contacts of the body with itself that push, if none was found for their vertex
+  // keeps contacts of the body with itself that push, if no new one was found for their vertex
   std::vector<Contact> kept;
   for (std::size_t i = 0; i < std::min(earlier_.size(), forces.size()); ++i) {
     if (!earlier_[i].is_with_itself() || !(forces[i] > 0.0) ||

@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-/// Computes normal = (b − a) × (c − a), which points to the side where these turn counterclockwise.
+/// Computes normal = (b − a) × (c − a); a, b, c are counterclockwise seen from its side.
 template <class Value>
 HWY_INLINE void plane_through(const Value (&a)[3], const Value (&b)[3], const Value (&c)[3],
                               Value (&normal)[3]) {

@@ -18,11 +18,12 @@ struct LeafHit {
 
 /// Sets the planes of a leaf. Its box must be up to date.
 void update_planes(TetrahedronLeaves& tetrahedra, Index leaf, std::span<const double> positions);
-/// For each point of the task, lowers its clearance (one for each of the cluster) to the distance by which it
-/// is outside some plane of every tetrahedron of which it is no corner; negative inside one.
+/// Lowers the clearances of the task's points; `clearances` has one number for each point of the cluster. A
+/// point's clearance is its smallest distance from the tetrahedra of the leaf without that corner. The
+/// distance from a tetrahedron is the largest one outside its planes, negative inside.
 void lower_clearances(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
                       std::span<const double> positions, std::span<float> clearances);
-/// Appends the task's points that no plane of some tetrahedron keeps out; not those that are its corners.
+/// Appends the task's points that are inside all planes of some tetrahedron of which they are no corner.
 void hits_of(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
              std::span<const double> positions, std::vector<LeafHit>& hits);
 

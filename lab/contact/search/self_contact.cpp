@@ -43,7 +43,7 @@ RestSurface::Place SelfContact::way_out(const VertexInside& inside, Index left_o
   const std::array<Index, 4> corners = search_.corners(inside.tetrahedron);
   Point place{};
   for (int k = 0; k < 4; ++k) place = plus_scaled(place, inside.weights[k], rest_[corners[k]]);
-  // at most the distance of a corner on the surface: some triangle at it is without the vertex
+  // upper bound: the distance of a corner on the surface, since it has a triangle without the vertex
   double within = std::numeric_limits<double>::infinity();
   for (const Index corner : corners) {
     if (on_surface_[corner]) within = std::min(within, kAboveRounding * norm(minus(place, rest_[corner])));

@@ -12,18 +12,18 @@
 namespace meshorder {
 
 /// Contact of a body's surface with the body itself (McAdams et al. 2011; Overby et al. 2017). A vertex of
-/// the surface that is inside a tetrahedron has a place in the rest shape. It must leave through the point of
-/// the surface that is nearest to that place.
+/// the surface that is inside a tetrahedron has a place in the rest shape. The vertex must leave through the
+/// point of the surface that is nearest to that place.
 class SelfContact {
  public:
   SelfContact(const Simplices& simplices, std::span<const Point> points, const BodySurface& surface);
 
-  /// Appends a contact for each vertex of the surface inside a tetrahedron that it is no corner of, by
-  /// ascending vertex. Of several tetrahedra it is the one where the vertex is deepest, and then the first.
+  /// Appends a contact for each vertex of the surface inside a tetrahedron of other vertices, by ascending
+  /// vertex. Of several tetrahedra, uses the one where the vertex is deepest, then the first.
   ///
-  /// The way out is through the triangle of the surface that is nearest in the rest shape, of those without
-  /// the vertex: a contact with its own triangle would have no effect. Its normal is that of the deformed
-  /// triangle; if that has no area, there is no contact.
+  /// The way out is through the triangle of the surface that is nearest in the rest shape, among triangles
+  /// without the vertex: a contact with its own triangle would have no effect. The contact's normal is that
+  /// of the deformed triangle; a triangle without area makes no contact.
   void find(std::span<const double> positions, double friction, std::vector<Contact>& contacts);
 
   struct Depth {
@@ -36,7 +36,7 @@ class SelfContact {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  /// Returns the way out of the rest shape, by all triangles or those without the corner `left_out`.
+  /// Returns the way out of the rest shape, through any triangle without the corner `left_out`.
   [[nodiscard]] RestSurface::Place way_out(const VertexInside& inside, Index left_out) const;
 
   std::vector<Point> rest_;

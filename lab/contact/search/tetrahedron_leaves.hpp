@@ -54,8 +54,8 @@ struct TetrahedronLeaves {
   AlignedVector<float> leaf_boxes;
   AlignedVector<float> branch_boxes;           ///< the same of branches
   std::vector<std::array<double, 3>> centers;  ///< of leaves; their planes are relative to these
-  /// What leaf_planes.hpp computes: of face k of lane l of leaf i the number q at 16 · (16i + 4k + q) + l:
-  /// inward normal and offset, greater by the rounding errors there.
+  /// Planes of the faces, by update_planes: number q of face k of lane l of leaf i at 16 · (16i + 4k + q) +
+  /// l. The four numbers are the inward normal and the offset, raised by a bound of rounding errors.
   AlignedVector<float> planes;
 
   /// Takes tetrahedra in the order of leaves. Does not set boxes and planes.

@@ -10,16 +10,16 @@
 
 namespace meshorder {
 
-/// A vertex strictly inside a tetrahedron that it is no corner of (see weights_inside).
+/// A vertex strictly inside a tetrahedron of other vertices (see weights_inside).
 struct VertexInside {
   Index vertex = 0;
   Index tetrahedron = 0;
-  std::array<double, 4> weights{};  ///< barycentric, of the corners as `TetrahedronSearch::corners` has them
+  std::array<double, 4> weights{};  ///< barycentric, in the sequence of `TetrahedronSearch::corners`
 };
 
-/// Finds the vertices that are inside tetrahedra, in any motion of the body: exactly those that a test of
-/// every vertex against every tetrahedron finds. The same bits for any number of threads and independent of
-/// earlier calls.
+/// Finds the vertices that are inside tetrahedra, in any motion of the body, exactly as a test of every
+/// vertex against every tetrahedron would. The same bits for any number of threads, independent of earlier
+/// calls.
 class TetrahedronSearch {
  public:
   /// Searches for `vertices`, ascending. Tetrahedra that have a negative volume at `points`, where the body
@@ -32,8 +32,8 @@ class TetrahedronSearch {
   TetrahedronSearch(const TetrahedronSearch&) = delete;
   TetrahedronSearch& operator=(const TetrahedronSearch&) = delete;
 
-  /// Sets `inside` to all of them at `positions` (kPaddedStride numbers for each vertex), sorted by vertex
-  /// and then by tetrahedron.
+  /// Sets `inside` to all vertices inside at `positions` (kPaddedStride numbers for each vertex), sorted by
+  /// vertex and then by tetrahedron.
   void find(std::span<const double> positions, std::vector<VertexInside>& inside);
 
   /// Returns the corners of a tetrahedron that is not flat at rest, in the sequence of positive volume.

@@ -260,8 +260,7 @@ class Solver final : public DualContactSolver<Real> {
       report.converged = !friction && solved.residual <= options.tolerance;
       if (last) break;
     }
-    // measure the residual without the softness: for contradictory contacts that alone makes the solve
-    // converge
+    // measure the residual without the softness: contradictory contacts converge only because of the softness
     for (std::size_t i = 0; i < forces_.size(); ++i)
       gradient_[i] += options.softness * options.scale[i] * forces_[i];
     report.residual = projected_gradient(bounds_, options.scale, forces_, gradient_) / depth_norm;

@@ -42,13 +42,13 @@ struct ContactSolveReport {
 /// and the remaining depth in `violation`.
 ///
 /// With friction the bounds of tangential forces follow from the last round's normal forces (Tresca's fixed
-/// point; Haslinger 1983), until the forces meet `tolerance` with the bounds that they imply. If the rounds
-/// do not converge (a body may jam), the last bounds are kept: tangential forces may then lie outside their
-/// cones, and `converged` is false.
+/// point; Haslinger 1983), until the forces meet `tolerance` with their own bounds. If the rounds do not
+/// converge (a body may jam), the last bounds are kept: tangential forces may then lie outside their cones,
+/// and `converged` is false.
 template <class Real>
 class DualContactSolver : public Polymorphic {
  public:
-  /// `matrix` and its `factor` must outlive it. Throws InvalidArgument for options that are out of range and
+  /// `matrix` and its `factor` must outlive the solver. Throws InvalidArgument for options out of range and
   /// for a factor of another size.
   static std::unique_ptr<DualContactSolver> make(const SparseMatrix& matrix,
                                                  const CholeskyFactor<Real>& factor,

@@ -106,7 +106,7 @@ class Minimiser {
     energy_ = 0.0;
   }
 
-  /// Returns whether forces at 0 that would grow gain more than the positive ones.
+  /// Returns whether the forces at 0 that would grow gain more than the positive forces.
   [[nodiscard]] bool new_ones_gain_most() const {
     double pushing = 0.0;
     double wanting = 0.0;
@@ -208,7 +208,8 @@ class Minimiser {
     }
   }
 
-  /// Releases forces that are about to reach their bounds: they would limit every careful step.
+  /// Moves forces that are about to reach their bounds along the gradient; they would limit every careful
+  /// step.
   void follow_gradient_to_bounds() {
     for (Index row = 0; row < bounds_.normals; ++row) {
       if (leaves(row)) step_[row] = g_[row] / options_.scale[row];

@@ -44,14 +44,14 @@ struct ForceSolveReport {
 
 /// Minimises ½λᵀSλ − gᵀλ within the bounds. Replaces λ (`forces`, feasible) and `gradient`, which is g − S λ.
 ///
-/// Repeatedly selects the positive forces, and also those at 0 that would grow if they gain more than the
-/// positive ones; solves for the selected ones by conjugate gradients without bounds, to a tenth of the
-/// residual; and projects onto the bounds: a primal–dual active set (Hintermüller, Ito, Kunisch 2003) with
-/// the proportioning of Dostál and Schöberl (2005). The energy may increase temporarily. After some steps
-/// without a new minimum, the next one starts from the minimum and is halved until the energy decreases
-/// enough (a projected Newton step: Bertsekas 1982), so that the energy converges for any S. A force on the
-/// rim of its disc moves along the rim. If it does not converge within the multiplications or a number is not
-/// finite, λ is the best so far. Serial; O(size) besides S.
+/// Each step selects the positive forces, and the forces at 0 that would grow if these gain more than the
+/// positive ones. It solves for the selected forces by conjugate gradients without bounds, to a tenth of the
+/// residual, and projects the result onto the bounds. This is a primal–dual active set (Hintermüller, Ito,
+/// Kunisch 2003) with the proportioning of Dostál and Schöberl (2005). The energy may increase temporarily.
+/// After some steps without a new minimum, the next one starts from the minimum and is halved until the
+/// energy decreases enough (a projected Newton step: Bertsekas 1982), so that the energy converges for any S.
+/// A force on the rim of its disc moves along the rim. If it does not converge within the multiplications or
+/// a number is not finite, λ is the best so far. Serial; O(size) besides S.
 ForceSolveReport minimise_forces(ForceOperator& matrix, const ForceBounds& bounds,
                                  const ForceSolveOptions& options, std::span<double> forces,
                                  std::span<double> gradient);

@@ -228,7 +228,7 @@ class ConjugateGradients {
   }
 
   /// Reports the vertex where numbers stopped being finite. Looks first in the arguments, then in the vectors
-  /// computed from them, in the order in which a bad row of the matrix shows.
+  /// computed from them, in the order in which a bad row of the matrix reaches them.
   [[nodiscard]] SolveReport not_finite() const {
     Index vertex = first_not_finite(b_);
     if (vertex < 0) vertex = first_not_finite(x_);

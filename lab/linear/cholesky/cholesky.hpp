@@ -33,8 +33,8 @@ class CholeskyFactor {
   explicit CholeskyFactor(const SparseMatrix& matrix);
 
   /// Computes x = A⁻¹ b, kPaddedStride numbers for each vertex (see padded_positions), of which the last is 0
-  /// in both. They may be the same array, but not overlap otherwise. Throws InvalidArgument for other sizes.
-  /// O(entries).
+  /// in both. b and x may be the same array, but not overlap otherwise. Throws InvalidArgument for other
+  /// sizes. O(entries).
   void solve(std::span<const Real> b, std::span<Real> x) const;
 
   /// Returns the part of the factor needed for right-hand sides that are 0 except at these vertices, if
@@ -43,7 +43,7 @@ class CholeskyFactor {
   [[nodiscard]] Reach reach_of(std::span<const Index> vertices) const;
 
   /// Computes the same solution at the vertices given to reach_of; b must be 0 at all others. b and x have
-  /// their full size, but only the numbers of these vertices are read and written. They may be the same
+  /// their full size, but only the numbers of these vertices are read and written. b and x may be the same
   /// array. O(reach.entries).
   void solve(const Reach& reach, std::span<const Real> b, std::span<Real> x) const;
 

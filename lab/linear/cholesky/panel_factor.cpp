@@ -128,8 +128,8 @@ class Builder {
     return panel.width * (panel.width + 1) / 2 + Offset{panel.width} * group + in_group * j + (r - group);
   }
 
-  /// Gives the task, whose panels were filled last, slots for rows of later tasks; gives its children's slots
-  /// their places in it.
+  /// Assigns slots for rows of later tasks to the task whose panels were filled last. Sets the places that
+  /// the slots of its children have in the task.
   void give_slots(PanelTask& task) {
     const Index n = factor_.size();
     if (task.first_panel == task.end_panel) {

@@ -10,9 +10,9 @@
 
 namespace meshorder {
 
-/// A part of a solve, independent of tasks that are neither above nor below it in the tree of tasks. It adds
-/// its contributions to rows above it into places of its own, its slots, from which the task above takes
-/// them. So tasks can run at the same time, and sums have the same order on any number of threads.
+/// A part of a solve, independent of tasks that are neither above nor below it in the tree of tasks. A task
+/// adds its contributions to rows above it in its own slots; the task above then adds the slots. So tasks can
+/// run at the same time, and sums have the same order on any number of threads.
 struct PanelTask {
   Index first_column, end_column;
   Index first_panel, end_panel;

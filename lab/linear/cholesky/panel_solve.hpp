@@ -19,8 +19,8 @@ struct PanelWorkspace {
   Index searches = 0;
 };
 
-/// Computes x = A⁻¹ b in the order of the matrix, kPaddedStride numbers a vertex; x may be b. On all threads;
-/// the same bits for any number of them. O(entries).
+/// Computes x = A⁻¹ b in the order of the matrix, kPaddedStride numbers a vertex; x may be b. Runs on all
+/// threads, with the same bits for any number of threads. O(entries).
 template <class Real>
 void solve_panels(const PanelFactor<Real>& factor, const Real* b, Real* x, PanelWorkspace<Real>& workspace);
 

@@ -60,7 +60,7 @@ HWY_INLINE void panel_forwards(const Index* rows, Index row_count, const Real* v
   }
 }
 
-/// Prefetches further ahead than hardware does, which hardly prefetches descending addresses at all.
+/// Prefetches further ahead than hardware does; hardware hardly prefetches descending addresses.
 template <int Bytes, class Real>
 HWY_INLINE void ask_for_those_before(const Real* values) {
   constexpr int kBytesAhead = 4096;

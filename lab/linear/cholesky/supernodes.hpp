@@ -34,7 +34,7 @@ constexpr Index panel_count(Index columns, Index widest) { return (columns + wid
 /// O(columns log columns).
 Supernodes find_supernodes(const Ldl& ldl, const PanelCosts& costs = {});
 
-/// A tree of tasks over a forest of supernodes: a task can start when its children are done, which are
+/// A tree of tasks over a forest of supernodes. A task can start when its children are done; its children are
 /// independent of each other. Task 0 is the root; a task's number is greater than its parent's.
 struct SolveTasks {
   std::vector<Index> parent;                 ///< −1 for task 0

@@ -49,7 +49,7 @@ class ColumnSet {
   std::vector<Index> columns_;
 };
 
-/// Collects the columns of rows, which are made share by share, and puts them together.
+/// Collects the columns of rows, found share by share, and joins them into one pattern.
 class PatternParts {
  public:
   explicit PatternParts(Index rows) : rows_(rows) {}

@@ -25,9 +25,9 @@ template <int R>
 CoarseMatrix galerkin_pattern(const BlockView<R>& fine, const Prolongation<R>& p,
                               const ColumnBlocks& transposed);
 
-/// Computes Pᵀ A P into that pattern, for symmetric A, in double. Unknowns that P leaves out (columns of
-/// zeros) get the largest entry of their block's diagonal, or 1, on the diagonal, so that the product is as
-/// definite as A. O(multiplications), on all threads; the same bits for any number of them.
+/// Computes Pᵀ A P into the pattern of `coarse`, for symmetric A, in double. Unknowns that P leaves out
+/// (columns of zeros) get the largest entry of their block's diagonal, or 1, on the diagonal: the product is
+/// then definite if A is. O(multiplications), on all threads, with the same bits for any number of threads.
 template <int R>
 void galerkin_product(const BlockView<R>& fine, const Prolongation<R>& p, const ColumnBlocks& transposed,
                       CoarseMatrix& coarse);

@@ -106,7 +106,7 @@ std::size_t MultigridLevel<R>::bytes() const {
 
 template <int R>
 MultigridLevel<R> make_level(const BlockView<R>& matrix, Coarsening coarsening, std::vector<double>& modes) {
-  constexpr double kWorthwhile = 0.8;  // coarsening that keeps more nodes than this is given up
+  constexpr double kWorthwhile = 0.8;  // coarsening is given up if it keeps a larger share of the nodes
   MultigridLevel<R> level;
   level.sweeps = BlockSweeps<R>(matrix);
   level.sweeps.update(matrix);

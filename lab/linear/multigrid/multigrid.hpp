@@ -19,14 +19,13 @@ namespace meshorder {
 /// coarse operators are computed in double. The vertices are numbered breadth first inside, whatever their
 /// order outside.
 ///
-/// The aggregates are made in the first `update`, from its numbers; later ones only recompute numbers, and
-/// take a third to a half of the time. A matrix that changes slowly need not be taken each time: with old
-/// values the cycle stays symmetric and positive definite, and only takes more iterations. In time stepping,
-/// update when iterations have grown by a third since the last update. Vertices without neighbours, as fixed
-/// ones are, stay on the finest level; one that loses its neighbours after the first update is handled
-/// correctly.
+/// The first `update` makes the aggregates from the matrix's values; later updates only recompute values, and
+/// take a third to a half of the time. A matrix that changes slowly does not need an update each time: with
+/// old values the cycle stays symmetric and positive definite, and only takes more iterations. In time
+/// stepping, update when iterations have grown by a third since the last update. Vertices without neighbours,
+/// such as fixed vertices, stay on the finest level. A vertex may lose its neighbours after the first update.
 ///
-/// Memory: 0.6 to 0.9 times the matrix. O(blocks) for set-up, update and cycle, on all threads but for the
+/// Memory: 0.6 to 0.9 times the matrix. O(blocks) for set-up, update and cycle, on all threads except for the
 /// aggregates. `apply` uses scratch memory of the object and must not be called by two threads at a time.
 /// Measured against Jacobi in docs/evidence/benchmarks.md. Throws InvalidArgument unless there is a point for
 /// each row.

@@ -11,14 +11,14 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-// A block of the prolongation, R×6 row by row, is one of its transpose, 6×R column by column.
+// A block of the prolongation, R×6 row by row, is also a block of the transpose, 6×R column by column.
 
 template <int R>
 HWY_INLINE void restrict_columns(const Prolongation<R>& p, const ColumnBlocks& transposed,
                                  const float* residual, Index begin, Index end, float* result) {
   for (Index a = begin; a < end; ++a) {
     auto sum = ProductSum<kRigidModes, R>::zero();
-    // the members of an aggregate lie a little apart
+    // the members of an aggregate are not adjacent in memory
     if (a + 1 < end) {
       for (Offset k = transposed.offsets[a + 1]; k < transposed.offsets[a + 2]; ++k) {
         __builtin_prefetch(p.block(transposed.blocks[k]));

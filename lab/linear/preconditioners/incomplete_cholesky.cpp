@@ -54,8 +54,8 @@ std::vector<bool> joining_vertices(const BlockCsr& pattern, const std::vector<In
 
 IncompleteCholesky::IncompleteCholesky(const BlockCsr& pattern) : offsets_{0} {
   const Index n = pattern.size();
-  // rows enough for a thread's work; chunks so few that most vertices don't join them, and a power of two,
-  // which any usual number of threads shares evenly
+  // enough rows for a thread's task; few chunks, so that few vertices join them; a power of two of chunks,
+  // which usual numbers of threads share evenly
   constexpr Index kRows = 8'000, kMaxChunks = 16;
   const auto count = static_cast<std::uint32_t>(std::clamp<Index>(n / kRows, 1, kMaxChunks));
   const std::vector<Index> chunks =
@@ -112,7 +112,7 @@ void IncompleteCholesky::update(const BlockCsr& matrix) {
 }
 
 bool IncompleteCholesky::factor(const BlockCsr& matrix, double shift) {
-  // all stop when one has failed
+  // all threads stop when one has failed
   std::atomic<bool> definite = true;
   for_each_inner_range([&](Index begin, Index end) { factor_rows(matrix, shift, begin, end, definite); });
   factor_rows(matrix, shift, bounds_.back(), size(), definite);

@@ -11,7 +11,7 @@
 namespace meshorder {
 namespace {
 
-// rows of a chunk: worth the start of a task
+// rows of a chunk, enough for a task
 constexpr Index kRows = 4096;
 
 }  // namespace

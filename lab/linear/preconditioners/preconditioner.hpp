@@ -17,8 +17,8 @@ namespace meshorder {
 /// definite itself; the same bits for any number of threads.
 class Preconditioner : public Polymorphic {
  public:
-  /// Takes the values of a matrix that has the pattern it was made for. Call it before `apply`, and again
-  /// after the matrix has changed.
+  /// Takes the values of a matrix with the preconditioner's pattern. Call it before `apply`, and again after
+  /// the matrix has changed.
   virtual void update(const BlockCsr& matrix) = 0;
 
   /// Computes z ≈ A⁻¹ r, 3 doubles for each vertex.

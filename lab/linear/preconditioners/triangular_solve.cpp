@@ -26,7 +26,7 @@ struct TransposedProduct {
     auto sum = hn::Mul(row(block), p0);
     sum = hn::MulAdd(row(block + 3), p1, sum);
     sum = hn::MulAdd(row(block + 6), p2, sum);
-    // two and one, the sizes in which they are loaded again
+    // stores two numbers, then one: later loads have these sizes
     const hn::Half<Four> two;
     hn::StoreU(hn::Sub(hn::LoadU(two, z), hn::LowerHalf(two, sum)), two, z);
     z[2] -= hn::GetLane(hn::UpperHalf(two, sum));
@@ -49,7 +49,7 @@ struct TransposedProduct {
 };
 #endif
 
-// blocks from a request to its use, as in the product with a matrix
+// blocks from a prefetch to its use, as in the product with a matrix
 constexpr Offset kAhead = 128;
 
 void lower(const BlockFactor& factor, const double* r, double* z, Index begin, Index end) {

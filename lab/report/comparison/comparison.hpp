@@ -24,17 +24,17 @@ void check_comparable(const ComparedStudy& a, const ComparedStudy& b);
 
 /// How much more of the reference's time an order saves in a study B than in a study A, in percentage points.
 struct SavingDifference {
-  double points = 0;          ///< B's per cent less A's
+  double points = 0;          ///< B's per cent minus A's
   double low = 0, high = 0;   ///< 95 % confidence interval of `points`
   bool beyond_noise = false;  ///< the interval does not contain 0
 
   bool operator==(const SavingDifference&) const = default;
 };
 
-/// Returns the difference of two independent studies, from the intervals of both: its lower end lies below it
-/// by √((b − b's low)² + (a's high − a)²), its upper end above it likewise (Zou and Donner 2008, Construction
-/// of confidence limits about effect measures: a general approach, Statistics in Medicine 27). Nothing where
-/// one of them has no interval.
+/// Returns the difference of two independent studies, with an interval from the intervals of both: its lower
+/// end is √((b − b's low)² + (a's high − a)²) below the difference, its upper end likewise above (Zou and
+/// Donner 2008, Construction of confidence limits about effect measures: a general approach, Statistics in
+/// Medicine 27). Empty if a study has no interval.
 std::optional<SavingDifference> difference_of(const Speedup& a, const Speedup& b);
 
 /// An order in a scenario that both studies have run, and its reference.
@@ -55,7 +55,7 @@ std::vector<ComparedOrder> compared_orders(const StudyResults& a, const StudyRes
 /// - comparison-machines: machines, programs and dates
 std::vector<Table> comparison_tables(const ComparedStudy& a, const ComparedStudy& b);
 
-/// Returns what the tables do not say, in sentences.
+/// Returns findings that the tables do not show, as sentences.
 std::vector<std::string> comparison_findings(const ComparedStudy& a, const ComparedStudy& b);
 
 }  // namespace meshorder

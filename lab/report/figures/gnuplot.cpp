@@ -51,7 +51,7 @@ std::string shortened(std::string_view text, std::ptrdiff_t characters, std::ptr
   return std::string(text.substr(0, end)) + std::string(kCut);
 }
 
-/// Makes the ids that a tag gives or refers to begin with `prefix`.
+/// Adds `prefix` to the ids that a tag defines or refers to.
 std::string with_own_ids_in(std::string tag, const std::string& prefix) {
   for (const std::string_view before : {" id='", " id=\"", "\tid='", "\tid=\"", "\nid='", "\nid=\"",
                                         "xlink:href='#", "xlink:href=\"#", "url(#"}) {
@@ -73,8 +73,8 @@ std::string in_one_line(std::string_view text) {
   return result;
 }
 
-/// Makes ids and references to them begin with `prefix`, and escapes '>' in the picture's texts, since "]]>"
-/// there is not valid XML.
+/// Adds `prefix` to ids and references to them, and escapes '>' in the picture's texts, since "]]>" there is
+/// not valid XML.
 std::string with_own_ids(const std::string& svg, const std::string& prefix) {
   std::string result;
   for (std::size_t begin = 0; begin < svg.size();) {

@@ -25,11 +25,11 @@ std::string draw(const Drawing& drawing);
 /// Returns a quoted gnuplot string; control characters become blanks.
 std::string gnuplot_quoted(std::string_view text);
 
-/// Returns the same for an entry of the key, cut to that many characters.
+/// Returns such a string for an entry of the key, cut to `characters` characters.
 std::string gnuplot_key(std::string_view text, int characters = 24);
 
-/// Returns the same for the label of a tic, with '%' escaped, cut to 24 characters and to gnuplot's limit of
-/// 49 bytes.
+/// Returns such a string for the label of a tic, with '%' escaped, cut to 24 characters and to gnuplot's
+/// limit of 49 bytes.
 std::string gnuplot_tic(std::string_view text);
 
 }  // namespace meshorder

@@ -111,7 +111,7 @@ std::vector<std::string> mesh_findings(const StudyResults& results) {
   std::vector<std::string> findings;
   findings.push_back(spans_in_words(results));
   findings.push_back(misses_in_words(results));
-  // on a page on meshes they are in the part on prediction
+  // a study without scenarios shows these in the page's part on prediction
   if (!results.scenarios.empty()) findings.push_back(predictions_in_words(results));
   std::erase(findings, "");
   return findings;

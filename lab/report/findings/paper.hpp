@@ -38,9 +38,9 @@ const PaperScenario* find_paper_scenario(std::string_view name);
 /// Returns what an order saves in a scenario, if the paper gives it.
 std::optional<PaperSaving> paper_saving(std::string_view scenario, std::string_view ordering);
 
-/// Returns the *derived* seconds of the scenario's steps in an order: for the scrambled order the sum of the
-/// seconds saved divided by the sum of the percentages, good to half a per cent since these are rounded; for
-/// another order less by what it saves.
+/// Returns the *derived* seconds of the scenario's steps in an order. For the scrambled order this is the sum
+/// of the seconds saved divided by the sum of the percentages, to within half a per cent since these are
+/// rounded. For another order, its saved seconds are subtracted.
 std::optional<double> paper_seconds(std::string_view scenario, std::string_view ordering);
 
 }  // namespace meshorder

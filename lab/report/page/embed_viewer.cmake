@@ -1,7 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #
-# viewer/* and three.js become part of the program, which then needs no files to make a page:
-# writes viewer_sources.cpp into the build folder.
+# Writes viewer_sources.cpp into the build folder: viewer/* and three.js are compiled into the program, which
+# then needs no other files to make a page.
 include(${PROJECT_SOURCE_DIR}/cmake/find_three.cmake)
 if(NOT MESHORDER_THREE_JS)
   message(FATAL_ERROR "three.min.js is missing, which the report page shows meshes with: install Debian's libjs-three, "

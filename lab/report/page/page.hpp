@@ -52,7 +52,8 @@ struct Page {
 /// 16 bits and compressed.
 std::string to_html(const Page& page);
 
-/// The same with a template other than viewer/page.html. Throws InvalidArgument for an unknown placeholder.
+/// Does the same with another template than viewer/page.html. Throws InvalidArgument for an unknown
+/// placeholder.
 std::string fill_page(std::string_view frame, const Page& page);
 
 /// Writes the page, completely or not at all. Throws Error if the file cannot be written.

@@ -13,7 +13,7 @@ namespace meshorder {
 
 /// How much of meshes and motions a page shows.
 struct PageDetail {
-  Index mesh_triangles = 90'000;  ///< about, of the meshes coloured by order
+  Index mesh_triangles = 90'000;  ///< approximate number for a mesh coloured by order
   Index motion_triangles = 12'000;
   Index frames = 60;  ///< at most, of a motion
   int sparsity_side = 192;

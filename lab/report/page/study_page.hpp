@@ -15,8 +15,8 @@ namespace meshorder {
 /// Called with each stage as it begins and the fraction of the work that is done.
 using ReportProgress = std::function<void(std::string_view what, double fraction)>;
 
-/// Fills a page's tables, findings and figures from its results. Without gnuplot there are no figures but a
-/// note.
+/// Fills a page's tables, findings and figures from its results. Without gnuplot, adds a note instead of
+/// figures.
 void fill_from_results(Page& page, Notes& notes);
 
 /// Returns the page of a study: its results, and the meshes, orders, motions and obstacles in its folder.

@@ -8,8 +8,8 @@
 
 namespace meshorder {
 
-/// Returns what the orders save, a row for each scenario and a column for each order, the paper's figures
-/// beside them where it has some.
+/// Returns the savings of the orders: a row for each scenario and a column for each order, with the paper's
+/// figures where it has any.
 Table summary_table(const StudyResults& results);
 
 /// Returns "+11.9 (+10.2 … +13.5), saves" as a cell.
@@ -23,7 +23,7 @@ TableCell saving_cell(const Speedup& speedup);
 bool has_paper(const StudyResults& results);
 /// Returns how these runs differ from the paper's, for captions: " Not as in the paper: falling, 20 steps."
 std::string differences_from_paper(const StudyResults& results);
-/// What captions say of a dash in the paper's column.
+/// Explanation, for captions, of a dash in the paper's column.
 inline constexpr const char* kNotTold =
     " –: the paper's text gives no number; only the captions of its Figures 4 to 9 do.";
 

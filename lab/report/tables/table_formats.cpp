@@ -22,7 +22,7 @@ std::string csv_escaped(std::string_view text) {
   return result + '"';
 }
 
-/// Returns whether all cells of the column are numbers, apart from pale ones.
+/// Returns whether all cells of the column are numbers; weak cells do not count.
 bool has_numbers(const Table& table, std::size_t column) {
   return !table.rows.empty() && std::all_of(table.rows.begin(), table.rows.end(), [column](const auto& row) {
     return row[column].value || row[column].weak;
@@ -48,7 +48,7 @@ std::string_view class_of(Certainty certainty) {
   return certainty == Certainty::open ? std::string_view("open") : words_of(certainty);
 }
 
-/// Returns all that a cell says in one line: "+11.9 (+10.2 … +13.5), saves".
+/// Returns all parts of a cell in one line: "+11.9 (+10.2 … +13.5), saves".
 std::string line_of(const TableCell& cell) {
   std::string line = cell.text;
   if (!cell.interval.empty()) line += fmt::format(" ({})", cell.interval);
@@ -66,7 +66,7 @@ std::string cell_html(const TableCell& cell) {
   return html;
 }
 
-/// Returns the number of characters of UTF-8, which is what a terminal takes for the texts of tables.
+/// Returns the number of characters of UTF-8: the width of tables' texts in a terminal.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
