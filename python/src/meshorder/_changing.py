@@ -65,9 +65,9 @@ class Update:
 class Reorderer:
     """Keeps the order of a changing mesh, graph or set of particles up to date.
 
-    Call `update` whenever connectivity or positions have changed, and move all arrays by its permutation. Most updates look
-    at a sample, and nothing moves. A new order is computed when neighbours are too far apart, and now and then to test
-    whether it would be better: first after 10 updates, then half as often after each test in vain.
+    Call `update` whenever connectivity or positions have changed, and move all arrays by its permutation. Most updates only
+    look at a sample, and nothing moves. A new order is computed when neighbours are too far apart, and now and then to test
+    whether it would be better: first after 10 updates, then half as often after each test without a gain.
 
     Args:
         method: "auto", which chooses as `order` does for the first mesh, or the name of one of `methods`.

@@ -1,8 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """The command `meshorder` of the Python package.
 
-It runs the C++ command that the package contains, and by itself `compare --gpu`. A mesh in a format that only meshio has is
-converted to .vtu first, and for an output in such a format the command writes .vtu, which is then converted.
+It runs the C++ command that the package contains; `compare --gpu` is in Python. A mesh in a format that only meshio has is
+converted to .vtu first. For an output in such a format the command writes .vtu, which is then converted.
 """
 
 from __future__ import annotations

@@ -256,7 +256,7 @@ def graph_arrays(graph: Any, mirror: bool = False) -> tuple[NDArray[Any], NDArra
 
 
 def _remedy(given: Any) -> str:
-    """Returns what to do with an object that is no graph, or nothing."""
+    """Returns a remedy for an object that is not a graph, or an empty text."""
     if isinstance(given, (str, os.PathLike)):
         return "; scipy.io.mmread(path).tocsr() reads a matrix"
     if not isinstance(given, np.ndarray) or given.ndim != 2:
@@ -359,7 +359,7 @@ def quality(graph: Any, order: Order | Permutation | None = None) -> Quality:
     Args:
         graph: a graph or matrix in a form that `order` takes, but not a mesh. An asymmetric pattern counts as that of
             A + Aᵀ, so that edges of an edge_index or Data count in both directions.
-        order: the order to measure, which is not carried out; None: the present order.
+        order: the order to measure; nothing is moved. None: the present order.
 
     Returns:
         Spans, bandwidth and profile.

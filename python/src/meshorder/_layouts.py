@@ -70,8 +70,8 @@ class GpuCost(NamedTuple):
         requests: additions, or loads and stores, each of a warp of 32 threads at once.
         sectors: sectors of 32 bytes that these requests touch. A sector of additions counts t times, where t is the largest
             number of threads of the warp that add to the same number in it.
-        floor: ``sectors`` if the numbers that each warp touches at once were all different and side by side; for patches, if
-            no vertex were in two of them, too.
+        floor: ``sectors`` if the numbers that each warp touches at once were all different and side by side; for patches, also
+            if no vertex were in two patches.
         dram_bytes: bytes read from memory, if the cache is filled again and again.
         dram_floor: ``dram_bytes`` if each number were read once.
     """
@@ -90,7 +90,7 @@ def _given(cells: Any, vertices: int | None) -> tuple[Any, int]:
         return arrays, whole(vertices, 2**31 - 1, "vertices")
     named = [block for _, block in arrays] if isinstance(arrays, list) else [arrays[1]]
     most = max((int(block.max()) + 1 for block in named if block.size), default=0)
-    return arrays, min(most, 2**63)  # the bound is more than the library takes; it reports that
+    return arrays, min(most, 2**63)  # the library refuses so many vertices
 
 
 def _rows(values: NDArray[Any], cells: Any) -> NDArray[Any]:
@@ -184,9 +184,9 @@ def gpu_cost(
     """Counts what adding to the vertices of cells costs on a GPU, with one thread for each cell. The count needs no GPU.
 
     Of two orders of the same cells, the one with fewer sectors is faster there. ``sectors`` are those of atomic additions;
-    for "gathered", those that the first pass stores and the second one loads. ``dram_bytes`` counts vertex numbers, of 4 bytes
-    or within patches 2 bytes, and the layout's numbers of each vertex in two arrays: one is read, the other is added to. Other
-    data of the cells is not counted.
+    for "gathered", those that the first pass stores and the second one loads. ``dram_bytes`` counts vertex numbers (4 bytes
+    each, 2 bytes within patches) and two arrays with the layout's numbers for each vertex: one is read, the other is added to.
+    Other data of the cells is not counted.
 
     Args:
         cells: cells of one type, in one of the forms that `order_mesh` takes; rows of two are edges.

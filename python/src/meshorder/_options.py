@@ -104,7 +104,7 @@ def prepared(options: Options | dict[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def in_a_line(value: Any) -> str:
-    """Returns a value as a message shows it: of an array the shape."""
+    """Returns a value for a message: the shape of an array, the ``repr`` of other values."""
     shape = getattr(value, "shape", ())
     return f"an array of the shape {tuple(shape)}" if shape else repr(value)
 

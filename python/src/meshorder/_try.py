@@ -325,7 +325,7 @@ def _ordered(given: Any, name: str, options: dict[str, Any]) -> tuple[str, Any, 
 
 
 def _orders_that_fit(runs: float, named: Sequence[str] | None) -> int:
-    """Returns for how many orders a budget of so many runs suffices; orders that the caller named share it."""
+    """Returns the number of orders for which a budget of ``runs`` runs suffices; orders that the caller named share it."""
     if named is not None and runs >= 2 * (len(named) + 1):
         return len(named)
     return max(1, int((min(runs, 1e6) - _RUNS_OF_BEST) / _RUNS_OF_EACH))
@@ -352,7 +352,7 @@ def _first_runs(
 ) -> tuple[list[_Candidate], list[str]]:
     """Runs the function once in each order; returns these orders, and the names of those for which there is no time.
 
-    Orders with different results give their place to others.
+    An order with different results does not count, so that another one can run in its place.
     """
     original = _Candidate("original", mesh, 0.0)
     runner.run(original)

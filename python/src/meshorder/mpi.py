@@ -236,7 +236,7 @@ def order_ranks(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
 
     Raises:
         InvalidArgument: an unknown method, wrong vertex numbers, missing coordinates, arrays of wrong shapes, another
-            kind of communicator, and options that differ between ranks, but for ``threads``.
+            kind of communicator, options (except ``threads``) that differ between ranks.
         Unavailable: the library ``libmeshorder_mpi`` was not found.
         Error: another failure.
 

@@ -94,10 +94,10 @@ class GpuComparison:
 
     Attributes:
         gpu: name of the graphics processor.
-        kernels: for each kernel its group and what tells it from the others of its group.
+        kernels: for each kernel its group and its title in the group.
         orders: the file's order first.
         best: the order to take: the fastest one without sorted corners if its interval begins above 1.02, else the
-            file's; that of ``auto`` if it is less than 2 % slower.
+            file's; the order of ``auto`` instead of the fastest one if it is less than 2 % slower.
         file: name of the mesh's file; None if it was not read from one.
         notes: on what was left out when the mesh was read.
     """
@@ -237,7 +237,7 @@ def compare_on_gpu(mesh: Any, methods: Sequence[str] | None = None, **options: A
 
     The kernels are products with a sparse matrix, sums of the elastic forces of linear tetrahedra, and springs along the
     edges, each in several layouts. Meshes without linear tetrahedra have no element forces. The results are compared with
-    double precision. Nothing is timed but the kernels; the orders run alternately.
+    double precision. Only the kernels are timed; the orders run alternately.
 
     Args:
         mesh: the path of a file, or a mesh that `reorder` takes. It is not changed.
@@ -253,7 +253,7 @@ def compare_on_gpu(mesh: Any, methods: Sequence[str] | None = None, **options: A
         InvalidArgument: an object that is not a mesh, a mesh without vertices, an unknown method.
         InputError: the file cannot be read.
         Unavailable: CuPy, a GPU or its driver is missing, the GPU's memory is too small, or NVRTC fails.
-        InternalError: a kernel computes something else than it should.
+        InternalError: a kernel's results are wrong.
         Stopped: ``progress`` returned False.
 
     Example:

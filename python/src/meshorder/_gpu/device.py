@@ -99,7 +99,7 @@ class Device:
             start()
 
     def milliseconds(self, runs: Sequence[Sequence[Launch]]) -> NDArray[np.float64]:
-        """Times runs against each other: in rounds, in each of which every one runs several times.
+        """Times runs alternately: each round repeats each run several times.
 
         Returns:
             Milliseconds of one run, for each of 15 rounds and each run.
@@ -129,7 +129,7 @@ class Device:
         return ready
 
     def _batch(self, run: Sequence[Callable[[], None]], repeats: int) -> float:
-        """Returns the milliseconds of some runs. The device is kept busy until all of them wait in its queue."""
+        """Returns the milliseconds of ``repeats`` runs. The device is kept busy until all of them wait in its queue."""
         begin, end = self._cupy.cuda.Event(), self._cupy.cuda.Event()
         self._function("hold")((1,), (1,), (np.int64(_CYCLES_TO_LAUNCH * (10 + len(run) * repeats)),), shared_mem=0)
         begin.record()

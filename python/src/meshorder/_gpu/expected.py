@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What the kernels compute, by NumPy in double precision."""
+"""Reference results of the kernels, by NumPy in double precision."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Expected(NamedTuple):
     scale: Double
 
     def error(self, found: NDArray[Any]) -> float:
-        """Returns the largest difference relative to the scale; NaN if a number is none."""
+        """Returns the largest difference relative to the scale; NaN if a number is NaN."""
         difference = np.abs(found - self.values).max(axis=1, initial=0)
         return float((difference / np.maximum(self.scale, np.finfo(np.float32).tiny)).max(initial=0))
 
@@ -67,7 +67,7 @@ def _scale_of(ends: Rows, bounds: Double, n: int) -> Double:
 
 
 class Results:
-    """What the kernels compute on a problem in any order. Each is computed when it is first used.
+    """Reference results of the kernels on a problem, for any order. Each is computed when it is first used.
 
     Attributes:
         problem: the problem.
@@ -98,7 +98,7 @@ class Results:
         stress += np.trace(displaced, axis1=1, axis2=2)[:, np.newaxis, np.newaxis] * np.eye(3)
         of_corners = -rest.volume[:, np.newaxis, np.newaxis] * np.einsum("eij,ekj->eki", stress, rest.of)
         of_corners = np.concatenate([-of_corners.sum(axis=1, keepdims=True), of_corners], axis=1)
-        # bounds of the same by norms
+        # bounds of the forces, by norms
         steepness = np.linalg.norm(rest.of, axis=2)
         stretch = 1 + np.einsum("ek,ek->e", np.linalg.norm(edges, axis=2), steepness)
         bounds = (rest.volume * stretch)[:, np.newaxis] * steepness

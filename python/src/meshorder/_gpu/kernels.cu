@@ -184,8 +184,8 @@ extern "C" __global__ void forces_padded(int n, const int4* __restrict__ corners
   add_forces(Padded<float4>{sums}, c, element_forces(Padded<const float4>{points}, c, rest, n, e));
 }
 
-// A block for each patch of as many elements as it has threads: the points of the patch and the sums of their
-// forces are in shared memory, 24 bytes for each of its vertices.
+// One block for each patch, one thread for each element of the patch. The points of the patch and the sums of
+// their forces are in shared memory, 24 bytes for each vertex of the patch.
 extern "C" __global__ void forces_patches(int n, const int* __restrict__ offsets,
                                           const int* __restrict__ vertices, const ushort4* __restrict__ local,
                                           const float* __restrict__ rest, const float* __restrict__ points,
@@ -281,7 +281,7 @@ extern "C" __global__ void distances(int n, int begin, const int2* __restrict__ 
   points[v.y] = make_float4(q.x - q.w * f.x, q.y - q.w * f.y, q.z - q.w * f.z, q.w);
 }
 
-// Keeps the device busy, so that the launches of the kernels to be timed are waiting when they begin.
+// Keeps the device busy until all launches of the timed kernels wait in its queue.
 extern "C" __global__ void hold(long long cycles) {
   const long long begin = clock64();
   while (clock64() - begin < cycles) {

@@ -21,10 +21,10 @@ class Run(NamedTuple):
     """A kernel that is ready to run in an order.
 
     Attributes:
-        launches: what it consists of.
+        launches: the launches of its functions.
         result: the array on the device that it adds to or writes.
         read: returns the n × k results of the vertices from the values of that array.
-        expected: what it computes, for vertices in their old order.
+        expected: returns the reference results, for vertices in their old order.
     """
 
     launches: list[Launch]
@@ -223,7 +223,7 @@ class Kernel(NamedTuple):
     Attributes:
         name: in JSON.
         group: "product", "element forces" or "springs".
-        title: what tells it from others of its group.
+        title: its title in the group.
         prepare: uploads its arrays.
     """
 

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What the kernels compute on a mesh, and its arrays in an order."""
+"""The problem that the kernels solve on a mesh, and its arrays in an order."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .._meshes import SHAPES, Mesh
 from .._orders import order_edges, order_mesh
 from .._permutation import Permutation
 
-#: methods whose elements have a method of their own by default; those of others have "lexmax"
+#: default element method by vertex method; "lexmax" for the methods that are not listed
 _ELEMENTS_OF = {"original": "original", "auto": "auto", "scrambled": "scrambled"}
 _SORTED = "+corners"
 _USUAL = ("auto", "auto+corners", "hilbert", "rcm", "spectral", "fiedler", "hilbert/original", "scrambled")
@@ -63,7 +63,7 @@ class Problem:
 
     @cached_property
     def gradients(self) -> Gradients:
-        """Those of the tetrahedra at rest."""
+        """The gradients of the tetrahedra at rest."""
         return gradients(self.rest, self.tetrahedra)
 
 
@@ -133,7 +133,7 @@ class Ordered:
         return (vertices if usual else f"{vertices}/{elements}") + (_SORTED if self.sorts_corners else "")
 
     def _springs(self) -> Rows:
-        """Returns the springs in the order that suits that of the elements."""
+        """Returns the springs: unchanged or scrambled like the elements, otherwise sorted by `order_edges`."""
         springs = self.problem.springs
         if self.methods[1] == "scrambled":
             springs = np.random.default_rng(0).permutation(springs)
@@ -143,7 +143,7 @@ class Ordered:
         return ends
 
     def gradients(self) -> Gradients:
-        """Returns those of the tetrahedra at rest, in their new order."""
+        """Returns the gradients of the tetrahedra at rest, in their new order."""
         if self.sorts_corners:
             return gradients(self.rest, self.tetrahedra)
         of, volume = self.problem.gradients
@@ -168,7 +168,7 @@ class Ordered:
 
 
 def lengths(points: Single, first: Rows, second: Rows) -> Single:
-    """Returns the distance of two points each."""
+    """Returns the distance between each pair of points."""
     difference = points[first].astype(np.float64) - points[second]
     found: Single = np.sqrt(np.einsum("ij,ij->i", difference, difference)).astype(np.float32)
     return found

@@ -56,7 +56,7 @@ def host_of(mesh: Any) -> Host:
 
 
 def _remedy(given: Any) -> str:
-    """Returns what to do with an object that is no mesh, or nothing."""
+    """Returns a remedy for an object that is not a mesh, or an empty text."""
     if isinstance(given, str):
         return "; meshorder.read makes a mesh of a file, meshorder.write(mesh, path) writes one"
     return "; meshorder.order(matrix).permutation.move(matrix) orders a matrix" if hasattr(given, "tocsr") else ""
