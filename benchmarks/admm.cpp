@@ -85,8 +85,8 @@ Runner make_runner(const std::string& name, int threads, mo::Scenario scenario, 
   return {name, threads, mo::set_up(std::move(scenario), mesh, file)};
 }
 
-/// Returns the scenario with the body just above the obstacles, which reach up to `top`, and as fast as it is
-/// there after its fall.
+/// Returns the scenario with the body just above `top`, the highest point of the obstacles, at the speed of
+/// its fall to there.
 mo::Scenario before_contact(mo::Scenario scenario, double top) {
   const double gravity = -scenario.motion().gravity[1];
   const double fall = (*scenario.bottom)[1] - top;

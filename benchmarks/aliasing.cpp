@@ -1,9 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// aliasing [--rounds N] [--orders a,b,…] [--offsets a,b,…] FILE…: measures the cost if the addresses of an
-// array that is added to and of one that is read by the same index differ by a multiple of 4096 bytes plus an
-// offset. Springs, element forces and the product with the stiffness matrix; both arrays start at a page of 2
-// MiB, the second one an offset later. Best ms of processor time, all orders and offsets in turn, one thread.
+// aliasing [--rounds N] [--orders a,b,…] [--offsets a,b,…] FILE…: measures the cost of address aliasing. A
+// kernel reads one array and adds to another by the same index, and the addresses of the two differ by a
+// multiple of 4096 bytes plus an offset. Kernels: springs, element forces and the product with the stiffness
+// matrix. Both arrays start at a page of 2 MiB, the second one an offset later. Prints the best ms of
+// processor time on one thread; all orders and offsets run in turn.
 #include "base/stopwatch.hpp"
 #include "io/format.hpp"
 #include "kernels/elasticity.hpp"

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// cache_misses MESH predict [CACHES]: the misses that the cache model predicts for each kernel in the order
-// that the file has, for CACHES such as 48K,1M,32M (default: this machine's), and what predicting costs.
+// cache_misses MESH predict [CACHES]: prints the misses that the cache model predicts for each kernel in the
+// file's order, for CACHES such as 48K,1M,32M (default: this machine's), and the cost of the prediction.
 // cache_misses MESH KERNEL RUNS: prepares all kernels and runs one of them; benchmarks/cachegrind.py counts
-// the misses of that.
+// the misses of this run.
 #include "base/stopwatch.hpp"
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"

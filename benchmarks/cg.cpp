@@ -1,12 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // cg [--solve | --half] [--rounds N] [--orders a,b,…] FILE…: conjugate gradients on the system of an implicit
-// time step of each mesh, (1 + h α) M + h² K at rest, in several orders: best ms of an iteration in
-// interleaved rounds, with the matrix in double and in float, on one and two threads, and how many per cent
-// of the measured bandwidth that is (over 100: caches hold something from pass to pass). "band" is the ideal
-// order (see ideal_band). With --solve: iterations and seconds to 1e-6 with each preconditioner. With --half:
-// the product and the iteration with the whole matrix and with half of it (see HalfBlockCsrOf), in double and
-// in float, in turns; on one thread processor time.
+// time step of each mesh, (1 + h α) M + h² K at rest, in several orders. Prints the best ms of an iteration
+// in interleaved rounds, with the matrix in double and in float, on one and two threads, and its rate in per
+// cent of the measured bandwidth (over 100: caches keep data from pass to pass). "band" is the ideal order
+// (see ideal_band). With --solve: iterations and seconds to 1e-6 with each preconditioner. With --half: the
+// product and the iteration with the whole matrix and with half of it (see HalfBlockCsrOf), in double and in
+// float, in turns; on one thread processor time.
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "io/format.hpp"

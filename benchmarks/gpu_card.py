@@ -1,14 +1,14 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Fits the times of kernels on a GPU to what `meshorder.gpu_cost` counts: the constants of `meshorder info --gpu --card`.
+"""Fits the times of kernels on a GPU to the counts of `meshorder.gpu_cost`: the constants of `meshorder info --gpu --card`.
 
     python gpu_card.py RESULTS NAME=MESH …
 
 RESULTS has a record of JSON for each mesh, order and kernel that was measured, with the median time `warm` in µs. Each MESH is
-one of these meshes, of tetrahedra, in its file's order. The orders, vertices/elements, are made anew; those that meshorder does
-not make, and random ones, are left out. A kernel is taken to need a time for its launch, and the same time for each sector. For
-each mesh, prints these two as they fit the other meshes best, and how well they predict this mesh: the median and the largest
-error of a time; the rank correlation of all orders and layouts; and for each layout the regret: how much slower than the fastest
-order the one predicted to be the fastest is. Last come the two times that fit all meshes.
+one of these meshes, of tetrahedra, in its file's order. The orders, vertices/elements, are computed again; random orders and
+orders that meshorder does not make are left out. The model of a kernel's time: one time for its launch, and one for each sector.
+For each mesh, prints these two times fitted to the other meshes, and how well they predict this mesh: the median and the largest
+error of a time; the rank correlation of all orders and layouts; and for each layout the regret: how much slower the order
+predicted to be the fastest is than the fastest order. Last come the two times fitted to all meshes.
 """
 
 import json
@@ -45,7 +45,7 @@ def sectors_of(mesh, orders):
 
 
 def fitted(pairs):
-    """Returns the times of a launch and of a sector with the least squares of relative errors, for pairs of sectors and times."""
+    """Fits the times of a launch and of a sector to pairs of sectors and times, by least squares of relative errors."""
     sectors, times = np.array(pairs).T
     return np.linalg.lstsq(np.column_stack((1 / times, sectors / times)), np.ones(len(times)), rcond=None)[0]
 

@@ -1,12 +1,12 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Compares what `meshorder.gpu_cost` and `gpu_product_cost` count with what a GPU's counters had.
+"""Compares the counts of `meshorder.gpu_cost` and `gpu_product_cost` with a GPU's counters.
 
     python gpu_counts.py MESH FOLDER
 
 MESH is a mesh of tetrahedra that was measured, in its file's order; FOLDER has `ncu_order.txt`, a line for each launch (mesh,
-order and kernel, with tabs between), and `ncu_MESH.csv`, what Nsight Compute counted in them. Orders are
-named vertices/elements, and are made anew here; random ones are left out. Prints a table, and the median and largest deviation of
-sectors and of bytes.
+order and kernel, with tabs between), and `ncu_MESH.csv`, Nsight Compute's counters of these launches. Orders are
+named vertices/elements and are computed again here; random ones are left out. Prints a table, and the median and largest
+deviation of sectors and of bytes.
 """
 
 import csv
@@ -26,8 +26,8 @@ LENGTH = 4  # likewise for each spring
 
 
 class Ordered:
-    """Tetrahedra in an order, and what is counted for each kernel: sectors, and the counter to which they are compared; bytes.
-    `stored` has the number of each vertex in the order in which the mesh was stored where it was measured."""
+    """Tetrahedra in an order. The functions return, for a kernel, the counter to compare, the sectors, and the bytes.
+    `stored` is the number of each vertex in the mesh as it was stored for the measurement."""
 
     def __init__(self, cells, vertices, stored):
         self.cells, self.vertices, self.stored = cells, vertices, stored
@@ -43,7 +43,7 @@ class Ordered:
         offsets, columns = self.graph
         rows = np.repeat(np.arange(self.vertices, dtype=columns.dtype), np.diff(offsets))
         springs = np.column_stack((rows, columns))[columns < rows]  # by the larger end, as lexmax has them
-        # which end is the first was settled before the order was made
+        # the first end was chosen by the stored numbers, before the order was made
         return np.where((self.stored[springs[:, 0]] > self.stored[springs[:, 1]])[:, None], springs[:, ::-1], springs)
 
     def of_cells(self, layout):
@@ -55,7 +55,7 @@ class Ordered:
         return ADDITIONS, cost.sectors, cost.dram_bytes + LENGTH * len(self.springs)
 
     def of_gathering(self):
-        """Returns what the second pass loads: without the sectors of the first, and without what that reads."""
+        """Returns the loads of the second pass: without the sectors and the bytes of the first pass."""
         cost = meshorder.gpu_cost(self.cells, "gathered")
         return LOADS, cost.sectors - 2 * len(self.cells), cost.dram_bytes - 16 * len(self.cells) - 12 * self.vertices
 

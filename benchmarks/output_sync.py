@@ -51,7 +51,7 @@ def main():
             processor = []
             for _ in range(arguments.rounds):
                 for synced, list_of in times.items():
-                    os.sync()  # finishes what the previous round left to do
+                    os.sync()  # finishes the writes of the previous round
                     wall, busy = replace(folder, content, synced)
                     list_of.append(wall)
                     if synced:

@@ -6,14 +6,14 @@
 
 `--on RANKS:PARTS` names runs. The columns of the table, which goes to stdout in Markdown:
 
-- mean log₂ span and mean span of the edges over those of the serial order `spectral`;
-- edges between parts, the same over METIS's, and the largest part over the mean. METIS, of pymetis, cuts k-way by its
-  defaults; its cut depends on how the vertices are numbered: the lower one counts, of those in the file's order and in
-  that of Hilbert's curve;
+- mean log₂ span and mean span of the edges, divided by those of the serial order `spectral`;
+- edges between parts, their number divided by METIS's, and the largest part divided by the mean. METIS, of pymetis, cuts
+  k-way by its defaults. Its cut depends on the numbering of the vertices: the table takes the smaller cut of the file's
+  order and of the order along Hilbert's curve;
 - cache misses of the element force and of the matrix-vector product, predicted by `meshorder info` for caches of 32 KiB
   and 1 MiB, in all pieces of `--pieces OUT --ghosts 0` together and in the worst one, relative to the misses of the same
   pieces in the serial order: own vertices, then the ghosts of each owner, each in that order, and cells in `lexmax`,
-  which takes ghosts as coming before own vertices, as in the pieces. A dash means caches that hold every piece.
+  which ranks ghosts before own vertices, as in the pieces. A dash: the caches hold every piece.
 
 Meshes have tetrahedra and one component. Needs NumPy, meshio, pymetis and peer-graph_of (MESHORDER_BENCHMARKS).
 """
@@ -67,7 +67,7 @@ class Mesh:
         return [json.loads(report)["reuse"][kernel]["misses"] for kernel in KERNELS]
 
     def in_serial_order(self, piece, new_to_old):
-        """Writes the piece with its vertices in the serial order and its cells in `lexmax`; returns where."""
+        """Writes the piece with its vertices in the serial order and its cells in `lexmax`; returns the path."""
         data = meshio.read(piece)
         owner = data.point_data["part"].astype(numpy.int64)
         is_ghost = data.point_data["vtkGhostType"].astype(numpy.int64)

@@ -2,13 +2,13 @@
 // plain_kernels MESH [METHOD,METHOD… [rounds]]: times kernels as simple programs write them, without
 // prefetches (src/kernels/plain.hpp, plain_programs.hpp), on a tetrahedral mesh in several orders. Elements
 // and edges are sorted by their largest vertex; for `springs*` edges are sorted by their smaller end.
-// NAME=@FILE.npy takes the order of the vertices from a file, which has the old place of each new one. If the
-// mesh is grid-N and no such file exists, it is a lattice in random order.
+// NAME=@FILE.npy takes the order of the vertices from a file: the old place of the vertex at each new place.
+// If the mesh is grid-N and no such file exists, it is a lattice in random order.
 //
-// All orders share one memory, which each fills before its turn, so that all have the same pages. Each round
-// has another sequence of orders. A kernel runs alternately in the order and, in separate memory, in the
-// first order, because the speed of a shared machine changes from minute to minute. Prints medians of the
-// ratios of these times, multiplied by the median time in the first order, ms of the thread's processor time.
+// All orders use the same memory, which each fills before its turn: all have the same pages. Each round has
+// another sequence of orders. A kernel runs alternately in the order and, in separate memory, in the first
+// order, because the speed of a shared machine changes from minute to minute. Prints medians of the ratios of
+// these times, multiplied by the median time in the first order, ms of the thread's processor time.
 #include "io/npy.hpp"
 #include "measuring.hpp"
 #include "mesh/graphs.hpp"

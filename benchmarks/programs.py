@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Measures what orders are worth in programs that others wrote, by `meshorder try`.
+"""Measures the gain of orders in other people's programs, by `meshorder try`.
 
 Usage: programs.py FOLDER [PROGRAM…] [--size SIZE] [--budget SECONDS] [--json FILE]
        programs.py --from FILE
@@ -8,8 +8,8 @@ Usage: programs.py FOLDER [PROGRAM…] [--size SIZE] [--budget SECONDS] [--json 
 All programs, or those named, compute on a block with a hole, which Gmsh fills with tetrahedra of that SIZE (its Python
 package is needed), or on the matrix of −Δu + u on it by linear elements; icoFoam on a box whose lid moves. The meshes are
 in the order in which Gmsh leaves them. Programs that are not installed are skipped. On one thread, by processor time.
-MESHORDER names the command, else build/bin/meshorder is taken. Prints a table in Markdown; --json adds what `try --json`
-says to the file, from which --from prints the table again.
+MESHORDER names the command; by default it is build/bin/meshorder. Prints a table in Markdown; --json adds the results of
+`try --json` to the file, and --from prints the table from this file again.
 """
 import argparse
 import json

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Measures what `meshorder order` costs and yields on many ranks, and predicts from that for a cluster.
+"""Measures the costs and results of `meshorder order` on many ranks, and predicts its costs on a cluster from them.
 
     benchmarks/ranks.py build/bin/meshorder --sizes 50000 200000 --ranks 1 2 4 8 --json ranks.json
     benchmarks/ranks.py build/bin/meshorder --mesh ball.vtu --ranks 1 4
@@ -8,13 +8,13 @@
 
 The first measures weak scaling: scrambled lattices of tetrahedra with about as many vertices a rank as --sizes says,
 ordered from raw .vtu file to raw .vtu file with one thread a rank; 1 is the command without mpirun. The second measures one
-mesh on several numbers of ranks. Tables go to stdout, in Markdown. --json keeps the runs; --from begins with runs so kept.
---model computes from those on more than one rank what 10^7 to 10^9 vertices take on 16 to 1,024 ranks; see predict().
+mesh on several numbers of ranks. Tables go to stdout, in Markdown. --json keeps the runs; --from begins with such runs.
+--model predicts the costs of 10^7 to 10^9 vertices on 16 to 1,024 ranks from the runs on more than one; see predict().
 
-Ranks may be more than cores, so that the time on the clock means nothing. Measured is processor time, in the program
-("user") and in the system, medians of --rounds runs. That of stages is what /proc shows for each rank, in steps of 10 ms,
-between the ends of stages at rank 0. It includes waiting for other ranks, which polls. Bytes and messages are what Open
-MPI's monitoring counts in one more run. Needs Linux, Open MPI, NumPy, and meshorder with MESHORDER_MPI and its models.
+There may be more ranks than cores, so wall-clock time means nothing. Times are processor time in the program ("user") and
+in the system, medians of --rounds runs. Times of stages come from /proc for each rank, in steps of 10 ms, between the ends
+of stages at rank 0. They include waiting for other ranks, which polls. Bytes and messages are counted by Open MPI's
+monitoring in one more run. Needs Linux, Open MPI, NumPy, and meshorder with MESHORDER_MPI and its models.
 """
 import argparse
 import json
@@ -259,12 +259,12 @@ class Constants:
 
 
 def predict(options, constants, vertices, ranks):
-    """Returns seconds and bytes of a rank with a core of its own, the least and the most.
+    """Returns the least and the most seconds and bytes of a rank with a core of its own.
 
-    A stage takes what it took the busiest rank in the program, per vertex of a rank: as in the runs with the nearest numbers
-    of ranks and of vertices a rank, or growing on with their logarithms as it did in the runs. So do the bytes that a rank
-    sends. To these come the system's time per vertex of the command without mpirun, for pages and files, and messages by
-    latency and bandwidth.
+    The time of a stage is that of the busiest rank in the program, per vertex of a rank. The least is the cost in the runs with
+    the nearest numbers of ranks and of vertices a rank; the most grows on with their logarithms, as it did in the runs. The
+    bytes that a rank sends follow the same rule. Added to these are the system's time per vertex of the command without mpirun,
+    for pages and files, and the time of messages by latency and bandwidth.
     """
     own = vertices / ranks
     stages = {stage: cost.at(ranks, own) * own for stage, cost in constants.stages.items()}

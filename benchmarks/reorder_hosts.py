@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Time that `meshorder.reorder` takes for meshes of other libraries: for the order, and for moving what belongs to it.
+"""Measures the time of `meshorder.reorder` for meshes of other libraries: for the order, and for moving mesh and data.
 
 Usage: python benchmarks/reorder_hosts.py [edge]     with meshorder, PyVista and meshio installed
 

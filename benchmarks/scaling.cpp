@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Measures what one order costs, in a process whose peak memory is only the order's; scaling.py runs it.
+// Measures the cost of one order, in a process of its own for its peak memory; scaling.py runs it.
 //   scaling make CUBES FILE               a grid of tetrahedra, CUBES across, scrambled
 //   scaling vertices|elements METHOD FILE prints vertices, elements, seconds, MB before, MB at the peak
 // Elements are ordered after the vertices' Hilbert order. Memory counts the mesh and its graph.

@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What each stage of `meshorder order` takes on 1, 2, 4 … all threads, and what stays on one of them.
+"""Measures the time of each stage of `meshorder order` on 1, 2, 4 … all threads, and its serial share.
 
     benchmarks/threads.py build/bin/meshorder mesh.node --json threads.json --plot threads.svg
 
 Every run is a process of its own; runs with different numbers of threads take turns, and medians are printed. The mesh
 is written to each format and read back, and scrambled before it is ordered. The serial share s follows from the times
-on one thread and on all n by Amdahl's law, T(n) = T(1) (s + (1 - s) / n); the speed-up on --compute threads is what the
-law gives for them, computed and not measured. Bytes per second are of files, at the most threads. --from draws and
-prints a file that --json wrote.
+on one thread and on all n by Amdahl's law, T(n) = T(1) (s + (1 - s) / n). The speed-up on --compute threads is computed
+by this law, not measured. Bytes per second count the files, on the most threads. --from draws and prints a file that
+--json wrote.
 """
 import argparse
 import json
@@ -60,7 +60,7 @@ def measure(options, folder, counts):
 
 
 def serial_share(seconds):
-    """By the times on one thread and on the most; None on one thread alone."""
+    """Returns the serial share from the times on one thread and on the most; None if one is the most."""
     most = max(seconds)
     if most == 1:
         return None

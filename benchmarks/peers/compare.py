@@ -4,13 +4,13 @@
 
 Every solver gets the largest component of the mesh's vertex graph. Its vector y is judged here, by one rule for all:
 the residual ‖Ly − λy‖ / (λ₂ ‖y‖) with λ = yᵀLy / yᵀy, and the cosine of its angle to the exact eigenspace of λ₂, found
-by shift and invert. A solver is asked for the loosest of the tolerances 5, 2, 1, 0.5, 0.2, 0.1 … 1e-12 of its own with
-which the residual reaches the accuracy and the cosine is above 0.9; meshorder is asked for the accuracy itself. That
-search comes first and is remembered in the work folder. Then all run in turn, round by round, each in a process of its
-own that solves up to three times within a second; a solver's time is the best of all, without start and reading.
+by shift and invert. meshorder runs at the accuracy itself. Each other solver runs at the loosest of its tolerances 5, 2,
+1, 0.5, 0.2, 0.1 … 1e-12 at which the residual reaches the accuracy and the cosine is above 0.9. The search for these comes
+first and is stored in the work folder. Then all solvers run in turn, round by round, each in a process of its own, which
+solves up to three times within a second. A solver's time is the best of all, without start-up and reading.
 
-Debian's packages: libspectra-dev libslepc-real-dev libhypre-dev python3-scipy python3-networkx. PyAMG is no package of
-Debian's; if the Python that runs this has it, it takes part. Peers that are missing are skipped with a message.
+Debian's packages: libspectra-dev libslepc-real-dev libhypre-dev python3-scipy python3-networkx. PyAMG is not in Debian; it
+takes part if this Python has it. Peers that are missing are skipped with a message.
 
     cmake -B build -DMESHORDER_BENCHMARKS=ON && cmake --build build
     benchmarks/peers/compare.py dragon.node
@@ -30,7 +30,7 @@ from peer import SOLVERS, eigenpairs, laplacian_of
 
 OURS = "meshorder"
 BOOMERAMG = "-st_pc_type hypre -st_pc_hypre_boomeramg_agg_nl 1 -st_pc_hypre_boomeramg_coarsen_type HMIS " \
-            "-st_pc_hypre_boomeramg_interp_type ext+i"  # BoomerAMG's own defaults are not PETSc's, and faster
+            "-st_pc_hypre_boomeramg_interp_type ext+i"  # BoomerAMG's own defaults, which are faster than PETSc's
 PROGRAMS = {  # name: program, and what follows GRAPH TOLERANCE VECTOR
     OURS: ("peer-meshorder", []),
     "hypre-lobpcg-boomeramg": ("peer-hypre", []),
@@ -82,11 +82,11 @@ class Failure(Exception):
 
 
 class Missing(Failure):
-    """What it needs is not on this machine."""
+    """Something that the solver needs is not on this machine."""
 
 
 class TooSlow(Failure):
-    """It was stopped; tighter tolerances would not help."""
+    """The solver was stopped; tighter tolerances would not help."""
 
 
 def run(name, problem, tolerance, options):
@@ -116,7 +116,7 @@ def run(name, problem, tolerance, options):
 
 
 def loosest_tolerance(name, problem, accuracy, start, options):
-    """The loosest tolerance up to `start` that reaches the accuracy and the right vector. By decades, then in one."""
+    """Returns the loosest tolerance up to `start` that reaches the accuracy and the right vector: its decade first."""
     def reaches(tolerance):
         result = run(name, problem, tolerance, options)
         return result["residual"] <= accuracy and result["cosine"] > MIN_COSINE
@@ -142,7 +142,7 @@ def loosest_tolerance(name, problem, accuracy, start, options):
 
 
 def chosen_tolerances(problem, accuracy, options):
-    """For each solver its tolerance, or why it has none; found before or now."""
+    """Returns the tolerance of each solver, or why it has none, from the work folder or a search."""
     known = json.loads(problem.tolerances.read_text()) if problem.tolerances.exists() else {}
     chosen = {}
     for name in options.peers:

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// `peer-orders MESH FOLDER NAME…` orders the vertices of a mesh by methods of Boost (boost-rcm,
-// boost-sloan), Scotch (scotch-nd), meshoptimizer (meshopt-spatial) and meshorder (all others). Writes
-// FOLDER/NAME.npy, the old place of each new one, and prints for each the seconds from a ready graph, the
-// least of up to three runs.
+// `peer-orders MESH FOLDER NAME…` orders the vertices of a mesh by methods of Boost (boost-rcm, boost-sloan),
+// Scotch (scotch-nd), meshoptimizer (meshopt-spatial) and meshorder (all others). Writes FOLDER/NAME.npy, the
+// old place of the vertex at each new place, and prints for each the seconds from a ready graph, the least of
+// up to three runs.
 #include "base/stopwatch.hpp"
 #include "io/npy.hpp"
 #include "mesh/graphs.hpp"
@@ -32,7 +32,7 @@ namespace mo = meshorder;
 
 namespace {
 
-using Order = std::vector<std::int32_t>;  ///< the old place of each new one
+using Order = std::vector<std::int32_t>;  ///< the old place of the vertex at each new place
 using BoostGraph = boost::compressed_sparse_row_graph<boost::directedS>;
 using BoostVertex = boost::graph_traits<BoostGraph>::vertex_descriptor;
 

@@ -1,15 +1,15 @@
 #!/usr/bin/python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Judges orders of vertices by meshorder, SciPy, Boost, Scotch, METIS and meshoptimizer by plain kernels.
+"""Compares vertex orders by meshorder, SciPy, Boost, Scotch, METIS and meshoptimizer, with plain kernels.
 
 Usage: orders.py MESH [--build DIR] [--rounds N] [--slow] [--more NAME=FILE…]
 
 `peer-orders` and SciPy order the vertices of a tetrahedral mesh, each on one thread from a ready graph, and
-`plain_kernels` times kernels as programs have them that neither prefetch nor block, in all the orders by turns. Prints
-for each order its time and, for each kernel, its time divided by the best one's. `auto` is timed twice: "auto again" says
-by how much two timings of the same order differ. The last columns are the mean and the largest of the ratios, which is
-how much slower than the best a user of that order may be. --more adds orders from elsewhere: .npy files with the old
-place of each new one. Debian's packages: libboost-graph-dev libscotch-dev libmeshoptimizer-dev.
+`plain_kernels` times kernels without prefetches and blocking, as in simple programs, in all orders in turn. Prints for
+each order its time and, for each kernel, the kernel's time divided by its time in the best order. `auto` is timed twice:
+"auto again" shows how much two timings of the same order differ. The last columns are the mean and the largest of the
+ratios: how much slower than the best order this one is. --more adds orders from elsewhere: .npy files with the old place
+of the vertex at each new place. Debian's packages: libboost-graph-dev libscotch-dev libmeshoptimizer-dev.
 """
 import argparse
 import pathlib

@@ -2,7 +2,7 @@
 //
 // parRSB, the spectral partitioner of Nek5000: `mpirun -n N peer-parrsb HEXAHEDRA N OUT` cuts hexahedra into
 // as many parts as there are ranks. HEXAHEDRA is a folder with corners.npy, eight vertices for each, and
-// coordinates.npy, three coordinates for each of these corners, in units that whole numbers hold.
+// coordinates.npy, three coordinates for each of these corners, as whole numbers.
 #include "parts.hpp"
 
 #include <mpi.h>

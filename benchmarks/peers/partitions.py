@@ -8,12 +8,12 @@
 The first partitions the vertex graph of each mesh. All begin with the vertices in Hilbert's order, each rank with a range of it. Sphynx,
 of Trilinos' Zoltan2, runs with each of its preconditioners; METIS, of pymetis, is serial. DOLFINx cuts elements by PT-Scotch into as many
 parts as ranks, and numbers the vertices within each; its table shows whole pipelines, from elements and points to new numbers.
-The second partitions a box of hexahedra, beside parRSB, of Nek5000, which takes nothing else: the graph is that of
-elements with a common face.
+The second partitions a box of hexahedra, because parRSB, of Nek5000, takes only hexahedra: the graph joins elements with a
+common face.
 
-"cut" counts edges between parts; "imbalance" is the largest part over the mean. Seconds are processor time in the program, of all
-ranks together, waiting included, medians of --rounds runs that take turns: of the partitioner alone, without reading, and of
-meshorder's stage of that name, in steps of 10 ms (see ranks.py).
+"cut" counts edges between parts; "imbalance" is the largest part divided by the mean. Seconds are processor time in user mode of
+all ranks together, waiting included, medians of --rounds runs that take turns. They count the partitioner alone, without
+reading, and meshorder's stage of that name, in steps of 10 ms (see ranks.py).
 
 Debian's packages: trilinos-all-dev for Sphynx, python3-dolfinx, and for parRSB its library and gslib's, built from their
 sources:
@@ -43,7 +43,7 @@ SPHYNX = ["muelu", "jacobi", "polynomial"]
 
 
 class Missing(Exception):
-    """What a peer needs is not on this machine."""
+    """Something that a peer needs is not on this machine."""
 
 
 class Problem:

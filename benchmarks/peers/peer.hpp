@@ -40,7 +40,7 @@ inline Arguments read_arguments(int argc, char** argv) {
   return result;
 }
 
-/// A matrix in compressed sparse rows with rising columns, in the types that all the peers take.
+/// A matrix in compressed sparse rows with ascending columns, in the types that all the peers take.
 struct Matrix {
   int size = 0;
   std::vector<int> offsets{0};

@@ -54,7 +54,7 @@ def eigsh(laplacian, tolerance):
 
 
 def eigenpairs(laplacian, count, tolerance):
-    """Returns the lowest eigenvalues, rising, and their vectors: as eigsh, with SuperLU told that the matrix is symmetric."""
+    """Returns the lowest eigenvalues, ascending, and their vectors: as eigsh, with SuperLU in its symmetric mode."""
     factors = scipy.sparse.linalg.splu(shifted(laplacian), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0,
                                        options={"SymmetricMode": True})
     inverse = scipy.sparse.linalg.LinearOperator(laplacian.shape, factors.solve, dtype=float)

@@ -1,15 +1,15 @@
 #!/usr/bin/python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Measures how well times are predicted on this machine: by the costs that ship, and by its own calibration.
+"""Measures how well times are predicted on this machine: with the built-in costs, and with its own calibration.
 
     judge.py MEASURE [--budget SECONDS] [--threads N] [--table TABLE.csv] [--calibrations FILE FILE] [MESH …]
 
 MEASURE is the program build/bin/measure. Each mesh is timed in some orders and predicted for each of MACHINES (see
-measure.cpp); the tables that docs/prediction.md holds are printed. Both halves of each measurement are compared, too:
-nothing can be predicted better than it repeats. The regret of a choice is what its order costs over the fastest one that was
-timed, in both halves; that of "one half by the other" is the regret of taking what the other half found fastest. With --table, lines of MEASURE are kept there, and meshes that it holds
-are not measured again. With --calibrations, two files of `meshorder calibrate` take the place of the one that is stored,
-and what they predict is compared.
+measure.cpp). Prints the tables of docs/prediction.md. The two halves of each measurement are compared, too: a prediction
+cannot be more accurate than a repetition. The regret of a choice is how much slower its order is than the fastest one that
+was timed, in both halves; "one half by the other" chooses the order that was fastest in the other half. --table keeps the
+lines of MEASURE in a file; meshes in the file are not measured again. --calibrations compares the predictions of two files
+of `meshorder calibrate`, in place of the stored calibration.
 """
 import argparse
 import itertools
@@ -25,7 +25,7 @@ MESHES = ["grid-17", "ball-24", "torus-12", "bunny", "grid-32", "armadillo", "dr
 OWN = "original/original"
 ORDERS = ["scrambled/scrambled", OWN, "hilbert/lexmax", "hilbert-fronts/lexmax", "bfs/lexmax", "rcm/lexmax", "spectral/lexmax"]
 DIFFERENT = 0.1
-#: factor that the verdict of a calibrated machine takes for no difference, as docs/prediction.md says
+#: factor below which the verdict of a calibrated machine sees no difference (docs/prediction.md)
 SAME = 1.05
 
 
@@ -52,7 +52,7 @@ def measured(arguments):
 
 
 def pairs(meshes, column):
-    """(log of the measured ratio, of the ratio in `column`) of each two orders of each mesh."""
+    """Yields the logarithms of the measured ratio and of the ratio in `column`, for each two orders of each mesh."""
     for _, orders in meshes.values():
         for a, b in itertools.combinations(orders.values(), 2):
             yield math.log(min(a[:2]) / min(b[:2])), math.log(a[column] / b[column])
@@ -66,7 +66,7 @@ def errors(meshes, column):
 
 
 def regrets(orders, pick_in):
-    """What the order costs, in each half, over the fastest one there; `pick_in(half)` names it."""
+    """Yields, for each half, how much slower the order named by `pick_in(half)` is than the fastest one there."""
     for half in (0, 1):
         best = min(times[half] for times in orders.values())
         yield orders[pick_in(half)][half] / best - 1
@@ -90,14 +90,14 @@ def verdict(orders, column, same):
 
 
 def nothing_to_gain(meshes, column, same):
-    """Returns how many verdicts of nothing to gain are wrong, an order being faster by more than that, and of how many."""
+    """Returns how many verdicts "nothing to gain" are wrong (an order is faster by `same` or more), and of how many."""
     said = [orders for _, orders in meshes.values() if verdict(orders, column, same) == OWN]
     wrong = sum(min(orders[OWN][:2]) >= same * min(min(times[:2]) for times in orders.values()) for orders in said)
     return f"{wrong} of {len(said)}"
 
 
 def print_regrets(results, chosen, column):
-    """Prints the table of what choices cost."""
+    """Prints the table of regrets."""
     print("\n| kernel | choice | regret: mean | largest | \"nothing to gain\" wrong |")
     print("| --- | --- | ---: | ---: | ---: |")
     for kernel, title in KERNELS.items():

@@ -1,11 +1,12 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // measure MESH BUDGET THREADS MACHINES VERTICES/ELEMENTS…: times the plain kernels in these orders and in
-// those that `auto` takes for each kernel, in interleaved rounds, in two halves on different pages of memory,
-// and predicts the times. MACHINES are names separated by commas: "zen3", "this", "prior" (assumed for this
-// machine if it is not calibrated), or the file of a calibration, with a slash in its path: its costs of all
-// threads if THREADS are as many; with a colon after it, those of one. Prints mesh, vertices, order, kernel,
-// the best milliseconds of each half, then the milliseconds predicted for each machine; and mesh, vertices,
-// "auto", kernel, the order that `auto` takes.
+// those that `auto` takes for each kernel, and predicts the times. Rounds are interleaved, in two halves on
+// different pages of memory. MACHINES are names separated by commas: "zen3", "this", "prior" (the costs
+// assumed for this machine without a calibration), or the file of a calibration, with a slash in its path. Of
+// a calibration, uses the costs of all threads if THREADS equals their number, else those of one thread; a
+// colon after the path selects those of one thread. Prints mesh, vertices, order, kernel, the best
+// milliseconds of each half, then the milliseconds predicted for each machine; and mesh, vertices, "auto",
+// kernel, the order that `auto` takes.
 //
 // MESH is the name of a model, "grid-20", "dragon", or a file; with "-skin" after it, the triangles on its
 // surface. judge.py calls this.
@@ -84,7 +85,7 @@ mo::Mesh mesh_of(std::string name) {
   return skinned ? skin(mesh) : mesh;
 }
 
-/// Returns the costs that a machine's name means; of a calibration, those of one thread or of all.
+/// Returns the costs of a machine by its name; of a calibration, those of one thread or of all.
 mo::CostModel machine_named(const std::string& name, int threads) {
   if (name.ends_with(':')) return machine_named(name.substr(0, name.size() - 1), 1);
   if (name.find('/') != std::string::npos) {

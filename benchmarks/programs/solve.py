@@ -5,7 +5,7 @@ from scipy.sparse.linalg import cg
 
 
 def conjugate_gradients(matrix, right, preconditioner=None):
-    """Returns the solution and the iterations; without a preconditioner the diagonal is one."""
+    """Returns the solution and the iterations; the diagonal is the default preconditioner."""
     count = [0]
 
     def step(_):
@@ -18,7 +18,7 @@ def conjugate_gradients(matrix, right, preconditioner=None):
 
 
 def gradients_of_petsc(matrix, right, preconditioner):
-    """The same by PETSc, for its own matrix and vector."""
+    """Does the same with PETSc, for its own matrix and vector."""
     from petsc4py import PETSc
     solver = PETSc.KSP().create()
     solver.setOperators(matrix)
