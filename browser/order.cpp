@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What the page's worker calls: files in memory, one ordered as by `meshorder order`, and all that the page
-// shows of it. The module has no other way to the world than `tell`.
+// The functions that the page's worker calls: they take files in memory, order one as `meshorder order` does,
+// and return what the page shows. The module itself calls only `tell`.
 #include "base/memory.hpp"
 #include "base/text.hpp"
 #include "grouped_notes.hpp"
@@ -104,7 +104,7 @@ std::vector<Index> add_surface(const Mesh& mesh) {
   }
   std::vector<float> places;
   places.reserve(3 * vertices.size());
-  const auto origin = mesh.points[vertices.empty() ? 0 : vertices.front()];  // small numbers for 32 bits
+  const auto origin = mesh.points[vertices.empty() ? 0 : vertices.front()];  // floats keep small numbers best
   for (const Index v : vertices) {
     for (std::size_t k = 0; k < 3; ++k) places.push_back(static_cast<float>(mesh.points[v][k] - origin[k]));
   }

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 "use strict";
-// The page: takes files, lets a worker order them, and shows and saves the result. What files and the worker say
-// appears as text only.
+// The page: takes files, lets a worker order them, and shows and saves the result. Texts from files and from the worker
+// are inserted as text only, never as HTML.
 
 const largestFile = 600 * 2 ** 20;  // bytes; reading and ordering take several times as much
 const methods = ["auto", "hilbert-fronts", "hilbert", "rcm", "bfs", "spectral", "spectral-fronts", "original"];
@@ -39,7 +39,7 @@ async function readFile(file) {
   return { name: file.name.slice(0, -3), bytes: new Uint8Array(bytes) };
 }
 
-/** Promises what a worker makes of a request; `onStage` hears of its progress. A later call ends this one. */
+/** Promises a worker's result for a request; calls `onStage` with its progress. A later call ends this one. */
 function orderInWorker(wasm, request, onStage) {
   if (page.worker) page.worker.terminate();
   const source = URL.createObjectURL(new Blob([element("worker").textContent], { type: "text/javascript" }));

@@ -27,8 +27,8 @@ macro(meshorder_require library debian)
 endmacro()
 
 # meshorder_load_when_needed(<library>): adds a library of a file format to loaded_libraries, as its headers and the
-# definition MESHORDER_<LIBRARY>_FILE, the name that the system's loader finds it by. An archive, or a library that tells
-# no such name, is added to file_libraries and linked.
+# definition MESHORDER_<LIBRARY>_FILE, the name by which the system's loader finds the library. An archive, or a library
+# without such a name, is added to file_libraries and linked.
 function(meshorder_load_when_needed library)
   string(TOUPPER ${library} name)
   get_target_property(path ${library}::${library} IMPORTED_LOCATION)
@@ -108,9 +108,9 @@ if("io" IN_LIST components)
 endif()
 if("payoff" IN_LIST components)
   meshorder_require(hwy libhwy-dev)                    # SIMD chosen at run time
-  # Its headers alone: its library takes 7 ms whenever a program with it starts. Of the instruction sets, SSSE3 gains
-  # nothing for doubles over SSE4; vectors of unknown length (SVE, RISC-V) cannot be members of structs, as the kernels'
-  # values are.
+  # Only the headers: the library takes 7 ms at each start of a program that links it. Of the instruction sets, SSSE3
+  # gains nothing for doubles over SSE4; vectors of unknown length (SVE, RISC-V) cannot be members of structs, as the
+  # kernels' values are.
   add_library(meshorder_highway INTERFACE)
   target_compile_definitions(
     meshorder_highway INTERFACE
@@ -118,16 +118,16 @@ if("payoff" IN_LIST components)
   target_include_directories(meshorder_highway SYSTEM
                              INTERFACE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
   if(sanitizers)
-    target_link_libraries(meshorder_highway INTERFACE hwy::hwy)  # reports what its headers check
+    target_link_libraries(meshorder_highway INTERFACE hwy::hwy)  # reports failed checks of the headers
   else()
-    target_compile_definitions(meshorder_highway INTERFACE HWY_IS_DEBUG_BUILD=0)  # they check nothing
+    target_compile_definitions(meshorder_highway INTERFACE HWY_IS_DEBUG_BUILD=0)  # the headers check nothing
   endif()
 endif()
 if("payoff" IN_LIST components OR MESHORDER_CLI OR MESHORDER_FUZZ OR build_lab)
   meshorder_require(nlohmann_json nlohmann-json3-dev)  # results, calibrations
 endif()
 if(build_lab)
-  meshorder_require(meshoptimizer libmeshoptimizer-dev)  # fewer triangles for what is only looked at
+  meshorder_require(meshoptimizer libmeshoptimizer-dev)  # simplifies surfaces for display
   # of CHOLMOD's modules only those under the LGPL are called
   meshorder_find_library(cholmod::cholmod cholmod.h cholmod suitesparse)
   meshorder_require(ZLIB zlib1g-dev)                   # checkpoints, the page's arrays
@@ -137,8 +137,9 @@ if(MESHORDER_CLI)
 endif()
 if(MESHORDER_MPI)
   meshorder_require(MPI libopenmpi-dev COMPONENTS C)   # ranks
-  # PT-Scotch's archives come in two widths of numbers under the same names. Archives, whose symbols the linker hides:
-  # a library with PT-Scotch of the other width in the same process would get these functions, or these its own.
+  # PT-Scotch comes in two widths of numbers with the same function names. Links the archives and hides their symbols:
+  # otherwise a library in the same process that uses the other width would call these functions, or these would call
+  # the functions of the other width.
   find_path(PTSCOTCH_INCLUDE_DIR ptscotch.h PATH_SUFFIXES scotch-int64)
   set(ptscotch_archives ptscotch scotch ptscotcherr)
   set(ptscotch_libraries "")

@@ -1,4 +1,4 @@
-# three.js, of which the viewer's 3-D views are made: MESHORDER_THREE_JS is the file, of Debian's libjs-three.
+# three.js, for the viewer's 3-D views: MESHORDER_THREE_JS is the file, of Debian's libjs-three.
 find_file(
   MESHORDER_THREE_JS three.min.js
   PATHS /usr/share/javascript/three /usr/share/javascript/three/build

@@ -1,6 +1,6 @@
-# What optimised builds of ours have against the abuse of faults: checks of the sizes of copies into arrays, of return
-# addresses on the stack and of its growth, of the targets of jumps; programs at a random address, whose table of
-# functions is read-only once they run. tests/package/test_hardening.py looks for them in the programs.
+# Protection of optimised builds against exploits: checks of the sizes of copies into arrays, of return addresses on the
+# stack, of the stack's growth, and of jump targets; programs are loaded at a random address, and their table of
+# functions is read-only after start-up. tests/package/test_hardening.py looks for these in the programs.
 
 include(CheckCXXCompilerFlag)
 include(CheckCXXSourceCompiles)
@@ -31,8 +31,8 @@ if(UNIX AND NOT APPLE)
   target_link_options(meshorder_warnings INTERFACE LINKER:-z,relro LINKER:-z,now LINKER:-z,noexecstack)
 endif()
 
-# meshorder_at_random_address(<program> [its static libraries]). Libraries get -fPIE, as with -fPIC, CMake's own choice,
-# the compiler inlines less.
+# meshorder_at_random_address(<program> [its static libraries]). Libraries get -fPIE: with -fPIC, CMake's default, the
+# compiler inlines less.
 function(meshorder_at_random_address program)
   if(CMAKE_CXX_LINK_PIE_SUPPORTED)
     set_target_properties(${program} PROPERTIES POSITION_INDEPENDENT_CODE ON)

@@ -30,7 +30,7 @@ foreach(component IN LISTS components)
   install(EXPORT ${export} NAMESPACE meshorder:: DESTINATION ${cmake_folder} COMPONENT development)
 endforeach()
 
-# not in the set of headers that are checked alone: whoever includes it brings Eigen
+# not among the headers that are checked alone: it needs Eigen, which its users provide
 install(FILES ${PROJECT_SOURCE_DIR}/include/meshorder/eigen.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshorder
         COMPONENT development)
 
@@ -45,7 +45,7 @@ endif()
 
 # ---- find_package(meshorder)
 
-# an archive leaves the libraries that it needs to whoever links it
+# users of an archive must link the libraries that it needs
 set(MESHORDER_STATIC ON)
 if(BUILD_SHARED_LIBS)
   set(MESHORDER_STATIC OFF)
@@ -61,7 +61,7 @@ install(FILES ${generated}/meshorder-config.cmake ${generated}/meshorder-config-
 # ---- pkg-config
 
 # meshorder_pkg_config(<component> DESCRIPTION … REQUIRES <modules> LIBRARIES <flags> DEFINITIONS <flags>
-#                      INSTALL_COMPONENT <name>)   the latter: development, unless told otherwise
+#                      INSTALL_COMPONENT <name>)   by default the install component is development
 function(meshorder_pkg_config component)
   cmake_parse_arguments(PC "" "DESCRIPTION;INSTALL_COMPONENT" "REQUIRES;LIBRARIES;DEFINITIONS" ${ARGN})
   if(NOT PC_INSTALL_COMPONENT)
@@ -126,11 +126,11 @@ foreach(component IN LISTS components)
 endforeach()
 
 if(TARGET meshorder_mpi)
-  # whoever compiles by the wrappers of MPI has its headers and libraries
+  # MPI's compiler wrappers provide its headers and libraries
   meshorder_pkg_config(mpi DESCRIPTION "orders of meshes that many ranks share, C and C++20" LIBRARIES -lmeshorder_mpi)
 endif()
 
-# ---- plugins for solvers: headers alone, which ask for their solver where they are included, and a library
+# ---- plugins for solvers: headers, which need their solver where they are included, and a library
 
 install(FILES plugins/dealii/meshorder/dealii.hpp plugins/dolfinx/meshorder/dolfinx.hpp
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meshorder COMPONENT development)
@@ -141,7 +141,7 @@ if(TARGET meshorder_petsc)
                        INSTALL_COMPONENT petsc)
 endif()
 
-# ---- the command, with what its own help says as manual and completions
+# ---- the command, with a manual and completions made from its help
 
 set(MESHORDER_ZSH_FOLDER ${CMAKE_INSTALL_DATADIR}/zsh/site-functions CACHE STRING "Where zsh looks for completions")
 if(TARGET meshorder)
@@ -152,7 +152,7 @@ if(TARGET meshorder)
   set(lab "")
   if(TARGET meshorder-lab)
     install(TARGETS meshorder-lab RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT lab)
-    set(lab meshorder-lab)  # the command hands it questions for help
+    set(lab meshorder-lab)  # the command passes requests for help to it
   endif()
   find_package(Python3 3.9 COMPONENTS Interpreter)
   if(CMAKE_CROSSCOMPILING OR NOT Python3_Interpreter_FOUND)

@@ -1,5 +1,5 @@
 # Debian packages: cmake --preset packages && cmake --build --preset packages && cpack --preset packages
-# They hold the shared library. Whoever passes them on names himself by -DCPACK_PACKAGE_CONTACT="NAME <ADDRESS>".
+# They hold the shared library. Distributors give their name by -DCPACK_PACKAGE_CONTACT="NAME <ADDRESS>".
 
 find_program(MESHORDER_GZIP gzip)
 find_program(MESHORDER_DPKG_DEB dpkg-deb)
@@ -100,7 +100,7 @@ physics on them runs faster. This package has its subcommands simulate,
 reproduce, report and models: elastic bodies and water in several orders,
 the study of these orders, and pages for the browser.")
 
-# what Debian wants in the folder of each package; not part of `cmake --install`
+# files that Debian requires in the folder of each package; not part of `cmake --install`
 string(TIMESTAMP debian_date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 configure_file(packaging/debian/changelog.in ${generated}/changelog.Debian @ONLY)
 configure_file(CHANGELOG.md ${generated}/changelog COPYONLY)
@@ -113,7 +113,7 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
           DESTINATION ${folder} COMPONENT ${component} EXCLUDE_FROM_ALL)
 endforeach()
 
-# what is in the program besides
+# the list of other software in the program (SBOM)
 if(TARGET meshorder)
   include(cmake/sbom.cmake)
   set(three "")

@@ -1,7 +1,9 @@
-# Run by `cmake -P` at every build: writes OUTPUT, the source that tells the git revision of SOURCE, if that has changed.
+# Run by `cmake -P` at every build: writes OUTPUT, the source with the git revision of SOURCE, if the revision has
+# changed.
 #
-# The revision is the commit, with a checksum of what was changed since then in the files that a program is made of:
-# "5eed…+0123abcd". It is empty without git, and in a folder that is no checkout of its own, as one from a tarball.
+# The revision is the commit, with a checksum of later changes to the files that programs are built from:
+# "5eed…+0123abcd". It is empty without git, and in a folder that is not a checkout of its own, such as one from a
+# tarball.
 set(parts CMakeLists.txt apps cmake include lab scenarios src viewer)
 set(REVISION "")
 find_package(Git QUIET)

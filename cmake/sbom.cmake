@@ -1,5 +1,6 @@
-# meshorder_sbom(<file> [TARGETS …] [ARGUMENTS …]): the file lists, as CycloneDX, the libraries that the targets are made
-# of. packaging/sbom.py writes it from what Ninja knows once they are built; other generators get none.
+# meshorder_sbom(<file> [TARGETS …] [ARGUMENTS …]): the file lists, as CycloneDX, the libraries that the targets are
+# made of. packaging/sbom.py writes the file from Ninja's data after the targets are built; other generators get no
+# file.
 function(meshorder_sbom file)
   cmake_parse_arguments(SBOM "" "" "TARGETS;ARGUMENTS" ${ARGN})
   find_package(Python3 3.9 COMPONENTS Interpreter)

@@ -1,4 +1,4 @@
-# How targets of ours are compiled.
+# Settings for the compilation of our targets.
 
 # Warnings: every target of ours links this.
 add_library(meshorder_warnings INTERFACE)
@@ -25,15 +25,16 @@ if(sanitizers)
   target_link_options(meshorder_warnings INTERFACE ${sanitizers})
 endif()
 
-# meshorder_computes(<target>): ./test compiles the build with sanitizers without optimisation, in a third of the time, but
-# not what computes, whose tests would take longer than that saves.
+# meshorder_computes(<target>): ./test compiles its build with sanitizers without optimisation, in a third of the time.
+# Targets that compute are optimised there, too: their tests would otherwise take longer than that saves.
 function(meshorder_computes target)
   if(sanitizers)
     target_compile_options(${target} PRIVATE -O1)
   endif()
 endfunction()
 
-# meshorder_simd_sources(<source>…): sources that Highway compiles once for each instruction set, in a unity build alone
+# meshorder_simd_sources(<source>…): sources that Highway compiles once for each instruction set; in a unity build each
+# is compiled alone
 function(meshorder_simd_sources)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
@@ -49,13 +50,13 @@ if(MESHORDER_HARDENED AND NOT sanitizers)
   include(${CMAKE_CURRENT_LIST_DIR}/hardening.cmake)
 endif()
 
-# Programs and libraries leave out what nothing in them calls; wheels are 5 % smaller.
+# Programs and libraries omit functions that nothing in them calls; wheels are 5 % smaller.
 if(UNIX AND NOT APPLE AND NOT sanitizers)
   target_compile_options(meshorder_warnings INTERFACE "$<$<NOT:$<CONFIG:Debug>>:-ffunction-sections;-fdata-sections>")
   target_link_options(meshorder_warnings INTERFACE LINKER:--gc-sections)
 endif()
 
-# what a program says it was made with
+# the compiler and flags that a program reports
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
 string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}} -std=c++20" flags)
 string(REGEX REPLACE "-f[a-z]+-prefix-map=[^ ]* ?" "" flags "${flags}")  # paths of the machine that builds

@@ -13,8 +13,8 @@ namespace mo = meshorder;
 
 namespace {
 
-// They take the place of a window's progress bar and button. The button counts as pressed after
-// `presses_after` calls.
+// These two replace a window's progress bar and button. The button counts as pressed after `presses_after`
+// calls.
 struct Bar {
   int shown = 0;
   bool cleared = false;

@@ -38,7 +38,7 @@ int main(void) {
   if (failed(mo_order_mesh(&cell_offsets, &cell_vertices, NULL, VERTICES, &points, 3, NULL, &order_out,
                            &places_out, &cells_out, NULL, NULL, NULL)))
     return 1;
-  /* it takes the old numbers of the ends */
+  /* mo_order_edges takes the old numbers of the ends */
   if (failed(mo_order_edges(&ends, &order, 0, &springs_out))) return 1;
 
   if (failed(mo_move(&order, 0, masses, moved_masses, sizeof masses[0]))) return 1;

@@ -32,10 +32,10 @@ mo::Permutation reorder(Body& b) {
   const mo::Permutation& moved = vertices.permutation;
   const mo::Permutation springs = mo::order_edges(b.springs, moved);  // takes the old numbers of the ends
 
-  moved.move_in_place(b.x);  // what belongs to vertices moves
+  moved.move_in_place(b.x);  // data of vertices moves
   moved.move_in_place(b.v);
   moved.move_in_place(b.mass);
-  moved.renumber(b.pinned);  // what names vertices gets the new numbers
+  moved.renumber(b.pinned);  // numbers of vertices change
   moved.renumber(b.tets);
   moved.renumber(b.springs);
   tets.permutation.move_in_place(b.tets);

@@ -74,8 +74,8 @@ std::vector<std::vector<Index>> sorted_cells(const Cells& cells) {
   return result;
 }
 
-/// Returns arrays or sets sorted by what they belong to and by name, those of one name in their order: a file
-/// may have them in another order.
+/// Returns arrays or sets sorted by association and name; those of one name keep their order. A file may list
+/// them in another order.
 template <class Named>
 std::vector<const Named*> by_name(const std::vector<Named>& all) {
   std::vector<const Named*> result(all.size());
@@ -96,7 +96,8 @@ std::string difference_of_arrays(const DataArray& a, const DataArray& b) {
   return {};
 }
 
-/// Ids that count from 1 on say no more than none: Gmsh files number their nodes by themselves.
+/// Returns the ids; none if they count from 1 on, since such ids hold no information: Gmsh files always have
+/// numbers of nodes.
 std::vector<std::int64_t> told_ids(const std::vector<std::int64_t>& ids) {
   std::int64_t next = 1;
   const bool counts = std::all_of(ids.begin(), ids.end(), [&](std::int64_t id) { return id == next++; });
@@ -127,8 +128,8 @@ std::string difference_of_data(const Mesh& a, const Mesh& b) {
   return {};
 }
 
-/// Whether two cells of a shape have the same vertices. Files of VTK do not say which way a linear wedge
-/// turns: of one without a sensible volume the reader may take the mirror image.
+/// Returns whether two cells of a shape have the same vertices. VTK's files do not define the orientation of
+/// a linear wedge: for a wedge without a sensible volume, the reader may take the mirror image.
 bool same_cell(std::span<const Index> a, std::span<const Index> b) {
   if (std::equal(a.begin(), a.end(), b.begin(), b.end())) return true;
   constexpr std::array<std::size_t, 6> kMirrored{0, 2, 1, 3, 5, 4};
@@ -160,8 +161,8 @@ std::string difference(const Mesh& found, const Mesh& expected, Extent extent) {
 
 namespace {
 
-/// Whether a format without polygons of its own may have made one shape of the other: files say how many
-/// corners a cell has.
+/// Returns whether a format without polygons may have changed one shape to the other: its files give only the
+/// number of corners.
 bool same_shape(Shape a, Shape b, std::size_t corners) {
   const auto is_face = [&](Shape shape) {
     return shape == Shape::polygon || (shape == Shape::triangle && corners == 3) ||

@@ -9,7 +9,7 @@
 
 namespace meshorder::fuzz {
 
-/// What of two meshes is compared.
+/// The parts of two meshes that are compared.
 enum class Extent : std::uint8_t {
   all,
   points_and_cells,  ///< points up to 10⁻⁶ of their size, as some formats round them
@@ -22,7 +22,7 @@ enum class Extent : std::uint8_t {
 /// order. O(size of the meshes · log members).
 std::string difference(const Mesh& found, const Mesh& expected, Extent extent);
 
-/// The same for cells of which cell c of `expected` is at `places.old_to_new()[c]` of `found`.
+/// Returns the same for cells, where cell c of `expected` is cell `places.old_to_new()[c]` of `found`.
 std::string difference_of_cells(const Cells& found, const Cells& expected, const Permutation& places);
 
 }  // namespace meshorder::fuzz

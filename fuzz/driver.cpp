@@ -4,8 +4,8 @@
 //
 //   meshorder_fuzz_FAMILY EXECUTIONS FOLDER
 //
-// checks the files of the folder, or one file, then that many changed ones. It does not measure coverage, so
-// it finds what is near to the seeds. The input that breaks a promise is left in the file "crash".
+// checks the files of the folder, or one file, then EXECUTIONS changed ones. It does not measure coverage, so
+// it finds only faults near the seeds. An input that breaks a promise is left in the file "crash".
 #include "fuzz/engine.hpp"
 #include "fuzz/family.hpp"
 

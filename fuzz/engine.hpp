@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-// What a fuzzing engine calls, as libFuzzer's documentation names it (https://llvm.org/docs/LibFuzzer.html):
-// fuzz/entry.cpp defines it. The engine, or fuzz/driver.cpp in its place, defines `LLVMFuzzerMutate`, which
-// changes bytes without knowledge of what they mean.
+// The functions that a fuzzing engine calls, by their names in libFuzzer's documentation
+// (https://llvm.org/docs/LibFuzzer.html); fuzz/entry.cpp defines them. The engine, or fuzz/driver.cpp in its
+// place, defines `LLVMFuzzerMutate`, which changes bytes without knowledge of their meaning.
 
 // NOLINTBEGIN(readability-identifier-naming): the engine's names
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv);

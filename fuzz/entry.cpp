@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What a fuzzing engine calls. One program serves all families: its name ends in that of the family, and has
-// "_whole_" before it where files that a library reads stay whole.
+// The functions that a fuzzing engine calls. One program serves all families: its name ends in the family's
+// name, with "_whole_" before it if files that a library reads stay whole.
 #include "fuzz/engine.hpp"
 #include "fuzz/family.hpp"
 
@@ -36,7 +36,8 @@ void choose_family(const std::filesystem::path& program) {
   keeps_files_whole = chosen->by_library && name.ends_with("_whole_" + std::string(chosen->name));
 }
 
-/// Returns an input changed with knowledge of its structure. What libraries leak meanwhile is not reported.
+/// Returns an input changed with knowledge of its structure. Leaks of libraries during the change are not
+/// reported.
 std::string changed(std::string input, std::uint32_t seed) {
   if (__lsan_disable != nullptr) __lsan_disable();
   std::string result = chosen->mutate(std::move(input), seed);
@@ -65,7 +66,7 @@ std::string mutated_bytes(std::string text, std::size_t most) {
 using namespace meshorder::fuzz;
 
 extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** argv) {
-  // one thread: what an input does must not depend on when threads run
+  // one thread: the effect of an input must not depend on the timing of threads
   static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   choose_family((*argv)[0]);
   return 0;

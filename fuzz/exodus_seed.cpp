@@ -24,7 +24,7 @@ class Variables {
  public:
   explicit Variables(NcOutput& file) : file_(file) {}
 
-  /// Declares a variable of numbers that are counted from `first` on, as many as its dimensions ask for.
+  /// Declares a variable with the numbers first, first + 1, …, as many as its dimensions need.
   void counted(const std::string& name, NcType type, const std::vector<std::string>& dimensions, double first,
                const std::vector<exodus::Attribute>& attributes = {}) const {
     std::vector<double> values(product(sizes(dimensions)));

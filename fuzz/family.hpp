@@ -9,7 +9,7 @@
 
 namespace meshorder::fuzz {
 
-/// What is fuzzed on its own, with a corpus of its own: a file format, or a part of the interface.
+/// A subject of fuzzing, with a corpus of its own: a file format, or a part of the interface.
 struct Family {
   using Bytes = std::span<const std::uint8_t>;
 
@@ -17,11 +17,11 @@ struct Family {
   /// Checks all that is promised of any input. Throws no exception of meshorder; aborts with a message on
   /// standard error where a promise is broken.
   void (*check)(std::string_view family, Bytes input);
-  /// Changes an input knowing its structure, with `seed` for all choices. Returns an empty text where the
-  /// input has no such structure. Null: bytes are changed without knowledge of what they mean.
+  /// Changes an input with knowledge of its structure; `seed` determines all choices. Returns an empty text
+  /// if the input has no such structure. Null: bytes are changed without knowledge of their meaning.
   std::string (*mutate)(std::string input, std::uint32_t seed) = nullptr;
-  /// Whether a library reads the bytes, which crashes on some damaged files: inputs are changed either by
-  /// `mutate` alone, which leaves whole files, as in tests, or without it.
+  /// Whether a library reads the bytes. Libraries crash on some damaged files: inputs are changed either by
+  /// `mutate` alone, which leaves files whole, as in tests, or without it.
   bool by_library = false;
 };
 
@@ -31,10 +31,10 @@ std::span<const Family> families();
 /// Writes a sentence to standard error and aborts.
 [[noreturn]] void fail(const std::string& what);
 
-/// Lets LLVMFuzzerCustomMutator leave files whole that a library reads; after LLVMFuzzerInitialize.
+/// Makes LLVMFuzzerCustomMutator leave files whole that a library reads. Call it after LLVMFuzzerInitialize.
 void keep_files_whole();
 
-/// Changes `text` as the fuzzing engine does where it knows nothing of its meaning.
+/// Returns `text` changed by the fuzzing engine, without knowledge of its meaning.
 std::string mutated_bytes(std::string text, std::size_t most);
 
 }  // namespace meshorder::fuzz

@@ -9,8 +9,8 @@
 
 namespace meshorder::fuzz {
 
-/// Splits an input into the files that it stands for: the first has the name `first`; each other follows a
-/// line "%%file NAME". An input without such lines is one file.
+/// Splits an input into its files: the first has the name `first`; each other follows a line "%%file NAME".
+/// An input without such lines is one file.
 std::vector<MemoryFile> input_files(std::string_view input, const std::string& first);
 
 /// Joins files to an input; the inverse of `input_files`.

@@ -19,8 +19,8 @@
 namespace meshorder::fuzz {
 namespace {
 
-/// What it takes to hold a mesh of another format: neither a library that keeps files on disk nor one point
-/// for all vertices.
+/// Formats in which meshes of other formats are written: without a library that needs files on disk, and with
+/// a point for each vertex.
 constexpr std::array<std::string_view, 14> kOtherFormats{"gmsh",   "vtu",     "vtk", "medit", "tetgen",
                                                          "vega",   "off",     "ply", "obj",   "su2",
                                                          "abaqus", "nastran", "unv", "ucd"};
@@ -33,7 +33,7 @@ Mesh read(std::string_view format, const std::vector<MemoryFile>& files) {
                     .companion = [&](std::string_view name) { return bytes_of(files, name); }});
 }
 
-/// Returns the mesh of files that may be faulty; nothing if they are refused.
+/// Reads files that may be faulty; returns nothing if they are refused.
 std::optional<Mesh> read_any(std::string_view format, const std::vector<MemoryFile>& files) {
   std::string message;
   try {
@@ -56,7 +56,7 @@ Mesh read_back(std::string_view format, const std::vector<MemoryFile>& files) {
   }
 }
 
-/// Returns what `write_mesh` makes of a mesh; nothing if it says that the format cannot hold it.
+/// Returns the files of a written mesh; nothing if the format cannot hold the mesh.
 std::optional<MemoryFiles> written(const Mesh& mesh, std::string_view format, const std::string& name,
                                    Notes& notes) {
   try {
@@ -72,15 +72,16 @@ void move(Mesh& mesh) {
   check_mesh(mesh);
 }
 
-/// Returns what a format promises to keep: STL has triangles without numbers of vertices, matrices and graphs
-/// have entries whose order and direction are theirs.
+/// Returns what a format promises to keep: STL has no numbers of vertices, and files of matrices and graphs
+/// have an order and direction of entries of their own.
 Extent extent_of(std::string_view format, bool is_whole) {
   if (format == "stl") return Extent::corners;
   if (format == "matrixmarket" || format == "metis") return Extent::pairs;
   return is_whole ? Extent::all : Extent::points_and_cells;
 }
 
-/// Returns the mesh without MED's numbers of families: those of vertices that a file counts as cells' change.
+/// Returns the mesh without MED's numbers of families: those of vertices change if the file numbers them like
+/// families of cells.
 Mesh without_families(Mesh mesh) {
   std::erase_if(mesh.data, [](const DataArray& array) { return array.name == "family"; });
   return mesh;
@@ -107,10 +108,11 @@ void check_same_format(const Mesh& mesh, std::string_view format, const std::str
   const std::optional<MemoryFiles> files = written(mesh, format, name, notes);
   if (!files) return;
   Mesh again = read_back(format, files->files);
-  // Gmsh's entities that come in turns bind no cells; an order may bring the cells of each together
+  // alternating entities of Gmsh make no blocks; if an order has made their cells adjacent, the file read has
+  // some
   if (format == "gmsh" && mesh.cell_blocks.empty()) again.cell_blocks.clear();
-  // numbers of TetGen and Vega that come to run from 0 or 1, in each of TetGen's files, are those of the
-  // places
+  // in TetGen's and Vega's files, ids that count from 0 or 1 after the move (in each of TetGen's files) are
+  // read as places
   if (format == "tetgen" || format == "vega") {
     if (again.vertex_ids.empty() && is_run(mesh.vertex_ids)) again.vertex_ids = mesh.vertex_ids;
     if (again.cell_ids.empty() && cells_run(mesh)) again.cell_ids = mesh.cell_ids;
@@ -122,8 +124,7 @@ void check_same_format(const Mesh& mesh, std::string_view format, const std::str
   if (!found.empty()) fail("written and read as " + std::string(format) + ": " + found);
 }
 
-/// Checks a mesh that was written in another format: cells only, as what a format says of arrays and sets
-/// differs.
+/// Checks a mesh that was written in another format: only its cells, since formats differ in arrays and sets.
 void check_other_format(Mesh mesh, std::string_view format) {
   Notes notes;
   keep_cells(mesh, {.format = std::string(format)});
@@ -146,7 +147,7 @@ void check_mesh_files(std::string_view format, const std::vector<MemoryFile>& fi
   check_mesh(*mesh);
   move(*mesh);
   check_same_format(*mesh, format, files.front().name);
-  // one of four: what another format makes of a mesh says little of the reader of this one
+  // one input of four: other formats test little of this format's reader
   const std::size_t choice = std::hash<std::string>()(files.front().bytes);
   if (choice % 4 == 0) check_other_format(*std::move(mesh), kOtherFormats[choice / 4 % kOtherFormats.size()]);
 }

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Writes the files that the unit tests have as text in their sources, as further first inputs:
+"""Writes the files that the unit tests hold as text in their sources, as further seeds:
 
     samples.py FOLDER
 
-They hold, in few bytes, all that their formats can. Each constant of a test is an input of the family in whose test
-it is; TetGen's files are joined to one input, as fuzz/input_files.hpp describes.
+In few bytes, they use all features of their formats. Each constant of a test is an input of the family of that test;
+TetGen's files are joined to one input, as fuzz/input_files.hpp describes.
 """
 import ast
 import pathlib
@@ -13,7 +13,7 @@ import re
 import sys
 
 TESTS = pathlib.Path(__file__).resolve().parents[1] / "tests"
-# family: its test, and the beginning of what is one of its files
+# family: its test, and the beginning of each text that is a file
 FAMILIES = {
     "medit": ("io/medit_test.cpp", ""), "vtk": ("vtk/vtk_legacy_test.cpp", "# vtk"), "vtu": ("vtk/vtu_test.cpp", "<"),
     "vega": ("io/vega_test.cpp", ""), "off": ("io/off_test.cpp", ""), "ply": ("io/ply_test.cpp", "ply"),

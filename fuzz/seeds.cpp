@@ -86,7 +86,7 @@ void add_meshes(Seeds& seeds) {
   }
 }
 
-/// A mesh that VTK's writers store in this way.
+/// Returns a mesh that VTK's writers store with this encoding.
 Mesh stored_so(const VtuEncoding& encoding) {
   Mesh mesh = test::tetrahedral_bar(1);
   mesh.format = "vtu";
@@ -145,7 +145,8 @@ void add_exodus(Seeds& seeds) {
 #endif
 
 #ifdef MESHORDER_HAS_CGNS
-/// CGNS's older kind of file, which is read and kept, but not made of other formats.
+/// Adds a file of CGNS's older kind (ADF), which meshorder reads and writes again, but does not make from
+/// other formats.
 void add_adf(Seeds& seeds) {
   const test::TemporaryFolder folder;
   const fs::path path = folder.path() / "mesh.cgns";
@@ -203,7 +204,7 @@ void add_maps(Seeds& seeds) {
   }
 }
 
-/// Two cubes side by side; the point at (x, y, z) is x + 3y + 6z.
+/// Adds two cubes side by side; the point at (x, y, z) has the number x + 3y + 6z.
 void add_openfoam(Seeds& seeds) {
   const auto file = [](std::string_view class_name, std::string_view list) {
     return "FoamFile\n{\n    format ascii;\n    class " + std::string(class_name) + ";\n}\n" +

@@ -4,7 +4,7 @@
 
     table.py BUILD-FOLDER [FAMILY…]    all families that have run, or these
 
-Executions and seconds are those of all runs whose logs are there, coverage is that of the corpus in the last one.
+Executions and seconds are those of all runs with logs; coverage is that of the corpus in the last run.
 Exit status 1 if one of them has findings of its own.
 """
 import os
@@ -17,7 +17,7 @@ PROGRESS = re.compile(r"^#(\d+)[:\t ].*?cov: (\d+) ft: (\d+)", re.MULTILINE)
 SECONDS = re.compile(r"^(?:Done \d+ runs in (\d+) second|INFO: fuzzed for (\d+) seconds|#\d+:.* time: (\d+)s)", re.MULTILINE)
 FRAME = re.compile(r"^\s*#\d+ 0x[0-9a-f]+ +(?:in (\S+).*?)?\(?(/[^\s:()]+)", re.MULTILINE)
 LIBRARIES = ("libhdf5", "libnetcdf", "libcgns", "libmed", "libz.", "libsz", "libaec", "libxml", "libcurl")
-# files of the sanitizers, the fuzzing engine and the C library, and functions of theirs where files are not told
+# files of the sanitizers, the fuzzing engine and the C library, and their functions where a report names no file
 RUNTIME = re.compile(r"compiler-rt|sanitizer|libFuzzer|libc\.so|libstdc\+\+|/csu/|/nptl/|/sysdeps/|/raise|/abort")
 RUNTIME_FUNCTION = re.compile(r"fuzzer::|__(asan|lsan|ubsan|sanitizer|interceptor)|operator$|(malloc|calloc|realloc|free|abort|raise|"
                               r"mem(cpy|move|set|cmp|chr)|str(n?len|n?cpy|n?cmp|chr|dup))\b")
@@ -39,7 +39,7 @@ def progress(family, build):
 
 
 def is_of_a_library(report):
-    """Whether the first function in a report that is no sanitizer's lies in a library that reads files for us."""
+    """Returns whether the first function in a report outside the sanitizers is in a library that reads files for us."""
     for function, path in FRAME.findall(report):
         if any(name in os.path.basename(path) for name in LIBRARIES):
             return True
@@ -49,7 +49,7 @@ def is_of_a_library(report):
 
 
 def findings(family, build):
-    """Returns the inputs that break a promise, and those on which a library does."""
+    """Returns the inputs on which our own code breaks a promise, and those on which a library does."""
     own, of_libraries = [], []
     program = build / "bin" / f"meshorder_fuzz_{family}"
     for path in sorted((build / "findings" / family).glob("*-*")):

@@ -88,7 +88,7 @@ struct Shortest {
     if (digits == "0") exponent = 0;
   }
 
-  /// Returns whether the library's choice is 0.001 and not 1e-03.
+  /// Returns whether GCC's library writes a number as 0.001 and not as 1e-03.
   [[nodiscard]] bool is_better_fixed() const {
     const int length = static_cast<int>(digits.size());
     return length == 1 ? exponent >= -3 && exponent <= 4 : exponent >= -(length + 3) && exponent <= 5;

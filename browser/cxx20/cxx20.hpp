@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What the project uses of C++20's standard library and Debian 12's emscripten, 3.1.6, lacks: its libc++ is
-// that of LLVM 13. Included before each source. Newer libraries have all of it, and get nothing from here.
+// Parts of C++20's standard library that the project uses, and that Debian 12's emscripten 3.1.6 lacks: its
+// libc++ is that of LLVM 13. Included before each source. Newer libraries get nothing from here.
 #pragma once
 
 #include <version>
@@ -17,7 +17,7 @@
 #include <type_traits>
 #include <utility>
 
-// a namespace of the library's own is inline within std
+// the library's own inline namespace within std
 _LIBCPP_BEGIN_NAMESPACE_STD
 
 template <class To, class From>

@@ -1,5 +1,5 @@
-# meshorder_headers(<library> <header> <folder>): a target of a library's headers alone, <library>::<library>, by a link
-# to their folder: the folder around it, /usr/include, is that of another system.
+# meshorder_headers(<library> <header> <folder>): a target <library>::<library> of a library's headers alone. It uses a
+# link to their folder, since the folder above, /usr/include, has the headers of another system.
 function(meshorder_headers library header name)
   find_path(${library}_HEADERS ${header} PATHS /usr/include /usr/local/include PATH_SUFFIXES ${name}
             NO_CMAKE_FIND_ROOT_PATH)

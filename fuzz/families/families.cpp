@@ -23,7 +23,7 @@ std::string either(std::string input, std::uint32_t seed) {
   return seed % 2 == 0 ? One(std::move(input), seed / 2) : Other(std::move(input), seed / 2);
 }
 
-/// Returns what changes files of a mesh format knowing their structure.
+/// Returns the mutation that changes files of a mesh format with knowledge of their structure.
 Mutate mutation_of(const MeshFamily& family) {
   if (family.name == "xdmf") return either<mutate_xml, mutate_hdf5>;
   if (family.name == "exodus") return mutate_exodus;

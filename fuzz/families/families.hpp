@@ -19,11 +19,11 @@ void check_results(std::string_view family, Family::Bytes input);
 /// A checkpoint, written and read again.
 void check_checkpoint(std::string_view family, Family::Bytes input);
 void check_motion(std::string_view family, Family::Bytes input);
-/// Arrays that the bytes describe, given to the C interface: each call gives a status, and those that succeed
-/// a bijection.
+/// Arrays that the bytes describe, given to the C interface: each call returns a status, and a call that
+/// succeeds also a bijection.
 void check_graphs(std::string_view family, Family::Bytes input);
 void check_cells(std::string_view family, Family::Bytes input);
-/// Reads past the end of an array for one input of 5 bytes: what finds it works.
+/// Reads past the end of an array for one input of 5 bytes: a working fuzzer finds it.
 void check_planted(std::string_view family, Family::Bytes input);
 
 // Mutations that know the structure of a format; see Family::mutate.

@@ -21,7 +21,7 @@ constexpr std::array kSizes{4, 4, 8, 8, 4, 8};  // bytes of a number, by mo_type
 constexpr std::size_t kMostVertices = 48;
 constexpr std::size_t kMostNumbers = 160;
 
-/// Takes values off the front of an input; zeros where it has ended.
+/// Takes values from the front of an input; zeros after its end.
 class Choices {
  public:
   explicit Choices(Family::Bytes bytes) : bytes_(bytes) {}
@@ -111,7 +111,7 @@ class Numbers {
 
 mo_type whole_type(Choices& from) { return static_cast<mo_type>(from.below(4)); }
 
-/// Returns numbers from `base` on and below base + count, at times any others.
+/// Returns numbers in base … base + count − 1, sometimes others.
 std::vector<std::int64_t> members(Choices& from, std::size_t size, std::size_t count, std::int64_t base) {
   std::vector<std::int64_t> result(size);
   for (std::int64_t& value : result) {
@@ -124,7 +124,7 @@ std::vector<std::int64_t> members(Choices& from, std::size_t size, std::size_t c
   return result;
 }
 
-/// Returns offsets of rows that have `size` entries in all; at times others.
+/// Returns offsets of rows that have `size` entries in all, sometimes others.
 std::vector<std::int64_t> offsets(Choices& from, std::size_t rows, std::size_t size, std::int64_t base) {
   std::vector<std::int64_t> result{base};
   for (std::size_t r = 1; r < rows; ++r) {
@@ -136,7 +136,7 @@ std::vector<std::int64_t> offsets(Choices& from, std::size_t rows, std::size_t s
   return result;
 }
 
-/// Returns real numbers, or the wrong number of them; none at times.
+/// Returns `count` real numbers, sometimes too many, too few or none.
 Numbers reals(Choices& from, std::size_t count) {
   if (from.one_in(8)) count = from.below(2 * count + 2);
   Numbers result(from.one_in(2) ? MO_FLOAT : MO_DOUBLE, std::vector<std::int64_t>{});

@@ -16,11 +16,11 @@ inline std::string_view text_of(Family::Bytes input) {
   return {reinterpret_cast<const char*>(input.data()), input.size()};
 }
 
-/// Writes a file of that name to the folder of this process for what is read by its path; returns its path.
-/// The folder lies in that for temporary files, and is removed at the end of the process.
+/// Writes a file to this process's scratch folder and returns its path, for readers that take a path. The
+/// folder is in the system's folder for temporary files, and is removed at the end of the process.
 std::filesystem::path scratch_file(const std::string& name, std::string_view content);
 
-/// Returns what `read()` returns; nothing where it refuses a file by an InputError.
+/// Returns the result of `read()`; nothing if it throws an InputError.
 template <class Read>
 auto accepted(const Read& read) -> std::optional<decltype(read())> {
   try {

@@ -24,7 +24,7 @@ class Choice {
   std::minstd_rand random_;
 };
 
-/// Returns the name with another digit in place of one that it has; with one behind it where it has none.
+/// Returns the name with one of its digits replaced by another; with a digit appended if it has none.
 inline std::string near_name(std::string name, Choice& choice) {
   std::vector<std::size_t> digits;
   for (std::size_t i = 0; i < name.size(); ++i) {

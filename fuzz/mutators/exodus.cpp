@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Exodus II files: names, values and attributes are changed by libnetcdf, so that the file stays one of
-// netCDF's.
+// Exodus II files: names, values and attributes are changed by libnetcdf, so that the file stays a valid
+// netCDF file.
 #include "fuzz/families/families.hpp"
 #include "fuzz/families/scratch.hpp"
 #include "fuzz/mutators/choice.hpp"
@@ -80,7 +80,7 @@ void change_values(int file, const Variable& variable, Choice& choice) {
   (void)nc_put_var_double(file, variable.id, values.data());
 }
 
-/// Gives `variable` the values of `other`, again from the first one on where they are too few.
+/// Gives `variable` the values of `other`, repeated from the first one if there are too few.
 void copy_values(int file, const Variable& variable, const Variable& other) {
   if (std::max(variable.values, other.values) > kMostValues) return;
   const std::vector<double> source = numbers_of(file, other);
@@ -100,7 +100,7 @@ void add_copy(int file, const Variable& variable, const std::string& name, const
   if (status == NC_NOERR) copy_values(file, variable_of(file, id), variable);
 }
 
-/// Exchanges the names of two things of one kind.
+/// Exchanges the names of two objects of one kind.
 template <class Rename>
 void exchange_names(int file, int one, const std::string& name, int other, const std::string& other_name,
                     Rename rename) {
@@ -196,7 +196,7 @@ std::string mutate_exodus(std::string input, std::uint32_t seed) {
   } catch (const InputError&) {
     return {};
   }
-  // not in memory: libnetcdf leaks some files there that it cannot open
+  // not in memory: there libnetcdf leaks some files that it cannot open
   const std::filesystem::path path = scratch_file("mutated.nc", input);
   int file = 0;
   if (nc_open(path.c_str(), NC_WRITE, &file) != NC_NOERR) return {};

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// HDF5 files: values, attributes and links are changed by libhdf5 itself, so that the file stays one.
+// HDF5 files: values, attributes and links are changed by libhdf5 itself, so that the file stays valid.
 #include "fuzz/families/families.hpp"
 #include "fuzz/families/scratch.hpp"
 #include "fuzz/input_files.hpp"
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
 
-/// Changes one number, or all bytes as the engine likes, but not their count.
+/// Changes one number, or changes all bytes by the engine, but keeps their count.
 template <class Number>
 void change(std::vector<Number>& numbers, Choice& choice) {
   if constexpr (std::is_arithmetic_v<Number>) {
@@ -38,7 +38,7 @@ void change(std::vector<Number>& numbers, Choice& choice) {
   }
 }
 
-/// Changes a dataset of numbers. Returns false without any.
+/// Changes a dataset of numbers. Returns false if there is none.
 bool change_values(hdf5::File& file, Choice& choice) {
   const auto datasets = file.datasets();
   if (datasets.empty()) return false;
@@ -57,7 +57,7 @@ bool change_values(hdf5::File& file, Choice& choice) {
   return true;
 }
 
-/// Adds the paths of what is in a group, and in its groups, to `paths`. Links may lead round.
+/// Adds the paths of all objects in a group, and in its groups, to `paths`. Links may form cycles.
 void add_objects(const hdf5::File& file, const std::string& group, int depth,
                  std::vector<std::string>& paths) {
   constexpr int kDeepest = 8;
@@ -83,8 +83,8 @@ std::string name_of_attribute(hid_t object, std::size_t place) {
   return name;
 }
 
-/// Gives one attribute of an object the type and values that `other` has for it; removes it where that has
-/// none, or changes its bytes.
+/// Gives one attribute of an object the type and values of the same attribute of `other`, removes it if
+/// `other` has no such attribute, or changes its bytes.
 void change_attribute(hid_t object, hid_t other, Choice& choice) {
   const auto count = static_cast<std::size_t>(std::max(H5Aget_num_attrs(object), 0));
   if (count == 0) return;
@@ -115,8 +115,8 @@ void change_attribute(hid_t object, hid_t other, Choice& choice) {
   H5Awrite(made.id(), type.id(), bytes.data());
 }
 
-/// Changes which groups and datasets there are, or an attribute. A call of libhdf5 that fails changes
-/// nothing, which is a mutation, too. Returns false for an empty file.
+/// Moves, copies, links or removes a group or dataset, or changes an attribute. A call of libhdf5 that fails
+/// changes nothing, which is a mutation, too. Returns false for an empty file.
 bool change_objects(hdf5::File& file, Choice& choice) {
   std::vector<std::string> paths;
   add_objects(file, "", 0, paths);
@@ -138,7 +138,7 @@ bool change_objects(hdf5::File& file, Choice& choice) {
     case 1:
       H5Ocopy(id, one.c_str(), id, near_name(other, choice).c_str(), H5P_DEFAULT, H5P_DEFAULT);
       break;
-    case 2:  // what several paths lead to
+    case 2:  // an object with several paths
       H5Ldelete(id, other.c_str(), H5P_DEFAULT);
       H5Lcreate_hard(id, one.c_str(), id, other.c_str(), H5P_DEFAULT, H5P_DEFAULT);
       break;
@@ -160,7 +160,7 @@ bool change_objects(hdf5::File& file, Choice& choice) {
   return true;
 }
 
-/// Returns the file with a change; nothing where there is nothing to change.
+/// Returns the changed file; an empty text if there is nothing to change.
 std::string changed_file(const std::string& bytes, Choice& choice) {
   // not in memory: the library computes a wrong checksum for images of some versions
   const std::filesystem::path path = scratch_file("mutated.h5", bytes);
@@ -180,7 +180,7 @@ std::string mutate_hdf5(std::string input, std::uint32_t seed) {
   if (found == files.end()) return {};
   try {
     found->bytes = changed_file(found->bytes, choice);
-  } catch (const Error&) {  // it is no longer whole
+  } catch (const Error&) {  // the file is damaged
     return {};
   }
   return found->bytes.empty() ? std::string() : input_of(files);

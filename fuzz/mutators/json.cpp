@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Files of JSON: values take each other's places, lists grow and shrink, keys come and go, so that the file
-// stays one and says something else.
+// JSON files: values are exchanged, lists grow and shrink, keys are added and removed. The file stays valid
+// JSON and gets another meaning.
 #include "fuzz/families/families.hpp"
 #include "fuzz/mutators/choice.hpp"
 
@@ -40,7 +40,7 @@ bool add_places(Json& owner, std::vector<Place>& places, int depth = 0) {
   return true;
 }
 
-/// Returns a number near to one, or one that is often handled wrongly.
+/// Returns a number near `number`, or one that is often handled wrongly.
 Json other_number(const Json& number, Choice& choice) {
   const std::array<Json, 8> numbers{0,
                                     -1,
@@ -55,7 +55,7 @@ Json other_number(const Json& number, Choice& choice) {
   return number.get<std::uint64_t>() + choice.below(5) - 2;  // may wrap around
 }
 
-/// Returns a value of the same kind, or any where the kind has but few.
+/// Returns another number, truth value or short text; null for values of other kinds.
 Json other_value(const Json& value, Choice& choice) {
   if (value.is_number()) return other_number(value, choice);
   if (value.is_boolean()) return !value.get<bool>();

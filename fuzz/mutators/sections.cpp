@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Files of parts, each of which a change leaves whole but for one: Gmsh's sections, PLY's header and numbers.
+// Files in parts (Gmsh's sections, PLY's header and numbers): a change leaves all parts but one whole.
 #include "fuzz/families/families.hpp"
 #include "fuzz/mutators/choice.hpp"
 
@@ -40,14 +40,15 @@ void put_number(std::string& bytes, std::size_t begin, Choice& choice) {
   std::int64_t value = 0;
   if (choice.below(2) == 0) {
     value = kLimits[choice.below(kLimits.size())];
-  } else {  // near to what is there
+  } else {  // near the present number
     std::memcpy(&value, bytes.data() + at, width);
     value = static_cast<std::int64_t>(static_cast<std::uint64_t>(value) + choice.below(9) - 4);
   }
   std::memcpy(bytes.data() + at, &value, width);
 }
 
-/// Returns the parts that begin with a line "$Name" that is not "$EndName"; the first is what stands before.
+/// Returns the parts that begin with a line "$Name" that is not "$EndName"; the first is the text before
+/// them.
 std::vector<std::string> sections_of(std::string_view text) {
   std::vector<std::string> sections(1);
   for (std::size_t at = 0; at < text.size();) {

@@ -26,7 +26,7 @@ bool is_base64(std::string_view text) {
          text.find_first_not_of(std::string(kBase64Alphabet) + '=') == std::string_view::npos;
 }
 
-/// Returns where texts in base64 stand between tags.
+/// Returns the places of base64 texts between tags.
 std::vector<Span> encoded_texts(std::string_view input) {
   std::vector<Span> found;
   constexpr std::size_t kLeast = 8;
@@ -42,7 +42,7 @@ std::vector<Span> encoded_texts(std::string_view input) {
   return found;
 }
 
-/// Returns the bytes of groups of four characters up to the end or the first padding, and moves behind them.
+/// Decodes groups of four characters up to the end or the first padding, and removes them from the text.
 std::string decoded(std::string_view& text) {
   std::string bytes;
   while (text.size() >= 4) {

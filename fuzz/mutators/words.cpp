@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Files of lines and words: lines are moved, copied and removed, words take each other's places. Names come
-// to be named twice and numbers to point elsewhere, while the lines stay what a reader understands.
+// Files of lines and words: lines are moved, copied and removed, words are exchanged. Names then occur twice
+// and numbers refer to other places, while readers still understand the lines.
 #include "fuzz/families/families.hpp"
 #include "fuzz/mutators/choice.hpp"
 
@@ -27,7 +27,7 @@ std::vector<std::string_view> parts_of(std::string_view text, std::string_view s
   }
 }
 
-/// Returns the text with another one for a part.
+/// Returns the text with `part` replaced by `for_part`.
 std::string with(std::string_view text, std::string_view part, std::string_view for_part) {
   std::string result(text.data(), part.data());
   result += for_part;
@@ -35,7 +35,7 @@ std::string with(std::string_view text, std::string_view part, std::string_view 
   return result;
 }
 
-/// Returns the text with two parts in each other's place, neither of which begins before the other ends.
+/// Returns the text with two parts exchanged; the parts must not overlap.
 std::string exchanged(std::string_view text, std::string_view one, std::string_view other) {
   if (one.data() > other.data()) std::swap(one, other);
   const std::string_view before = text.substr(0, static_cast<std::size_t>(other.data() - text.data()));
@@ -43,7 +43,7 @@ std::string exchanged(std::string_view text, std::string_view one, std::string_v
          std::string(other.data() + other.size(), text.data() + text.size());
 }
 
-/// Returns a whole number near to the one that a word is, another word where it is none.
+/// Returns a whole number near the number in `word`; `other` if the word is not a number.
 std::string near_number(std::string_view word, std::string_view other, Choice& choice) {
   std::int64_t number = 0;
   const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), number);

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Files of XML: elements are moved, copied and joined, so that the file stays one and says something else.
-// Two elements come to name the same values, which changes of single bytes hardly ever reach.
+// XML files: elements are moved, copied and joined. The file stays valid XML and gets another meaning. Two
+// elements may refer to the same values, which changes of single bytes hardly ever achieve.
 #include "fuzz/families/families.hpp"
 #include "fuzz/input_files.hpp"
 #include "fuzz/mutators/choice.hpp"
@@ -38,7 +38,7 @@ std::string path_of(pugi::xml_node element) {
   return path;
 }
 
-/// Lets `element` refer to `other` in place of what it holds.
+/// Replaces the content of `element` by a reference to `other`.
 void refer(pugi::xml_node element, pugi::xml_node other) {
   const std::string path = path_of(other);
   element.remove_children();
@@ -46,7 +46,7 @@ void refer(pugi::xml_node element, pugi::xml_node other) {
   element.append_attribute("Reference").set_value(path.c_str());
 }
 
-/// Gives one attribute the value that `other` has for it, or another value.
+/// Gives one attribute the value of the same attribute of `other`, or another value.
 void change_attribute(pugi::xml_node element, pugi::xml_node other, Choice& choice) {
   const auto attributes = element.attributes();
   const auto count = static_cast<std::size_t>(std::distance(attributes.begin(), attributes.end()));
