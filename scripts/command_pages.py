@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Writes manual pages and completions of the command, from what its own --help says.
+"""Writes manual pages and completions of the command, from its own --help.
 
   command_pages.py COMMAND FOLDER
 
@@ -157,7 +157,7 @@ def choices(command):
     """Returns the words that an option or argument takes, where the command lists them: {(option, page): words}."""
     methods = json.loads(run(command, "methods", "--json"))
     scenarios = json.loads(run(command, "simulate", "--list", "--json"))["scenarios"]
-    # those with a size are only in this user's cache
+    # models with a size in their names are only in this user's cache
     names = [model["name"] for model in json.loads(run(command, "models", "list", "--json"))["models"]]
     vertices = [method["name"] for method in methods["vertices"]]
     elements = [method["name"] for method in methods["elements"]]
@@ -168,7 +168,7 @@ def choices(command):
 
 
 def words_for(entry, known):
-    """Returns what may follow an option, or stand for an argument; empty where that is a file or a number."""
+    """Returns the words that an option or argument may take; empty for a file or a number."""
     listed = re.search(r"(?:^| )((?:[a-z][a-z-]*, )+[a-z][a-z-]*)$", entry.sentence)
     if listed and entry.value and "," in listed[1]:
         return listed[1].split(", ")
@@ -179,7 +179,7 @@ def words_for(entry, known):
 
 
 def takes_list(entry):
-    """Whether an option takes several of these words, with commas between them."""
+    """Returns whether an option takes several words, separated by commas."""
     return "separated by commas" in entry.sentence
 
 

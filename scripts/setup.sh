@@ -148,8 +148,8 @@ build_jobs() {
   echo $((cores < memory ? cores : memory))
 }
 
-# What was compiled in one checkout is found again in another: paths in it are taken relative to the checkout, also those
-# of debug information. With a precompiled header, ccache can see neither unused macros nor __TIME__ within it; a new
+# ccache finds in one checkout what was compiled in another: paths are relative to the checkout, also in debug
+# information. With a precompiled header, ccache sees neither unused macros nor __TIME__ in the header; and a new
 # checkout gives old headers new times.
 export CCACHE_BASEDIR CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
 CCACHE_BASEDIR=$(pwd -P)
@@ -165,7 +165,7 @@ configure() {
 }
 
 # build FOLDER TARGET…
-# build FOLDER TARGET…: each line begins with the share that is done and the seconds that it has taken
+# build FOLDER TARGET…: each line begins with the share done and the seconds taken so far
 build() { NINJA_STATUS=${NINJA_STATUS:-'[%p, %es] '} ninja -C "$1" -j "$(build_jobs)" "${@:2}"; }
 
 # sources FOLDER…: all sources of ours in those folders that exist, each ended by a zero byte

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Measures what orders are worth in deal.II: −Δu + u = 1 by FE_Q(1), on a mesh of TetGen whose tetrahedra are
+// Measures the gain of orders in deal.II: −Δu + u = 1 by FE_Q(1), on a mesh of TetGen whose tetrahedra are
 // cut into four hexahedra each.
 //
 //   dealii_measure PREFIX ROUNDS

@@ -43,7 +43,7 @@ void check(bool holds, const char* what, int line) {
 }
 #define EXPECT(condition) check((condition), #condition, __LINE__)
 
-// A permutation that is no inverse of itself: k goes to stride · k mod n.
+// A permutation that is not its own inverse: k goes to stride · k mod n.
 std::vector<dealii::types::global_dof_index> strided(unsigned int n) {
   unsigned int stride = 37;
   while (std::gcd(stride, n) != 1) ++stride;

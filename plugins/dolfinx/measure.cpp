@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Measures what orders are worth in DOLFINx: −Δu + u = 1 + x by linear tetrahedra, on a mesh of TetGen.
+// Measures the gain of orders in DOLFINx: −Δu + u = 1 + x by linear tetrahedra, on a mesh of TetGen.
 //
 //   dolfinx_measure PREFIX ROUNDS
 #include "problem.hpp"

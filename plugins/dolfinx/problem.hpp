@@ -32,7 +32,7 @@
 /// orders.
 namespace problem {
 
-/// Takes a graph and returns the new index of each node, as DOLFINx wants it.
+/// Takes a graph and returns the new index of each node, the form that DOLFINx needs.
 using Reorder = std::function<std::vector<int>(const dolfinx::graph::AdjacencyList<std::int32_t>&)>;
 
 /// Leaves everything where it is.

@@ -1,12 +1,12 @@
 /* Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT */
-/* MatOrderings of meshorder as PETSc uses them. Run with -dll_append libmeshorder_petsc.so: not linked with
- * it. */
+/* MatOrderings of meshorder as PETSc uses them. Run with -dll_append libmeshorder_petsc.so: the test is not
+ * linked with that library. */
 #include "testing.h"
 
 #include <petscksp.h>
 #include <string.h>
 
-/* Number in the matrix of the vertex at place i of a path. 37 is no inverse of itself modulo 101. */
+/* Number in the matrix of the vertex at place i of a path. 37 is not its own inverse modulo 101. */
 enum { PATH = 101 };
 static PetscInt scattered(PetscInt i) { return (37 * i + 11) % PATH; }
 
@@ -50,7 +50,7 @@ static PetscErrorCode PermutedBandwidth(Mat matrix, IS rows, IS columns, PetscIn
   PetscFunctionReturn(0);
 }
 
-/* A path has bandwidth 1 in its own order, and in no other; with the permutation swapped it has not. */
+/* A path has bandwidth 1 only in its own order; the inverse permutation does not give this order. */
 static PetscErrorCode TestDirection(int lower_too) {
   Mat matrix;
   IS rows, columns, inverse;
@@ -168,7 +168,7 @@ static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char* function,
   return code;
 }
 
-/* Coordinates are not to be had from a matrix: the error says so in meshorder's words. */
+/* A matrix has no coordinates: the error has meshorder's message. */
 static PetscErrorCode TestMethodThatNeedsPoints(void) {
   Mat matrix;
   IS rows, columns;

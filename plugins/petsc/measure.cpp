@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Measures what orders are worth in PETSc: −Δu + u = 1 on a mesh of TetGen in a DMPlex.
+// Measures the gain of orders in PETSc: −Δu + u = 1 on a mesh of TetGen in a DMPlex.
 //
 //   petsc_measure PREFIX ROUNDS mesh      the mesh in each order: assembly, products, CG with ICC
 //   petsc_measure PREFIX ROUNDS factors   the mesh as it is, ICC in each MatOrdering

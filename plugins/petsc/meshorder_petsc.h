@@ -18,8 +18,8 @@
  * Registers "meshorder_<method>" as a MatOrderingType for every vertex method that meshorder knows now.
  * A second call changes nothing.
  *
- * MatGetOrdering then returns the order as PETSc wants it, new to old: row k of the permuted matrix is row
- * perm[k]. Rows and columns get the same order, that of the pattern of A + A^T. Only the entries' places
+ * MatGetOrdering then returns the order in PETSc's form, new to old: row k of the permuted matrix is row
+ * perm[k]. Rows and columns get the same order, that of the pattern of A + A^T. Values of entries do not
  * count. Methods that need coordinates (hilbert, morton) end with PETSC_ERR_LIB: a matrix has none.
  */
 PETSC_EXTERN PetscErrorCode MeshorderMatOrderingRegister(void);
@@ -29,7 +29,7 @@ PETSC_EXTERN PetscErrorCode MeshorderMatOrderingRegister(void);
  *
  * Cells follow the method on the graph of cells that share a facet; faces, edges and vertices are numbered as
  * the cells in their new order meet them first. A point takes the number of a point of the same depth and
- * cell type, so that strata stay what they are.
+ * cell type, so that strata do not change.
  *
  * @param dm      a mesh that is not distributed, or on one process; not changed
  * @param method  name of a vertex method without "meshorder_", such as "auto"; methods by coordinates use

@@ -74,7 +74,7 @@ static PetscErrorCode KindsCreate(DM dm, PetscInt begin, PetscInt end, Kinds* ki
   for (PetscInt point = begin; point < end; ++point) {
     kinds->numbers[kinds->next[kinds->kind[point - begin]]++] = point;
   }
-  /* each `next` is the end of its kind now, which is where the next kind begins */
+  /* each `next` is now the end of its kind, where the following kind begins */
   for (PetscInt k = kinds->count; k > 0; --k) kinds->next[k] = kinds->next[k - 1];
   kinds->next[0] = 0;
   PetscFunctionReturn(0);

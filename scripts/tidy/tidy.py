@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Runs clang-tidy over the project's own sources of a finished build, and over each only once.
+"""Runs clang-tidy over the project's own sources of a finished build; sources that have passed are not checked again.
 
-    tidy.py BUILD JOBS            all sources, those together that a unity build compiles together: a third of the time
-    tidy.py BUILD JOBS WORD…      those whose path has one of the words, each alone, which shows missing includes, too
+    tidy.py BUILD JOBS            all sources; sources of one unity file are checked together, in a third of the time
+    tidy.py BUILD JOBS WORD…      sources whose path has one of the words, each alone: this also shows missing includes
 
-What passed leaves a stamp, named by all that clang-tidy saw: the files, their headers, their flags, the checks and
-clang-tidy itself. As long as that stays the same, in whichever checkout, they are not looked at again. Stamps lie
-in ccache's folder: whoever keeps that from one machine to the next keeps them too.
+Sources that pass leave a stamp, whose name is a checksum of all that clang-tidy read: the files, their headers, their
+flags, the checks and clang-tidy itself. While these stay the same, in any checkout, the sources are not checked again.
+Stamps are in ccache's folder: a copy of that folder on another machine has the stamps, too.
 """
 import concurrent.futures
 import hashlib
@@ -23,7 +23,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HERE = pathlib.Path(__file__).resolve().parent
-# tests may be careless, and CGAL is nobody's style
+# tests and benchmarks follow fewer rules, and programs with CGAL have its style
 LEFT_OUT = re.compile(r"^(tests|benchmarks|apps/meshorder-models|apps/meshorder-delaunay)/")
 DAYS_KEPT = 30
 OWN_CODE = "meshorder-own-code"  # the plugin's name for itself
@@ -47,8 +47,8 @@ def stamps_folder():
 
 
 def entries_of(build, words):
-    """What compiles the sources of ours: each entry with "sources", the paths of those it compiles, from the root.
-    Without words the sources of one unity file share an entry, unless it has generated ones, too."""
+    """Yields the compile commands of our sources: each entry with "sources", the paths of its sources from the root.
+    Without words the sources of one unity file share an entry, unless the file has generated sources, too."""
     for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
         paths = [entry["file"]]
         if "/Unity/unity_" in entry["file"]:
@@ -56,7 +56,7 @@ def entries_of(build, words):
         own = [path for path in map(pathlib.Path, paths) if path.is_relative_to(ROOT) and not path.is_relative_to(build)]
         sources = [str(path.relative_to(ROOT)) for path in own]
         sources = [source for source in sources if not LEFT_OUT.match(source)]
-        if words or len(sources) < len(paths):  # what the build has generated is not ours
+        if words or len(sources) < len(paths):  # generated sources are not ours
             for source in sources:
                 if not words or any(word in source for word in words):
                     yield {**entry, "file": str(ROOT / source), "sources": [source]}
@@ -65,8 +65,8 @@ def entries_of(build, words):
 
 
 def flags(entry):
-    """What of a compile command matters to clang-tidy. GCC's precompiled header is none for clang, and no file may
-    need it."""
+    """Returns the flags of a compile command for clang-tidy: without GCC's precompiled header, which clang cannot read
+    and no file may need."""
     words = shlex.split(entry["command"])
     while os.path.basename(words[0]).startswith(("ccache", "c++", "g++", "clang++")):
         words.pop(0)
@@ -83,7 +83,7 @@ def flags(entry):
 
 
 def headers_by_object(build):
-    """What ninja knows: for each object the files that its compiler has read, less those of a precompiled header."""
+    """Returns, by ninja, the files that the compiler of each object has read, without those of a precompiled header."""
     found, current = {}, None
     for line in output("ninja", "-C", str(build), "-t", "deps").splitlines():
         if line.startswith("    ") and current is not None:
@@ -95,7 +95,7 @@ def headers_by_object(build):
 
 
 def headers_of(entry, by_object):
-    """None where ninja does not know them all. Of sources that are compiled together each has the headers of all."""
+    """Returns the headers of an entry; None if ninja does not know all. Sources compiled together share their headers."""
     words = shlex.split(entry["command"])
     objects = [entry.get("output") or words[words.index("-o") + 1]]
     objects += [f"{after}.gch" for word, after in zip(words, words[1:]) if word == "-include" and "cmake_pch" in after]
@@ -106,7 +106,7 @@ def headers_of(entry, by_object):
 
 
 class Fingerprints:
-    """Of a file of ours its content counts, of another its name, size and age: packages keep a file's age."""
+    """Fingerprints of files: by content for our own files, by name, size and time for others, which packages keep."""
 
     def __init__(self):
         self.known = {}
@@ -129,13 +129,13 @@ def key(entry, headers, fingerprint, general):
     checks = {str(folder / ".clang-tidy") for folder in folders if (folder / ".clang-tidy").exists()}
     seen = [general, *entry["sources"], shlex.join(flags(entry)).replace(str(ROOT), ".")]
     read = checks | headers | {str(ROOT / source) for source in entry["sources"]}
-    seen += sorted(fingerprint(path) for path in read)  # whatever the checkout's path
+    seen += sorted(fingerprint(path) for path in read)  # independent of the checkout's path
     return hashlib.sha256("\n".join(seen).encode()).hexdigest()
 
 
 def plugin(build):
-    """Builds own_code.cpp and returns the option that loads it: none where clang's headers are missing or fit not,
-    for the findings are the same without."""
+    """Builds own_code.cpp and returns the option that loads it; no option if clang's headers are missing or do not fit.
+    The findings are the same without the plugin."""
     installed = pathlib.Path(shutil.which("clang-tidy")).resolve().parents[1]
     module, log = build / "tidy" / "own_code.so", build / "tidy" / "own_code.log"
     module.parent.mkdir(exist_ok=True)
@@ -153,10 +153,10 @@ def plugin(build):
 
 
 def look_at(entry, load, stamp):
-    """Returns what clang-tidy found: nothing, if all is well."""
+    """Returns the findings of clang-tidy; an empty text if there are none."""
     checks = [OWN_CODE] if load else []
     if len(entry["sources"]) > 1:
-        # a unity file includes nothing else, and clang-tidy 14 sees exceptions in it that its sources by themselves do not have
+        # a unity file includes sources, and clang-tidy 14 reports exceptions in it that its sources alone do not have
         checks.append("-bugprone-suspicious-include,-bugprone-exception-escape")
     done = subprocess.run(["clang-tidy", "--quiet", *load, f"--checks={','.join(checks)}", entry["file"], "--", *flags(entry)],
                           cwd=entry["directory"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)

@@ -29,7 +29,7 @@ inline namespace v0_3 {
 /// @param method       name of a vertex method; methods by coordinates use the support points, if the
 ///                     element has some and all cells have one shape; otherwise they are refused, as
 ///                     for a graph without points
-/// @param constraints  as for `make_sparsity_pattern`; a hanging node couples those that it depends on
+/// @param constraints  as for `make_sparsity_pattern`; a hanging node couples the nodes that it depends on
 /// @param options      see `OrderOptions`
 /// @return `permutation.old_to_new()` is what `DoFHandler::renumber_dofs` takes
 /// @throws as `order_vertices`; dealii::ExcMessage where degrees of freedom are on several processes
