@@ -12,7 +12,7 @@ from hypothesis import settings
 settings.register_profile("reproducible", derandomize=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "reproducible"))
 
-# what is predicted is the same on every machine
+# the same predictions on every machine
 os.environ["MESHORDER_MACHINE"] = "zen3"
 
 

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""A stand-in for CuPy that runs kernels on the CPU, by emulator.hpp. It has what `meshorder.compare_on_gpu` uses of CuPy."""
+"""A stand-in for the part of CuPy that `meshorder.compare_on_gpu` uses. It runs kernels on the CPU by emulator.hpp."""
 
 import ctypes
 import hashlib
@@ -33,7 +33,7 @@ class CUDARuntimeError(RuntimeError):
 
 
 class Fault(Exception):
-    """Threads of a block do not come to the same barriers."""
+    """Not all threads of a block reach the same barriers."""
 
 
 class Array:
@@ -55,7 +55,7 @@ class Cupy(types.ModuleType):
     Attributes:
         folder: for compiled kernels.
         counts: requests and sectors of the atomic additions in the last launch of each kernel, as `gpu_cost` counts them.
-        patches: pairs of texts; the first of each is replaced by the second in the source of the kernels.
+        patches: pairs (old, new) of texts to replace in the source of the kernels.
         vector_additions: whether the device can add four numbers at once.
         memory: bytes of the device.
         devices: their number.
@@ -134,7 +134,7 @@ class Kernel:
 
 
 def compiled(code, options, cupy):
-    """Returns the library of kernels, which is compiled if no earlier call has compiled it."""
+    """Returns the library of kernels; compiles it unless an earlier call has done so."""
     names = re.findall(r'extern "C" __global__ void (\w+)\(', code)
     code += "".join(map(LAUNCH.format, names))
     options = [*options, f"-DVECTOR_ADDITIONS={int(cupy.vector_additions)}"]

@@ -1,9 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Runs CUDA kernels on a CPU, so that they are tested without a graphics processor. It is included before
-// their source, which a C++ compiler then compiles. Blocks run one after another. The threads of a block are
-// fibres, which run one after another up to a barrier or a shuffle. Atomic additions to global memory are
-// counted as a GPU's memory sees them.
+// Runs CUDA kernels on a CPU, to test them without a graphics processor. Include this file before the
+// kernels' source and compile both with a C++ compiler. Blocks run one after another. The threads of a block
+// are fibres: each runs up to a barrier or a shuffle, then the next one runs. The atomic additions to global
+// memory are counted as a GPU's memory receives them.
 #pragma once
 
 #include <ucontext.h>
@@ -63,11 +63,12 @@ struct Fibre {
 
 struct Counts {
   long long requests = 0;  ///< atomic additions, each of a warp at once
-  long long sectors =
-      0;  ///< of 32 bytes; one counts as often as the most additions of a request to a number in it
+  /// Sectors of 32 bytes. A sector counts t times, where t is the largest number of additions that a request
+  /// makes to one number in the sector.
+  long long sectors = 0;
 };
 
-static std::deque<Fibre> fibres;  // as many as the largest block has had threads
+static std::deque<Fibre> fibres;  // one per thread of the largest block so far
 static ucontext_t scheduler;
 static std::function<void()> kernel;
 static Counts counts;
@@ -109,8 +110,8 @@ static void release(int begin, int end) {
   for (int i = begin; i < end; ++i) fibres[i].state = State::ready;
 }
 
-/// Runs the fibres of a warp up to a barrier or their end; a shuffle at which only some arrive is left to
-/// `run_block`.
+/// Runs the fibres of a warp up to a barrier or their end. `run_block` reports a shuffle at which only some
+/// arrive.
 static void run_warp(int begin, int end) {
   for (;;) {
     for (int i = begin; i < end; ++i) {
@@ -124,7 +125,7 @@ static void run_warp(int begin, int end) {
   }
 }
 
-/// Counts the additions of a warp: the k-th ones of all its lanes are one request.
+/// Counts the additions of a warp: the k-th additions of all its lanes are one request.
 static void count_warp(int begin, int end) {
   for (std::size_t k = 0;; ++k) {
     std::vector<std::uintptr_t> to;
@@ -146,7 +147,7 @@ static void count_warp(int begin, int end) {
 /// Returns whether all threads came to the same barriers and ended.
 static bool run_block() {
   const int count = blockDim.x;
-  std::memset(shared, 0xff, sizeof shared);  // no numbers, until a thread writes some
+  std::memset(shared, 0xff, sizeof shared);  // NaN until a thread writes numbers
   for (Fibre& fibre : fibres) fibre.additions.clear();
   do {
     release(0, count);
@@ -156,7 +157,7 @@ static bool run_block() {
   return all_wait(0, count, State::ended);
 }
 
-/// Runs a kernel and returns its fault; an empty text if it has none.
+/// Runs a kernel and returns its fault, or an empty text.
 template <class... Arguments, std::size_t... I>
 const char* launch(void (*function)(Arguments...), int blocks, int threads, void** arguments,
                    std::index_sequence<I...>) {

@@ -8,7 +8,7 @@ import meshorder
 import numpy as np
 from hypothesis import strategies as st
 
-#: corners of the reference cells, in VTK's order but for wedges, whose first triangle faces inward
+#: corners of the reference cells, in VTK's order; only in wedges, the first triangle faces inward
 CORNERS: dict[str, list[Any]] = {
     "vertex": [(0, 0, 0)],
     "line": [(0, 0, 0), (1, 0, 0)],

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What became of a mesh that was written and read back, and whether the writer said so."""
+"""The changes of a mesh that was written and read back, and whether the writer noted them."""
 
 import dataclasses
 from typing import Any
@@ -10,7 +10,7 @@ import numpy as np
 
 @dataclasses.dataclass
 class Changes:
-    """What differs after a file, without a note of the writer's."""
+    """Differences after writing and reading; `silent` has those without a note of the writer."""
 
     notes: list[str]
     silent: list[str] = dataclasses.field(default_factory=list)
@@ -30,7 +30,7 @@ class Changes:
 
 
 def cell_keys(mesh):
-    """A key of each cell that no other has: its shape, its vertices, and how many such cells came before it."""
+    """A unique key of each cell: its shape, its vertices, and the number of equal cells before it."""
     seen: dict[Any, int] = {}
     keys = []
     for shape, rows in mesh.cells:
@@ -42,7 +42,7 @@ def cell_keys(mesh):
 
 
 def same_numbers(old, new):
-    """Whether all values are equal, of whatever types. NaN equals NaN, 0.0 does not equal −0.0."""
+    """Whether all values are equal; their types may differ. NaN equals NaN, 0.0 does not equal −0.0."""
     if np.shape(old) != np.shape(new):
         return False
     if old.dtype.kind in "iu" and new.dtype.kind in "iu":
@@ -65,7 +65,7 @@ def arrays_of(mesh):
 
 
 def compare(before, after, notes):
-    """Returns what the file changed in silence, one line for each thing."""
+    """Returns the changes that no note mentions, one line for each."""
     changes = Changes(notes)
     vertices = len(before.points)
     if len(after.points) != vertices:
@@ -92,7 +92,7 @@ def compare(before, after, notes):
         old, new = ((m.vertex_ids if of == "vertices" else m.cell_ids) for m in (before, after))
         if len(old) and not (len(new) and np.array_equal(old[places[0]], new[places[1]])):
             if not any(("ids of " + of) in note or "renumbered" in note for note in notes):
-                # numbers that the format gives by place anyway
+                # the numbers that readers give by position
                 given = np.arange(len(old)) + (1 if old.min() == 1 else 0)
                 if not np.array_equal(old, given):
                     changes.silent.append(f"the ids of {of} are lost")
@@ -103,13 +103,13 @@ def compare_arrays(before, after, cells, changes):
     new_arrays = arrays_of(after)
     for (name, of_vertices), (values, rows) in arrays_of(before).items():
         if name == "label" and (not np.any(values) or np.all(values == 1)):
-            continue  # 0 is no label, 1 that of all in formats that want one
+            continue  # 0 means no label; formats that require labels write 1 for all
         what = f"the array {name!r} on {'vertices' if of_vertices else 'cells'} ({values.dtype}, {values.shape})"
         new, new_rows = new_arrays.get((name, of_vertices), (None, ()))
         if new is not None and len(rows) == len(new_rows) == 0:
             old = values if of_vertices else values[cells[0]]
             fresh = new if of_vertices else new[cells[1]]
-            if name == "label":  # cells without one may get that of their set
+            if name == "label":  # cells without a label may get that of their set
                 old, fresh = (numbers[np.atleast_1d(old != 0)] for numbers in (old, fresh))
             if same_numbers(old, fresh):
                 continue
@@ -145,7 +145,7 @@ class Unreadable(AssertionError):
 
 
 def hop(mesh, path):
-    """Writes the mesh and reads it back: the new mesh and the silent changes, or None where the writer refuses."""
+    """Writes the mesh and reads it back. Returns the new mesh and the silent changes, or None if the writer refuses."""
     try:
         notes = meshorder.write(mesh, path)
     except meshorder.InputError:

@@ -1,8 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Cells of every linear and second-order type on their way from one format to another.
+"""Conversion of cells of every linear and second-order type from each format to each other.
 
-A cell is an affine image of its reference element. Gmsh, VTK and meshio read what was written; each of them says where the
-nodes of its own reference element are, or which nodes bound an edge or a face of its cell.
+A cell is an affine image of its reference element. Gmsh, VTK and meshio read the written files. The node order is checked
+against each library's own reference element, or against the nodes of its edges and faces.
 """
 
 from typing import Any
@@ -91,7 +91,7 @@ def assert_right_by_vtk(kind, path):
     for edge in map(cell.GetEdge, range(cell.GetNumberOfEdges())):
         first, second, *middle = points_of(edge)
         assert all(np.allclose(node, (first + second) / 2, atol=1e-6) for node in middle)
-    # VTK 9.7 turned its linear wedges; its own files are written for those before it
+    # VTK 9.7 reversed its linear wedges; our .vtu and .vtk files have the order of earlier versions
     sign = -1 if TYPES["wedge"] == kind and path.suffix in (".vtu", ".vtk") else 1
     for face in map(cell.GetFace, range(cell.GetNumberOfFaces())):
         corners = points_of(face)[: face.GetNumberOfEdges()]
@@ -102,7 +102,7 @@ def assert_right_by_vtk(kind, path):
 
 
 def assert_right_by_meshio(kind, path):
-    """The corners are in the order of a cell of positive volume; of linear wedges, meshio keeps the file's."""
+    """Asserts that the corners give a positive volume. meshio keeps the file's order of linear wedges."""
     [block] = meshio.read(path).cells
     assert TYPES[block.type] == kind
     points = meshio.read(path).points[block.data[0]]
@@ -141,7 +141,7 @@ def test_faces_and_nodes_of_edges_stay_right(model, tmp_path, name, source):
             meshorder.write(mesh, path)
         except meshorder.InputError:
             continue
-        # of second-order pyramids Gmsh 4.15 reads the corners alone in Nastran's files, and none in CGNS
+        # Gmsh 4.15 reads only the corners of second-order pyramids in Nastran's files, and no such pyramids in CGNS
         of_gmsh = (".msh", ".unv", ".med") + ((".bdf", ".cgns") if name != "pyramid13" else ())
         if target in of_gmsh:
             assert_right_by_gmsh(kind, path)
@@ -155,7 +155,7 @@ def test_faces_and_nodes_of_edges_stay_right(model, tmp_path, name, source):
 
 @pytest.mark.parametrize("name", [name for name in TYPES if name not in UNKNOWN_TO_MESHIO])
 def test_cells_of_meshio_are_taken_in_its_order(model, tmp_path, name):
-    """meshio's file of VTK and Gmsh's own of the same cell become the same."""
+    """meshio's VTK file and Gmsh's own file of the same cell give the same mesh."""
     kind = TYPES[name]
     write_by_gmsh(kind, tmp_path / "cell.msh")
     by_gmsh = meshio.read(tmp_path / "cell.msh")

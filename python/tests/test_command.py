@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The package's own command, and what it converts through meshio."""
+"""The package's own command, and its conversions through meshio."""
 
 import itertools
 import json
@@ -38,7 +38,7 @@ def listed_subcommands(program):
 
 @pytest.fixture
 def deck(mesh, tmp_path):
-    """Tetrahedra with data as a file of HMF, which is meshio's, and tetrahedra with sets as one of Abaqus."""
+    """Writes tetrahedra with data as HMF, meshio's own format, and tetrahedra with sets as an Abaqus deck."""
     points, cells = mesh
     made = meshio.Mesh(
         points,
@@ -58,7 +58,7 @@ def deck(mesh, tmp_path):
 
 
 def cells_by_corners(mesh, values=None):
-    """The corners of every cell, sorted, with a value of the cell each: the same for the same mesh in any order."""
+    """The corners of every cell, sorted, with the cell's value: independent of the order of the mesh."""
     rows = []
     for k, block in enumerate(mesh.cells):
         corners = mesh.points[block.data]
@@ -88,10 +88,10 @@ def test_streams_and_status_are_the_commands_own(mesh, tmp_path):
         done = run(*arguments, cwd=tmp_path)
         direct = subprocess.run([_command.program(), *arguments], cwd=tmp_path, capture_output=True, text=True)
         assert (done.returncode, done.stderr) == (direct.returncode, direct.stderr)
-        if "--json" not in arguments:  # there are times in it
+        if "--json" not in arguments:  # which contains times
             assert done.stdout == direct.stdout
     assert ok("--version", cwd=tmp_path).stdout.strip() == meshorder.__version__
-    # a reader that goes away ends it as it ends other programs
+    # a closed pipe ends the command by SIGPIPE, as it ends other programs
     with subprocess.Popen([COMMAND, "methods"], stdout=subprocess.PIPE) as child:
         assert child.stdout
         child.stdout.close()
@@ -143,7 +143,7 @@ def test_order_of_a_file_of_meshios_into_another(deck, tmp_path):
     assert "deck.hmf: read by meshio" in done.stderr and "out.hmf: written by meshio" in done.stderr
     assert "meshorder-" not in done.stdout + done.stderr
     assert [f"meshorder: warning: {note}" for note in result["notes"]] == done.stderr.splitlines()
-    # of the mesh that meshio wrote there are no checksums
+    # no checksums of the mesh that meshio wrote
     identity = json.loads((tmp_path / "m.maps.json").read_text())
     assert identity["before"] and identity["after"] is None
     before, moved = meshio.read(tmp_path / "deck.hmf"), meshio.read(tmp_path / "out.hmf")

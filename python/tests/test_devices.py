@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Arrays of other libraries move and are renumbered as NumPy's are, by the library itself."""
+"""Arrays of other libraries are moved and renumbered as NumPy's are, by functions of those libraries."""
 
 import sys
 import types
@@ -13,7 +13,7 @@ N = 50
 
 
 class OfStrict:
-    """array_api_strict, which has what the array API standard demands and nothing else."""
+    """array_api_strict, which has only what the array API standard requires."""
 
     def __init__(self):
         self.library = pytest.importorskip("array_api_strict")
@@ -46,7 +46,7 @@ class OfWarp(OfStrict):
 
 
 class OfCupy(OfStrict):
-    """A stand-in with the habits of CuPy, which needs a GPU: functions of the module, and a device that is entered."""
+    """A stand-in for CuPy, which needs a GPU: it has functions of the module and a device that is a context manager."""
 
     def __init__(self, monkeypatch):
         class Device:

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What is given to others: the source distribution, and the wheel that ./test made."""
+"""The source distribution, and the wheel that ./test made."""
 
 import json
 import pathlib
@@ -16,7 +16,7 @@ from meshorder import _command, _core
 
 ROOT = pathlib.Path(__file__).parents[2]
 MEBIBYTE = 1 << 20
-#: libraries that are on every machine that a wheel is for
+#: libraries that every machine has for which wheels are made
 SYSTEMS = {"libstdc++", "libgcc_s", "libm", "libc", "libpthread", "libdl", "librt", "ld-linux-x86-64"}
 #: what THIRD_PARTY.md calls the others
 NAMES = {
@@ -51,7 +51,7 @@ def test_sdist_holds_what_the_wheel_is_made_of(sdist):
     listed += ["apps/meshorder", "cmake", "include", "packaging/sbom.py", "python", "src", "viewer"]
     tracked = subprocess.run(["git", "ls-files", *listed], cwd=ROOT, capture_output=True, text=True, check=True)
     assert set(tracked.stdout.split()) <= found
-    # what is not tracked yet may be in it, build products may not
+    # the distribution may contain untracked files, but no build products
     assert all(name.startswith((*listed, "PKG-INFO")) for name in found)
     assert not [name for name in found if re.search(r"\.(so|pyc|pyi|o)$", name)]
 
@@ -68,7 +68,7 @@ def test_wheel_is_complete():
 
 
 def test_list_of_what_is_inside_names_every_library():
-    """The wheel's SBOM: valid, with a version for each library that its binaries need, and none that the notice lacks."""
+    """The wheel's SBOM is valid, has a version of each library that the binaries need, and lists none that the notice lacks."""
     validation = pytest.importorskip("cyclonedx.validation.json")
     schema = pytest.importorskip("cyclonedx.schema")
     with zipfile.ZipFile(wheel()) as archive:
@@ -86,11 +86,11 @@ def test_list_of_what_is_inside_names_every_library():
 
 
 def needed_by(file):
-    """The shared libraries that a binary needs, but for the system's."""
+    """The shared libraries that a binary needs, without the system's."""
     if not shutil.which("readelf"):
         pytest.skip("there is no readelf")
     text = subprocess.run(["readelf", "-d", file], capture_output=True, text=True, check=True).stdout
-    # those that auditwheel brought along have a part of their hash in their name
+    # auditwheel adds a part of the hash to the names of the libraries that it bundles
     return {re.sub(r"-[0-9a-f]{8}$", "", name) for name in re.findall(r"NEEDED.*\[([^\].]+)", text)} - SYSTEMS
 
 
@@ -107,7 +107,7 @@ def test_the_index_takes_both(sdist):
     files = [sdist, *(ROOT / "build" / "wheel").glob("meshorder-*.whl")]
     done = subprocess.run([sys.executable, "-m", "twine", "check", "--strict", *files], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout
-    # a relative link leads nowhere there
+    # relative links do not work on the package index
     page = (ROOT / "python" / "README.md").read_text()
     assert all(target.startswith("https://") for target in re.findall(r"\]\(([^)]*)\)", page))
 

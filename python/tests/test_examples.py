@@ -17,6 +17,6 @@ def test_a_refined_mesh_in_a_fresh_order_has_the_same_solution():
     pytest.importorskip("scipy")
     done = subprocess.run([sys.executable, PROGRAM, "3"], capture_output=True, text=True, check=True)
     left, kept = re.findall(r": (\d+) vertices, .* energy (\S+)", done.stdout)
-    # the slopes of two triangles may be equal but for rounding, and another one is refined
+    # two triangles may have slopes that differ only by rounding; the order then decides which one is refined
     assert int(kept[0]) == pytest.approx(int(left[0]), rel=1e-3)
     assert float(kept[1]) == pytest.approx(float(left[1]), rel=1e-5)

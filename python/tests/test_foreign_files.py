@@ -46,7 +46,7 @@ def test_bare_meshes_of_every_format(tmp_path, suffix):
     assert mesh.notes[0].startswith(f"read by meshio {meshio.__version__} as {FORMATS[suffix]}: ")
     np.testing.assert_allclose(mesh.points, given.points, atol=1e-6)
     found, expected = mesh.connectivity.reshape(-1, 4), given.cells[0].data
-    if suffix == ".f3grid":  # whose cells have a side, of which meshio takes care
+    if suffix == ".f3grid":  # meshio may reverse the cells, whose orientation FLAC3D prescribes
         found, expected = np.sort(found), np.sort(expected)
     np.testing.assert_array_equal(found, expected)
     moved, order = meshorder.reorder(mesh, vertices="rcm")

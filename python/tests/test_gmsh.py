@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Gmsh's running model, by what Gmsh says of it and by the files that it writes."""
+"""Gmsh's running model, checked by Gmsh's functions and by the files that Gmsh writes."""
 
 import meshio
 import meshorder
@@ -92,7 +92,7 @@ def test_file_is_what_others_read(model, tmp_path, version):
         sizes = [sum((values == group).sum() for values in mesh.cell_data["gmsh:physical"]) for mesh in (before, after)]
         assert sizes[0] == sizes[1] > 0
     read = meshorder.read(tmp_path / "after.msh")
-    # nodes stand entity by entity in both; 4.1 keeps their tags, 2.2 numbers them anew
+    # both versions list nodes by entity; 4.1 keeps their tags, 2.2 renumbers them
     assert (len(read.vertex_ids) == 0) == (version == 2.2)
     if version == 4.1:
         expected = meshorder.read(tmp_path / "before.msh")

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Comparisons on a GPU. The kernels run on the CPU, by emulator.hpp, behind a stand-in for CuPy."""
+"""Comparisons on a GPU. A stand-in for CuPy runs the kernels on the CPU by emulator.hpp."""
 
 import json
 import shutil
@@ -84,7 +84,7 @@ def test_counted_additions_are_those_of_gpu_cost(cupy):
 
 
 @pytest.mark.parametrize("kernel, old, new", [
-    # nothing in shared memory when it is read; nothing added there when it is passed on
+    # missing barriers: shared memory is read before it is cleared, and passed on before all is added
     ("forces_patches", "    own[i] = 0;\n  }\n  __syncthreads();", "    own[i] = 0;\n  }"),
     ("forces_patches", "rest, n, e));\n  }\n  __syncthreads();", "rest, n, e));\n  }"),
     # lanes that are left out
@@ -239,7 +239,7 @@ def test_the_command_refuses_in_one_line(run, path, words, says):
 
 
 def comparison(**ratios):
-    """A comparison of made-up times: of each order the ratios of two products, packed and padded additions."""
+    """A comparison of invented times; for each order the ratios of two products, of packed and of padded additions."""
     kernels = {"product_rows": ("product", "rows"), "product_lanes": ("product", "8 lanes"),
                "forces_packed": ("element forces", "packed"), "forces_padded": ("element forces", "padded")}  # fmt: skip
     orders = []

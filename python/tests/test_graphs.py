@@ -131,7 +131,7 @@ def test_csgraph_is_about_as_good_as_scipys(sizes):
     graph = lattice(*sizes)
     found = meshorder.csgraph.reverse_cuthill_mckee(graph)
     assert found.dtype == np.int32 and sorted(found) == list(range(graph.shape[0]))
-    # ties are broken otherwise
+    # the two break ties differently
     assert bandwidth(graph, found) <= 1.05 * bandwidth(graph, scipys_rcm(sp.csr_matrix(graph)))
 
 
@@ -180,7 +180,7 @@ def test_networkx_refusals():
     with pytest.raises(nx.NetworkXNotImplemented):
         meshorder.networkx.fiedler_vector(nx.DiGraph([(0, 1)]))
     assert meshorder.networkx.algebraic_connectivity(nx.empty_graph(3)) == 0
-    out_of_reach = nx.grid_2d_graph(40, 40)  # its residual is above this
+    out_of_reach = nx.grid_2d_graph(40, 40)  # its residual does not reach 1e-30
     for function in ("fiedler_vector", "algebraic_connectivity", "spectral_ordering"):
         with pytest.raises(nx.ExceededMaxIterations, match="did not reach the tolerance 1e-30 in 2000 iterations"):
             getattr(meshorder.networkx, function)(out_of_reach, tol=1e-30)
@@ -238,7 +238,7 @@ def test_progress_and_stop(graph):
         meshorder.order(large, "spectral", progress=lambda stage, fraction: 1 / 0)
 
 
-#: what programs begin with that need a call which does not end: its tolerance is out of reach
+#: the start of programs that need a call without an end: no residual reaches its tolerance
 ENDLESS = """
 import threading, numpy as np, meshorder
 n = 200_000
@@ -457,5 +457,5 @@ def test_any_arrays_give_an_order_or_an_error(offsets, neighbours, strided):
     except (ValueError, OverflowError) as error:
         assert isinstance(error, meshorder.Error)
         return
-    # a table of numbers and another are points and cells
+    # two tables of numbers are points and cells
     assert len(order.permutation) == (len(offsets) if offsets.ndim == 2 else max(offsets.size - 1, 0))

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Meshes as tuples of arrays, trimesh's and scikit-fem's, by what these libraries compute of them; and bad input."""
+"""Meshes as tuples of arrays, of trimesh and of scikit-fem, checked by computations of these libraries; and bad input."""
 
 import copy
 import subprocess

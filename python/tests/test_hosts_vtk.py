@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""PyVista's and VTK's datasets: what VTK reads of them before and after."""
+"""PyVista's and VTK's datasets: VTK reads the same from them before and after."""
 
 import importlib.metadata
 import subprocess
@@ -33,7 +33,7 @@ def wedges():
     n = plane.n_points
     points = np.concatenate([plane.points + [0, 0, z] for z in (0, 0.5, 1)])
     rows = np.concatenate([np.hstack([bottom + z * n, bottom + (z + 1) * n]) for z in range(2)])
-    rows[::2] = rows[::2, [0, 2, 1, 3, 5, 4]]  # VTK 9.7 changed the side that the first triangle faces
+    rows[::2] = rows[::2, [0, 2, 1, 3, 5, 4]]  # VTK 9.7 reversed the direction that the first triangle faces
     return pv.UnstructuredGrid({pv.CellType.WEDGE: rows}, points)
 
 
@@ -111,7 +111,7 @@ def assert_same_geometry(mesh, moved, order):
 @pytest.mark.parametrize("make", DATASETS)
 def test_dataset_keeps_its_geometry_and_data(make, inplace):
     given, before = with_data(make()), with_data(make())
-    given.find_closest_cell((0, 0, 0))  # builds what must not outlive the move, as does the next call
+    given.find_closest_cell((0, 0, 0))  # this call and the next build caches that the move must discard
     given.point_cell_ids(0)
     moved, order = meshorder.reorder(given, vertices="hilbert", elements="lexmax", inplace=inplace)
     assert (moved is given) == inplace and type(moved) is type(before)

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""A process whose locale has decimal commas reads, writes and orders as any other."""
+"""A process whose locale has decimal commas reads, writes and orders like any other."""
 
 import os
 import pathlib

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What results look like: HTML by Python's parser, thumbnails by Pillow, the page of `show` by its own data."""
+"""Displays of results: HTML checked by Python's parser, thumbnails by Pillow, the page of `show` by its own data."""
 
 import base64
 import dataclasses
@@ -61,7 +61,7 @@ def image(source):
 
 
 def by_distance(picture):
-    """The mean brightness of a square picture on the diagonals that far from the main one."""
+    """The mean brightness of a square picture by distance from the main diagonal."""
     rows, columns = np.indices(picture.shape)
     away = np.abs(rows - columns)
     return np.array([picture[away == k].mean() for k in range(picture.shape[0])])

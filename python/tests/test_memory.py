@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Clean arrays are read where they are: neither NumPy nor the library behind it makes a copy of them."""
+"""Valid arrays are read in place: neither NumPy nor the C++ library copies them."""
 
 import os
 import subprocess
@@ -11,7 +11,7 @@ import meshorder
 import numpy as np
 import pytest
 
-# rings in which every vertex has many neighbours: the arrays are much larger than what an order needs for itself
+# rings in which every vertex has many neighbours: the arrays are much larger than the memory that an order needs
 GRAPH = """
 import numpy as np
 n, reach = 12_000, 400
@@ -37,7 +37,7 @@ for corner in range(1, 4):
 size = points.nbytes + cells.nbytes
 apart = np.repeat(cells, 2, axis=0)[::2]
 """
-# how far the process's memory rises above where it stands before the call
+# the peak of the process's memory during the call, less its memory before
 GROWTH = """
 import ctypes, meshorder
 meshorder.order((np.zeros(1, np.int64), np.zeros(0, np.int32)), "original")
@@ -54,7 +54,7 @@ print((memory("VmHWM") - before) / size)
 
 
 def growth(arrays, call):
-    """Of the memory of a process, as a part of the arrays' size."""
+    """The growth of a process's memory during a call, as a fraction of the arrays' size."""
     program = arrays + GROWTH.replace("CALL", call)
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, env=environment)
@@ -72,7 +72,7 @@ def growth(arrays, call):
 )
 def test_the_process_does_not_grow_by_a_copy(arrays, call):
     found = growth(arrays, call)
-    # of the same numbers, which do not stand side by side, a copy is made
+    # the same numbers in a strided array are copied
     copied = growth(arrays, call.replace("neighbours", "apart").replace("cells", "apart"))
     assert found < copied - 0.7
     assert found < 0.05 or "'original', symmetric" not in call

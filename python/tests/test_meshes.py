@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Meshes as arrays, as files and as meshio's, by what meshio reads."""
+"""Meshes as arrays, as files and as meshio's objects, checked by meshio."""
 
 import gzip
 import pathlib

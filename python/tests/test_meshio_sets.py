@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What meshio's readers put into a mesh besides points, cells and data keeps its meaning in a new order."""
+"""The sets and other content that meshio's readers add to points, cells and data keep their meaning in a new order."""
 
 import io
 
@@ -128,7 +128,7 @@ def test_sets_hold_the_same_cells_after_reordering(tmp_path, name):
         corners = (mesh.points[np.sort(mesh.point_sets[key])] for mesh in (before, moved))
         old, new = (rows[np.lexsort(rows.T)] for rows in corners)
         np.testing.assert_array_equal(old, new)
-    # what looks at a mesh reads its sets, too
+    # make_mesh and advise read the sets, too
     assert meshorder.make_mesh(given).cells
     meshorder.advise(given, machine="zen3")
 

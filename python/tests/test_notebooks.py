@@ -1,7 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Runs the notebooks of examples/notebooks from the first cell to the last.
 
-They are stored with what they printed when they were last run:
+They are stored with the output of their last run:
 
     jupyter execute --inplace --NotebookClient.record_timing=False examples/notebooks/*.ipynb
 """

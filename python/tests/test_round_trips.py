@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Random meshes through files: what comes back is what went in, or the writer said what it left out.
+"""Random meshes through files: they come back unchanged, or a note of the writer names what it left out.
 
 HYPOTHESIS_PROFILE=default tries other examples; the marker `long` tries more of them.
 """
@@ -33,7 +33,7 @@ thoroughly = settings(quickly, max_examples=1000)
 
 
 def through(mesh, *formats):
-    """The mesh after a file of each format, or None where one refuses it. Fails for a loss that no note names."""
+    """Passes the mesh through a file of each format. Returns None if a format refuses it; fails if a loss has no note."""
     with tempfile.TemporaryDirectory() as folder:
         for k, name in enumerate(formats):
             made = round_trip.hop(mesh, Path(folder) / f"{k}{SUFFIXES[name]}")

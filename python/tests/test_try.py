@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What orders are worth to a function of the caller's: synthetic times, results, and bad arguments."""
+"""`try_orders`, which times orders by a function of the caller: synthetic times, results, and bad arguments."""
 
 import itertools
 import json
@@ -20,7 +20,7 @@ def mean_span(matrix):
 
 
 class Solver:
-    """Returns the seconds that it claims: fewer in a good order, and varying by so much."""
+    """Returns invented seconds: fewer in a good order, with a relative spread."""
 
     def __init__(self, gain, spread=0.01, limit=500):
         self.gain = gain

@@ -255,7 +255,7 @@ static void test_reorderer(void) {
         MO_INVALID_ARGUMENT);
 }
 
-/* An address between those that an array can have. */
+/* A misaligned address. */
 static void test_alignment(void) {
   static int32_t room[9];
   const mo_in offsets = {(const char*)room + 1, 3, MO_INT32};
@@ -520,7 +520,7 @@ static void test_own_methods(void) {
 
 typedef struct Reports {
   int count;
-  int good; /* all of them had a stage and a fraction in range */
+  int good; /* all had a stage and a fraction in range */
 } Reports;
 
 /* Stops at the second report. */

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Debian's Chromium without a window, and what a test asks of it."""
+"""Debian's headless Chromium, and the operations that tests need."""
 import base64
 import io
 import json
@@ -37,7 +37,7 @@ class Browser:
         self.driver = driver
 
     def resize(self, width, height, phone=False):
-        """The page's own width and height, which a window's frame does not touch."""
+        """Sets the width and height of the page itself, without a window's frame."""
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
             "width": width, "height": height, "deviceScaleFactor": 2 if phone else 1, "mobile": phone})
 
@@ -49,7 +49,7 @@ class Browser:
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": name})
 
     def open(self, path, tab=""):
-        """The page, from the start, when all its data are there."""
+        """Loads the page afresh, and waits until it is complete."""
         self.driver.get("about:blank")
         self.driver.get(path.resolve().as_uri() + (f"#{tab}" if tab else ""))
 
@@ -71,14 +71,14 @@ class Browser:
         return done
 
     def tab(self, name):
-        """Shows a part by a click on its tab, and waits for what moves in it."""
+        """Clicks on a tab, and waits until its canvases are drawn."""
         self.run("document.getElementById('tab-' + arguments[0]).click()", name)
         if name in ("meshes", "motion", "spans"):
             self.wait("[...document.querySelectorAll('#' + parameters[0] + ' canvas')].some((one) => one.width !== 300)", name)
             self.settle()
 
     def settle(self):
-        """Waits for two pictures of the browser's, so that what was asked for is drawn."""
+        """Waits for two animation frames; pending changes are drawn then."""
         self.driver.execute_async_script(
             "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 0)));")
 
@@ -98,7 +98,7 @@ class Browser:
         return numpy.frombuffer(base64.b64decode(text), dtype=numpy.uint8).reshape(height, width, 4)
 
     def picture(self, path, whole=False):
-        """A PNG of what is in sight, or of the whole page."""
+        """Writes a PNG of the visible part, or of the whole page."""
         self.settle()
         shot = self.driver.execute_cdp_cmd("Page.captureScreenshot", {"format": "png", "captureBeyondViewport": whole})
         path.write_bytes(base64.b64decode(shot["data"]))
@@ -108,12 +108,12 @@ class Browser:
         return base64.b64decode(printed["data"])
 
     def complaints(self):
-        """What the console said since the last time."""
-        # reading pixels is slow without a GPU, which is what the tests are for
+        """The console's messages since the last call."""
+        # the browser warns that reading pixels is slow; the tests have to read them
         return [entry["message"] for entry in self.driver.get_log("browser") if "GPU stall" not in entry["message"]]
 
     def requests(self):
-        """Addresses that the page asked for since the last time; neither those of data in the page nor of the browser's own."""
+        """Addresses requested since the last call, without data in the page and without the browser's own pages."""
         messages = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
         asked = [message["params"]["request"]["url"] for message in messages
                  if message["method"] == "Network.requestWillBeSent"]

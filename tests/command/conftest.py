@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The built command, run as a user runs it. MESHORDER names it; without, build/bin/meshorder is taken."""
+"""Runs the built command as a user does. MESHORDER names it; the default is build/bin/meshorder."""
 import json
 import os
 import pathlib
@@ -9,7 +9,7 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MESHORDER = os.environ.get("MESHORDER", str(ROOT / "build" / "bin" / "meshorder"))
-# what is predicted is the same on every machine, and none is measured first
+# the same predictions on every machine, and no measurement before them
 os.environ["MESHORDER_MACHINE"] = "zen3"
 SHARED = ROOT.parent / "shared" / "meshes"
 
@@ -33,7 +33,7 @@ class Command:
         return json.loads(self.ok(*arguments, "--json").stdout)
 
     def fails(self, *arguments, status=2):
-        """Runs what must fail, and returns the one line that says why."""
+        """Runs a command that must fail, and returns its one line of error."""
         done = self.run(*arguments)
         assert done.returncode == status, done.stderr
         lines = done.stderr.strip().splitlines()

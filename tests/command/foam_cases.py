@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""OpenFOAM cases: a mesh in text written without OpenFOAM, what OpenFOAM's solver needs, and its files read back."""
+"""OpenFOAM cases: writes a mesh as text without OpenFOAM, writes the solver's settings, and reads the files back."""
 import os
 import pathlib
 import re
@@ -22,8 +22,8 @@ def text_list(rows):
 
 
 def block(nx, ny, nz):
-    """Points, faces, owners and neighbours of a block of cubes that shrink along each axis, by no common factor; its
-    cells are numbered with x first and its faces in OpenFOAM's order."""
+    """Points, faces, owners and neighbours of a block of boxes, whose sizes change along each axis at another rate. Cells
+    are numbered with x fastest, faces in OpenFOAM's order."""
     sizes = nx, ny, nz
     axes = [numpy.linspace(0, 1, n + 1) ** (1.2 + 0.3 * a) for a, n in enumerate(sizes)]
     points = [(x, y, z) for z in axes[2] for y in axes[1] for x in axes[0]]

@@ -1,6 +1,6 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Writes a MED file with everything that a mesh can have, by MED's own library. A program of its own: the library brings an
-HDF5 of its own, too.
+"""Writes a MED file with everything that a mesh can have, by MED's own library. It is a separate program because the library
+brings its own HDF5.
 
     python3 med_by_library.py OUT.med [SEED]
 """

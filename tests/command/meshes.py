@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Small meshes as text, and what the tests compute on their own, without meshorder's code."""
+"""Small meshes as text, and computations of the tests without meshorder's code."""
 import numpy
 import scipy.sparse
 import scipy.sparse.linalg

@@ -12,5 +12,5 @@ def read_schema(path):
 
 
 def faults(value, schema):
-    """What the schema refuses of a value, a line each."""
+    """The violations of the schema by a value, a line each."""
     return [f"{error.json_path}: {error.message}" for error in jsonschema.Draft202012Validator(schema).iter_errors(value)]

@@ -16,7 +16,7 @@ EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 
 
 def bar(kind, size=(6, 2, 2)):
-    """Nodes as points on a lattice of even coordinates, with odd ones between them, and the elements."""
+    """The nodes and the elements of a bar: corners have even lattice coordinates, mid-nodes odd ones."""
     nodes, elements = {}, []
 
     def number(point):
@@ -36,7 +36,7 @@ def bar(kind, size=(6, 2, 2)):
 
 
 def cantilever(kind):
-    """A deck whose numbers are in a random order, with each kind of reference to them, and its length."""
+    """A deck with random numbering and each kind of reference to the numbers, and the cantilever's length."""
     nodes, elements = bar(kind)
     random = numpy.random.default_rng(5)
     new = random.permutation(len(nodes)) + 1
@@ -96,7 +96,7 @@ def test_calculix_finds_the_same_displacements(command, tmp_path, kind, ids):
     assert max(abs(x) for u in before.values() for x in u) > 1e-3
     for one, other in zip(totals, new_totals, strict=True):
         assert one == pytest.approx(other, rel=1e-4, abs=1e-6)
-    # judged by numbers alone, the two are not the same: the nodes have moved
+    # node by node the values differ: the nodes have moved
     assert (new is None) or any(before[n] != pytest.approx(after[n], rel=1e-3) for n in before)
 
 
@@ -126,7 +126,7 @@ def test_the_rest_of_a_deck_stays(command, tmp_path):
     assert after.endswith(rest) and after.startswith(deck[:deck.index("     1, ")])
     mesh_of = {name: meshio.read(tmp_path / name) for name in ("a.inp", "b.inp")}
     assert not numpy.array_equal(mesh_of["a.inp"].points, mesh_of["b.inp"].points)
-    # back again: all but the range, which is a list since it was none
+    # back again: all is restored except the range, which stays a list
     command.ok("order", tmp_path / "a.inp", "-o", tmp_path / "same.inp", "--vertices", "original", "--elements",
                "original")
     command.ok("order", tmp_path / "a.inp", "-o", tmp_path / "c.inp", "--vertices", "rcm", "--maps", tmp_path / "p")

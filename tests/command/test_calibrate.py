@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""`meshorder calibrate`, and what commands do with the machine that it has measured."""
+"""`meshorder calibrate`, and commands that use its measurement of the machine."""
 import json
 import os
 
@@ -12,7 +12,7 @@ KEYS = ["schema", "processor", "build", "date", "machine", "caches", "memory_nan
 
 @pytest.fixture
 def here(command, monkeypatch):
-    """The command without a machine that it is told to predict for, and with a cache folder of its own."""
+    """The command without MESHORDER_MACHINE, and with its own cache folder."""
     monkeypatch.delenv("MESHORDER_MACHINE")
     monkeypatch.setenv("MESHORDER_CACHE", str(command.folder / "cache"))
     monkeypatch.setenv("MESHORDER_CALIBRATION_SECONDS", "0.1")
@@ -24,7 +24,7 @@ def here(command, monkeypatch):
 
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory):
-    """A calibration of this machine, made once: what `calibrate --json` printed, and its file's name."""
+    """A calibration of this machine, made once: the output of `calibrate --json`, which names its file."""
     folder = tmp_path_factory.mktemp("calibration")
     environment = {**os.environ, "MESHORDER_CACHE": str(folder)}
     from conftest import Command
@@ -37,7 +37,7 @@ def measured(tmp_path_factory):
 
 @pytest.fixture
 def stored(here, measured):
-    """The file of a calibration that is there already, dated to tell it from one made now."""
+    """The file of an existing calibration; its date distinguishes it from one made now."""
     file = here.folder / "cache" / "calibrations" / os.path.basename(measured["file"])
     file.parent.mkdir(parents=True)
     content = {key: value for key, value in measured.items() if key not in ("file", "version", "notes")}

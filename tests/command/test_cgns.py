@@ -18,7 +18,7 @@ needs_tools = pytest.mark.skipif(shutil.which("cgnscheck") is None, reason="no c
 
 
 def box(n, seed, at=0.0):
-    """A cube of tetrahedra and the triangles of its lower face, their points in an order by chance."""
+    """A cube of tetrahedra and the triangles of its lower face, with points in random order."""
     axis = numpy.arange(n + 1)
     z, y, x = numpy.meshgrid(axis, axis, axis, indexing="ij")
     points = numpy.stack([x + at, y, z], -1).reshape(-1, 3).astype(float)
@@ -114,7 +114,7 @@ def children(node, wanted):
 
 
 class Zone:
-    """What a zone says, with points and cells in place of their numbers."""
+    """The content of a zone, with points and cells instead of their numbers."""
 
     def __init__(self, node):
         self.node = node
@@ -193,7 +193,7 @@ class Zone:
 
 
 def content(path):
-    """Everything that a file says, by the nodes' names, and the bytes of all nodes that name no points or cells."""
+    """The content of a file by node name, and the bytes of all nodes that refer to no points or cells."""
     with h5py.File(path) as file:
         zones = {zone.name: Zone(zone) for base in children(file, "CGNSBase_t") for zone in children(base, "Zone_t")}
         result = {}
@@ -230,7 +230,7 @@ def numbers(path, zone="/Base/A"):
 
 
 def write_rich(path, whole="int32", offsets=False, real="float64"):
-    """Two zones with conditions, solutions, parents of faces and a connectivity: one of sections, one mixed."""
+    """Two zones with conditions, solutions, parents of faces and a connectivity; one has sections by type, one is mixed."""
     points, tetrahedra, triangles = box(3, 1)
     others, more, faces = box(2, 2, at=3.0)
     with new_file(path, 4.0 if offsets else 3.3) as file:
@@ -291,12 +291,12 @@ def write_rich(path, whole="int32", offsets=False, real="float64"):
 
 
 def keep(command, source, target, *options):
-    """Writes a file again, or in another format, with vertices and cells where they are."""
+    """Writes a file again, or in another format, in the same order."""
     return command.ok("order", source, "-o", target, "--vertices", "original", "--elements", "original", *options)
 
 
 def checked(folder, name):
-    """What cgnscheck says of a file, which must be no error."""
+    """The output of cgnscheck for a file, in which it must find no error."""
     done = subprocess.run(["cgnscheck", name], cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0 and "ERROR" not in done.stdout + done.stderr, done.stdout + done.stderr
     return done.stdout

@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-# the faces of cells in VTK's order, with normals outward; of wedges, the first triangle of which faces inward
+# the faces of cells in VTK's order, with outward normals; wedges are those whose first triangle faces inward
 FACES = {
     4: ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)),
     5: ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
@@ -24,7 +24,7 @@ VTK_TYPES = {10: 4, 14: 5, 13: 6, 12: 8}
 
 
 def mixed(n, seed, at=0.0):
-    """Hexahedra with pyramids above, and beside them wedges and tetrahedra; points and cells in an order by chance."""
+    """Hexahedra with pyramids above, and beside them wedges and tetrahedra; points and cells in random order."""
     chance = numpy.random.default_rng(seed)
     points = {}
     cells = []
@@ -55,7 +55,7 @@ def mixed(n, seed, at=0.0):
 
 
 def voronoi(count, seed, at=0.0):
-    """The cells of points by chance in a cube: points, for each cell its corners, faces, and their cells with signs."""
+    """The Voronoi cells of random sites in a cube: points, corners of each cell, faces, and signed cells of each face."""
     chance = numpy.random.default_rng(seed)
     sites = chance.random((count, 3))
     images = [sites]
@@ -88,7 +88,7 @@ def voronoi(count, seed, at=0.0):
 
 
 def faces_of_cells(cells, chance):
-    """The faces of standard cells, turned by chance, and for each face its cells with signs."""
+    """The faces of standard cells, in random rotations, and the signed cells of each face."""
     known, faces, users = {}, [], []
     for number, cell in enumerate(cells):
         for face in FACES[len(cell)]:
@@ -106,7 +106,7 @@ def faces_of_cells(cells, chance):
 
 
 def polyhedra(faces, users, chance, signs=True):
-    """The faces, those of the boundary last, their cells, and for each cell its faces, signed, in an order by chance."""
+    """The faces, with the boundary's last, their cells, and the signed faces of each cell; all in random order."""
     inner = [k for k in chance.permutation(len(faces)) if len(users[k]) == 2]
     outer = [k for k in chance.permutation(len(faces)) if len(users[k]) == 1]
     outer.sort(key=lambda k: len(faces[k]))
@@ -135,7 +135,7 @@ def put_rows(zone, name, kind, first, rows, offsets, whole="int32", shift=0):
 
 def write_zone(base, name, n, seed, offsets=True, whole="int32", at=0.0, signs=1, parents="elements", cells_first=False,
                general=False):
-    """`general`: n³ cells of Voronoi's, else such as are standard cells."""
+    """`general`: n³ Voronoi cells, else polyhedra that have the shapes of standard cells."""
     chance = numpy.random.default_rng(seed)
     if general:
         points, cells, faces, users = voronoi(n**3, seed, at)
@@ -189,13 +189,13 @@ def rows_of(section):
 
 
 def turned(corners):
-    """The corners of a face from the lowest one on."""
+    """The corners of a face, rotated to begin with the lowest one."""
     low = corners.index(min(corners))
     return tuple(corners[low:] + corners[:low])
 
 
 class PolyhedralZone:
-    """What a zone says, with points and polygons in place of their numbers."""
+    """The content of a zone, with points and polygons instead of their numbers."""
 
     def __init__(self, node):
         self.node = node
@@ -283,7 +283,7 @@ def face(cell, k):
 
 
 def cells_in_vtu(path):
-    """The cells of a .vtu file: by type, how many, the least volume by VTK's faces, and the values at centres."""
+    """By type of cells in a .vtu file, their number and least volume by VTK's faces; and whether values fit the centres."""
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
     reader.Update()
@@ -447,7 +447,7 @@ def test_old_places_of_cells_and_faces_are_attached(command, tmp_path):
     original = reader.GetOutput().GetCellData().GetArray("original")
     count = len(cells) + len(faces) - inner
     assert sorted(original.GetTuple1(c) for c in range(original.GetNumberOfTuples())) == list(range(count))
-    # values for a part of the polygons have no cells that they belong to
+    # fewer values than polygons cannot be assigned to cells
     with h5py.File(tmp_path / "b.cgns", "r+") as file:
         reshape("faces/CellValues/original", lambda values: values[1:])(file)
     assert "is kept as it is" in keep(command, "b.cgns", "d.cgns").stderr
@@ -510,7 +510,7 @@ def reshape(path, change):
 
 
 def open_cell(file):
-    """A polyhedron names a face of the boundary twice, the second time in place of another face."""
+    """Makes a polyhedron list a boundary face twice, the second time instead of another face."""
     rows = rows_of(file["Base/A/cells"])[1]
     used = [abs(number) for row in rows for number in row]
     cell = next(k for k, row in enumerate(rows) if used.count(abs(row[0])) == 1)
@@ -577,7 +577,7 @@ def rows_of_first(path):
 
 
 def write_pair(path):
-    """A cube of which one face is cut in two, and a cube above it."""
+    """A cube with one face cut in two, and a cube above it."""
     points = numpy.array([[x, y, z] for z in (0, 1, 2) for y in (0, 1) for x in (0, 1)], float)
     cube = [[0, 2, 3, 1], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]]
     upper = [[4, 5, 9, 8], [5, 7, 11, 9], [7, 6, 10, 11], [6, 4, 8, 10], [8, 9, 11, 10]]

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The memory that files take which claim more than they hold, against the limit that docs/limits.md promises."""
+"""The memory that the command uses for files that claim more data than they hold, and the limit in docs/limits.md."""
 import gzip
 import os
 import struct
@@ -25,14 +25,14 @@ def array(kind, name, text, components=1):
 
 
 def one_cell(vtk_type, count):
-    """A VTU file of one cell of so many vertices."""
+    """A VTU file of one cell of `count` vertices."""
     cells = (array("Int32", "connectivity", " ".join(map(str, range(count)))) + array("Int32", "offsets", count)
              + array("UInt8", "types", vtk_type))
     return VTU.format("", count, 1, "", array("Float32", "p", "0 1 0 " * count, 3), cells, "").encode()
 
 
 def compressed_arrays():
-    """Points that are 16 million zeros, 30 of them kept as data, all in one block of bytes."""
+    """Points and 30 data arrays that share one compressed block, of 48 MiB of zeros."""
     size = 48 * MEBIBYTE
     packed = zlib.compress(bytes(size), 9)
     block = struct.pack("<4Q", 1, size, 0, len(packed)) + packed
@@ -73,7 +73,7 @@ FILES = {
 
 
 def check(folder, name):
-    """Runs the commands on a file and returns their status; fails where one takes more than is promised."""
+    """Runs two commands on a file and returns their statuses; fails if one uses more memory than the limit."""
     limit = 256 * MEBIBYTE + 100 * sum(path.stat().st_size for path in folder.iterdir())
     statuses = []
     for arguments in (("info", name, "-q"), ("order", name, "-o", "out.vtu", "--vertices", "hilbert", "-q")):
@@ -89,7 +89,7 @@ def test_what_a_file_claims_stays_within_the_limit(tmp_path, name):
     (tmp_path / name).write_bytes(FILES[name]())
     statuses = check(tmp_path, name)
     if name in ("one-set.inp", "set-of-sets.inp", "polygon.off", "polyline.vtu", "strip.vtu", "cloud.vtu"):
-        assert statuses == [0, 0]  # these need no more than they hold
+        assert statuses == [0, 0]  # the limit suffices for these
 
 
 @pytest.mark.parametrize("extension", ["vtkhdf", "med", "cgns", "xdmf"])

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""How the command speaks: help, JSON keys, exit codes, one line for an error and nothing left behind."""
+"""The command's interface: help, JSON keys, exit codes, one line for an error, and no leftover files."""
 import json
 import os
 import re
@@ -200,7 +200,7 @@ def test_the_line_that_compare_proposes_makes_the_order_that_it_names(command):
     spans = {method["vertices"]: method["edge_span"] for method in
              command.json("compare", "scrambled.node", "--methods", "hilbert,rcm", "--budget", "0.1")["methods"]}
     answer, proposed = command.ok("compare", "scrambled.node", "--methods", "hilbert,rcm").stdout.splitlines()[:2]
-    if " faster in " in answer:  # on a machine that is too busy the times may say otherwise
+    if " faster in " in answer:  # on a busy machine no order may be faster
         order = re.search(" faster in (hilbert|rcm) than in the file's own order", answer)[1]
         command.ok(*proposed.removeprefix("to order it: meshorder ").split())
         assert command.json("info", "ordered-scrambled.node", "--predict", "--machine", "zen3")["edge_span"] == spans[order]
@@ -310,7 +310,7 @@ def test_a_full_disk_is_an_error_and_leaves_nothing(command, tmp_path, extension
     def small_files_only():
         resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
 
-    # Python ignores the signal that a write over the limit raises; kept so, the write fails as on a full disk
+    # Python ignores SIGXFSZ, which a write over the limit raises; the child inherits this, and the write fails
     done = command.run("order", made, "-o", f"out.{extension}", preexec_fn=small_files_only, restore_signals=False)
     assert done.returncode == 2, done.stderr
     assert f"out.{extension.replace('node', '')}" in done.stderr

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What the command says, where, and with which status: warnings, --quiet, faults of usage, a full disk."""
+"""Messages of the command, their streams and exit statuses: warnings, --quiet, wrong usage, a full disk."""
 import json
 import os
 import re
@@ -23,7 +23,7 @@ def run_into(arguments, stdout, folder, **options):
 
 @pytest.fixture
 def mesh(tmp_path):
-    """A mesh with attributes of its points, which .veg has no place for: its conversion warns."""
+    """A mesh with attributes of its points. .veg cannot hold them, and the conversion to it warns."""
     return meshes.write_tetgen(tmp_path).name
 
 
@@ -39,12 +39,12 @@ def test_a_full_disk_behind_stdout_is_an_error(tmp_path, mesh, line):
 
 
 def closes(stream):
-    """What a shell does for >&- (1) and 2>&- (2)."""
+    """Closes a stream, as a shell does for >&- (1) and 2>&- (2)."""
     return lambda: os.close(stream)
 
 
 def test_closed_streams_are_not_written_into_files(tmp_path, mesh):
-    """Without a stream's number, the next file that is opened would get it, and what is printed."""
+    """The next file that is opened would get the number of a closed stream, and the printed text with it."""
     def order(*arguments, **options):
         return subprocess.run([conftest.MESHORDER, "order", mesh, *arguments], cwd=tmp_path, check=False, text=True,
                               capture_output=True, **options)
@@ -223,12 +223,12 @@ def test_tables_fit_100_columns(command, arguments):
 
 
 def three_digits(number):
-    """The number as tables show it."""
+    """The number in the format of tables."""
     return str(number) if number < 1000 else f"{number / 1000:.3g}k"
 
 
 def test_tables_for_people_are_those_of_json(command):
-    """Every kernel's predicted misses stand in its own columns."""
+    """The predicted misses of each kernel are in its own columns."""
     made = command.json(*GRID)["models"][0]["path"]
     arguments = ["compare", made, "--methods", "rcm", "--cache", "4K,64K", "--budget", "0.1"]
     reuse = command.json(*arguments)["methods"][1]["reuse"]

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The examples of the documentation do what it says, and its figures are those of its data."""
+"""The documentation's examples work as described, and its figures agree with its data."""
 import json
 import re
 import shlex
@@ -31,7 +31,7 @@ def test_dofs_in_python(command, tmp_path, monkeypatch):
     new_points, new_cells = meshes.read_tetgen(tmp_path / "ordered.node")
 
     def stiffness(of_points, of_cells):
-        """Some matrix of three dofs a vertex that depends on nothing but the mesh."""
+        """A matrix with three degrees of freedom per vertex that depends only on the mesh."""
         graph = meshes.adjacency(len(of_points), of_cells)
         return scipy.sparse.kron(graph + scipy.sparse.diags(of_points[:, 0]), numpy.arange(9).reshape(3, 3) + 1).tocsr()
 
@@ -97,7 +97,7 @@ def test_simulations(command, tmp_path):
                                              ("zen4-short.json", "zen4-short-tables.md"),
                                              ("300k.json", "300k-tables.md"), ("2m.json", "2m-tables.md")])
 def test_the_reproduction_is_what_its_results_say(command, tmp_path, results, tables):
-    """The committed tables are those that the command makes of the committed results."""
+    """The command makes the committed tables from the committed results."""
     committed = conftest.ROOT / "docs" / "reproduction"
     (tmp_path / "results.json").write_bytes((committed / results).read_bytes())
     command.ok("report", ".")
@@ -128,7 +128,7 @@ def test_the_two_studies_compare_as_committed(command, tmp_path, monkeypatch):
 
 
 def test_each_page_is_in_the_contents():
-    """As the manual's builder demands, which is reached an hour later."""
+    """The builder of the manual requires this, but CI reaches it an hour later."""
     docs = conftest.ROOT / "docs"
     pages = {page.relative_to(docs).with_suffix("").as_posix() for page in docs.rglob("*.md")} - {"index"}
     listed = set()

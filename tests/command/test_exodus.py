@@ -41,7 +41,7 @@ def blocks_of_lattice(n, cubes):
 
 
 def write_all(path, kind="NETCDF3_64BIT_OFFSET", n=3, steps=3, real="f8"):
-    """Writes a file with everything that a format has a place for."""
+    """Writes a file with everything that the format can hold."""
     rng = numpy.random.default_rng(5)
     points, cubes = lattice(n)
     blocks = blocks_of_lattice(n, cubes)
@@ -170,7 +170,7 @@ def text_rows(variable):
 
 
 def content(path):
-    """All that a file says, whatever the order of nodes and elements: these are named by their coordinates."""
+    """The content of a file, independent of the order of nodes and elements: their coordinates identify them."""
     with netCDF4.Dataset(path) as f:
         f.set_auto_mask(False)
         v = f.variables
@@ -393,7 +393,7 @@ def test_side_sets_go_through_vtu(command, tmp_path):
 
 
 def nodes_of_sides(dimension):
-    """Returns the numbers of nodes of an element and of its sides by type, as ex_get_side_set_node_count tells them."""
+    """Returns by type the numbers of nodes of an element and of its sides, as ex_get_side_set_node_count gives them."""
     found = {"QUAD4": (4, [2] * 4), "SHELL4": (4, [4, 4, 2, 2, 2, 2]), "QUAD8": (8, [3] * 4), "SHELL9": (9, [9, 9, 3, 3, 3, 3]),
              "TRI3": (3, [2] * 3)}
     if dimension == 3:
@@ -504,7 +504,7 @@ def test_what_is_not_understood_is_left_out_with_a_note(command, tmp_path):
 
 
 def write_pair(path, kind="NETCDF3_64BIT_OFFSET", steps=2):
-    """Writes a file of six nodes and two blocks of two triangles, with a node set and a side set; it is left open."""
+    """Writes a file of six nodes and two blocks of two triangles, with a node set and a side set. Returns it open."""
     f = netCDF4.Dataset(path, "w", format=kind)
     f.set_auto_mask(False)
     points = numpy.array([(x, y, 0) for y in (0, 1) for x in (0, 1, 2)], float)
@@ -681,7 +681,7 @@ def test_nodes_are_in_the_order_of_the_manual(command, tmp_path, kind):
         connect.elem_type = {"line": "bar", "tria": "tri", "quad": "quad", "tetr": "Tetra", "pyra": "PYRAMID",
                              "wedg": "wedge", "hexa": "HEX"}[kind[:4]]
         connect[:] = [range(1, len(points) + 1)]
-    # in VTK's file the nodes between are where VTK's manual has them
+    # in VTK's file the nodes between corners are in the order of VTK's manual
     command.ok("order", "a.exo", "-o", "b.vtk")
     cell = only_cell_of_vtk((tmp_path / "b.vtk").read_bytes())
     assert (cell[:count] == corners).all()

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""`meshorder simulate` of water: what it says, frames, checkpoints, orders, and a program that is missing."""
+"""`meshorder simulate` of water: messages, frames, checkpoints, orders, and a missing program."""
 import json
 import os
 import shutil

@@ -41,7 +41,7 @@ def make(path, version, order, binary=0, parametric=0, partitions=0):
 
 
 def content(path):
-    """What Gmsh finds in a file: nodes and elements by the places of their nodes, with their groups and pairs."""
+    """Gmsh's view of a file: nodes and elements by the coordinates of their nodes, with groups and periodic pairs."""
     gmsh.clear()
     gmsh.open(str(path))
     mesh = gmsh.model.mesh

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What `info --gpu` and `compare --gpu-layout` count for graphics processors."""
+"""The counts of `info --gpu` and `compare --gpu-layout` for graphics processors."""
 import pytest
 
 import meshes

@@ -8,7 +8,7 @@ import meshes
 
 
 def runs(values):
-    """The values in the order in which they stand, each run once."""
+    """The value of each run of equal values, in order."""
     values = numpy.asarray(values)
     return values[numpy.insert(values[1:] != values[:-1], 0, True)].tolist()
 
@@ -59,7 +59,7 @@ def test_each_group_is_ordered_as_it_is_alone(command, tmp_path):
     command.ok("order", "layers.vtu", "-o", "ordered.vtu", "--group-by", "tag", "--vertices", "hilbert")
     ordered = meshio.read(tmp_path / "ordered.vtu")
     at_vertices = smallest_at_vertices(len(points), ordered.cells[0].data, ordered.cell_data["tag"][0])
-    # the middle group touches no other's vertices that it does not own: its own mesh is a file of its own
+    # tag -4 is the smallest and owns all of its vertices: the group is ordered like a mesh of its own
     chosen = cells[tags == -4]
     names, local = numpy.unique(chosen, return_inverse=True)
     meshio.Mesh(points[names], [("tetra", local.reshape(chosen.shape))]).write(tmp_path / "part.vtu")

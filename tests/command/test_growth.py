@@ -1,8 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What may repeat in a file takes time in proportion.
+"""The time to read a file grows linearly with the number of items that may repeat in it.
 
-Four times as many take some four times as long. Where each of them is looked up among all others, it is sixteen times;
-the bound lies between. Times are those of the processor, less those of a file with few.
+Four times as many items take about four times as long; a search among all others for each would take sixteen times. The
+bound lies between. Times are processor times, less the time for a file with few items.
 """
 import resource
 import subprocess
@@ -95,7 +95,7 @@ def xdmf(more):
 ARRAY = '<DataArray type="Int32" Name="a%d" format="ascii">%s</DataArray>'
 ITEM = '<DataItem Dimensions="%d" NumberType="Int" Format="XML">%s</DataItem>'
 
-#: what repeats in a file, by the file's extension: the number of times, and the file
+#: by extension and repeated item: the number of repetitions, and the file with n of them
 REPEATED = {
     "msh data of one name": (4000, lambda n: msh2(
         '$NodeData\n1\n"v"\n1\n0\n3\n0\n1\n1\n1 1\n$EndNodeData\n' * n)),
@@ -165,7 +165,7 @@ REPEATED = {
 
 
 def seconds(command, *arguments):
-    """The processor's time for a command, also for one that refuses the file."""
+    """The processor time of a command, even if it refuses the file."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run([MESHORDER, *arguments, "-q", "--threads", "1"], cwd=command.folder, capture_output=True,
                    stdin=subprocess.DEVNULL, check=False, timeout=300)

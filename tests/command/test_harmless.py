@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Files of strangers lead to no harm: reading changes nothing, and no output goes where a planted link leads."""
+"""Files by others do no harm: reading changes nothing, and no output follows a planted link."""
 import json
 import os
 import shutil
@@ -28,7 +28,7 @@ def mesh(tmp_path):
 
 @pytest.fixture
 def precious(tmp_path_factory):
-    """A folder of files that nobody has asked to be changed."""
+    """A folder of files that the command must not change."""
     folder = tmp_path_factory.mktemp("precious")
     for name in ("lock", "old", "new", "thesis.tex"):
         (folder / name).write_text("mine")
@@ -38,7 +38,7 @@ def precious(tmp_path_factory):
 
 
 def hash_of(name):
-    """As the names of hidden folders of an earlier version had it."""
+    """The hash in the names of hidden folders of an earlier version."""
     value = 0xCBF29CE484222325
     for word in (len(name), *name.encode()):
         value = (((value ^ word) * 0x100000001B3) % 2**64) ^ (value >> 32)
@@ -46,7 +46,7 @@ def hash_of(name):
 
 
 def plant(folder, names, precious):
-    """Hidden folders whose names are this program's, now or earlier, and which ask for harm."""
+    """Makes hidden folders with names that this or an earlier version uses, and with malicious content."""
     for name in names:
         left = folder / f".meshorder-{hash_of(name)}.set"
         left.mkdir()
@@ -93,7 +93,7 @@ def test_reading_changes_nothing(command, tmp_path, mesh, precious, name, monkey
 
 
 def test_writing_removes_no_files_of_others(command, tmp_path, mesh, precious):
-    """Nor does it wait at the pipe."""
+    """The command does not wait at the pipe either."""
     plant(tmp_path, ("mesh.node", "out.node"), precious)
     before = snapshot(tmp_path)
     command.ok("order", mesh, "-o", "out.node", "-q")
@@ -104,7 +104,7 @@ def test_writing_removes_no_files_of_others(command, tmp_path, mesh, precious):
     assert (tmp_path / ".meshorder-0123456789abcdef.new/thesis.tex").read_text() == "a stranger's"
 
 
-# a link, and the command whose output has that name though the user typed another one
+# a link, and a command that writes to its name although the user typed another name
 DERIVED = {
     "tetgen": ("out.ele", ("order", "mesh.node", "-o", "out.node")),
     "tetgen by its cells": ("out.node", ("order", "mesh.node", "-o", "out.ele")),
@@ -139,7 +139,7 @@ def test_links_are_not_followed_in_derived_names(command, tmp_path, mesh, precio
     assert f"{link}: {LINK}" in command.run(*arguments, "-q").stderr
     after = snapshot(tmp_path)
     changed = {path for path in set(before) | set(after) if before.get(path) != after.get(path)}
-    # of a simulation, the frames before that one; unfinished files were in the folders
+    # a simulation may have written frames before it met the link; folders changed as they held unfinished files
     assert not {path for path in changed if not path.startswith("frames") and not (tmp_path / path).is_dir()}
 
 
@@ -226,7 +226,7 @@ def test_a_calibration_is_written_through_no_link(command, tmp_path, precious, m
 @pytest.mark.parametrize("arguments", [["models"], ["order", "mesh.off", "--parts", "2"]])
 @pytest.mark.parametrize("has_proc", [True, False])
 def test_no_program_of_the_present_folder_is_executed(tmp_path, arguments, has_proc):
-    """Those that the command hands over to are beside it, not beside the user nor a link to it."""
+    """The command runs the programs beside its own file, not those in the current folder or beside a link to it."""
     for name in ("meshorder-lab", "meshorder-mpi"):
         planted = tmp_path / name
         planted.write_text("#!/bin/sh\necho planted\n")

@@ -28,7 +28,7 @@ def cells_in_gmsh(path, dimensions=(0, 1, 2, 3)):
 
 
 def vega(path):
-    """Points and tetrahedra of a Vega file, by its own words."""
+    """Points and tetrahedra of a Vega file, read word by word."""
     words = path.read_text().split()
     start = words.index("*VERTICES") + 1
     count = int(words[start])
@@ -65,7 +65,7 @@ def test_a_gmsh_mesh_with_faces_and_points_becomes_vega_and_its_maps_fit(command
     command.ok("apply", "m", "b.veg", "-o", "back.veg", "--inverse")
     assert numpy.array_equal(vega(tmp_path / "back.veg")[0], CORNERS)
     assert vega(tmp_path / "back.veg")[1].tolist() == [list(v) for d, v in cells if d == 3]
-    # maps of all cells leave no list of kept ones behind
+    # maps of all cells remove the list of kept ones
     command.ok("order", "a.msh", "-o", "b.msh", "--maps", "m")
     assert not (tmp_path / "m.cells.kept.npy").exists()
 
@@ -86,7 +86,7 @@ def test_a_physical_point_is_left_out(command, tmp_path, extension):
 
 
 def faces_of(path):
-    """Points and triangles of a file that has nothing else, by meshio; of PLY by its header, which some meshios misread."""
+    """Points and triangles of a file with nothing else, by meshio; PLY by its header, as some versions of meshio misread it."""
     if path.suffix != ".ply":
         read = meshio.read(path)
         assert [block.type for block in read.cells] == ["triangle"]

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What a file may take that claims more than it holds, which files it may name, and how long a byte may take."""
+"""Limits for input files: memory for files that claim more data than they hold, files they may name, and time per byte."""
 import contextlib
 import gzip
 import os
@@ -20,7 +20,7 @@ GIGABYTE = 1 << 30
 
 
 def run_within(gigabytes, folder, *arguments):
-    """Runs the command with that much address space, so that what it allocates beyond it fails."""
+    """Runs the command with a limit of its address space, beyond which allocations fail."""
     def limit():
         resource.setrlimit(resource.RLIMIT_AS, (gigabytes * GIGABYTE, gigabytes * GIGABYTE))
 
@@ -29,7 +29,7 @@ def run_within(gigabytes, folder, *arguments):
 
 
 def refused(folder, *arguments):
-    """The one line by which a file is refused before what it claims is allocated."""
+    """Returns the one line of error; the file must be refused before memory for its claims is allocated."""
     done = run_within(3, folder, *arguments)
     lines = done.stderr.strip().splitlines()
     assert done.returncode == 2 and len(lines) == 1 and done.stdout == "", done.stderr
@@ -49,7 +49,7 @@ def vtu(in_grid="", attributes="", appended=b""):
 
 
 def test_arrays_that_share_a_compressed_block(command, tmp_path):
-    """28 kB that want 12.8 GB."""
+    """A file of 28 kB that claims 12.8 GB."""
     size = 64 << 20
     block = zlib.compress(bytes(size), 9)
     arrays = "".join(f'<DataArray type="Int8" Name="f{k}" NumberOfTuples="{size}" format="appended" offset="0"/>\n'
@@ -110,7 +110,7 @@ def test_dimensions_of_netcdf(tmp_path):
 
 
 def test_cells_of_many_vertices(command, tmp_path):
-    """A graph that joins all vertices of a cell is as large as their number squared."""
+    """A graph that joins all vertices of a cell has about the square of their number of edges."""
     count = 20_000
     numbers = " ".join(map(str, range(count)))
     (tmp_path / "a.vtk").write_text(f"# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {count} float\n"
@@ -129,7 +129,7 @@ def test_cells_of_many_vertices(command, tmp_path):
 
 
 def test_a_polyline_joins_consecutive_points(command, tmp_path):
-    """Shuffled points of a line: each order that is better than the file's follows the line."""
+    """Shuffled points of a line: each good order follows the line."""
     order = list(range(600))
     random.Random(1).shuffle(order)
     points = "".join(f"{order.index(k)} 0 0\n" for k in range(600))
@@ -140,7 +140,7 @@ def test_a_polyline_joins_consecutive_points(command, tmp_path):
 
 
 def test_pipes_end_at_the_limit(command, tmp_path):
-    """A FIFO is read like a file; one that never ends is left."""
+    """A FIFO is read like a file; reading stops at the limit if it never ends."""
     pipe = tmp_path / "a.veg"
     os.mkfifo(pipe)
 
@@ -227,7 +227,7 @@ TRIANGLE = XDMF.format(3, "XML", "0 0 0 1 0 0 0 1 0", "|").split("|")
                             + "*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n*NSET,NSET=s,GENERATE\n", "1,1000000000,1\n")),
 ], ids=lambda value: value if len(value) < 20 else "")
 def test_repeated_names_take_linear_time(tmp_path, name, text):
-    """Each of these took a minute or more at 1 MB."""
+    """Each of these once took a minute or more at 1 MB."""
     (tmp_path / name).write_text(text)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     run_within(8, tmp_path, "info", name)
@@ -238,7 +238,7 @@ def test_repeated_names_take_linear_time(tmp_path, name, text):
 @pytest.mark.parametrize(("name", "sets"), [
     ("a.inp", 60_000), ("a.unv", 60_000), ("a.xdmf", 12_000), ("a.med", 12_000)])
 def test_many_sets_are_written_in_linear_time(tmp_path, name, sets):
-    """Each of these took 8 to 15 s but the last one, which took 3 GB."""
+    """Each of these once took 8 to 15 s, except the last one, which took 3 GB."""
     (tmp_path / "sets.inp").write_text(
         "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n"
         + "".join(f"*NSET,NSET=set_{k}\n1\n" for k in range(sets)))
@@ -251,7 +251,7 @@ def test_many_sets_are_written_in_linear_time(tmp_path, name, sets):
 
 @pytest.mark.parametrize("method", ["fiedler", "spectral", "minla", "rcm"])
 def test_a_vertex_with_a_million_neighbours(tmp_path, method):
-    """A fan of triangles, whose hub would fill matrices of the solver's coarser graphs."""
+    """A fan of triangles, whose hub could make the solver's coarser graphs dense."""
     count = 1_000_000
     rim = "".join(f"3 0 {k} {k + 1}\n" for k in range(1, count))
     points = "".join(f"{k} {k % 7} 0\n" for k in range(count + 1))

@@ -135,7 +135,7 @@ def test_the_old_order_is_restored(command, tmp_path, name, text, method):
         places = numpy.load(tmp_path / "m.vertices.old_to_new.npy")
         before, after = (scipy.io.mmread(tmp_path / file).tocsr() for file in (name, ordered))
         assert abs(after - moved(before, places)).nnz == 0
-        # the cells' map is that of the entries as the files have them
+        # the map of cells is that of the entries, in file order
         rows = [[line.split() for line in (tmp_path / file).read_text().splitlines()[2:]] for file in (name, ordered)]
         cells = numpy.load(tmp_path / "m.cells.new_to_old.npy")
         assert [row[2].lstrip("-") for row in rows[1]] == [rows[0][old][2].lstrip("-") for old in cells]

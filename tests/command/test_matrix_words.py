@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What `info`, `compare`, `order` and `report` say of matrices and graphs, and coordinates that are given beside them."""
+"""Messages of `info`, `compare`, `order` and `report` on matrices and graphs, also with coordinates in another file."""
 import json
 import random
 import struct
@@ -117,7 +117,7 @@ def test_a_general_matrix_is_not_made_symmetric_for_the_product(command, tmp_pat
     assert "not symmetric: orders use that of A + A'" in done.stdout
     assert "5 of 7 entries are missing" in done.stdout
     assert "2 components, 2 rows that no entry joins to others" in done.stdout
-    # the lines of 64 bytes that a product touches, a gathered one for each entry: starts, columns, values, y
+    # the lines of 64 bytes that a product touches: one gathered line per entry, and starts, columns, values, y
     accesses = command.json("info", "a.mtx")["reuse"]["spmv"]["accesses"]
     assert accesses == 7 + 1 + 1 + 1 + 1
     write_matrix(tmp_path / "b.mtx", 7, sorted(full(entries) | {(i, i) for i in range(7)}), "general")
@@ -261,7 +261,7 @@ def test_given_coordinates_are_used_and_named(command, cube, tmp_path):
     assert "\ncoordinates  in 3 dimensions\n" in command.ok("info", "a.mtx", "--points", "a.txt").stdout
     write_points(tmp_path / "flat.txt", [point[:2] for point in cube[1]])
     assert "\ncoordinates  in 2 dimensions\n" in command.ok("info", "a.graph", "--points", "flat.txt").stdout
-    # of a matrix that is no lattice, auto takes the order by coordinates
+    # for a matrix that is no lattice, auto orders by coordinates
     rows, chance = len(cube[1]), random.Random(5)
     places = sorted((chance.random(), chance.random(), i) for i in range(rows))
     entries = {(i, i) for i in range(rows)}

@@ -45,7 +45,7 @@ def families_of(file, mesh, kind):
 
 
 class Content:
-    """What a file says of vertices and cells, which go by their coordinates."""
+    """The content of a file on vertices and cells, which their coordinates identify."""
 
     def __init__(self, path):
         with h5py.File(path) as file:
@@ -73,7 +73,7 @@ class Content:
                     self.pairs[name, support] = [[keys[k - 1] for k in pair] for pair in group["COR"][()].reshape(-1, 2)]
 
     def keep(self, name, item):
-        """Attributes, and values of what does not belong to vertices and cells."""
+        """Keeps attributes, and the values of datasets that do not belong to vertices or cells."""
         if name.startswith("PROFILS/") or "/NOE" in name or "/MAI" in name:
             return
         attributes = {key: value if isinstance(value, (bytes, numpy.generic)) else list(value)
@@ -123,7 +123,7 @@ def test_all_that_a_file_of_the_library_has_moves_with_its_mesh(command, by_libr
     assert before.keys["NOE"] != after.keys["NOE"] and before.keys["TE4"] != after.keys["TE4"]
     assert len(before.fields) == 11 and len(before.pairs) == 2
     if ids == "keep":
-        # those without numbers have got theirs
+        # tetrahedra had no numbers and now have some
         after.items.pop(("TE4", "NUM"))
         return assert_same(after, before)
     assert_same(after, before, but_for=numbers_of(before))
@@ -204,7 +204,7 @@ def test_datasets_that_two_types_share_are_parted(command):
 
 
 def test_a_group_of_two_paths_is_written_to_by_one(command):
-    """The family zero, which is added to /FAS, must not come to be a type of cells."""
+    """The added family zero must go to /FAS only, not become a type of cells."""
     by_meshio(command.folder / "old.med")
 
     def share(file, mesh, step):
@@ -221,7 +221,7 @@ def test_a_group_of_two_paths_is_written_to_by_one(command):
 
 
 def test_numbers_of_families_that_are_not_there_stay(command):
-    """Those of cells should be negative, those of nodes positive."""
+    """Numbers of cells' families should be negative, of nodes' positive."""
     by_meshio(command.folder / "old.med")
     chance = numpy.random.default_rng(4)
 
@@ -270,7 +270,7 @@ def test_groups_become_sets_and_sets_groups(command):
 
     for group in ("steel", "skin"):
         assert members(new, group) == members(old, group) != set()
-    # the faces of a tetrahedron turn in MED's order
+    # tetrahedra have MED's orientation
     corners = new.points[next(block.data for block in new.cells if block.type == "tetra")]
     assert (numpy.linalg.det(corners[:, 1:] - corners[:, :1]) < 0).all()
 
@@ -355,7 +355,7 @@ def test_other_groups_and_other_meshes_stay(command):
 
 @pytest.mark.parametrize("signature", ["SNOD", "HEAP", "TREE"])
 def test_no_group_that_cannot_be_read_is_taken_for_an_absent_one(command, signature):
-    """What lists the entries of a group, and their names, is damaged in one group after another."""
+    """Damages the list of entries, or of their names, in one group after another."""
     by_meshio(command.folder / "a.med")
     whole = (command.folder / "a.med").read_bytes()
     keep = ("--vertices", "original", "--elements", "original")
@@ -372,7 +372,7 @@ def test_damaged_files_never_crash(command, by_library):
     small = command.folder / "small.med"
     by_meshio(small)
     chance = numpy.random.default_rng(7)
-    # libhdf5 asks for as much memory as a damaged file claims, and loses some when it gives up
+    # libhdf5 allocates as much memory as a damaged file claims, and leaks some after an error
     settings = os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0:allocator_may_return_null=1"
     environment = {**os.environ, "ASAN_OPTIONS": settings}
     for path in (small, by_library):

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Each subcommand once under valgrind's memcheck: nothing depends on memory that was never written, and no block is left."""
+"""Each subcommand once under valgrind's memcheck: no use of uninitialized memory, and no leaks."""
 import shutil
 import subprocess
 
@@ -15,11 +15,11 @@ SMALL = ["--mesh", "grid-2", "--steps", "2"]
 
 
 class Watched(conftest.Command):
-    """Runs the command, and what it starts, under memcheck."""
+    """Runs the command and its child processes under memcheck."""
 
     def run(self, *arguments, **options):
-        # the command has an operator new and delete of its own, of which valgrind takes the place of one alone where the
-        # compiler has put the other into its callers
+        # the command defines operator new and delete; where the compiler inlines one of them, valgrind replaces only
+        # the other and would report a mismatch
         watched = ["valgrind", "--quiet", f"--error-exitcode={FOUND}", "--track-origins=yes", "--show-mismatched-frees=no",
                    "--trace-children=yes", "--trace-children-skip=*/gnuplot*", conftest.MESHORDER]
         return subprocess.run([*watched, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
@@ -49,7 +49,7 @@ def test_subcommand(watched, arguments):
 
 @pytest.mark.parametrize("suffix", [".msh", ".vtu", ".vtk", ".mesh", ".node", ".veg", ".inp", ".bdf", ".unv", ".su2"])
 def test_order_and_apply(watched, suffix):
-    """Formats of libraries of others are left out: HDF5 writes bytes of its own that were never set."""
+    """Formats that need third-party libraries are left out: HDF5 writes uninitialized bytes."""
     watched.ok("order", "mesh.node", "-o", f"ordered{suffix}", "--maps", "maps")
     watched.ok("apply", "maps", f"ordered{suffix}", "-o", f"back{suffix}", "--inverse")
 

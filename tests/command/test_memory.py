@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The memory that reading and writing a mesh takes, beside the size of its file."""
+"""The memory for reading and writing a mesh, relative to the size of its file."""
 import os
 import subprocess
 import sys
@@ -9,18 +9,18 @@ import pytest
 from conftest import MESHORDER
 from test_cgns import box
 
-# peak memory over that of a mesh of few cells, in sizes of the file
+# peak memory less that of a mesh of few cells, divided by the size of the file
 MOST = {"cgns": 6.0, "med": 6.0, "vtkhdf": 6.0, "xdmf": 5.0, "exo": 5.0, "vtu": 5.0, "su2": 5.0, "inp": 4.0, "bdf": 5.0, "unv": 3.0}
 
 
-# in a small process: the peak that the system gives includes that of the process which started another
+# a small process starts the command: the system's figure of a child's peak includes that of its parent at the start
 RUNNER = """import os, sys
 _, status, usage = os.wait4(os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ), 0)
 print(status, usage.ru_maxrss)"""
 
 
 def peak_and_status(folder, *arguments):
-    """The exit status of a run of the command, the most memory in bytes that it has at a time, and its errors."""
+    """The exit status of a run of the command, its peak memory in bytes, and its errors."""
     done = subprocess.run([sys.executable, "-S", "-c", RUNNER, MESHORDER, *map(str, arguments)], cwd=folder,
                           capture_output=True, text=True, check=True)
     status, most = map(int, done.stdout.split()[-2:])
@@ -28,7 +28,7 @@ def peak_and_status(folder, *arguments):
 
 
 def peak(*arguments):
-    """The most memory in bytes that a run of the command has at a time."""
+    """The peak memory of a run of the command, in bytes."""
     status, most, error = peak_and_status(None, *arguments)
     assert status == 0, error
     return most

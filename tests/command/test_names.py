@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Names of arrays, sets, files and scenarios that are no plain words: what files hold, what is printed."""
+"""Unusual names of arrays, sets, files and scenarios: in files and in printed text."""
 import fcntl
 import json
 import os
@@ -24,7 +24,7 @@ NAMES = {
     "latin1": "Stra%DFe",
     "markup": "<b>&amp;|`_*",
 }
-# what a terminal acts on, but for the end of a line
+# characters that a terminal acts on, except the end of a line
 ACTED_ON = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 
 
@@ -41,13 +41,13 @@ def mesh(tmp_path):
 
 
 def run_raw(folder, *arguments):
-    """Runs the command; what it prints stays bytes."""
+    """Runs the command; its output stays bytes."""
     return subprocess.run([conftest.MESHORDER, *arguments], cwd=folder, capture_output=True, check=False,
                           stdin=subprocess.DEVNULL, timeout=600)
 
 
 def shown(raw):
-    """The text that was printed, which must be UTF-8 and nothing that a terminal acts on."""
+    """The printed text, which must be UTF-8 without characters that a terminal acts on."""
     text = raw.decode()
     assert not ACTED_ON.search(text), text
     return text
@@ -135,7 +135,7 @@ def test_a_study_of_any_names_is_read_again(tmp_path, command):
     assert [mesh["name"] for mesh in results["meshes"]] == ["Stra\\xdfe <b>_x_"]
     assert run_raw(tmp_path, *arguments).returncode == 0  # resumed, with nothing left to do
     assert json.loads((tmp_path / "study" / "results.json").read_text()) == results
-    # a study of before, whose title is empty
+    # a study of an earlier version, with an empty title
     results["scenarios"][0]["title"] = ""
     (tmp_path / "study" / "results.json").write_text(json.dumps(results))
     command.ok("report", "study")

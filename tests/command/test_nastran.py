@@ -13,7 +13,7 @@ EDGES = {
     "tetra10": "01 12 02 03 13 23",
     "hexahedron20": "01 12 23 03 45 56 67 47 04 15 26 37",
 }
-# those of Nastran where it has another order: the edges from bottom to top before those of the top
+# Nastran's order where it differs: the edges from bottom to top come before those of the top
 NASTRAN = {
     "hexahedron20": "01 12 23 03 04 15 26 37 45 56 67 47",
 }
@@ -36,7 +36,7 @@ def edges(kind, order):
 
 
 def row_of(kind, order, count=5):
-    """Points and cells of a row of cells of second order, whose edges' nodes come in that order."""
+    """Points and cells of a row of cells of second order, with the nodes of edges in the given order."""
     number, points, cells = {}, [], []
 
     def node(point):
@@ -57,7 +57,7 @@ def cells_by_points(points, cells):
 
 
 def bulk(points, cards, elements):
-    """Bulk data in fields between commas, eight in each line."""
+    """Bulk data with comma-separated fields, eight per line."""
     lines = [f"GRID,{n},,{','.join(repr(float(x)) for x in point)}" for n, point in enumerate(points, 1)]
     for number, (card, cell) in enumerate(zip(cards, elements), 1):
         fields = [str(number), "3", *(str(node + 1) for node in cell)]
@@ -95,7 +95,7 @@ def test_nodes_of_edges_lie_on_them(command, tmp_path, kind):
 
 
 def lattice(n):
-    """A cube of hexahedra whose upper layer is split into wedges, as meshio has them."""
+    """A cube of hexahedra whose upper layer is split into wedges, in meshio's node order."""
     number = {p: k for k, p in enumerate(itertools.product(range(n + 1), repeat=3))}
     hexahedra, wedges = [], []
     for x, y, z in itertools.product(range(n), repeat=3):

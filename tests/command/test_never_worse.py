@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""`auto` keeps an order that it would not make better; a method asked for by name is obeyed, with a warning."""
+"""`auto` keeps an order that it cannot improve; a method that the user names is applied all the same, with a warning."""
 import os
 import meshio
 import numpy
@@ -21,7 +21,7 @@ def spans(graph):
 
 
 def factor_entries(graph):
-    """Below the diagonal, by SuperLU without pivoting, in the order of the rows."""
+    """The factor's entries below the diagonal, by SuperLU without pivoting, in the order of the rows."""
     matrix = scipy.sparse.diags(numpy.asarray(graph.sum(axis=1)).ravel() + 1.0) - graph
     factors = scipy.sparse.linalg.splu(matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0,
                                        options={"SymmetricMode": True})
@@ -31,7 +31,7 @@ def factor_entries(graph):
 
 @pytest.fixture
 def lattice(command, model):
-    """In its own order and in a random one, as .vtu."""
+    """Writes a lattice in its own order and in a random one, as .vtu."""
     source = model("grid", "--size", "10")
     command.ok("order", source, "-o", "rows.vtu", "--vertices", "original", "--elements", "original")
     command.ok("order", source, "-o", "random.vtu", "--vertices", "scrambled", "--elements", "scrambled")
@@ -68,8 +68,8 @@ def test_bandwidth_never_grows(command, lattice, tmp_path):
 
 
 def sectors_of_additions(path):
-    """What a GPU's atomic additions of four numbers of 4 bytes write: of each sector of two vertices, in a warp of 32
-    threads, as often as most threads add to one vertex."""
+    """The sectors that a GPU's atomic additions of four numbers of 4 bytes write. A sector holds two vertices; for each warp
+    of 32 threads it counts t times, where t is the largest number of threads that add to one of its vertices."""
     cells = meshio.read(path).cells[0].data
     total = 0
     for begin in range(0, len(cells), 32):
@@ -124,7 +124,7 @@ def test_elements_are_judged_apart(command, lattice, tmp_path):
     assert result["vertices"]["kept"] and not result["cells"]["kept"] and result["cells"]["method"] == "lexmax"
     after = meshio.read(tmp_path / "out.vtu").cells[0].data
     assert distinct_vertices(after) < 0.9 * distinct_vertices(before)
-    # behind a good order of vertices and elements nothing is left to do
+    # a good order of vertices and elements is kept
     command.ok("order", "random.vtu", "-o", "good.vtu")
     result = command.json("order", "good.vtu", "-o", "again.vtu", "--maps", "m")
     assert result["cells"]["kept"] and result["cells"]["method"] == "original"
@@ -152,7 +152,7 @@ def test_a_race_takes_what_it_timed_as_the_fastest(command, model, tmp_path):
     assert 1 <= len(race["orders"]) <= 3
     milliseconds = {(order["vertices"], order["elements"]): order["measured_milliseconds"]["assembly"] for order in race["orders"]}
     taken = milliseconds[result["vertices"]["method"], result["cells"]["method"]]
-    assert taken <= 1.5 * min(milliseconds.values())  # within what times vary
+    assert taken <= 1.5 * min(milliseconds.values())  # times vary
     assert taken < race["as_it_is"]["measured_milliseconds"]["assembly"]
     assert result["vertices"]["chosen_by"] == "auto"
     assert spans(graph_of(tmp_path / "out.vtu")).mean() < 0.6 * spans(graph_of(tmp_path / "random.vtu")).mean()
@@ -184,7 +184,7 @@ def test_predictions_choose_the_same_order_on_every_run(command, model, tmp_path
 
 def test_a_machine_without_predictions_is_refused(command, lattice, tmp_path):
     assert "--predict" in command.fails("order", "random.vtu", "-o", "out.vtu", "--machine", "zen3")
-    # who does not predict needs no machine
+    # without a prediction no machine is needed
     environment = {**os.environ, "MESHORDER_MACHINE": "cray"}
     assert command.run("order", "random.vtu", "-o", "out.vtu", env=environment).returncode == 0
     (tmp_path / "out.vtu").unlink()

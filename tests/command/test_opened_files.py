@@ -1,6 +1,6 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Which files the command opens: those that docs/limits.md names, and no others, in whatever folder it runs. The interposer
-of tests/faults lists them; what it does not see is said there."""
+"""The command opens only the files that docs/limits.md names, in whatever folder it runs. The interposer of tests/faults
+lists them; its source says which it does not see."""
 import json
 import os
 import pathlib
@@ -49,7 +49,7 @@ class Traced:
                               text=True, stdin=subprocess.DEVNULL, timeout=600, check=False)
 
     def strangers(self):
-        """What the last run opened besides the system's files, those beside the mesh, the cache and temporary ones."""
+        """Other files that the last run opened: not the system's, not beside the mesh, no cache, no temporary files."""
         opened = set(self.log.read_text(errors="replace").splitlines())
         assert any(path.startswith(str(self.meshes)) for path in opened), opened
         own = (f"{self.meshes}/", f"{self.cache}/", f"{self.tmp}/", "/dev/shm/", "/memfd:", "pipe:", "socket:")
@@ -74,7 +74,7 @@ def write_sample(traced, extension):
         write_sample(traced, ".vtu")
         path.write_text(LIST_OF_PIECES)
         return path
-    if extension in (".face", ".edge"):  # which TetGen writes beside other files
+    if extension in (".face", ".edge"):  # TetGen writes these beside other files
         meshes.write_tetgen(traced.meshes, "m")
         path.write_text("1 0\n1 1 2 3\n" if extension == ".face" else "1 0\n1 1 2\n")
         return path
@@ -112,7 +112,7 @@ def test_a_report_on_meshes_of_all_formats_opens_nothing_else(traced):
 
 
 def test_the_list_of_opened_files_has_those_that_are_opened(traced):
-    """Without this, the test above could pass for a list that lacks what libraries open."""
+    """Otherwise the test above could pass because the interposer misses files."""
     (traced.here / "a.off").write_text(SURFACE)
     (traced.meshes / "a.off").write_text(SURFACE)
     assert traced.run("info", "a.off", "-q").returncode == 0
@@ -136,7 +136,7 @@ def test_settings_of_netcdf_in_the_current_folder_are_not_read(traced, kind):
     assert done.returncode == 0 and "\033" not in done.stdout + done.stderr
 
 
-# ---- what HDF5 and netCDF would follow to other files
+# ---- references to other files that HDF5 and netCDF would follow
 
 def exodus(path):
     """One tetrahedron in a file of netCDF-4."""
@@ -188,7 +188,7 @@ SHAPES = {"pipe": lambda path: os.mkfifo(path), "device": lambda path: path.syml
 
 @pytest.fixture(params=SHAPES)
 def plant(request):
-    """Puts a pipe, a link to a device or a link to a file elsewhere in the place of a file."""
+    """Replaces a file by a pipe, a link to a device or a link to a file elsewhere."""
 
     def replace(path):
         path.unlink(missing_ok=True)
@@ -198,7 +198,7 @@ def plant(request):
 
 
 def refused(command, *arguments, **options):
-    """Runs what must fail soon, in little memory, and returns the line that says why."""
+    """Runs a command that must fail soon, with little memory, and returns its line of error."""
     begun = time.monotonic()
     done = subprocess.run(["prlimit", f"--as={4 << 30}", conftest.MESHORDER, *map(str, arguments)], cwd=command.folder,
                           capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=FAR_TOO_LONG, check=False, **options)
@@ -260,7 +260,7 @@ def test_a_pipe_without_a_writer_is_not_waited_for(command, tmp_path):
 
 @pytest.fixture
 def scenario(command, tmp_path):
-    """Writes a scenario and runs it; returns what it printed as an error."""
+    """Writes a scenario and runs it; returns the printed error."""
     text = json.loads((conftest.ROOT / "scenarios" / "falling.json").read_text())
 
     def run(mesh, *options):

@@ -50,7 +50,7 @@ def test_auto_takes_an_order_as_narrow_as_scipys(command, case):
 
 
 def test_hilbert_goes_through_the_centres(command, case):
-    """A curve that joins each cell to one nearby: most steps lead to a cell that shares a face."""
+    """Most steps of the curve lead to a cell that shares a face."""
     command.ok("openfoam", "case", "--cells", "hilbert")
     new_to_old = foam_cases.read_labels(case / "constant" / "cellOrder")
     centres = foam_cases.centres(case / "constant" / "polyMesh")
@@ -105,7 +105,7 @@ def test_a_users_dictionary_stays(command, case):
                               "-case case -overwrite -dict system/renumberMeshDict")
     assert "next       " + result["next"] in done.stdout
     assert command.ok("openfoam", "case", "--force").stderr == "" and dictionary.read_text() == own
-    # one that asks for the order keeps its other settings
+    # a dictionary that asks for the order keeps its other settings
     users = own + "sortCoupledFaceCells true;\n"
     dictionary.write_text(users)
     assert command.ok("openfoam", "case").stderr == "" and dictionary.read_text() == users
@@ -283,7 +283,7 @@ def test_other_subcommands_name_it(command, case):
     assert command.json("openfoam", "case/case.foam")["case"] == "case"
 
 
-# ---- OpenFOAM's own word
+# ---- checks by OpenFOAM itself
 
 
 def renumbered(command, case, *arguments):
@@ -299,7 +299,7 @@ def renumbered(command, case, *arguments):
 
 @needs_openfoam
 def test_the_direction_of_the_map(command, tmp_path):
-    """A random order is not its own inverse: swapped, cells and fields would be elsewhere."""
+    """A random order is not its own inverse: the inverse map would put cells and fields in other places."""
     case = foam_cases.write_cavity(tmp_path / "cavity")
     before = foam_cases.centres(case / "constant" / "polyMesh")
     renumbered(command, case, "--cells", "scrambled", "--seed", "3")
@@ -364,7 +364,7 @@ def test_times_of_openfoam(command, tmp_path):
 
 @needs_openfoam
 def test_renumber_mesh_moves_the_fields_of_one_time_only(command, tmp_path):
-    """Which is why the command warns of others."""
+    """The command warns of fields of other times for this reason."""
     case = foam_cases.write_cavity(tmp_path / "cavity")
     shutil.copytree(case / "0", case / "1")
     assert "they would stay in the old order" in command.ok("openfoam", "cavity").stderr

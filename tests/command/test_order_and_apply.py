@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What is ordered is the same mesh, everything attached included, and can be put back."""
+"""An ordered mesh is the same mesh, with all its data and sets, and the order can be undone."""
 import itertools
 import json
 import os
@@ -28,7 +28,7 @@ def test_inverse_gives_the_file_back(command, shared, tmp_path, name):
     extension = source.suffix
     command.ok("order", source, "-o", f"ordered{extension}", "--maps", "m")
     command.ok("apply", "m", f"ordered{extension}", "-o", f"back{extension}", "--inverse")
-    # the file as meshorder writes it without a change, to compare byte by byte
+    # meshorder's file of the unchanged mesh, to compare byte by byte
     command.ok("order", source, "-o", f"same{extension}", "--vertices", "original", "--elements", "original")
     for suffix in {extension, ".ele"} if extension == ".node" else {extension}:
         assert (tmp_path / f"back{suffix}").read_bytes() == (tmp_path / f"same{suffix}").read_bytes()
@@ -37,7 +37,7 @@ def test_inverse_gives_the_file_back(command, shared, tmp_path, name):
 
 
 def numbered_points(path):
-    """The points of a Gmsh 4.1 file by the numbers that it gives them."""
+    """The points of a Gmsh 4.1 file by their numbers."""
     lines = iter(path.read_text().split("$Nodes\n")[1].split("$EndNodes")[0].splitlines())
     points = {}
     for _ in range(int(next(lines).split()[0])):
@@ -48,7 +48,7 @@ def numbered_points(path):
 
 
 def numbered_cells(path):
-    """The vertices of a Gmsh 4.1 file's cells by the numbers that it gives these."""
+    """The vertices of a Gmsh 4.1 file's cells by the cells' numbers."""
     lines = iter(path.read_text().split("$Elements\n")[1].split("$EndElements")[0].splitlines())
     cells = {}
     for _ in range(int(next(lines).split()[0])):
@@ -116,7 +116,7 @@ def test_apply_treats_ids_as_order_did(command, tmp_path):
 
 
 def write_boxes(folder):
-    """A mesh of tetrahedra that other formats hold, too, in a scrambled order; and its points moved."""
+    """Writes a mesh of tetrahedra that other formats can hold, in scrambled order, and the same mesh with moved points."""
     axis = numpy.arange(4.0)
     points = numpy.array([[x, y, z] for x in axis for y in axis for z in axis])
     corner = [16 * x + 4 * y + z for x in range(3) for y in range(3) for z in range(3)]
@@ -166,7 +166,7 @@ def test_arrays_that_obj_does_not_hold_move_no_faces(command, tmp_path):
 
 
 def test_files_do_not_hold_when_they_were_written(command, tmp_path):
-    """CGNS alone does: its library puts the time into every node."""
+    """Only CGNS files do: the library writes the time into every node."""
     write_boxes(tmp_path)
     extensions = ["vtu", "vtk", "msh", "node", "mesh", "veg", "su2", "xdmf", "med", "vtkhdf", "e", "bdf", "inp"]
     written = []

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Outputs are whole or not there, and those of one command belong together, whatever ends the command."""
+"""Outputs are complete or absent, and those of one command belong together, however the command ends."""
 import fcntl
 import json
 import os
@@ -17,8 +17,8 @@ import pytest
 import conftest
 import meshes
 
-# What a call of the system does instead at its FAULT_NUMBERth time: `kill` the process before it, `error`, or
-# `pause`, which leaves FAULT_MARK.
+# Replaces the FAULT_NUMBERth system call of the name FAULT_CALL: FAULT is `kill`, which kills the process before the
+# call, `error`, or `pause`, which creates the file FAULT_MARK and waits.
 INTERPOSER = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -80,7 +80,7 @@ def mark(tmp_path_factory):
 
 @pytest.fixture
 def faulty(tmp_path, interposer, mark):
-    """Starts a command that meets a fault at a call of the system."""
+    """Starts a command with a fault at a system call."""
     def start(fault, call, number, *arguments, **options):
         environment = {**os.environ, "LD_PRELOAD": str(interposer), "FAULT": fault, "FAULT_CALL": call,
                        "FAULT_NUMBER": str(number), "FAULT_MARK": str(mark)}
@@ -100,7 +100,7 @@ def content_of(folder):
 
 
 def unfinished_in(folder):
-    """The outputs that a command has not put in place, which must stand still meanwhile."""
+    """The outputs that a command has not yet moved into place; call it only while the command is paused."""
     return [path for path in folder.glob(".meshorder-*/new") if path.stat().st_size]
 
 
@@ -122,7 +122,7 @@ def test_maps_that_cannot_be_written_leave_the_mesh(command, tmp_path, mesh):
 
 
 def states_of(folder, old, new):
-    """What the files of a set are, "old" or "new" each; a file that is in neither state is an error."""
+    """The state of each file of a set, "old" or "new"; any other content is an error."""
     now = content_of(folder)
     assert set(now) <= set(old) | set(new)
     assert all(content in (old.get(name), new.get(name)) for name, content in now.items())
@@ -147,7 +147,7 @@ SETS = {
 
 @pytest.mark.parametrize("name", SETS)
 def test_files_of_a_killed_command_are_all_old_or_all_new_or_refused(command, faulty, tmp_path, mesh, name):
-    """Killed before each rename: files of two runs are never taken for one set, and the next run ends well."""
+    """The command is killed before each rename: files of two runs are never read as one set, and the next run succeeds."""
     target, options, reader = SETS[name]
     folder = tmp_path / "set"
     folder.mkdir()
@@ -186,7 +186,7 @@ def test_files_of_a_killed_command_are_all_old_or_all_new_or_refused(command, fa
 
 
 def test_maps_of_an_earlier_run_that_are_left_over_are_refused(command, tmp_path, mesh):
-    """What not every mesh has: the numbers of its vertices and cells, and which cells were kept."""
+    """Maps that only some meshes have: the numbers of vertices and cells, and the list of kept cells."""
     command.ok("order", mesh, "-o", "out.vtu", "--maps", "m", "-q")
     np = pytest.importorskip("numpy")
     for kind in ("vertices.ids", "cells.ids", "cells.kept"):
@@ -211,7 +211,7 @@ def test_many_commands_write_one_set_at_once(tmp_path, command, mesh, same):
 
 
 def test_a_folder_that_somebody_holds_locked_is_written_all_the_same(command, tmp_path, mesh):
-    """For some seconds the command waits."""
+    """The command waits for some seconds first."""
     holder = os.open(tmp_path, os.O_RDONLY)
     fcntl.flock(holder, fcntl.LOCK_EX)
     try:
@@ -286,7 +286,7 @@ def test_extended_attributes_are_kept(command, tmp_path, mesh):
 
 
 def acl_of(user, owner, others):
-    """An access control list as the kernel takes it: of the owner, one more user, the group (nothing), all others."""
+    """An access control list in the kernel's format: rights of the owner, of one more user, the group (none) and others."""
     nobody = 2**32 - 1
     entries = [(1, owner, nobody), (2, 4, user), (4, 0, nobody), (16, 4, nobody), (32, others, nobody)]
     return struct.pack("<I", 2) + b"".join(struct.pack("<HHI", *entry) for entry in entries)
@@ -300,7 +300,7 @@ def test_access_control_lists_are_kept(command, tmp_path, mesh):
         pytest.skip("the file system has no access control lists")
     command.ok("order", mesh, "-o", mesh, "-q")
     assert os.getxattr(tmp_path / mesh, "system.posix_acl_access") == acl
-    # a folder's default must not open files to others than it was
+    # the folder's default list must not give more users access than before
     os.setxattr(tmp_path, "system.posix_acl_default", acl_of(4322, 7, 4))
     (tmp_path / "plain.vtu").write_text("old")
     os.removexattr(tmp_path / "plain.vtu", "system.posix_acl_access")
@@ -442,7 +442,7 @@ def test_a_link_of_others_in_a_shared_folder_is_not_followed(command, tmp_path, 
 
 
 def test_a_folder_without_write_permission_is_an_error(tmp_path, mesh):
-    """As a user without privileges, also where the tests are run by root."""
+    """The command runs as a user without privileges, even if root runs the tests."""
     (tmp_path / "closed").mkdir(mode=0o555)
     done = subprocess.run([conftest.MESHORDER, "order", mesh, "-o", "closed/a.vtu"], cwd=tmp_path, text=True,
                           capture_output=True, check=False,

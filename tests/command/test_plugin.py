@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""`--plugin FILE`: methods of one's own, from a shared library."""
+"""`--plugin FILE`: users' methods from a shared library."""
 import os
 import pathlib
 import shutil

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""`meshorder report`: a page on meshes, and a study's page written again. The page is read without a browser."""
+"""`meshorder report`: a page on meshes, and a study's page written again. The tests read the page without a browser."""
 import base64
 import html.parser
 import json
@@ -15,7 +15,7 @@ from meshes import read_tetgen, write_tetgen
 
 
 class Page(html.parser.HTMLParser):
-    """A page's script elements by their ids, what it points to, and all that is text."""
+    """The script elements of a page by id, its links, and its text."""
 
     def __init__(self, path):
         super().__init__()
@@ -45,7 +45,7 @@ class Page(html.parser.HTMLParser):
             self.scripts[self.inside] += data
 
     def array(self, entry):
-        """The numbers of an array of the manifest, places as coordinates, as viewer/README.md has it."""
+        """The numbers of an array of the manifest, with positions as coordinates, by the format of viewer/README.md."""
         data = zlib.decompress(base64.b64decode(self.scripts[entry["blob"]], validate=True))
         numbers = numpy.frombuffer(data, "<u" + str(int(entry["type"][4:]) // 8)).reshape(entry["shape"])
         if entry.get("delta"):
@@ -62,7 +62,7 @@ def procedural(command, name="ball", size=8):
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
-    """A page on a ball of 729 vertices, and what the command said."""
+    """A page on a ball of 729 vertices, and the command's output."""
     from conftest import Command
     command = Command(tmp_path_factory.mktemp("report"))
     mesh = procedural(command)
@@ -71,7 +71,7 @@ def report(tmp_path_factory):
 
 
 def surface_vertices(page, points):
-    """Which vertices of the mesh those of the page's first mesh are, by their places."""
+    """The vertex of the mesh at the position of each vertex of the page's first mesh."""
     places = page.array(page.manifest["meshes"][0]["positions"])
     distances = numpy.linalg.norm(points[None, :, :] - places[:, None, :], axis=2)
     assert distances.min(axis=1).max() < 1e-4
@@ -209,7 +209,7 @@ def reproduction():
 
 
 def shifted(results, points):
-    """What another machine might have measured: every order saves so many more points."""
+    """Results as of another machine: every order saves that many more points."""
     results["machine"].update(processor="Another 1", compiler="Clang 19", revision="5eed")
     results["began"] = "2027-01-02T03:04:05Z"
     for scenario in results["scenarios"]:

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The report page in a browser, as its reader meets it.
+"""The report page in a browser, as its reader sees it.
 
 MESHORDER_PAGE names a page to test instead of the one made here; MESHORDER_PICTURES a folder that gets pictures of it.
 """
@@ -63,13 +63,13 @@ def page(chromium, path):
 
 
 def shown(page, selector):
-    """Whether something is there to be seen."""
+    """Whether an element of the selector is visible."""
     return page.run("return [...document.querySelectorAll(arguments[0])].some((one) => one.getClientRects().length > 0)",
                     selector)
 
 
 def column(page, table, number):
-    """What a column of a table holds, from the top: numbers where it has them."""
+    """The cells of a column of a table from the top, numbers as numbers."""
     cells = page.run("""return [...document.querySelector(arguments[0]).tBodies[0].rows].map(
         (row) => row.cells[arguments[1]].dataset.value ?? row.cells[arguments[1]].textContent)""", table, number)
     return [float(cell) if re.fullmatch(r"-?[0-9.e+-]+", cell) else cell for cell in cells]
@@ -98,7 +98,7 @@ def test_it_can_send_nothing(page):
         document.addEventListener("securitypolicyviolation", (event) => arguments[0](event.effectiveDirective));
         fetch("http://127.0.0.1:9/").catch(() => {});""")
     assert refused == "connect-src"
-    assert page.complaints()  # the browser's, of that
+    assert page.complaints()  # the browser reports the refusal
 
 
 def test_each_tab_shows_what_it_says_and_nothing_else(page):
@@ -185,7 +185,7 @@ def test_tables_hold_what_the_results_say(page):
 
 
 def summary_cells(page, table="summary"):
-    """Texts, colours and edges of the cells that say what an order saves."""
+    """Texts, colours and edges of the cells with the savings of an order."""
     return page.run("""return [...document.querySelectorAll(`#${arguments[0]} td:has(.verdict)`)].map((cell) => {
         const style = getComputedStyle(cell);
         return {value: Number(cell.dataset.value), words: cell.querySelector(".verdict").textContent,
@@ -236,7 +236,7 @@ def test_the_first_table_says_what_orders_save_in_words_edges_and_colours(page, 
 
 
 def test_saving_and_costing_look_different_in_grey_and_without_colour(page):
-    """The colours of one table made of all three kinds, and what paper leaves of them."""
+    """A table with cells of all three kinds, on the screen and on paper."""
     page.run("""const row = make("tr", {}, make("th", {}, "s"));
         for (const kind of ["saves", "open", "costs"])
           row.append(make("td", {className: `number ${kind}`}, "1", make("span", {className: "verdict"}, kind)));
@@ -249,7 +249,7 @@ def test_saving_and_costing_look_different_in_grey_and_without_colour(page):
 
 
 def test_the_first_table_fits_on_paper(page):
-    """With the widest of intervals, which a noisy machine measures."""
+    """With the widest intervals, as on a noisy machine."""
     page.run("for (const interval of document.querySelectorAll('#summary .interval'))"
              " interval.textContent = '−100.0 … −100.0';")
     page.media("print")
@@ -326,7 +326,7 @@ def test_keys_turn_a_mesh_and_home_turns_it_back(page):
 
 
 def test_the_slider_uncovers_the_order(page):
-    """With half of the vertices, about half of what a scrambled order draws loses its colour."""
+    """With half of the vertices, about half of the drawing of a scrambled order loses its colour."""
     page.tab("meshes")
     scrambled = page.run("return [...document.querySelectorAll('#mesh-view figure')]"
                          ".find((one) => one.textContent.startsWith('Scrambled')).querySelector('canvas')")
@@ -445,7 +445,7 @@ def test_a_narrow_screen_needs_no_scrolling_sideways(page, path, width):
 
 
 def test_on_paper_everything_stands_one_after_another(page):
-    page.wait("views.motion && views.meshes && views.spans")  # what waits for idle time is there
+    page.wait("views.motion && views.meshes && views.spans")  # views that are built in idle time
     page.driver.execute_async_script("const done = arguments[0]; Promise.all(Object.values(views).map((v) => v.ready)).then(done)")
     printed = page.pdf()
     assert len(re.findall(rb"/Type\s*/Page\b", printed)) >= 4
@@ -501,7 +501,7 @@ def test_without_webgl_it_says_so(page, path):
 
 @pytest.fixture(scope="module")
 def two_studies(tmp_path_factory):
-    """A page on the committed study and one that stands for another machine's."""
+    """A page on the committed study and on an invented study of another machine."""
     command = conftest.Command(tmp_path_factory.mktemp("two"))
     results = json.loads((conftest.ROOT / "docs" / "reproduction" / "results.json").read_text())
     for name, points in (("a", 0), ("b", -9)):
@@ -532,7 +532,7 @@ def test_two_studies_stand_side_by_side(page, two_studies, size):
 
 
 def test_pictures(page, path, tmp_path):
-    """The README's pictures, when MESHORDER_PICTURES says where they go."""
+    """Writes the README's pictures into MESHORDER_PICTURES if it is set."""
     folder = pathlib.Path(os.environ.get("MESHORDER_PICTURES") or tmp_path)
     for name, (width, height) in (("desktop", (900, 800)), ("phone", PHONE)):
         page.resize(width, height)

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The paper's study, in small: what stands in its folder, whether it adds up, and how it is stopped and resumed."""
+"""The paper's study, in small: the files in its folder, consistency of the results, stopping and resuming."""
 import csv
 import json
 import signal
@@ -130,7 +130,7 @@ def test_a_study_goes_on_with_what_is_missing(command):
 
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory):
-    """A study of one run, and the arguments that it was made with but for the steps."""
+    """A study of one run, and its arguments without the steps."""
     command = conftest.Command(tmp_path_factory.mktemp("begun"))
     arguments = ["reproduce", "-o", "study", "--scenario", "bounce", "--mesh", "ball-3", "--budget", "0.1", "--runs", 1]
     command.ok(*arguments, "--steps", 8)
@@ -171,7 +171,7 @@ def test_results_of_another_revision_are_not_gone_on_with(begun, change):
 
 
 def test_without_a_revision_the_version_counts(begun):
-    """A build from a tarball records none, and results that record none are of such a build or an earlier one."""
+    """A build from a tarball records no revision. Results without one come from such a build or from an earlier version."""
     command, arguments = begun
     path = command.folder / "study" / "results.json"
     before = path.read_bytes()

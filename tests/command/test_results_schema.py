@@ -8,7 +8,7 @@ import pytest
 import conftest
 import schemas
 
-# what earlier versions did not write; it may be missing
+# keys that earlier versions did not write; they may be missing
 ADDED = {"revision", "precision", "gain"}
 ADDED_SECONDS = {"triangulation", "order", "motion"}
 SCHEMA = schemas.read_schema(conftest.ROOT / "docs" / "results.schema.json")

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Predicted cache misses: `info` and `compare` against caches that are simulated here."""
+"""Predicted cache misses of `info` and `compare` against simulated caches."""
 import collections
 import math
 
@@ -8,8 +8,8 @@ import pytest
 
 
 def spmv_lines(points, cells):
-    """The lines of 64 bytes that a product with the matrix of 3 × 3 blocks touches, in order; those of what is read
-    from end to end once."""
+    """The lines of 64 bytes that a product with the matrix of 3 × 3 blocks touches, in order. Lines of offsets, columns,
+    values and y, which are read once from end to end, appear once."""
     neighbours = [{v} for v in range(len(points))]
     for cell in cells:
         for v in cell:
@@ -91,7 +91,7 @@ def test_compare_predicts_what_info_says_of_the_reordered_file(command):
 def test_threads_do_not_change_predictions(command):
     made = command.json("models", "make", "grid", "--size", "6")["models"][0]["path"]
     one, three = (command.json("info", made, "--threads", threads) for threads in "13")
-    del one["verdict"], three["verdict"]  # in which are times
+    del one["verdict"], three["verdict"]  # contain times
     assert one == three
 
 

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""./run, with a command that prints how it is called in place of the built one."""
+"""./run, with a command that prints its arguments instead of the built one."""
 import shutil
 import subprocess
 

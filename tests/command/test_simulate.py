@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""`meshorder simulate`: scenarios, frames, checkpoints, and what an order must not change."""
+"""`meshorder simulate`: scenarios, frames, checkpoints, and results that must not depend on the order."""
 import json
 import re
 import signal
@@ -61,7 +61,7 @@ def contents(folder):
     return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
 
 
-# ---- what it says
+# ---- messages and results
 
 def test_lists_scenarios_by_name(command):
     listed = {s["name"]: s for s in command.json("simulate", "--list")["scenarios"]}
@@ -125,7 +125,7 @@ def test_scenarios_start_where_and_as_fast_as_they_say(command, tmp_path):
 
 
 def test_obstacles_may_be_files(command, tmp_path):
-    """A closed box as the floor: the cube comes to lie on it."""
+    """A closed box as the floor, on which the cube comes to rest."""
     corners = [(x, y, z) for x in (-1, 1) for y in (-1, 0) for z in (-1, 1)]
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     lines = ["OFF", "8 6 0", *(" ".join(map(str, p)) for p in corners), *("4 " + " ".join(map(str, f)) for f in faces)]
@@ -156,7 +156,7 @@ def test_text_says_what_and_how_long(command, tmp_path):
 
 
 def test_momentum_is_the_forces(command, tmp_path):
-    """A free body of known mass under gravity and a force: the impulse of every step, damped by alpha."""
+    """A free body of known mass under gravity and a force: each step adds their impulse and damps momentum by alpha."""
     scenario = write_scenario(tmp_path, fixed=None)
     result = command.json("simulate", scenario)
     mass, h, alpha = 1000 * 2.0 ** 3, 0.02, 0.5  # the unit cube, scaled to 2 m
@@ -202,7 +202,7 @@ def test_built_in_scenarios_run_on_any_mesh_from_any_folder(command, tmp_path):
         assert "mesh" in result["paper"]
 
 
-# ---- what an order must not change
+# ---- results that must not depend on the order
 
 def moved_back(path, vertices):
     """Points, displacements and velocities of a frame in the numbering of the mesh's file."""
@@ -327,7 +327,7 @@ def test_solvers_keep_nothing_that_a_checkpoint_lacks(command, tmp_path, solver)
 
 
 def test_resumed_run_is_the_same_after_a_step_that_was_taken_otherwise(command, tmp_path):
-    """Crushed, the body has a step whose matrix is indefinite; that leaves nothing behind that a state lacks."""
+    """A crushed body has a step with an indefinite matrix. The checkpoint still holds all that the next steps need."""
     crush = {"on": {"box": [[1, 0, 0], [1, 1, 1]]}, "newtons": [-60000, 0, 0], "steps": [1, 12]}
     scenario = write_scenario(tmp_path, material={**SMALL["material"], "model": "stvk"}, forces=[crush], steps=20)
     whole = command.json("simulate", scenario)

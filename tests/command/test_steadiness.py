@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Times that were measured while the machine was busy are not to be trusted, and the command says so."""
+"""The command warns that times measured on a busy machine are unreliable."""
 import contextlib
 import os
 import subprocess

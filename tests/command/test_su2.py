@@ -42,7 +42,7 @@ def box(n):
 
 
 def volumes(points, wedges):
-    """Those of wedges, positive where the first triangle faces outward."""
+    """The volumes of wedges, positive if the first triangle faces outward."""
     corner = points[wedges]
     up = corner[:, 3] - corner[:, 0]
     return -numpy.einsum("ij,ij->i", numpy.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), up) / 2
@@ -55,7 +55,7 @@ def write_su2(path, points, elements, markers):
     def lines(kind, data):
         return "".join(f"{TYPES[kind]} {' '.join(map(str, cell))}\n" for cell in data.tolist())
 
-    # points first: meshio 5.0 loses its place in files where they follow many elements
+    # points first: meshio 5.0 misreads files in which they follow many elements
     text = f"NDIME= 3\nNPOIN= {len(points)}\n" + "".join(f"{x} {y} {z}\n" for x, y, z in points.tolist())
     text += f"NELEM= {sum(len(data) for _, data in elements)}\n" + "".join(lines(*block) for block in elements)
     text += f"NMARK= {len(markers)}\n"
@@ -86,7 +86,7 @@ def test_a_mesh_is_ordered_and_read_by_meshio(command, tmp_path):
 
 def test_wedges_of_other_formats_are_not_turned_inside_out(command, tmp_path):
     points, hexahedra, wedges, _, _ = box(2)
-    # in memory meshio's wedges are Gmsh's, whose first triangle faces inward: it turns those of .vtu, not of .su2
+    # in memory meshio's wedges are like Gmsh's: the first triangle faces inward. It reverses those of .vtu, not of .su2
     inward = wedges[:, [0, 2, 1, 3, 5, 4]]
     meshio.write(tmp_path / "a.vtu", meshio.Mesh(points, [("hexahedron", hexahedra), ("wedge", inward)]))
     command.ok("order", tmp_path / "a.vtu", "-o", tmp_path / "b.su2")
@@ -137,7 +137,7 @@ def groups_of_version_2(text):
 
 
 def groups_of_version_4(text):
-    """The same of a file of version 4.1."""
+    """The lines of each named group of a Gmsh file of version 4.1, by coordinates."""
     names = {tag: name.strip('"') for dim, tag, name in rows(text, "PhysicalNames") if dim == "1"}
     (n_points, n_curves, *_), *entities = rows(text, "Entities", header=0)
     curves = entities[int(n_points):int(n_points) + int(n_curves)]

@@ -14,7 +14,7 @@ import meshes
 import pytest
 from conftest import MESHORDER
 
-# reads a Medit mesh; computes for so many milliseconds if neighbours have near numbers, and for others if not
+# reads a Medit mesh; computes for argv[2] milliseconds if neighbours have near numbers, else for argv[3]
 SOLVER = """
 import sys, time
 words = open(sys.argv[1]).read().split()
@@ -51,7 +51,7 @@ def write_lattice(path, side=12):
 
 
 class Folder:
-    """The folder of a mesh; what a trial leaves in it or among the temporary files is noticed."""
+    """The folder of a mesh. Detects files that a trial leaves in it or among the temporary files."""
 
     def __init__(self, command, temporary):
         self.command = command
@@ -171,7 +171,7 @@ def test_counts_are_the_last_that_are_printed(folder):
 
 
 def test_times_agree_with_ratios(folder, tmp_path):
-    """Each run is shorter than the one before, so medians over few and over many rounds do not give the ratio."""
+    """Each run is shorter than the one before: medians over different numbers of rounds do not give the ratio."""
     log = tmp_path / "runs"
     script = f'echo >> {log}; runs=$(wc -l < {log}); echo seconds: $((1000000 / (runs + 10)))'
     result = folder.json("mesh.mesh", "--methods", "rcm,hilbert,scrambled,bfs", "--time", r"seconds: (\S+)", "--budget",
@@ -472,7 +472,7 @@ def test_a_signal_ends_the_program_and_leaves_nothing(folder, number):
 
 # ---- cases of OpenFOAM
 
-# moves the cells as OpenFOAM does: by constant/cellOrder, or by an order of its own, which is the reverse one here
+# moves the cells as OpenFOAM does: by constant/cellOrder, or by its own order, which is the reverse one here
 RENUMBER_MESH = """
 import pathlib, sys
 import numpy
@@ -491,7 +491,7 @@ field = numpy.array((case / "0" / "p").read_text().split())
 (case / "0" / "p").write_text("\\n".join(field[order]))
 """
 
-# computes for so many milliseconds if cells that share a face have near numbers, and for four times as many if not
+# computes for 50 ms if cells that share a face have near numbers, else for 200 ms
 FLOW = """
 import pathlib, sys, time
 sys.path.insert(0, {tests!r})
@@ -538,7 +538,7 @@ def test_the_cells_of_a_case_are_tried(folder, case):
     command, move = result["order_command"].split(" && ")
     assert command == "meshorder openfoam cavity"
     assert move == "renumberMesh -case cavity -overwrite -dict system/renumberMeshDict"
-    # the commands that it names make that case
+    # the commands in the finding make that case
     folder.command.ok(*command.split()[1:])
     subprocess.run(move.split(), check=True, env=folder.environment, cwd=folder.path)
     import foam_cases

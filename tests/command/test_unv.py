@@ -49,12 +49,12 @@ class UnvFile:
         self.results.append((lines[1].strip(), int(lines[2]), values))
 
     def shape_of(self, element):
-        """An element by what does not depend on numbers: its type, fields and corners in their order."""
+        """An element independent of numbering: its type, its fields and the coordinates of its nodes in order."""
         kind, fields, nodes = self.elements[element]
         return kind, tuple(fields), tuple(self.nodes[node] for node in nodes)
 
     def content(self):
-        """All that a new order must not change."""
+        """The content that a new order must not change."""
         def item(code, number):
             return self.nodes[number] if code == 7 else self.shape_of(number)
         return {
@@ -92,7 +92,8 @@ def block(n):
 
 
 def write_unv(path, points, cells, extra=""):
-    """Nodes are numbered by threes, elements from 101; groups of the lower and upper faces, results of both kinds."""
+    """Numbers nodes in steps of three and elements from 101; adds groups of the lower and upper faces and both kinds of
+    results."""
     def fields(*numbers):
         return "".join(f"{number:10d}" for number in numbers) + "\n"
 

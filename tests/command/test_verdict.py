@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What `info` says at its end: what the order costs, and what another is worth."""
+"""The verdict of `info`: the cost of the order, and the gain by another one."""
 import pytest
 
 import meshes

@@ -8,7 +8,7 @@ import h5py
 import numpy
 import pytest
 
-# VTK reads texts by libhdf5 alone; h5py in the same process would teach that conversions
+# in a separate process: h5py would register conversions of texts with libhdf5 that VTK itself does not have
 READ = """
 import json, sys
 from vtk import vtkHDFReader
@@ -90,7 +90,7 @@ def write(path, n=2, number=numpy.float64, index=numpy.int64, version=(1, 0), pa
 
 
 def by_place(grid):
-    """What a grid says of its points and cells, which go by their coordinates."""
+    """The content of a grid, with points and cells identified by their coordinates."""
     points = [tuple(point) for point in grid["points"]]
     cells = [tuple(points[v] for v in cell) for cell in grid["cells"]]
     result = {"points": sorted(points), "cells": sorted(zip(cells, grid["types"])), "fields": grid["fields"]}
@@ -131,7 +131,7 @@ def test_partitions_become_one(command, tmp_path):
         assert list(file["VTKHDF/NumberOfPoints"]) == [81]
     write(tmp_path / "a.vtkhdf", partitions=3)
     whole, first = by_vtk(tmp_path / "b.vtkhdf"), by_vtk(tmp_path / "a.vtkhdf")
-    assert set(first["cells data"].pop("vtkGhostType")) == {0}  # which says nothing of one mesh
+    assert set(first["cells data"].pop("vtkGhostType")) == {0}  # trivial for one mesh
     # VTK reads all partitions as one grid, too
     assert len(whole["points"]) == 81 and by_place(whole) == by_place(first)
 

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""XDMF with HDF5: meshio's files, the layouts of FEniCSx and of FEniCS, made here by h5py, which also judges."""
+"""XDMF with HDF5: meshio's files, and the layouts of FEniCSx and FEniCS. h5py makes the files and checks the results."""
 import re
 import shutil
 import xml.etree.ElementTree as ElementTree
@@ -14,7 +14,7 @@ INCLUDE = '<xi:include xpointer="xpointer({})"/>'
 
 
 def box(n, seed=1):
-    """A cube of tetrahedra and the triangles of its lower face, their points in an order by chance."""
+    """A cube of tetrahedra and the triangles of its lower face, with points in random order."""
     axis = numpy.arange(n + 1)
     z, y, x = numpy.meshgrid(axis, axis, axis, indexing="ij")
     points = numpy.stack([x, y, z], -1).reshape(-1, 3).astype(float)
@@ -115,7 +115,7 @@ def test_files_of_two_runs_are_refused(command, tmp_path):
     shutil.copy(tmp_path / "rcm.h5", tmp_path / "b.h5")
     line = command.fails("info", "b.xdmf")
     assert "'b.h5' was not written together with this file" in line and "b.xdmf:" in line
-    # who says that they belong together may have them
+    # a user who removes the mark may combine the two files
     xml = (tmp_path / "b.xdmf").read_text()
     (tmp_path / "b.xdmf").write_text(re.sub(r"<\?meshorder .*?\?>", "", xml))
     command.ok("info", "b.xdmf")
@@ -140,7 +140,7 @@ def test_plain_binary_files_of_two_runs_are_refused(command, tmp_path):
     shutil.copy(tmp_path / "rcm.bin", tmp_path / "b0.bin")
     line = command.fails("info", "b.xdmf")
     assert "'b0.bin' was not written together with this file" in line and "b.xdmf:" in line
-    # it keeps the checksum of what it holds in another order
+    # a file in another order has the checksum of its own data
     shutil.copy(tmp_path / "hilbert.bin", tmp_path / "b0.bin")
     command.ok("order", "b.xdmf", "-o", "c.xdmf", "--vertices", "scrambled")
     command.ok("info", "c.xdmf")
@@ -346,8 +346,8 @@ def test_nodes_of_second_order_cells_are_where_vtk_has_them(command, tmp_path, k
 
 
 def test_arrays_that_share_a_dataset_keep_their_values(command, tmp_path):
-    """A dataset that an array of points and one of cells name goes apart where they move differently; one that two
-    arrays of points name stays one."""
+    """A dataset of an array of points and an array of cells is split if the two are reordered differently. A dataset of two
+    arrays of points stays one."""
     points, _, _ = box(2)
     edges = numpy.stack([numpy.arange(27), numpy.random.default_rng(3).permutation(27)], -1)
     edges = edges[edges[:, 0] != edges[:, 1]]
@@ -376,7 +376,7 @@ def test_arrays_that_share_a_dataset_keep_their_values(command, tmp_path):
 
 
 def test_arrays_whose_paths_lead_to_one_dataset_keep_their_values(command, tmp_path):
-    """By a hard link, a soft link and a soft link that leads round."""
+    """The paths contain a hard link, a soft link and a soft link to the root."""
     points, tetrahedra, _ = box(2)
     count = len(tetrahedra)
     points = numpy.concatenate([points, numpy.random.default_rng(1).uniform(5, 6, (count - 27, 3))])
@@ -420,8 +420,8 @@ def test_labels_of_two_types_that_do_not_make_one_array_keep_them(command, tmp_p
 
 
 def test_a_topology_shares_its_dataset(command, tmp_path):
-    """An array that names the dataset of a topology gets one of its own, as its numbers do not follow the vertices; the
-    topologies of two steps keep one."""
+    """An array in the dataset of a topology gets its own dataset, because it is not renumbered with the vertices. The
+    topologies of two steps keep one dataset."""
     points, tetrahedra, _ = box(2)
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["points"], file["cells"], file["values"] = points, tetrahedra.astype("int64"), points[:, 0]
@@ -448,7 +448,7 @@ def test_a_topology_shares_its_dataset(command, tmp_path):
 
 
 def test_topologies_of_two_types_share_a_dataset_until_they_differ(command, tmp_path):
-    """Eight numbers are one hexahedron or two tetrahedra: what is written last gets a dataset of its own."""
+    """Eight numbers are one hexahedron or two tetrahedra: the topology that is written last gets its own dataset."""
     points, _, _ = box(2)
     corners = numpy.random.default_rng(6).permutation(27)[:24]
     with h5py.File(tmp_path / "a.h5", "w") as file:
@@ -467,7 +467,7 @@ def test_topologies_of_two_types_share_a_dataset_until_they_differ(command, tmp_
 
 
 def test_what_gets_a_dataset_of_its_own_gets_it_in_every_step(command, tmp_path):
-    """27 numbers of points are also those of nine triangles: one of the two goes apart, wherever it is named."""
+    """27 numbers belong to points and to nine triangles: one of the two gets its own dataset, in every step."""
     points, _, _ = box(2)
     corners = numpy.random.default_rng(7).permutation(27)
     with h5py.File(tmp_path / "a.h5", "w") as file:
@@ -496,7 +496,7 @@ def test_what_gets_a_dataset_of_its_own_gets_it_in_every_step(command, tmp_path)
 
 @pytest.mark.parametrize("other", ["an array of cells", "cells of another type"])
 def test_values_that_move_in_two_ways_get_two_items(command, tmp_path, other):
-    """Where a DataItem is a reference to one whose values move in another way, it becomes one of its own."""
+    """A DataItem becomes its own if it refers to an item whose values are reordered in another way."""
     points, _, _ = box(2)
     corners = numpy.random.default_rng(6).permutation(27)[:24]
     with h5py.File(tmp_path / "a.h5", "w") as file:
@@ -524,7 +524,7 @@ def test_values_that_move_in_two_ways_get_two_items(command, tmp_path, other):
 
 
 def test_a_set_and_an_array_of_one_item(command, tmp_path):
-    """Marks of a set that the mesh brings into another order are numbered, and an array that names them is not."""
+    """If a mesh changes the order of a set, the set's marks become numbers; an array that refers to them keeps its values."""
     points, tetrahedra, _ = box(2)
     marks = numpy.zeros(27, "uint8")
     marks[[3, 9, 20, 26]] = 1

@@ -65,7 +65,7 @@ TEST(Aggregation, PutsEveryVertexIntoAConnectedAggregate) {
 }
 
 TEST(Aggregation, FoundsWithWholeFreeNeighbourhoodsInOrder) {
-  // 0 takes 1; 2 has 1, which is taken; 3 takes 2 and 4; 6 takes 5 and 7
+  // 0 takes 1; 2 takes none as its neighbour 1 is taken; 3 takes 2 and 4; 6 takes 5 and 7
   EXPECT_EQ(aggregated(test::combinatorial_laplacian(test::path(8))).aggregate_of,
             (std::vector<Index>{0, 0, 1, 1, 1, 2, 2, 2}));
   // 5 is left over and joins its only neighbour
@@ -77,7 +77,7 @@ TEST(Aggregation, DoesNotReachAcrossWeakEdges) {
   // the middle edge is weak for both of its ends
   const Aggregation cut = aggregated(weighted_path({1, 0.01, 1}));
   EXPECT_EQ(cut.aggregate_of, (std::vector<Index>{0, 0, 1, 1}));
-  // the vertex left over goes with the neighbour that pulls it more
+  // the vertex left over joins the neighbour with the heavier edge
   EXPECT_EQ(aggregated(weighted_path({1, 0.4, 0.6, 10})).aggregate_of, (std::vector<Index>{0, 0, 1, 1, 1}));
   EXPECT_EQ(aggregated(weighted_path({1, 0.6, 0.4, 10})).aggregate_of, (std::vector<Index>{0, 0, 0, 1, 1}));
 }
@@ -112,7 +112,7 @@ TEST(Aggregation, OfOneVertexIsOne) {
   EXPECT_EQ(aggregated(test::combinatorial_laplacian(test::path(0))).count(), 0);
 }
 
-/// Eigenvalues of L x = μ M x on some vertices, cut out of their graph, rising.
+/// Eigenvalues of L x = μ M x in ascending order, on the subgraph of some vertices.
 Eigen::VectorXd eigenvalues_of_part(const Eigen::MatrixXd& laplacian, const std::vector<double>& masses,
                                     const std::vector<Index>& vertices) {
   const auto n = static_cast<Eigen::Index>(vertices.size());
@@ -179,7 +179,8 @@ TEST(Aggregation, HidesWhatDenseSolversFindWithinAggregates) {
 }
 
 TEST(Aggregation, OfTwoCliquesAndABridgeMayHideTheirDifference) {
-  // all are one aggregate: the founder is an end of the bridge, everyone else of the other clique hangs on it
+  // all are one aggregate: the founder is one end of the bridge, and the other clique is joined to the other
+  // end
   constexpr Index kSize = 20;
   std::vector<Edge> edges;
   for (Index first : {Index{0}, kSize}) {

@@ -50,7 +50,7 @@ TEST(ArrangementGraph, CoarsensIntoGroupsOfNeighbours) {
       EXPECT_GE(members[g].size(), 1U);
       EXPECT_LE(members[g].size(), 8U);
       EXPECT_EQ(coarse.graph.volumes[g], index_size(members[g]));
-      // who is not alone has a neighbour in the group
+      // each vertex of a group of several has a neighbour in it
       for (const Index v : members[g]) {
         bool joined = members[g].size() == 1;
         for (const Index u : fine[v]) joined |= coarse.group_of[u] == g;

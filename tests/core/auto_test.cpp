@@ -83,7 +83,7 @@ TEST(Auto, KeepsAnOrderThatItWouldNotMakeBetter) {
     EXPECT_TRUE(order.permutation.is_identity());
     EXPECT_THAT(order.method.reason, testing::HasSubstr("is no better: t"));
   }
-  // asked for by name it is made all the same
+  // a method that the user names is applied all the same
   EXPECT_FALSE(order_graph("hilbert", {in_rows.graph, in_rows.points}).permutation.is_identity());
 }
 
@@ -97,7 +97,7 @@ TEST(Auto, JudgesByTheUse) {
             "rcm is no better: the bandwidth is 40 as it is and 40 by rcm");
   EXPECT_EQ(reason_to_keep(graph, as_is, "hilbert", Workload::all),
             "hilbert is no better: the mean edge span is 20.4 as it is and 20.4 by hilbert");
-  // the factor of a path has no entry but the path's
+  // the factor of a path has only the path's entries
   EXPECT_EQ(reason_to_keep(test::path(50), Permutation::identity(50), "metis-nd", Workload::fill),
             "metis-nd is no better: the number of entries in the factor is 49 as it is and 49 by metis-nd");
   if (!is_known("metis-nd")) return;
@@ -127,7 +127,7 @@ TEST(Auto, OrdersElementsByLexmax) {
 }
 
 TEST(Auto, KeepsElementsThatItWouldNotPlaceBetter) {
-  // backwards along the path, which serves as well
+  // backwards along the path, which is as good
   std::vector<Index> backwards(1000);
   std::iota(backwards.rbegin(), backwards.rend(), 0);
   const Incidence elements = edges_of_path(backwards);
@@ -139,7 +139,7 @@ TEST(Auto, KeepsElementsThatItWouldNotPlaceBetter) {
       order.method.reason,
       "lexmax is no better: the mean number of vertices that 64 consecutive elements use is 63.5 as it is "
       "and 63.5 by lexmax");
-  // asked for by name it is made all the same
+  // a method that the user names is applied all the same
   EXPECT_FALSE(order_incidence("lexmax", {elements, vertices, {}, {}}).permutation.is_identity());
 }
 
@@ -201,7 +201,7 @@ TEST(Auto, KnowsLatticesByTheirNumbersOfNeighbours) {
     return choose_vertex_method({lattice.graph, lattice.points}, Workload::all).name;
   };
   EXPECT_EQ(taken(), "bfs");
-  // wherever its points are
+  // independent of the points
   for (Point& point : lattice.points) point = {std::sin(point[0]) + point[1], point[0] - point[1], 0};
   EXPECT_EQ(taken(), "bfs");
   lattice.graph = test::random_connected(lattice.graph.size(), 2 * lattice.graph.size(), 1);

@@ -37,7 +37,7 @@ TEST(Carried, NewVerticesComeAfterTheMedianOfTheirNeighbours) {
 }
 
 TEST(Carried, ChainsOfNewVerticesFollowEachOther) {
-  // 3 – 4 – 5 – 6 hang on 1, in any order of their numbers; 7 and 8 know each other alone
+  // 3 – 4 – 5 – 6 is a chain from 1, in either direction; 7 and 8 are joined only to each other
   const std::vector<Index> places{0, 1, 2, -1, -1, -1, -1, -1, -1};
   const std::vector<Index> added{3, 4, 5, 6, 7, 8};
   const NeighbourRows of{rows({{4}, {3, 5}, {4, 6}, {5, 1}, {8}, {7}})};

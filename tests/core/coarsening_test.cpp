@@ -29,7 +29,7 @@ SparseRows random_rows(Index rows, Index columns, Index entries_per_row, unsigne
   return result;
 }
 
-/// Every entry; EXPECTs that none stands twice.
+/// The matrix in dense form; EXPECTs that no entry occurs twice.
 Eigen::MatrixXd dense(const SparseRows& a) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(a.rows(), a.columns_count);
   for (Index row = 0; row < a.rows(); ++row) {
@@ -43,7 +43,7 @@ Eigen::MatrixXd dense(const SparseRows& a) {
   return matrix;
 }
 
-// whole numbers, so that every result is exact
+// whole numbers: every result is exact
 
 TEST(SparseRows, TransposedSwapsRowsAndColumns) {
   for (const auto& [rows, columns] :
@@ -57,7 +57,8 @@ TEST(SparseRows, TransposedSwapsRowsAndColumns) {
 }
 
 TEST(Collapsed, HasTheSameRowsWhereItSeesOnlySomeOfAGraph) {
-  // a ring of 8 vertices in aggregates of two; 0 … 3 are seen, and of the others 4 and 7 as columns 4 and 5
+  // a ring of 8 vertices in aggregates of two; only rows 0 … 3 are known, and vertices 4 and 7 as columns 4
+  // and 5
   Laplacian ring;
   Laplacian half;
   for (Index v = 0; v < 8; ++v) {

@@ -55,7 +55,7 @@ TEST(VertexGraph, JoinsExactlyThePairsOfACommonElement) {
   EXPECT_EQ(found, pairs);
 }
 
-constexpr Index kMany = 200000;  // so many that what lies anywhere among them is sorted in another way
+constexpr Index kMany = 200000;  // so many that random vertices are sorted by another algorithm
 
 TEST(Transposed, HasTheElementsAtEachOfManyVerticesThatLieAnywhere) {
   const Incidence elements = elements_of_size(kMany, 50000, 4, 4);

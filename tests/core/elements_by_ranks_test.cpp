@@ -27,7 +27,7 @@ Incidence elements_of_any_size(Index vertices, Index count, Index most, unsigned
 
 using Ranks = std::vector<Index>;
 
-/// All elements by a stable sort with `before` on their vertices' ranks, which fall.
+/// All elements, sorted stably with `before` on their vertices' ranks in descending order.
 Ranks sorted_elements(const Incidence& elements, const Permutation& vertices,
                       const std::function<bool(const Ranks&, const Ranks&)>& before) {
   std::vector<Ranks> ranks(elements.size());

@@ -50,10 +50,10 @@ TEST(FactorEntries, AreThoseOfEliminationOnSets) {
 
 TEST(FactorEntries, OfSimpleOrdersAreKnown) {
   const Index n = 40;
-  // the centre of a star first joins all leaves, last none
+  // the centre of a star joins all leaves if eliminated first, none if last
   EXPECT_EQ(factor_entries(test::star(n), Permutation::identity(n)), Offset{n} * (n - 1) / 2);
   EXPECT_EQ(factor_entries(test::star(n), test::order_of(test::star(n), "rcm")), n - 1);
-  // a band of width 8 fills up but for its first rows
+  // a band of width 8 fills completely except in its first rows
   EXPECT_EQ(factor_entries(test::grid(8, 100), Permutation::identity(800)), 8 * (800 - 8) + 7);
 }
 

@@ -34,7 +34,7 @@ TEST(FiedlerOrder, PutsAScrambledPathBackEndToEnd) {
 }
 
 TEST(FiedlerOrder, PutsALongGridInSlices) {
-  // cosines along the longest side only, so that a slice is never left before it is full
+  // cosines along the longest side only: each slice is filled before the next
   const CsrGraph grid = scrambled(test::grid(60, 4, 3), 2);
   const Permutation names = test::shuffled(720, 2);
   const Permutation order = fiedler_order(grid, 1e-8);
@@ -75,7 +75,7 @@ TEST(FiedlerOrder, OfAMeshHasAMeanSpanOfAboutASlice) {
   const CsrGraph graph = scrambled(vertex_graph(make_torus({8, 0.15, 0})), 4);
   const double before = edge_span(graph, Permutation::identity(graph.size())).mean;
   EXPECT_NEAR(before, graph.size() / 3.0, 0.02 * graph.size());
-  // the order closes the ring in two arms of 64/2 slices, 2 · 81 vertices a step
+  // the order goes along two halves of the ring, each of 64/2 slices, at once: 2 · 81 vertices a step
   EXPECT_LT(edge_span(graph, fiedler_order(graph)).mean, 1.5 * 2 * 81);
 }
 

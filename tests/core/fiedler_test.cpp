@@ -23,7 +23,7 @@ namespace meshorder {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr Index kDenseSize = test::kSanitized ? 120 : 400;  // what dense solvers are asked for, at most
+constexpr Index kDenseSize = test::kSanitized ? 120 : 400;  // the largest size for dense solvers
 
 double path_lambda2(Index n) { return 2 - 2 * std::cos(kPi / n); }
 
@@ -50,7 +50,7 @@ double true_residual(const CsrGraph& graph, const FiedlerVectors& result, std::s
   return std::sqrt(squares / sum_of_squares(result, component));
 }
 
-/// Σ over edges of squared differences by Σ of squares.
+/// Σ over edges of squared differences divided by Σ of squares.
 double rayleigh_quotient(const CsrGraph& graph, const FiedlerVectors& result, std::size_t component) {
   double sum = 0;
   for (const Index v : result.component_vertices[component]) {
@@ -61,7 +61,7 @@ double rayleigh_quotient(const CsrGraph& graph, const FiedlerVectors& result, st
   return sum / sum_of_squares(result, component);
 }
 
-/// What every result promises, whether it converged or not.
+/// EXPECTs the properties that every result has, converged or not.
 void expect_sound(const CsrGraph& graph, const FiedlerVectors& result, const FiedlerOptions& options = {}) {
   ASSERT_EQ(index_size(result.values), graph.size());
   ASSERT_EQ(result.component_vertices, connected_components(graph));
@@ -288,7 +288,7 @@ TEST(FiedlerVector, SaysSoWhenIterationsRunOut) {
 }
 
 TEST(FiedlerVector, DoesNotClaimMoreThanRoundingAllows) {
-  // rounding leaves a residual of about 1e-15, a hundred times what is asked for
+  // rounding leaves a residual of about 1e-15, a hundred times the requested one
   FiedlerOptions options = to(1e-11);
   options.max_iterations = 200;
   const CsrGraph path = test::path(5000);
@@ -487,7 +487,7 @@ double dense_lambda2(const CsrGraph& graph, const std::vector<double>& weights) 
 }
 
 TEST(FiedlerVector, OfClusteredGraphsIsNoOtherEigenvector) {
-  // at the default tolerance x may mix eigenvectors whose eigenvalues are that close
+  // at the default tolerance x may mix eigenvectors of eigenvalues closer than this
   const std::uint64_t count = test::kSanitized ? 60 : 2600;
   for (std::uint64_t seed = 0; seed < count; ++seed) {
     const test::ClusteredGraph clustered = test::clustered_graph(seed);

@@ -19,7 +19,7 @@ namespace {
 constexpr Index kChunk = 2048;
 constexpr Index kSection = 32 * kChunk;
 
-/// The definition, without a thought for time.
+/// The order by its definition; slow.
 Permutation fronts_by_definition(const CsrGraph& graph, const Permutation& order) {
   std::vector<Index> new_to_old;
   std::vector<Index> number(graph.size(), -1);
@@ -62,7 +62,7 @@ Permutation fronts_by_definition(const CsrGraph& graph, const Permutation& order
   return Permutation::from_new_to_old(std::move(new_to_old));
 }
 
-/// The share of lines by a history of all first touches.
+/// The share of jumps among the lines, from a history of all first touches.
 double jump_share_by_definition(const CsrGraph& graph, const Permutation& order) {
   const CsrGraph rows = renumbered(graph, order.old_to_new());
   std::vector<Index> history;

@@ -28,8 +28,8 @@ Mesh unordered_grid() {
   return mesh;
 }
 
-/// The definition of a layout's cost: for each warp, corner and addition the sectors, each as often as most
-/// threads add to one number of it.
+/// A layout's cost by definition. For each warp, corner and addition, a sector counts t times, where t is the
+/// largest number of threads that add to one number in it.
 GpuCost cost_by_definition(const Mesh& mesh, int record_bytes, int additions, int arrays) {
   GpuCost cost;
   for (Index begin = 0; begin < mesh.cell_count(); begin += 32) {
@@ -97,8 +97,8 @@ TEST(GpuCost, OfSimpleWarpsIsKnown) {
   EXPECT_EQ(of_points(shared), (GpuCost{2, 64, 32, of_one, of_one})) << "all wait";
 }
 
-/// What a thread does in a loop over `count` entries that NVIDIA's compiler has unrolled: the entries it
-/// reads, by the place of the load in the program and the turn of the loop there.
+/// The entries that a thread reads in a loop over `count` entries that NVIDIA's compiler has unrolled, by the
+/// load instruction and the iteration.
 std::map<std::pair<int, int>, Offset> unrolled(Offset count) {
   std::map<std::pair<int, int>, Offset> reads;
   Offset next = 0;

@@ -12,7 +12,7 @@
 namespace meshorder {
 namespace {
 
-/// Graphs of more than one level that dense solvers still take.
+/// Graphs with more than one level, small enough for dense solvers.
 std::vector<test::NamedGraph> small_graphs() {
   const Index n = test::kSanitized ? 120 : 400;
   return {{"path", test::path(n)},
@@ -77,7 +77,7 @@ TEST(Hierarchy, CoarseOperatorsAreSymmetricAndAnnihilateConstants) {
 
 TEST(Hierarchy, CoarseOperatorsAreGalerkinProducts) {
   std::vector<test::NamedGraph> graphs = small_graphs();
-  // these coarsen smoothly, too
+  // these have levels of smoothed coarsening, too
   graphs.push_back({"larger grid", test::grid(35, 20)});
   graphs.push_back({"sparse", test::random_connected(800, 300, 5)});
   Index smoothed = 0;
@@ -134,7 +134,7 @@ TEST(Hierarchy, TheCycleIsSymmetricAndPositiveOnVectorsThatSumToZero) {
 }
 
 TEST(Hierarchy, TheCycleIsCloseToTheInverse) {
-  // the error I − M L of one cycle, in the energy norm: at most 1 it never diverges
+  // the error operator I − M L of one cycle: the iteration does not diverge if its energy norm is at most 1
   for (const auto& [name, graph] : small_graphs()) {
     SCOPED_TRACE(name);
     const auto exact = test::dense_eigen(graph);
@@ -146,7 +146,7 @@ TEST(Hierarchy, TheCycleIsCloseToTheInverse) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
         0.5 * (preconditioned + preconditioned.transpose()));
     EXPECT_GT(solver.eigenvalues()[0], 0.01);
-    // corrections of plain coarsening are made twice as large
+    // the cycle doubles the corrections of plain coarsening
     EXPECT_LT(solver.eigenvalues()[n - 2], 2 + 1e-9);
   }
 }

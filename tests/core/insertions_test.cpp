@@ -14,14 +14,14 @@ namespace {
 
 using test::arrangement_graph;
 
-/// Weights and volumes as two coarsenings in a random order leave them.
+/// A graph with the weights and volumes that two coarsenings in random order give.
 ArrangementGraph uneven_graph(Index n) {
   const ArrangementGraph fine = arrangement_graph(test::random_connected(n, 3 * n, 1));
   const ArrangementGraph once = coarsen(fine, test::shuffled(n, 1).new_to_old()).graph;
   return coarsen(once, test::shuffled(once.size(), 2).new_to_old()).graph;
 }
 
-/// The least total span that one vertex, put elsewhere, can give.
+/// The least total span after a move of one vertex.
 Offset least_by_one_insertion(const ArrangementGraph& graph, const std::vector<Index>& order) {
   Offset least = total_span(graph, order);
   for (Index from = 0; from < graph.size(); ++from) {
@@ -37,7 +37,7 @@ Offset least_by_one_insertion(const ArrangementGraph& graph, const std::vector<I
 }
 
 TEST(Insertions, LeaveNothingToGainByMovingOneVertex) {
-  // dense enough that no slide gives up before the end of the line
+  // dense enough that no search along the line stops before its end
   for (const ArrangementGraph& graph : {uneven_graph(150), arrangement_graph(test::complete_bipartite(12, 9)),
                                         arrangement_graph(test::random_connected(25, 150, 2))}) {
     std::vector<Index> order = test::shuffled(graph.size(), 1).new_to_old();
@@ -50,7 +50,7 @@ TEST(Insertions, LeaveNothingToGainByMovingOneVertex) {
 }
 
 TEST(Insertions, FindTheBestPlaceOfALoneVertex) {
-  // a path but for one end, which stands in the middle
+  // a path in order, except that one end is in the middle
   const Index n = 41;
   std::vector<Index> order(n);
   for (Index k = 0; k < n; ++k) order[k] = k < 20 ? k + 1 : k == 20 ? 0 : k;
@@ -85,7 +85,7 @@ TEST(Insertions, AreTheSameForEveryNumberOfThreads) {
 }
 
 TEST(Insertions, MoveVerticesAcrossTheBordersOfChunksInLaterPasses) {
-  // one vertex of a path stands ten places late, beyond the end of its chunk
+  // one vertex of a path is ten places too late, beyond the end of its chunk
   const Index n = 3 * 4096;
   std::vector<Index> order(n);
   for (Index k = 0; k < n; ++k) order[k] = k < 4090 || k > 4100 ? k : k < 4100 ? k + 1 : 4090;

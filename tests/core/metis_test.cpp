@@ -40,13 +40,14 @@ TEST(Metis, BringsNeighboursTogether) {
 TEST(Metis, NestedDissectionFillsLittle) {
   const CsrGraph grid = test::grid(25, 25);
   const CsrGraph graph = renumbered(grid, test::shuffled(grid.size(), 2).old_to_new());
-  // by rows a 25 × 25 grid fills about 25³; read the wrong way round, the order fills as a random one does
+  // by rows the factor of a 25 × 25 grid has about 25³ entries; the inverse of the order fills like a random
+  // one
   EXPECT_LT(factor_entries(graph, order_of(graph, "metis-nd")), 25 * 25 * 25 / 2);
   EXPECT_GT(factor_entries(graph, order_of(graph, "metis-nd").inverse()), 25 * 25 * 25);
 }
 
 TEST(Metis, RecursiveBisectionKeepsHalvesTogether) {
-  // two halves of a dumbbell stand one after the other
+  // the two halves of a dumbbell come one after the other
   const CsrGraph halves = test::disjoint_union({test::grid(16, 8), test::grid(16, 8)});
   std::vector<Edge> edges{{127, 128}};
   for (Index v = 0; v < halves.size(); ++v) {

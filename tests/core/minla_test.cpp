@@ -22,7 +22,7 @@ namespace {
 using test::order_of;
 using test::scrambled;
 
-/// Σ |rank i − rank j| over edges, straight from its definition; exact.
+/// Σ |rank i − rank j| over edges by its definition; exact.
 double sum_of_spans(const CsrGraph& graph, const std::vector<Index>& old_to_new) {
   Offset sum = 0;
   for (Index v = 0; v < graph.size(); ++v) {

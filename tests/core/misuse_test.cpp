@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Every entry point of the library with every kind of wrong array: each is refused by an Error and nothing is
-// read or written outside the arrays. These are exactly as long as they are said to be, so that
-// AddressSanitizer sees a step beyond.
+// Calls every entry point of the library with every kind of wrong array. Each call must throw an Error and
+// read or write nothing outside the arrays. These have exactly the lengths given to the call:
+// AddressSanitizer finds any access beyond.
 #include <meshorder/error.hpp>
 #include <meshorder/fiedler.hpp>
 #include <meshorder/order.hpp>
@@ -35,7 +35,7 @@ struct Misuse {
   std::function<void()> call;
 };
 
-/// EXPECTs that each is refused by an Error with a message.
+/// EXPECTs that each call throws an Error with a message.
 void expect_refused(const std::vector<Misuse>& misuses) {
   for (const Misuse& misuse : misuses) {
     SCOPED_TRACE(misuse.what);
@@ -59,7 +59,7 @@ struct Square {
   [[nodiscard]] GraphView view() const { return {offsets, neighbours, weights, base}; }
 };
 
-/// Graphs that nothing accepts, whatever it does with them.
+/// Graphs that every function refuses.
 std::vector<std::pair<std::string, Square>> wrong_graphs() {
   const auto broken = [](const std::function<void(Square&)>& change) {
     Square square;

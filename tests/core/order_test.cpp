@@ -35,7 +35,7 @@ using testing::HasSubstr;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A graph whose numbering tells nothing, and points that floats hold exactly.
+/// A graph with random numbering, and random points that floats represent exactly.
 struct Problem {
   CsrGraph graph;
   std::vector<Point> points;
@@ -334,10 +334,10 @@ TEST(OrderVertices, RefusesSizesThatDoNotFit) {
       HasSubstr("3 points for 4 vertices"));
 }
 
-// The sizes are those of no array: they are refused before anything is read.
+// No array has these sizes. They are refused before anything is read.
 TEST(OrderVertices, RefusesSizesBeyondItsIntegers) {
   const Problem problem(test::path(4));
-  const std::size_t wrapped = (std::size_t{1} << 32U) + 4;  // 4 where 32 bits are taken for it
+  const std::size_t wrapped = (std::size_t{1} << 32U) + 4;  // 4 if truncated to 32 bits
   const std::array<int, 2> two{0, 0};
   const std::array<double, 2> numbers{};
   const GraphView huge{IndexView(two.data(), (std::size_t{1} << 31U) + 1), {}};
@@ -714,8 +714,8 @@ TEST(FiedlerVector, HasNumbersEvenWhereTheWeightsOverflow) {
   }
 }
 
-/// A grid of triangles whose vertices are numbered at random, and its points. Squares are cut along either
-/// diagonal, so that `auto` does not take it for a lattice.
+/// A grid of triangles with random vertex numbers, and its points. Squares are cut along either diagonal, for
+/// `auto` not to treat it as a lattice.
 struct Sheet {
   static constexpr Index kSide = 30;
   std::vector<Point> points{static_cast<std::size_t>(kSide * kSide)};

@@ -20,7 +20,7 @@ struct Standard {
 constexpr std::array kStandards{Standard{Shape::tetrahedron, 4}, Standard{Shape::pyramid, 5},
                                 Standard{Shape::wedge, 6}, Standard{Shape::hexahedron, 8}};
 
-/// The faces of a cell with their normals outward, of vertices 10, 11, …
+/// The faces of a cell with vertices 10, 11, …, with outward normals.
 Corners outward_faces(Shape shape) {
   switch (shape) {
     case Shape::tetrahedron:
@@ -35,7 +35,7 @@ Corners outward_faces(Shape shape) {
   }
 }
 
-/// A face from its lowest corner on.
+/// The face, rotated to begin with its lowest corner.
 std::vector<Index> from_lowest(std::vector<Index> face) {
   std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
   return face;
@@ -77,7 +77,7 @@ TEST(Polyhedron, FacesInAnyOrderAndDirectionGiveTheCell) {
       EXPECT_TRUE(cell.signs_agree);
       EXPECT_EQ(outward_faces_of(cell), expected);
 
-      // a wrong sign is seen, and turns no more than the cell
+      // a wrong sign is detected, and at most turns the cell inside out
       inward[chance() % inward.size()].flip();
       CellOfFaces other = cell_of_faces(with_signs(faces, inward));
       ASSERT_EQ(other.kind, CellOfFaces::Kind::standard);
@@ -109,7 +109,7 @@ TEST(Polyhedron, OtherPatternsAreNoCells) {
   const auto kind_of = [](const Corners& faces) {
     return cell_of_faces(with_signs(faces, std::vector<bool>(faces.size()))).kind;
   };
-  // two tetrahedra on one another; a cube with a face cut in two; one with a corner cut off
+  // two tetrahedra with a common face; a cube with a face cut in two; a cube with a corner cut off
   EXPECT_EQ(kind_of({{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}}),
             CellOfFaces::Kind::other);
   EXPECT_EQ(

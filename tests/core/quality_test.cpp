@@ -21,7 +21,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// The same numbers straight from the definitions. Rows may be in any state.
+/// The same numbers by their definitions. Rows may be unsorted, with loops and repeated entries.
 Quality by_definition(const CsrGraph& graph, const Permutation& order) {
   std::set<std::pair<Index, Index>> edges;  // by places, the first one first
   for (Index v = 0; v < graph.size(); ++v) {

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// Arrays of random contents, and good ones with a fault, to all functions that take arrays of a caller: each
-// returns something whole or refuses its input.
+// Passes arrays of random contents, and valid ones with one fault, to all functions that take a caller's
+// arrays. Each returns a complete result or refuses its input.
 #include "support/sample_graphs.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/order.hpp>
@@ -124,7 +124,7 @@ auto filled(std::int64_t size, const Fill& fill) {
   return numbers;
 }
 
-/// Calls `work`, which may refuse its input in the ways that the functions promise.
+/// Calls `work`, which may refuse its input with one of the documented errors.
 template <class Work>
 void expect_result_or_refusal(const Work& work, int& results) {
   try {
@@ -244,8 +244,8 @@ TEST(RandomBytes, AsGraphs) {
   EXPECT_LT(results, 19000);
 }
 
-/// A graph of n vertices, some edges of which stand in one row only: of a grid as it is, of one whose
-/// vertices are shuffled, and of random neighbours.
+/// Three graphs of n vertices with edges in one row only: a grid without a fifth of its entries, the upper
+/// triangle of a grid, and random neighbours.
 std::vector<CsrGraph> asymmetric_graphs(Index n) {
   Dice dice(77);
   const CsrGraph grid = test::grid(n / 60, 60);

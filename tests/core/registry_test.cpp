@@ -28,7 +28,7 @@ using test::refusal;
 
 using testing::HasSubstr;
 
-/// The permutation that turns everything round.
+/// The permutation that reverses the order.
 Permutation reversed(std::size_t n) {
   std::vector<Index> map(n);
   std::iota(map.rbegin(), map.rend(), 0);
@@ -274,7 +274,7 @@ TEST_F(Registry, IsUsedByManyThreadsAtOnce) {
 }
 
 TEST_F(Registry, KeepsWhatItsOwnerLeavesThere) {
-  // in a process of its own: nothing takes such a method out again
+  // in a separate process: such a method cannot be removed again
   const auto keep_and_find = [] {
     {
       Registration registration = register_vertex_method({.name = "kept-method"}, reversed_vertices);

@@ -31,8 +31,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-/// A square of points joined to those that are near, of which some come and go: what a caller keeps, in the
-/// places that the last update gave.
+/// Points in a square, joined to near ones; some are removed and others added. Stands for a caller, who keeps
+/// points in the order of the last update.
 class Cloud {
  public:
   explicit Cloud(std::size_t count, std::uint64_t seed = 1) : random_(seed) {
@@ -186,7 +186,7 @@ TEST(Reorderer, OfAMeshIsThatOfItsGraph) {
 }
 
 TEST(Reorderer, PutsNewVerticesOfAMeshBetweenThoseOfTheirCells) {
-  // a strip of triangles, of which vertex 12 is new; it belongs to 4 and 5
+  // a strip of triangles; then vertex 12 is added, in a triangle with 4 and 5
   std::vector<std::array<Index, 3>> triangles;
   for (Index v = 0; v + 2 < 12; ++v) triangles.push_back({v, v + 1, v + 2});
   Reorderer reorderer({.method = "rcm"});
@@ -244,7 +244,7 @@ TEST(Reorderer, RenewsFiedlerOrdersFromTheLastVector) {
   EXPECT_THAT(repairs, testing::Not(testing::Contains(Repair::fresh)));
 }
 
-/// Whether the start vector that is kept rises or falls along the arrays, as that of a Fiedler order does.
+/// Whether the stored start vector is sorted along the arrays, as after a Fiedler order.
 bool vector_is_sorted(const Reorderer& reorderer) {
   const std::vector<double> vector = reorderer_state(reorderer.state()).vector;
   return !vector.empty() &&
@@ -262,7 +262,7 @@ TEST(Reorderer, KeepsTheFiedlerVectorByThePlacesOfTheArrays) {
   };
   EXPECT_EQ(update({}), Repair::fresh);
   EXPECT_TRUE(vector_is_sorted(reorderer));
-  // the caller's arrays come in another sequence
+  // the caller passes the arrays in another order
   const Permutation moved = test::shuffled(sheet.size(), 2);
   graph = renumbered(graph, moved.old_to_new());
   EXPECT_EQ(update({moved.new_to_old().begin(), moved.new_to_old().end()}), Repair::carried);
@@ -281,7 +281,7 @@ TEST(Reorderer, LeavesALatticeAsItIs) {
 }
 
 TEST(Reorderer, LeavesANumberingThatIsReadForwardUntilItIsNot) {
-  // a lattice without a third of its edges: its vertices differ in how many neighbours they have
+  // a lattice without a third of its edges: its vertices have different numbers of neighbours
   const CsrGraph lattice = test::grid(40, 40, 40);
   std::mt19937_64 random(5);
   std::vector<Edge> edges;

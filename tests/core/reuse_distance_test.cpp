@@ -51,8 +51,8 @@ ReuseHistogram by_stack(const std::vector<Index>& stream, Stack stack = {}) {
   return histogram;
 }
 
-/// The accesses from 512 lines away and farther, cold ones among them, after none of whose two predecessors
-/// in memory among the last 64 of these, by looking at all of them.
+/// Jumps by definition. Far accesses are the cold ones and those at a distance of 512 lines or more. A far
+/// access is a jump unless one of the two preceding lines in memory is among the last 64 far accesses.
 ReuseHistogram jumps_by_stack(const std::vector<Index>& stream, Stack stack = {}) {
   ReuseHistogram histogram;
   std::vector<Index> far;
@@ -79,7 +79,7 @@ ReuseDistance measured(const std::vector<Index>& stream, Index lines) {
   return reuse;
 }
 
-/// The misses of one cache that drops what was least recently used, simulated by itself.
+/// The misses of a simulated LRU cache.
 Offset misses_of_lru(const std::vector<Index>& stream, std::size_t capacity) {
   std::list<Index> order;
   std::unordered_map<Index, std::list<Index>::iterator> held;
@@ -169,7 +169,7 @@ TEST(ReuseDistance, WhenRepeatedJumpsAsInEveryLaterRun) {
   const ReuseHistogram repeated = measured(stream, lines).repeated().jumps;
   EXPECT_EQ(repeated.cold(), 0);
   for (const Offset capacity : {512, 2048, 8192}) {
-    // but for what the end of the run before leads to, or keeps near
+    // apart from accesses that the end of the previous run leads to, or keeps near
     const auto expected = static_cast<double>(later.misses(capacity));
     EXPECT_GT(expected, 300.0);
     EXPECT_NEAR(static_cast<double>(repeated.misses(capacity)), expected, 0.01 * expected + 3.0) << capacity;
@@ -198,7 +198,7 @@ TEST(ReuseDistance, WhatAStreamComesToIsNoJumpButLeadsOn) {
     ReuseDistance reuse(kLines);
     for (Index line = 0; line < kLines; line += 4) reuse.access(line, how);
     EXPECT_EQ(reuse.reuse().jumps.accesses(), how == Access::streamed ? 0 : kLines / 4);
-    // far again, and not behind one that was just there
+    // far again, and no predecessor among the last far accesses
     for (Index line = 0; line < kLines; line += 4) reuse.access(line, how);
     EXPECT_EQ(reuse.reuse().jumps.accesses(), how == Access::streamed ? 0 : kLines / 2);
     const Offset before = reuse.reuse().jumps.accesses();

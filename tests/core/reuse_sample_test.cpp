@@ -77,7 +77,7 @@ TEST(ReuseSample, TellsWhetherOneOfSomeLinesIsSampled) {
   EXPECT_TRUE(ReuseSample(kLines, 0).samples(3, 3));
 }
 
-/// Lines that are gathered one after another, each after so many lines of a stream.
+/// Consecutive lines that are gathered, each after `streamed` lines of a stream.
 Reuse gathered_between_streams(int halvings, Index streamed) {
   constexpr Index kGathered = 20'000;
   ReuseSample sample(kGathered * (1 + streamed), halvings);
@@ -90,7 +90,7 @@ Reuse gathered_between_streams(int halvings, Index streamed) {
 }
 
 TEST(ReuseSample, CountsWhatStreamsBetweenTwoLinesThatFollowEachOther) {
-  // one of 64 and fewer accesses led there, and one of more did not
+  // a gathered line leads to the next one if fewer than 64 accesses are between; else the next one is a jump
   for (const Index streamed : {45, 55, 75}) {
     const Reuse exact = gathered_between_streams(0, streamed);
     const Reuse estimate = gathered_between_streams(3, streamed);

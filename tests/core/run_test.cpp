@@ -105,7 +105,7 @@ TEST(TakeTurns, TheCallBeginsNoTurnAfterOneHasFailedOnAnotherThread) {
   std::atomic<int> begun_later = 0;
   RunOfCall run;
   run.threads = 4;
-  run.progress = [](const Progress&) { return true; };  // without, polls end the call's own turns, too
+  run.progress = [](const Progress&) { return true; };  // else polls end the call's own turns, too
   EXPECT_THROW(in_call(run,
                        [&] {
                          take_turns(20'000, [&](Index i) {
@@ -137,7 +137,7 @@ TEST(ParallelLoop, OfTheLibraryIsWholeWithinALoopOfTheCallersThatIsCancelled) {
 
 class RunOptions : public testing::Test {
  protected:
-  /// A user's method that works until `done()`; its calls of the library belong to the call that asked.
+  /// A user's method that works until `done()`. Its calls of the library belong to the outer call.
   [[nodiscard]] Registration patient(std::function<bool()> done) const {
     return register_vertex_method(
         {.name = "patient"},
@@ -262,8 +262,8 @@ CsrGraph scattered(const CsrGraph& graph) {
   return renumbered(graph, order_vertices(test::view_of(graph), "scrambled").permutation.old_to_new());
 }
 
-/// Calls `work` with a function that ends it at its k-th call: it must throw Stopped then, and otherwise be
-/// done.
+/// Calls `work` with a progress function that stops it at the k-th call. It must then throw Stopped, or else
+/// complete.
 template <class Work>
 void expect_stopped_or_done(int k, int threads, const Work& work) {
   int calls = 0;

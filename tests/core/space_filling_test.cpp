@@ -60,7 +60,7 @@ TEST(Hilbert, ConsecutiveCellsOfAFullLatticeAreNeighbours) {
 }
 
 TEST(Hilbert, FillsEachHalfOfTheLatticeBeforeTheNext) {
-  // every aligned block of 4^j cells is visited in one go
+  // the cells of every aligned block of 4^j are consecutive
   const std::vector<Point> points = full_lattice(2, 5);
   const std::vector<Index> sequence = order_of("hilbert", points).new_to_old();
   for (int j = 1; j <= 4; ++j) {
@@ -153,7 +153,7 @@ TEST(Morton, OfAFullLatticeIsTheSpeltNumber) {
 }
 
 TEST(SpaceFilling, LeavesOutAxesWithoutExtent) {
-  // the same plane lattice stood up along each pair of axes
+  // the same plane lattice in each pair of axes
   const std::vector<Point> flat = full_lattice(2, 4);
   for (const char* method : {"morton", "hilbert"}) {
     const Permutation order = order_of(method, flat);

@@ -72,7 +72,7 @@ TEST(SpectralOrder, HasSpansNoLongerThanBisectionByMetis) {
 
 TEST(SpectralOrder, IsTheSameForAnyNumberOfThreads) {
   const CsrGraph graph = scrambled(vertex_graph(make_torus({10, 0.15, 0})), 3);
-  ASSERT_GT(graph.size(), 8000);  // so many that pieces are ordered side by side
+  ASSERT_GT(graph.size(), 8000);  // so many that pieces are ordered in parallel
   Permutation with_one;
   for (const std::size_t threads : {1U, 2U, 5U}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);

@@ -14,7 +14,7 @@
 namespace meshorder {
 namespace {
 
-/// Distances from `start` by relaxing all edges until nothing changes; −1 where there is no way.
+/// Distances from `start` by relaxing all edges until nothing changes; −1 for unreachable vertices.
 std::vector<Index> distances(const CsrGraph& graph, Index start) {
   std::vector<Index> result(graph.size(), -1);
   result[start] = 0;
@@ -32,7 +32,7 @@ std::vector<Index> distances(const CsrGraph& graph, Index start) {
   return result;
 }
 
-/// The vertices of a component in the order of a search that goes through one vertex after the other.
+/// The vertices of a component in the order of a serial breadth-first search.
 std::vector<Index> searched(const CsrGraph& graph, Index start, LevelSearch::Arrange arrange) {
   std::vector<Index> order{start};
   std::vector<bool> found(graph.size(), false);
@@ -132,7 +132,7 @@ TEST(BreadthFirstCopy, IsTheSameOnAnyNumberOfThreads) {
 TEST(BreadthFirstCopy, IsTheSameGraphInTheOrderOfASearch) {
   CsrGraph graph =
       test::disjoint_union({test::path(5), test::random_connected(200, 60, 1), CsrGraph{{0, 0}, {}}});
-  for (Index v = 0; v < graph.size(); v += 3) {  // rows that do not rise keep their order
+  for (Index v = 0; v < graph.size(); v += 3) {  // rows in descending order keep it
     std::reverse(graph.neighbours.begin() + graph.offsets[v],
                  graph.neighbours.begin() + graph.offsets[v + 1]);
   }
@@ -156,7 +156,7 @@ TEST(BreadthFirstCopy, IsTheSameGraphInTheOrderOfASearch) {
   }
 }
 
-/// What is found from the vertex of the name 0 of a connected graph, in which names decide ties.
+/// The vertex that a search from the vertex of name 0 finds in a connected graph. Names break ties.
 Index found_from_zero(const CsrGraph& graph, const std::vector<Index>& names) {
   const BreadthFirstCopy copy = breadth_first_copy(renumbered(graph, names));
   LevelSearch search(copy.graph());
@@ -166,7 +166,7 @@ Index found_from_zero(const CsrGraph& graph, const std::vector<Index>& names) {
   return static_cast<Index>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-/// The numbers of the vertices as names, but that `start` and 0 change theirs.
+/// The numbers of the vertices as names, with those of `start` and 0 swapped.
 std::vector<Index> with_zero_at(Index start, Index size) {
   std::vector<Index> names = index_range(0, size);
   std::swap(names[0], names[start]);
@@ -175,7 +175,7 @@ std::vector<Index> with_zero_at(Index start, Index size) {
 
 TEST(SearchFromTheRim, IsAnEndOfAPathAndACornerOfAGrid) {
   EXPECT_EQ(found_from_zero(test::path(1000), with_zero_at(400, 1000)), 999);
-  // of two ends the one of the smaller name
+  // of two ends, the one with the smaller name
   EXPECT_EQ(found_from_zero(test::path(7), {1, 2, 3, 0, 4, 5, 6}), 0);
   EXPECT_EQ(found_from_zero(test::path(7), {6, 2, 3, 0, 4, 5, 1}), 6);
   const Index corner = found_from_zero(test::grid(9, 7), with_zero_at(31, 63));

@@ -21,7 +21,7 @@
 namespace meshorder {
 namespace {
 
-/// The sectors of x that remain of the cost of a product: without those of offsets, columns and values.
+/// The sectors of x in the cost of a product, which has also those of offsets, columns and values.
 Offset vector_sectors(const CsrGraph& graph) {
   CsrGraph matrix;
   for (Index v = 0; v < graph.size(); ++v) {
@@ -44,14 +44,14 @@ TEST(WarpSectors, OfAProductAreThoseOfTheRenumberedMatrix) {
 }
 
 TEST(WarpSectors, AreThoseOfEveryWarpThatIsLookedAt) {
-  // a path has the same in each warp but the first, whose vertex 0 has no smaller neighbour
+  // a path costs the same in each warp except the first, whose vertex 0 has no smaller neighbour
   const CsrGraph path = test::path(3200);
   const Permutation as_is = Permutation::identity(3200);
   const Offset all = sectors_of_product(path, as_is);
   EXPECT_NEAR(static_cast<double>(10 * sectors_of_product(path, as_is, 10)), static_cast<double>(all), 20);
 }
 
-/// The geometric mean over all layouts of what the cells' additions cost.
+/// The geometric mean over all layouts of the cost of the cells' additions.
 double cost_of(const Mesh& mesh) {
   double sum = 0;
   for (const GpuLayout layout : {GpuLayout::packed, GpuLayout::apart, GpuLayout::padded})

@@ -113,7 +113,8 @@ TEST(Communicator, SharesTheLackOfMemory) {
 
 TEST(Communicator, AddsUpInRankOrder) {
   const Communicator communicator;
-  const double own = communicator.rank() == 0 ? 1e16 : 1.0;  // each lost in the first one, were it not last
+  // in rank order each 1 is lost in 1e16; in other orders the ones can add up first
+  const double own = communicator.rank() == 0 ? 1e16 : 1.0;
   double expected = 1e16;
   for (int r = 1; r < communicator.size(); ++r) expected += 1.0;
   EXPECT_EQ(communicator.sum(own), expected);

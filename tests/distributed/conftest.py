@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What all tests under mpirun share."""
+"""Fixtures of all tests under mpirun."""
 import os
 import tempfile
 
@@ -8,7 +8,7 @@ import pytest
 
 @pytest.fixture(scope="session", autouse=True)
 def folder_of_sessions():
-    """Gives each test process a folder for Open MPI's sessions: an mpirun that ends removes a folder that it shares with others."""
+    """Gives each test process its own folder for Open MPI's sessions: mpirun removes even a shared one at its end."""
     with tempfile.TemporaryDirectory(prefix="mpi-") as folder:
         os.environ["OMPI_MCA_orte_tmpdir_base"] = folder
         yield

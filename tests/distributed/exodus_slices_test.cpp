@@ -27,7 +27,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// A file of the root, for the time of a test.
+/// A file that the root writes, removed at the end of the test.
 class SharedMesh {
  public:
   SharedMesh(const Communicator& communicator, const Mesh& mesh, const std::string& name = "a.e")
@@ -54,7 +54,7 @@ class SharedMesh {
   std::string path_;
 };
 
-/// A mesh as rank 0 has it that reads it to write .vtu files.
+/// A mesh as rank 0 holds it after reading it to write .vtu files.
 Mesh read_for_vtu(const std::string& path) {
   Mesh mesh = read_mesh(path);
   (void)arrange_cells(mesh, format_named("vtu"));
@@ -79,7 +79,7 @@ void expect_equal(const MeshSlice& actual, const MeshSlice& expected) {
   EXPECT_EQ(actual.shapes, expected.shapes);
 }
 
-/// What pieces have of an array.
+/// The properties of an array in pieces.
 using ArrayRow = std::tuple<std::string, int, int, Offset, std::string, std::string>;
 
 std::vector<ArrayRow> table_of(const PieceSchema& schema) {
@@ -107,7 +107,7 @@ void expect_equal(const Communicator& communicator, const GridRows& actual, cons
   }
 }
 
-/// Reads a file in both ways, and orders it.
+/// Reads a file by all ranks and by rank 0, and orders it.
 void expect_alike(const Communicator& communicator, const std::string& path,
                   const DistributedOptions& options = {.partitioner = Partitioner::hilbert, .parts = 3}) {
   Mesh whole;
@@ -138,8 +138,8 @@ void expect_alike(const Communicator& communicator, const std::string& path,
   EXPECT_EQ(of_grid, expected_notes);
 }
 
-/// A mesh of all types of cells in several blocks, with ids in no order, labels beyond 32 bits, sets in an
-/// order of their own, sides with factors, and arrays of some cells and at two steps.
+/// A mesh of all types of cells in several blocks, with unsorted ids, labels beyond 32 bits, unsorted sets,
+/// sides with factors, and arrays of some cells and at two steps.
 Mesh with_everything() {
   Mesh mesh = test::mixed_mesh();
   const Index vertices = mesh.vertex_count();
@@ -147,7 +147,7 @@ Mesh with_everything() {
   for (Index v = 0; v < vertices; ++v) mesh.vertex_ids.push_back(10 * ((v * 7) % vertices) + 3);
   for (Index c = 0; c < cells; ++c) mesh.cell_ids.push_back((std::int64_t{1} << 40) - 5 * c);
   std::vector<std::int64_t> owners(static_cast<std::size_t>(vertices), 4);
-  owners.back() = std::int64_t{1} << 33;  // the last rank alone needs 64 bits
+  owners.back() = std::int64_t{1} << 33;  // only the last rank needs 64 bits
   mesh.data.push_back({.name = "map owner", .values = owners});
   for (const char* const name : {"heat step 1", "heat step 2"}) {
     std::vector<double> values(static_cast<std::size_t>(cells / 2));
@@ -164,7 +164,7 @@ Mesh with_everything() {
   return mesh;
 }
 
-/// The mesh, to be written to a file of netCDF-4, compressed.
+/// The mesh, which will be written to a compressed netCDF-4 file.
 Mesh compressed(const Mesh& mesh) {
   const test::TemporaryFolder folder;
   (void)write_mesh(mesh, folder.path() / "a.e");
@@ -231,7 +231,7 @@ TEST(ExodusSlices, LeaveOtherFilesToRank0) {
   const Communicator communicator;
   const Mesh bar = test::tetrahedral_bar(2);
   EXPECT_FALSE(ExodusSlices::open(communicator, SharedMesh(communicator, bar, "a.vtu").path()));
-  // VTK has no triangle of seven nodes with a type of its own
+  // VTK has no separate type for triangles of seven nodes
   const Mesh bubbles = test::cells_of_type(Shape::triangle, 7, 2);
   const bool held = format_named("vtu").holds(bubbles, Shape::triangle, 7);
   EXPECT_EQ(ExodusSlices::open(communicator, SharedMesh(communicator, bubbles).path()).has_value(), held);

@@ -23,7 +23,7 @@ namespace {
 constexpr SharedSizes kAllTogether{.alone = 0, .few = 20};
 constexpr SharedSizes kAllAlone{.alone = 1'000'000, .few = 20};
 
-/// What the ranks find for a graph, on all of them.
+/// The result of all ranks for a graph, on each of them.
 struct Found {
   Permutation order;
   std::vector<FiedlerComponent> components;
@@ -47,7 +47,7 @@ Order serial(const Mesh& mesh, const OrderOptions& options = {}) {
   return order_graph("fiedler", {.graph = graph}, options);
 }
 
-/// Grids of different sizes side by side, the vertices of all of them in turn, and two that nothing joins.
+/// Separate grids of different sizes, with the vertices of all numbered in turn, and two isolated vertices.
 Mesh grids_in_turn(const std::vector<Index>& sizes) {
   Mesh all;
   std::vector<std::vector<Index>> number_of;
@@ -92,7 +92,7 @@ TEST(SharedFiedler, HasTheEigenvalueAndSpansOfTheSerialOne) {
       EXPECT_LE(component.iterations, 15);
       EXPECT_NEAR(component.lambda2, alone.fiedler.front().lambda2, 0.01 * alone.fiedler.front().lambda2);
       const CsrGraph graph = vertex_graph(mesh);
-      // a ball has three eigenvectors of that eigenvalue: which of them is found changes its spans
+      // a ball has three eigenvectors of λ₂, with different spans; any of them may be found
       const double allowed = mesh.vertex_count() == make_ball({.size = 10}).vertex_count() ? 1.06 : 1.02;
       EXPECT_LE(edge_span(graph, together.order).mean, allowed * edge_span(graph, alone.permutation).mean);
     }
@@ -166,7 +166,7 @@ TEST(SharedFiedler, IsTheSameWhenRepeated) {
 
 TEST(SharedFiedler, TakesGraphsOfAnySort) {
   const Communicator communicator;
-  Mesh star;  // no rank but the hub's can aggregate
+  Mesh star;  // only the hub's rank can aggregate
   Mesh apart;
   star.points.resize(3000);
   apart.points.resize(50);

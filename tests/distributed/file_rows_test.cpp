@@ -52,7 +52,7 @@ struct Kept {
   VtuEncoding::Compressor compressor;
 };
 
-/// Writes values of uneven shares, and reads parts of them, whoever wrote these.
+/// Writes values in uneven shares, and reads parts that other ranks wrote.
 void expect_kept(const Communicator& communicator, const Kept& kept) {
   using Compressor = VtuEncoding::Compressor;
   VtuEncoding encoding;
@@ -117,7 +117,7 @@ TEST(VtuRows, AreReadAsTheyWereWritten) {
   for (const auto compressor : {VtuEncoding::Compressor::none, VtuEncoding::Compressor::zlib,
                                 VtuEncoding::Compressor::lz4, VtuEncoding::Compressor::lzma}) {
     if (!vtk::VtuCompressor::available(compressor)) continue;
-    // blocks of a part of a rank's values, and of those of several ranks
+    // blocks smaller than a rank's values, and blocks with the values of several ranks
     for (const Offset block : {7, 64, 1000, 100000}) {
       for (const Offset values : {0, 1, 6, 7, 10000}) expect_kept(communicator, {values, block, compressor});
     }

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-/// Runs all tests on all ranks; only the root prints, besides what fails.
+/// Runs all tests on all ranks. Only the root prints; other ranks print failures only.
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   const meshorder::distributed::Session session(argc, argv);

@@ -30,7 +30,7 @@ TEST(RowMover, PutsEveryRowInItsPlace) {
       const auto own = static_cast<std::size_t>(layout.size(communicator.rank()));
       const RowMover mover(communicator, layout, {places.data() + first, own});
 
-      // a row of three bytes, and one of as many entries as its number tells
+      // a row of three bytes, and a row whose length depends on its number
       std::vector<std::byte> bytes;
       Rows rows;
       for (std::size_t k = 0; k < own; ++k) {

@@ -19,7 +19,7 @@ using distributed::Communicator;
 using distributed::GlobalIndex;
 using distributed::MeshSlice;
 
-/// What a solver's ranks have of a mesh: vertices and cells in ranges.
+/// A rank of a solver, with its ranges of a mesh's vertices and cells.
 struct Solver {
   Communicator communicator;
   Mesh mesh;
@@ -39,7 +39,7 @@ struct Solver {
   }
 };
 
-/// Expects that all ranks get an error of this kind, in these words.
+/// EXPECTs that all ranks get an error of this code with these words.
 template <class Work>
 void expect_error(const Work& work, Code code, const std::string& words) {
   try {
@@ -195,7 +195,7 @@ TEST(RankMeshes, AFaultOfOneRankIsToldOnAll) {
   mesh.vertex_count = -1;
   expect_fault(mesh, "vertex_count: -1");
   mesh.vertex_count = std::numeric_limits<std::int64_t>::max();
-  // the room for the result would not be had before the library is asked
+  // by the C function: the C++ one would fail to allocate the result before it calls the library
   expect_error(
       [&] {
         const mo_mpi_mesh given = detail::to_c(is_last ? mesh : solver.view());

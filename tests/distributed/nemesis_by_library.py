@@ -1,7 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What the library of Exodus II reads of a Nemesis piece, as JSON.
+"""Prints as JSON what the library of Exodus II reads from Nemesis pieces.
 
-A program of its own: the library brings another libnetcdf than the module of Python.
+It is a separate program because the library uses another libnetcdf than Python's module.
 """
 import ctypes
 import json
@@ -22,7 +22,7 @@ def numbers(count):
 
 def read(path):
     words, version = [ctypes.c_int(8), ctypes.c_int(0)], ctypes.c_float()
-    exodus.ex_opts(1)  # tells its errors
+    exodus.ex_opts(1)  # prints its errors
     file = exodus.ex_open_int(path.encode(), 0, *map(ctypes.byref, words), ctypes.byref(version), VERSION)
     if file < 0:
         sys.exit("the library of Exodus II does not open it")
@@ -52,7 +52,7 @@ def read(path):
                          for one, size in zip(*maps[2:])],
         "ids": [maps[0], maps[2]],
         "blocks": lists(exodus.ex_get_eb_info_global, [whole[2]] * 2),
-        # which it does not ask for where there are none
+        # not asked for if there are none
         "node sets": lists(exodus.ex_get_ns_param_global, [whole[3]] * 3) if whole[3] else [[], [], []],
         "side sets": lists(exodus.ex_get_ss_param_global, [whole[4]] * 3) if whole[4] else [[], [], []],
     }

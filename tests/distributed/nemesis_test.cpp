@@ -29,11 +29,11 @@ Mesh mesh_of(Shape shape, Index vertices, const std::vector<std::vector<Index>>&
   return mesh;
 }
 
-/// Nine vertices, of which edges use all but 3 and 8; parts begin at 0, 2, 4 and 6.
+/// Nine vertices, and edges that use all except 3 and 8; parts begin at 0, 2, 4 and 6.
 Mesh edges() { return mesh_of(Shape::line, 9, {{0, 1}, {1, 2}, {0, 4}, {5, 6}, {4, 7}}); }
 const std::vector<GlobalIndex> kStarts{0, 2, 4, 6, 8};
 
-/// The parts of a mesh that this rank has alone, as others have it.
+/// The parts of a mesh that this rank holds completely, by a communicator of one rank.
 MeshParts parts_of(const Mesh& mesh, const std::vector<GlobalIndex>& starts) {
   return {Communicator(MPI_COMM_SELF), mesh, ShareNumbers::of_whole(mesh), starts};
 }
@@ -53,7 +53,7 @@ TEST(MeshParts, HaveACellOnceAndAVertexWhereCellsUseIt) {
   EXPECT_THAT(parts.vertices(0), ElementsAre(0, 1));
   EXPECT_THAT(parts.vertices(1), ElementsAre(2, 3, 1));        // 3 is in no cell
   EXPECT_THAT(parts.vertices(2), ElementsAre(4, 0));           // 5 is in cells of the last part only
-  EXPECT_THAT(parts.vertices(3), ElementsAre(6, 7, 8, 4, 5));  // 8 stands behind the last part
+  EXPECT_THAT(parts.vertices(3), ElementsAre(6, 7, 8, 4, 5));  // 8 is after the last part
   EXPECT_THAT(parts.parts_with(0), ElementsAre(0, 2));
   EXPECT_THAT(parts.parts_with(5), ElementsAre(3));
 }
@@ -96,7 +96,7 @@ TEST(PartCutter, TakesArraysSetsAndIdsAlong) {
 }
 
 TEST(FacetsBetween, ArePairedInOneOrder) {
-  // three triangles at the edge of 0 and 1, of which two are of one part, and one beyond
+  // three triangles at the edge 0–1, two of them in one part, and one triangle elsewhere
   const Mesh mesh = mesh_of(Shape::triangle, 6, {{1, 0, 4}, {0, 1, 2}, {5, 0, 1}, {2, 1, 3}});
   const MeshParts parts = parts_of(mesh, {0, 4, 6});
   const auto borders = borders_of(mesh, parts);

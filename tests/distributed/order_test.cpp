@@ -29,7 +29,7 @@ TEST_P(Methods, HaveSpansLikeTheSerialOrder) {
     if (!communicator.is_root()) continue;  // judged once
     const CsrGraph graph = vertex_graph(mesh);
     const EdgeSpan serial = edge_span(graph, order_graph("spectral", {.graph = graph}).permutation);
-    // ranges of a curve are parts of rougher rims
+    // parts that are ranges of a curve have rougher boundaries
     const bool is_scotch = GetParam() == Partitioner::ptscotch;
     for (const WholeOrder& order : orders) {
       const EdgeSpan span = edge_span(graph, order.vertices);
@@ -61,7 +61,7 @@ TEST(DistributedOrder, KeepsPartsTogether) {
   const WholeOrder order = ordered(communicator, mesh, {.partitioner = Partitioner::hilbert, .parts = 4});
   const WholeOrder in_bfs =
       ordered(communicator, mesh, {.vertices = "bfs", .partitioner = Partitioner::hilbert, .parts = 4});
-  // 1,000 vertices in four parts: what stands in a part does so under any method
+  // 1,000 vertices in four parts: the method does not change the part of a vertex
   for (Index v = 0; v < 1000; ++v)
     EXPECT_EQ(order.vertices.old_to_new()[v] / 250, in_bfs.vertices.old_to_new()[v] / 250) << v;
   EXPECT_NE(order.vertices, in_bfs.vertices);
@@ -79,7 +79,7 @@ TEST(DistributedOrder, PutsInterfacesLastInTheirOrder) {
     ASSERT_EQ(last.report.interfaces, mixed.report.interfaces);
     const std::vector<GlobalIndex>& starts = last.report.part_starts;
     for (std::size_t p = 0; p < 4; ++p) {
-      // the vertices of the part in the mixed order, parted in two
+      // the vertices of the part in the mixed order: the interior and the rim
       std::vector<Index> interior;
       std::vector<Index> rim;
       for (GlobalIndex place = starts[p]; place < starts[p + 1]; ++place) {
@@ -105,7 +105,7 @@ TEST(DistributedOrder, TurnsMethodsTowardsTheNeighbours) {
   const Communicator communicator;
   const Mesh mesh = make_grid({.size = 12});
   const CsrGraph graph = vertex_graph(mesh);
-  // parts of a curve, each ordered along it: turned the wrong way the ends of edges between them are far
+  // parts of a curve, each ordered along it: in a reversed part, edges to other parts would be long
   const WholeOrder order =
       ordered(communicator, mesh, {.vertices = "fiedler", .partitioner = Partitioner::hilbert, .parts = 8});
   const EdgeSpan scattered_spans = edge_span(graph, order_graph("original", {.graph = graph}).permutation);

@@ -110,7 +110,7 @@ TEST(Partition, ByWeightsHasEquallyHeavyParts) {
 
 TEST(Balance, SharesElementsOutAmongTheirVertices) {
   const Communicator communicator;
-  // a triangle and a line on each rank, the vertices of which other ranks have, too
+  // each rank has the same triangle and line
   const Layout layout = Layout::even(4, communicator.size());
   Rows elements;
   elements.entries = {0, 1, 2, 1, 3};
@@ -181,7 +181,7 @@ TEST(Quotient, BringsPartsWithManyEdgesBetweenThemNearest) {
   std::vector<Index> places = index_range(0, kParts);
   Index least = span(places);
   while (std::next_permutation(places.begin(), places.end())) least = std::min(least, span(places));
-  EXPECT_LE(span(quotient.place_of), least + least / 20);  // the Fiedler vector alone: half as much again
+  EXPECT_LE(span(quotient.place_of), least + least / 20);  // the Fiedler vector alone: 1.5 · least
 }
 
 }  // namespace

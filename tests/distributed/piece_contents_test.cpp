@@ -22,7 +22,7 @@ TEST(PartOf, CountsVerticesBehindTheLastPartToIt) {
   EXPECT_EQ(part_of_cell(std::span<const GlobalIndex>(std::vector<GlobalIndex>{4, 1}), starts), 2);
 }
 
-/// Six vertices in a row, two of each part and one that no edge uses, and edges between neighbours.
+/// Six vertices in a row, two in each part, and edges between neighbours; a seventh vertex is in no edge.
 std::vector<PieceContents> pieces_of_a_line(const Communicator& communicator, bool with_ghosts) {
   const Layout cells = Layout::even(5, communicator.size());
   Rows edges;

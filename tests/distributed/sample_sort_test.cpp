@@ -10,10 +10,10 @@
 namespace meshorder::distributed {
 namespace {
 
-/// How the entries of a test come about.
+/// The kind of entries in a test.
 struct Pattern {
   const char* name;
-  std::uint64_t keys;        ///< different ones
+  std::uint64_t keys;        ///< number of different keys
   bool only_odd_ranks;       ///< the others have nothing
   GlobalIndex first_number;  ///< 2^33: numbers beyond 32 bits
 };

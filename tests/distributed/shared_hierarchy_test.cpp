@@ -10,7 +10,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// The rows that a rank has of a grid of vertices, row after row.
+/// A rank's rows of the graph of a grid whose vertices are numbered by rows.
 SharedLevel grid_level(const Communicator& communicator, GlobalIndex width, GlobalIndex height) {
   const Layout layout = Layout::even(width * height, communicator.size());
   const int rank = communicator.rank();
@@ -86,7 +86,7 @@ TEST_P(SharedHierarchies, HaveASymmetricCycleNearTheInverse) {
   EXPECT_LT(product(communicator, left, left), 0.5 * product(communicator, a, a));
 }
 
-// the root has the second level, or the fourth or so
+// the root alone has the levels from the second on, or from about the fourth on
 INSTANTIATE_TEST_SUITE_P(Depths, SharedHierarchies, testing::Values(1'000'000, 12),
                          [](const auto& test) { return test.param > 12 ? "Two" : "Several"; });
 

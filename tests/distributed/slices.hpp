@@ -13,7 +13,7 @@
 
 namespace meshorder::test {
 
-/// The elements of a slice, their vertices' numbers shifted.
+/// The elements of a slice, with `shift` added to their vertices' numbers.
 inline distributed::Rows elements_of(const distributed::Communicator& communicator,
                                      const distributed::MeshSlice& slice,
                                      distributed::GlobalIndex shift = 0) {
@@ -35,7 +35,7 @@ inline distributed::GlobalGraph graph_in_file(const distributed::Communicator& c
   return global_graph(communicator, slice.vertices, elements_of(communicator, slice));
 }
 
-/// The order that all ranks have found for a mesh, on each of them.
+/// The order of a mesh that the ranks found together, on each of them.
 struct WholeOrder {
   Permutation vertices;
   Permutation cells;

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Exodus files that all ranks read at once: pieces and maps are those of the mesh that rank 0 reads."""
+"""Exodus files that all ranks read at once: pieces and maps are the same as if rank 0 reads the mesh."""
 import json
 import os
 import subprocess
@@ -20,7 +20,7 @@ BLOCKS = [("HEX20", 20, 60), ("TETRA10", 10, 90), ("NULL", 0, 0), ("WEDGE15", 15
 
 
 def write(path, blocks=BLOCKS, points=400, kind="NETCDF3_64BIT_OFFSET", seed=1, order="", **stored):
-    """Elements and points in an order by chance, ids likewise, and values at two steps. `stored` is netCDF4's."""
+    """Writes elements, points and ids in random order, and values at two steps. `stored`: options of netCDF4."""
     chance = numpy.random.default_rng(seed)
     elements = sum(count for *_, count in blocks)
     with netCDF4.Dataset(path, "w", format=kind) as f:
@@ -63,7 +63,7 @@ def files_of(folder):
 
 
 def assert_same_by_all_and_by_rank_0(source, folder, ranks, *options):
-    """Whether pieces, maps and warnings are the same where all ranks read, and where rank 0 reads for another file."""
+    """Asserts the same pieces, maps and warnings if all ranks read, and if rank 0 reads because of another output."""
     (folder / "other").mkdir()
     parts = ["--parts", 3, "--json", *options]
     for_all = order(ranks, source, "--pieces", folder / "all", "--maps", folder / "all-maps", *parts)
@@ -162,7 +162,7 @@ def cut(path):
 
 
 def lie(path):
-    """Says that there are fewer elements than the blocks have."""
+    """Makes the file claim fewer elements than the blocks have."""
     with netCDF4.Dataset(path, "a") as f:
         f.renameDimension("num_elem", "was_num_elem")
         f.createDimension("num_elem", 5)

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""`meshorder order` under mpirun, as a user runs it: what comes back, what stays the same, how it ends."""
+"""`meshorder order` under mpirun, as a user runs it: results, independence of the number of ranks, endings."""
 import json
 import os
 import pathlib
@@ -16,7 +16,7 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MESHORDER = pathlib.Path(os.environ.get("MESHORDER", ROOT / "build" / "bin" / "meshorder"))
 SHARED = ROOT.parent / "shared" / "meshes"
-# more ranks than cores, none of them tied to a core that others use
+# more ranks than cores, none bound to a core
 MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
 SECONDS = 60  # after which ranks are taken to wait for each other
 
@@ -25,13 +25,13 @@ if not MESHORDER.with_name("meshorder-mpi").exists():
 
 
 def environment(**variables):
-    """Open MPI's wish to be asked twice before it runs as root, and ranks that share cores giving way."""
+    """The environment in which Open MPI runs as root, which needs two variables, and ranks that share cores yield."""
     return {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
             "OMPI_MCA_mpi_yield_when_idle": "1", **variables}
 
 
 def launch(ranks, *arguments, program=MESHORDER):
-    """Starts ranks, and returns how they ended. One rank is started without mpirun."""
+    """Starts ranks and returns the completed process. One rank is started without mpirun."""
     start = [*MPIRUN, "-n", str(ranks)] if ranks > 1 else []
     program = program if ranks > 1 else program.with_name("meshorder-mpi")
     return subprocess.run([*start, program, *map(str, arguments)], env=environment(), capture_output=True, text=True,
@@ -49,7 +49,7 @@ def serial(*arguments):
 
 
 def own_lines(done):
-    """What meshorder said, less what mpirun adds."""
+    """The errors and warnings of meshorder, without mpirun's."""
     return [line for line in done.stderr.splitlines() if line.startswith("meshorder: ")]
 
 
@@ -169,7 +169,7 @@ def test_parts_have_equally_much_of_the_elements(tmp_path, partition):
 
 
 def fiedler_order(ranks, *arguments):
-    """What `--json` tells of an order by one Fiedler vector."""
+    """The output of `--json` for an order by one Fiedler vector."""
     result = json.loads(order(ranks, *arguments, "--vertices", "fiedler", "--json").stdout)
     assert result["partition"]["method"] == "order" and "partition" not in result["seconds"]
     return result
@@ -177,7 +177,7 @@ def fiedler_order(ranks, *arguments):
 
 @pytest.fixture(scope="module")
 def torus():
-    """More vertices than one rank solves alone."""
+    """A mesh with more vertices than one rank solves alone."""
     made = serial("models", "make", "torus", "--size", "20", "--json")
     return pathlib.Path(json.loads(made.stdout)["models"][0]["path"])
 
@@ -315,7 +315,7 @@ def test_what_only_rank_0_sees_ends_all_ranks(tmp_path, ball, kind, unseen, opti
 @pytest.mark.parametrize("options", [["-o", "b.vtu"], ["-o", "b.vtkhdf"], ["-o", "b.msh"], ["--pieces", "p"],
                                      ["--pieces", "p.vtkhdf"], ["--pieces", "p.e"]])
 def test_one_rank_that_cannot_write_ends_all(tmp_path, ball, options, limited):
-    """A limit on the size of one rank's files stands for its full disk."""
+    """A limit on the size of one rank's files acts like a full disk."""
     kind = options[1].partition(".")[2] if "-o" in options else "e"
     subprocess.run([MESHORDER, "order", ball, "-q", "-o", tmp_path / f"a.{kind}"], check=True)
     words = [MESHORDER, "order", tmp_path / f"a.{kind}", options[0], tmp_path / options[1]]
@@ -325,7 +325,7 @@ def test_one_rank_that_cannot_write_ends_all(tmp_path, ball, options, limited):
         start += [":"] * (rank > 0) + ["-n", "1", *limit, *words]
     began = time.monotonic()
     done = subprocess.run(start, env=environment(), capture_output=True, text=True, timeout=SECONDS, check=False)
-    if done.returncode == 0:  # what this rank writes is shorter, or nothing
+    if done.returncode == 0:  # this rank writes less than the limit, or nothing
         assert limited == 1, done.stderr
         return
     assert time.monotonic() - began < 20
@@ -334,7 +334,7 @@ def test_one_rank_that_cannot_write_ends_all(tmp_path, ball, options, limited):
 
 
 def test_options_of_one_process_are_named_as_such(tmp_path):
-    """Options of the serial command are known here, too, or the message says where they are known."""
+    """The parallel command has the options of the serial one, or its message says that the serial one has them."""
     helps = (subprocess.run([MESHORDER.with_name(program), "order", "--help"], capture_output=True, text=True, check=True)
              for program in ("meshorder", "meshorder-mpi"))
     of_order, of_ranks = (set(re.findall(r"^  (?:-.,)?(--[a-z-]+)", shown.stdout, re.MULTILINE)) for shown in helps)
@@ -420,7 +420,7 @@ def test_without_arguments_it_ends_as_one_process_does():
 
 
 def is_running(process):
-    """Whether a process is there, and not ended and only waiting for its parent."""
+    """Whether a process exists and is no zombie."""
     try:
         return pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except FileNotFoundError:
@@ -488,7 +488,7 @@ def test_one_process_makes_the_same_parts(tmp_path, ball):
 
 @pytest.mark.parametrize("size, rank", [("PMI_SIZE", "PMI_RANK"), ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID")])
 def test_a_launcher_of_another_mpi_is_told(tmp_path, ball, size, rank):
-    """Each process would order the mesh by itself and write the same file."""
+    """Otherwise each process would order the mesh by itself and write the same file."""
     for k, lines in ((0, 1), (1, 0)):
         done = subprocess.run([MESHORDER, "order", ball, "-o", tmp_path / "out.vtu"], capture_output=True, text=True, check=False,
                               env=environment(**{size: "2", rank: str(k)}), timeout=SECONDS)

@@ -12,7 +12,7 @@ MESHORDER = pathlib.Path(os.environ.get("MESHORDER", ROOT / "build" / "bin" / "m
 LIBRARY = MESHORDER.parents[1] / "src" / "libmeshorder_mpi.so"
 SECONDS = 60  # after which ranks are taken to wait for each other
 
-# the module alone: the wheel with the rest is not this interpreter's
+# only this module: the wheel with the rest is for another interpreter
 BEGINNING = f"""
 import sys, types
 package = types.ModuleType("meshorder")
@@ -108,7 +108,7 @@ for call in (lambda: meshorder.mpi.order_ranks(comm, own, wrong),
 
 
 def refused(call, count=2):
-    """What all ranks say of a call that they refuse."""
+    """The error of a call that all ranks refuse."""
     said = ended_well(ranks(count, f"""
 try:
     {call}

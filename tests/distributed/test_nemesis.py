@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Pieces in Nemesis: what netCDF's module reads of them together is the file of the whole mesh."""
+"""Pieces in Nemesis: together, as netCDF's module reads them, they have the content of the whole mesh's file."""
 import collections
 import json
 import os
@@ -29,7 +29,7 @@ SIDES = {
     "TRI": [(1, 2, 3), (1, 3, 2), (1, 2), (2, 3), (3, 1)],
     "QUA": [(1, 2), (2, 3), (3, 4), (4, 1)],
 }
-# of a piece alone, or of its place among the others
+# variables that describe only a piece, or its place among the others
 OF_PIECES = {"nem_ftype", "node_num_map", "elem_num_map", "nmap_names", "emap_names", "nm_prop1", "em_prop1", "elem_var_tab",
              "nset_var_tab", "sset_var_tab"}
 OF_MEMBERS = ("ns", "ss", "els")
@@ -40,7 +40,7 @@ def paths_of(name, parts):
 
 
 class Exodus:
-    """What a file says of each node and element by its number in the whole mesh, and of all of them."""
+    """The content of a file: of each node and element, by its number in the whole mesh, and in common."""
 
     def __init__(self, path, is_piece=True):
         self.path = path
@@ -119,7 +119,7 @@ class Exodus:
         return [self.cells[element][k - 1] for k in self.sides_of(self.types[f"connect{self.blocks[element]}"])[side - 1]]
 
     def common(self):
-        """What does not belong to nodes or elements."""
+        """The variables that do not belong to nodes or elements."""
         ends = ("_map1", "_map2")
         begins = ("connect", "attrib", "coordx", "coordy", "coordz", "vals_nod", "vals_elem", "vals_nset",
                   "vals_sset", "node_ns", "elem_ss", "side_ss", "elem_els", "dist_fact", "node_map", "elem_map", "n_comm",
@@ -130,7 +130,7 @@ class Exodus:
 
 
 def assert_pieces_of(whole, pieces):
-    """Whether the pieces together are the whole file."""
+    """Asserts that the pieces together have the content of the whole file."""
     assert sorted(element for piece in pieces for element in piece.elements) == [*range(len(whole.elements))]
     assert {node for piece in pieces for node in piece.nodes} == {*range(len(whole.nodes))}
     found = collections.Counter()
@@ -156,7 +156,7 @@ def assert_pieces_of(whole, pieces):
 
 
 def by_library(paths):
-    """What the library of Exodus II itself reads."""
+    """The content as the library of Exodus II reads it."""
     try:
         done = subprocess.run([sys.executable, pathlib.Path(__file__).with_name("nemesis_by_library.py"), *paths],
                               capture_output=True, text=True, check=False)
@@ -169,7 +169,7 @@ def by_library(paths):
 
 
 def assert_maps(whole, pieces):
-    """Whether the library reads who has what, and what each part shares with which."""
+    """Asserts that the library reads the nodes and elements of each part, and those it shares with each other part."""
     parts = len(pieces)
     read = by_library([piece.path for piece in pieces])
     holders = collections.defaultdict(set)
@@ -203,7 +203,7 @@ def assert_maps(whole, pieces):
         for q, (nodes, processors) in zip(neighbours, found["node maps"]):
             assert {*processors} == {q}
             assert [piece.nodes[k - 1] for k in nodes] == sorted({*piece.nodes} & {*pieces[q].nodes})
-        # the sides that the library reads are those that cells of both parts have
+        # the library reads the sides that cells of both parts share
         shared = collections.Counter()
         for q, (elements, of_elements, processors) in zip(found["ids"][1], found["element maps"]):
             assert {*processors} == {q} and p != q
@@ -256,7 +256,7 @@ def test_pieces_together_are_the_whole_file(tmp_path, kind, ranks, parts):
 @pytest.mark.parametrize("options", [["--only", "volume"], ["--only", "surface"], ["--ids", "attach"], ["--ids", "keep"],
                                      ["--interface", "last"]])
 def test_pieces_follow_the_options(tmp_path, options):
-    """Blocks, sets and variables that cells have left are left out of the pieces as of the file."""
+    """Blocks, sets and variables without remaining cells are left out of the pieces as they are of the file."""
     write_all(tmp_path / "a.exo", "NETCDF3_64BIT_DATA", real="f4")
     order(2, tmp_path / "a.exo", "-o", tmp_path / "b.e", "--pieces", tmp_path / "out.g", "--parts", "5", *options)
     whole, pieces = Exodus(tmp_path / "b.e", is_piece=False), [Exodus(path) for path in paths_of(tmp_path / "out.g", 5)]
@@ -267,7 +267,7 @@ def test_pieces_follow_the_options(tmp_path, options):
 @pytest.mark.parametrize("kind, ranks, parts", [("NETCDF3_64BIT_OFFSET", 2, 4), ("NETCDF4", 3, 7), ("NETCDF3_CLASSIC", 1, 1),
                                                 ("NETCDF3_64BIT_DATA", 3, 11), ("NETCDF3_64BIT_OFFSET", 5, 2)])
 def test_all_ranks_write_what_one_writes(tmp_path, kind, ranks, parts):
-    """Where no loss is allowed rank 0 reads and writes."""
+    """With --strict, rank 0 reads and writes."""
     write_all(tmp_path / "a.exo", kind)
     for name, options in (("all", []), ("one", ["--strict"])):
         (tmp_path / name).mkdir()
@@ -304,7 +304,7 @@ def test_the_same_bytes_on_every_number_of_ranks(tmp_path):
 
 @pytest.mark.parametrize("output", ["b.e", "b.vtu"])
 def test_meshes_of_other_formats(tmp_path, output):
-    """Tetrahedra of two labels and their skin, with arrays, in an order that mixes the blocks."""
+    """Tetrahedra of two labels and triangles on their faces, with arrays, in an order that mixes the blocks."""
     random = numpy.random.default_rng(3)
     points = random.random((300, 3))
     cells = numpy.array([random.choice(280, 4, replace=False) for _ in range(400)])
@@ -340,7 +340,7 @@ def test_meshes_of_other_formats(tmp_path, output):
 
 
 def test_elements_have_the_places_of_another_output(tmp_path):
-    """Blocks of Exodus II, whose elements another format has in an order of its own."""
+    """Pieces with blocks of Exodus II beside an output of another format with its own order of elements."""
     write_all(tmp_path / "a.exo")
     done = order(2, tmp_path / "a.exo", "-o", tmp_path / "b.vtk", "--pieces", tmp_path / "out.e", "--parts", "4")
     assert not any("piece" in line for line in own_lines(done))

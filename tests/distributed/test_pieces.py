@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Pieces for programs that read one for each of their ranks, as VTK reads them."""
+"""Pieces for programs whose ranks read one each, checked by VTK."""
 import json
 import os
 import re
@@ -15,7 +15,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkHigherOrderHexahedron
 from vtkmodules.vtkIOCore import vtkZLibDataCompressor
 from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
-#: how a file holds its arrays: rank 0 alone reads those that stand in the XML
+#: how a file holds its arrays; if they are in the XML, only rank 0 reads them
 STORED = {"raw": {}, "compressed": {"compressor": vtkZLibDataCompressor, "block": 1000}, "in the XML": {"mode": "binary"}}
 OF_PIECES = {"GlobalPointIds", "GlobalCellIds", "vtkGhostType", "part"}
 
@@ -58,7 +58,7 @@ def parts_of(whole, starts):
 
 
 def assert_pieces_of(whole, folder, name, result, ghosts=1, with_arrays=True):
-    """Whether the pieces are those of the ordered mesh: its parts, their ghosts and nothing else."""
+    """Asserts that the pieces are the parts of the ordered mesh with their ghosts, and nothing else."""
     starts = result["partition"]["first_vertices"]
     assert sorted(os.listdir(folder)) == sorted([f"{name}.pvtu", *(f"{name}_{p:04}.vtu" for p in range(len(starts)))])
     vertex_parts, cell_parts = parts_of(whole, starts)
@@ -72,7 +72,7 @@ def assert_pieces_of(whole, folder, name, result, ghosts=1, with_arrays=True):
         ghost_cells = sorted(ghost_cells, key=lambda c: (cell_parts[c], c)) if ghosts else []
         cells = [*own_cells.tolist(), *ghost_cells]
         used = {vertex for c in cells for vertex in whole.cells[c][1]}
-        ghost_vertices = sorted(used - own)  # by their parts, too, as these are ranges
+        ghost_vertices = sorted(used - own)  # also sorted by part, since parts are ranges
         vertices = [*own_vertices.tolist(), *ghost_vertices]
         totals[0] += len(ghost_vertices)
         totals[1] += len(ghost_cells)
@@ -199,7 +199,7 @@ def test_every_piece_has_the_fields(tmp_path, wide, stored):
 
 
 def test_fields_that_stand_compressed_in_the_xml_are_those_of_every_piece(tmp_path):
-    """Such a file is rank 0's: the pieces are not compressed."""
+    """Rank 0 reads such a file, and the pieces are not compressed."""
     write(tmp_path / "a.vtu", grid(), **STORED["compressed"])
     write(tmp_path / "inline.vtu", grid(), compressor=vtkZLibDataCompressor, mode="binary")
     fields = re.search(rb"<FieldData>.*?</FieldData>", (tmp_path / "inline.vtu").read_bytes(), re.DOTALL)[0]
@@ -226,7 +226,7 @@ def test_fields_beyond_the_end_are_told(tmp_path, offset):
     write(tmp_path / "a.vtu", grid())
     moved = re.sub(rb'(<DataArray [^>]*Name="time"[^>]*offset=")\d+', lambda found: found[1] + str(offset).encode(),
                    (tmp_path / "a.vtu").read_bytes(), count=1)
-    # the bytes of the other arrays are where they were: offsets count from the underscore
+    # offsets count from the underscore: those of the other arrays stay valid
     (tmp_path / "a.vtu").write_bytes(moved)
     done = launch(2, "order", tmp_path / "a.vtu", "--pieces", tmp_path / "out")
     assert done.returncode == 2 and len(own_lines(done)) == 1 and "beyond the end" in done.stderr, done.stderr
@@ -241,7 +241,7 @@ def test_pieces_of_other_formats_have_the_numbers_of_the_output(tmp_path, name, 
     done = order(2, SHARED / name, "-o", out, "--pieces", tmp_path / "out", "--parts", "5", "--json")
     subprocess.run([os.environ["MESHORDER"], "order", out, "-o", tmp_path / "same.vtu", "--vertices", "original", "--elements",
                     "original"], check=True, capture_output=True)
-    # what Medit's files do not hold stands in the pieces all the same
+    # the pieces also have what Medit's files cannot hold
     whole = Grid(out if extension == ".vtu" else tmp_path / "same.vtu")
     assert_pieces_of(whole, tmp_path / "out", "b", json.loads(done.stdout), with_arrays=extension == ".vtu")
 

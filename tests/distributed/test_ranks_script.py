@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""`benchmarks/ranks.py`: it finds in the command and in Open MPI what its tables and its model need."""
+"""`benchmarks/ranks.py` gets the data for its tables and its model from the command and from Open MPI."""
 import json
 import os
 import pathlib
@@ -35,9 +35,9 @@ def test_runs_are_measured_and_predict_larger_ones(tmp_path):
         assert 0 < of_stages <= run["user"] + 0.1  # /proc counts in steps of 10 ms
         assert len(run.get("sent", [])) == (2 if several else 0)
         assert all(sent > 0 and messages > 0 for sent, messages in run.get("sent", []))
-    # weak scaling, what it yields, and the model
+    # tables of weak scaling and of the model
     assert len(rows(done.stdout, "| 32,768 | 2 |")) == 2
     assert len(rows(done.stdout, "| 1,000,000,000 | 1,024 |")) == 1
-    # the files that are read and written grow with the vertices alone
+    # the size of the files depends only on the number of vertices
     files = [line.split(" | ")[12] for line in rows(done.stdout, "| 100,000,000 |")]
     assert len(files) == 3 and len(set(files)) == 1

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Pieces as the partitions of one VTKHDF file: those that stand in .vtu files, which other tests compare with the mesh."""
+"""Pieces as the partitions of one VTKHDF file, compared with pieces in .vtu files. Other tests compare these with the mesh."""
 import json
 import os
 import subprocess
@@ -51,7 +51,7 @@ def partitions(path):
 
 
 def assert_those_of(folder, name, path, without=()):
-    """Whether the partitions are the pieces in a folder."""
+    """Asserts that the partitions are the pieces in a folder."""
     found, fields, roles = partitions(path)
     files = sorted(file for file in os.listdir(folder) if file.endswith(".vtu"))
     assert len(files) == len(found) and files[0].startswith(name)
@@ -78,7 +78,7 @@ def assert_those_of(folder, name, path, without=()):
 @pytest.mark.parametrize("source", ["a.vtu", "narrow.vtu", "b.vtu", "a.vtkhdf"])
 @pytest.mark.parametrize("ranks, parts, ghosts", [(1, 3, 1), (2, 2, 1), (3, 7, 1), (3, 2, 1), (2, 5, 0)])
 def test_partitions_are_the_pieces(tmp_path, ranks, parts, ghosts, source):
-    """Of files that all ranks read, and of one that rank 0 reads."""
+    """For files that all ranks read, and for one that rank 0 reads."""
     if source == "a.vtkhdf":
         vtkhdf.write(tmp_path / source, number="f4")
     else:

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""VTKHDF files that all ranks read and write at once: made by h5py, which also reads what becomes of them."""
+"""VTKHDF files that all ranks read and write at once. h5py makes them and reads the results."""
 import json
 import os
 
@@ -13,7 +13,7 @@ SIZES = {TRIANGLE: 3, TETRAHEDRON: 4, PYRAMID: 5}
 
 
 def write(path, points=400, cells=900, seed=1, index="i8", number="f8", **options):
-    """Cells in an order by chance, points that nothing uses, and arrays of several types. `options` are h5py's."""
+    """Writes cells in random order, unused points, and arrays of several types. `options` are h5py's."""
     chance = numpy.random.default_rng(seed)
     kinds = chance.choice(list(SIZES), cells, p=[0.2, 0.6, 0.2])
     rows = [chance.choice(points - 20, SIZES[kind], replace=False) for kind in kinds]
@@ -55,7 +55,7 @@ def cells_of(found):
 
 
 def assert_same_but_for_order(old, new, with_types=True):
-    """Whether each point and cell is the one of its id, with its arrays."""
+    """Asserts that each point and cell is the old one of its id, with its arrays."""
     u, c = new["PointData/id"], new["CellData/id"]
     assert sorted(u) == list(range(len(old["Points"]))) and sorted(c) == list(range(len(old["Types"])))
     assert u.tolist() != sorted(u)
@@ -162,7 +162,7 @@ def put(name, place, value):
 
 
 def longer(group):
-    """An entry of the connectivity that belongs to no cell."""
+    """Adds an entry to the connectivity that belongs to no cell."""
     group["NumberOfConnectivityIds"][0] += 1
     replace("Connectivity", numpy.append(group["Connectivity"][()], 0))(group)
 

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Files that all ranks read and write at once: made by VTK, which also reads what becomes of them."""
+"""Files that all ranks read and write at once. VTK makes them and reads the results."""
 import json
 import os
 import re
@@ -26,7 +26,7 @@ def array(name, values):
 
 
 def grid(points=400, cells=900, seed=1):
-    """Cells of three dimensions in an order by chance, points that nothing uses, arrays of several types and a text."""
+    """Cells of three dimensions in random order, unused points, arrays of several types and a text."""
     chance = numpy.random.default_rng(seed)
     kinds = chance.choice([TETRAHEDRON, PYRAMID, TRIANGLE, LINE], cells, p=[0.5, 0.2, 0.2, 0.1])
     sizes = {TETRAHEDRON: 4, PYRAMID: 5, TRIANGLE: 3, LINE: 2}
@@ -67,7 +67,7 @@ def write(path, made, wide=True, compressor=None, block=None, mode="appended", b
 
 
 def read(path):
-    """All that a file has, by the ids of its points and cells."""
+    """The content of a file: points, cells, arrays with ids, and fields."""
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
     reader.Update()
@@ -84,7 +84,7 @@ def read(path):
 
 
 def assert_same_but_for_order(old, new):
-    """Whether each point and cell is the one of its id, with its arrays, and whether dimensions kept their places."""
+    """Asserts that each point and cell is the old one of its id, with its arrays, and that dimensions kept their places."""
     old_points, old_cells, (old_u, old_c), old_fields = old
     points, cells, (u, c), fields = new
     assert sorted(u["id"]) == list(range(len(old_points))) and sorted(c["id"]) == list(range(len(old_cells)))
@@ -99,12 +99,12 @@ def assert_same_but_for_order(old, new):
 
 
 def appended(data):
-    """The first byte behind the underscore."""
+    """The offset of the first byte after the underscore."""
     return data.index(b"_", data.index(b"<AppendedData")) + 1
 
 
 def block(data, name):
-    """The first byte of an array, which begins with its size."""
+    """The offset of an array, which begins with its size."""
     return appended(data) + int(re.search(rb'Name="%s"[^>]*?offset="(\d+)"' % name.encode(), data)[1])
 
 
@@ -121,7 +121,7 @@ def sorted_cells(path):
 
 
 def xml(path):
-    """The XML of a file but for what a change of offsets changes."""
+    """The XML of a file without the values of offsets."""
     head, begin, rest = path.read_bytes().partition(b"<AppendedData")
     tag = rest[:rest.index(b">")]
     return re.sub(rb'offset="\d+"', b"", head), begin + tag, rest[rest.rindex(b"</AppendedData>"):]
@@ -187,7 +187,7 @@ def test_compressed_files_are_the_same_on_every_number_of_ranks(tmp_path):
 
 
 def test_what_is_no_array_of_the_mesh_stays_as_it_is(tmp_path):
-    """An empty field, a text, a comment and a field behind all arrays."""
+    """An empty field, a text, a comment, and a field after all arrays."""
     made = grid(cells=2500)
     made.GetFieldData().AddArray(array("empty", numpy.zeros(0)))
     write(tmp_path / "a.vtu", made, compressor=vtkZLibDataCompressor)
@@ -273,7 +273,7 @@ def test_a_file_of_meshorder_comes_back_byte_by_byte(tmp_path):
 
 
 def test_maps_of_cells_that_a_mesh_has_in_another_order_are_written_by_rank_0(tmp_path):
-    """A voxel becomes a hexahedron, whose vertices the maps' checksums have in another order."""
+    """A voxel becomes a hexahedron; the maps' checksums depend on the order of its vertices."""
     points = numpy.stack(numpy.meshgrid(range(2), range(2), range(2), indexing="ij"), axis=-1).reshape(-1, 3)[:, ::-1]
     made = vtkUnstructuredGrid()
     places = vtkPoints()
@@ -328,8 +328,8 @@ FAULTS = {
 
 
 def word(data, name, number, change):
-    """The file with another word before an array: 0 is the number of blocks, 1 and 2 are the bytes of a block and of the
-    last one, the others the compressed bytes of each."""
+    """The file with a changed word in the header of an array: word 0 is the number of blocks, 1 the size of a block, 2 the
+    size of the last one, the others the compressed sizes."""
     at = block(data, name) + 8 * number
     return replaced(data, at, struct.pack("<Q", change(struct.unpack("<Q", data[at:at + 8])[0])))
 

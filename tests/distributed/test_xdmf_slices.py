@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""XDMF files that all ranks read and write at once: made by h5py as DOLFINx makes them."""
+"""XDMF files that all ranks read and write at once. h5py makes them in the layout of DOLFINx."""
 import json
 import os
 import re
@@ -43,7 +43,7 @@ STEP = """      <Grid Name="f" GridType="Uniform">
 
 
 def write(path, points=400, cells=900, seed=1, index="i8", number="f8", kind="Tetrahedron", width=3, **options):
-    """Cells in an order by chance, points that nothing uses, and arrays of several types. `options` are h5py's."""
+    """Writes cells in random order, unused points, and arrays of several types. `options` are h5py's."""
     chance = numpy.random.default_rng(seed)
     arrays = {("id", "Node"): numpy.arange(points, dtype="i4"), ("vector", "Node"): chance.random((points, 3)),
               ("id", "Cell"): numpy.arange(cells), ("pair", "Cell"): chance.random((cells, 2)).astype("f4")}
@@ -74,7 +74,7 @@ def write(path, points=400, cells=900, seed=1, index="i8", number="f8", kind="Te
 
 
 def read(path):
-    """All datasets of the HDF5 file that the document names, which carries its mark."""
+    """All datasets of the document's HDF5 file; asserts that both have the same mark."""
     found = {}
     with h5py.File(path.with_suffix(".h5")) as file:
         file.visititems(lambda name, item: found.update({name: item[()]} if isinstance(item, h5py.Dataset) else {}))
@@ -88,7 +88,7 @@ def read(path):
 
 
 def assert_same_but_for_order(old, new):
-    """Whether each point and cell is the one of its id, with its arrays."""
+    """Asserts that each point and cell is the old one of its id, with its arrays."""
     u, c = new["Node/id"], new["Cell/id"]
     assert sorted(u) == list(range(len(old["Node/id"]))) and sorted(c) == list(range(len(old["Cell/id"])))
     assert u.tolist() != sorted(u)
@@ -178,7 +178,7 @@ def change_data(name, values, **options):
 
 
 def one_for_two(path):
-    """One dataset by two names."""
+    """Makes two names of one dataset."""
     with h5py.File(path.with_suffix(".h5"), "a") as file:
         del file["Function/f/1"]
         file["Function/f/1"] = file["Function/f/0"]
@@ -253,7 +253,7 @@ def test_a_fault_on_any_rank_ends_all_with_one_line(tmp_path, fault):
 @pytest.mark.parametrize("size, fault", [("4k", "b.h5: cannot be written; "), ("40k", "geometry' cannot be written"),
                                          ("550k", "b.h5: cannot be written to byte ")])
 def test_a_full_disk_ends_all_ranks(tmp_path, size, fault):
-    """It is too small for the HDF5 file without values, for what libhdf5 puts there, or for what the ranks add."""
+    """The disk is too small for the HDF5 file without values, for libhdf5's data in it, or for the values of the ranks."""
     folder = tmp_path / "small"
     folder.mkdir()
     if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "none", folder], capture_output=True,

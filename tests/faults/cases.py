@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Command lines that are run with faults: every subcommand, and every format read and written in place."""
+"""Command lines for runs with faults: every subcommand, and every format read and written in place."""
 import dataclasses
 import itertools
 import json
@@ -19,11 +19,11 @@ class Line:
     """A command line."""
 
     arguments: tuple
-    before: typing.Callable  # makes the files that it finds, in a folder
-    varies: tuple = ()  # outputs with times in them, judged by their being there
+    before: typing.Callable  # makes the input files in a folder
+    varies: tuple = ()  # outputs that contain times; they need only exist
     together: bool = True  # its outputs are to be all old or all new
     reader: tuple = ()  # the arguments of a command that reads the output; it may write read.msh
-    most: int = 10000  # how many faults of a kind it is to have, where a run takes seconds
+    most: int = 10000  # limit of faults of a kind, for runs of seconds
 
 
 SCRAMBLED = ("--vertices", "scrambled", "--elements", "scrambled", "--seed", 3)
@@ -143,7 +143,7 @@ COMMANDS = {
 }
 COMMANDS |= {f"{extension} in place": Line(("order", f"mesh.{extension}", "-o", f"mesh.{extension}", *SCRAMBLED), before)
              for extension, before in [(one, solid(one)) for one in SOLIDS] + [(one, surface(one)) for one in SURFACES]}
-# the output of an older run is another one, and no input: the next run does the same again
+# an output that replaces another mesh and is no input: a second run gives the same
 OVER = {f"{extension} over another": Line(("order", "mesh.node", "-o", f"out.{extension}", *SCRAMBLED), over(extension),
                                           reader=("info", f"out.{extension}"))
         for extension in ("node", "vtu", "xdmf", "cgns", "exo")}

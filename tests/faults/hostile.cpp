@@ -1,11 +1,10 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Preloaded into the command (LD_PRELOAD), it behaves as libhdf5 or libnetcdf would in the hands of a damaged
-// file or a stranger: the first opening of a file does what HOSTILE says, and says on stdout whether that was
-// possible.
+// Preloaded into the command (LD_PRELOAD), it acts like libhdf5 or libnetcdf under the control of an
+// attacker: the first opening of a file runs the attack HOSTILE and prints to stdout whether it succeeded.
 //
 //   HOSTILE=ATTACK      a name in the table of `attacks`; "be absent": the libraries cannot be loaded
-//   HOSTILE_PATH=PATH   the file that it is about
+//   HOSTILE_PATH=PATH   the target of the attack
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -32,7 +31,7 @@ const char* path() {
   return value != nullptr ? value : "";
 }
 
-// ---- faults, from which nobody returns
+// ---- faults, which do not return
 
 int crash() {
   int* volatile nowhere = nullptr;
@@ -53,7 +52,7 @@ int wait_for_ever() {
   for (;;) ::pause();
 }
 
-// ---- attacks: −1 where the system refuses
+// ---- attacks: −1 if the system refuses them
 
 int read_file() { return ::open(path(), O_RDONLY); }
 int write_file() { return ::open(path(), O_WRONLY | O_CREAT | O_TRUNC, 0666); }

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Runs the command with one fault at a time, by the interposer, and judges how it ends and what it leaves."""
+"""Runs the command with one fault at a time, by the interposer, and checks its ending and its files."""
 import dataclasses
 import errno
 import hashlib
@@ -11,10 +11,10 @@ import struct
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# what is predicted is the same on every machine, and none is measured first
+# the same predictions on every machine, and no measurement before them
 os.environ["MESHORDER_MACHINE"] = "zen3"
 MESHORDER = os.environ.get("MESHORDER", str(ROOT / "build" / "bin" / "meshorder"))
-LAB = ("simulate", "reproduce", "report", "models")  # which the command hands over to meshorder-lab
+LAB = ("simulate", "reproduce", "report", "models")  # meshorder-lab runs these
 INTERPOSER = pathlib.Path(MESHORDER).resolve().parents[1] / "lib" / "libmeshorder_faults.so"
 
 KINDS = ("allocation", "open", "read", "write", "sync", "close", "rename", "thread")
@@ -32,13 +32,13 @@ ERRORS = {
     "thread": [errno.EAGAIN],
 }
 
-# libraries that end the process themselves when there is no memory; what they do is counted apart
+# libraries that end the process themselves without memory; their endings are counted separately
 FOREIGN = ("libhdf5", "libcgns", "libnetcdf", "libtbb", "libgnutls")
 
-# what libraries print then
+# messages of libraries in this case
 PRINTED = {"a library has ended the process": "libhdf5", "HDF5-DIAG": "libhdf5", "Error in GnuTLS": "libgnutls"}
 
-# what the C library says when it finds its heap damaged, and when it has no memory for a library's variables
+# messages of the C library: its heap is damaged, or it has no memory for a library's thread-local variables
 C_LIBRARY = re.compile(r"corrupted|double free|invalid (pointer|size|next size|chunk)|thread-local data: ABORT")
 
 
@@ -63,7 +63,7 @@ class Fault:
 
 @dataclasses.dataclass
 class Ending:
-    status: int  # negative: the signal; None: it was hanging
+    status: int  # negative: the signal; None: it hung
     stdout: str
     stderr: str
     calls: dict  # of each kind
@@ -71,9 +71,8 @@ class Ending:
     log: str
 
     def culprit(self):
-        """The library that could not do without memory: it ended the process, raised a signal, by the stack that the
-        interposer wrote, or prints what happened. Where the C library ends the process, it is the library that got no
-        memory."""
+        """The library that mishandled a lack of memory. It printed a message, or the stack in the interposer's log shows
+        that it raised a signal; if the C library ended the process, it is the library whose allocation failed."""
         for text, library in PRINTED.items():
             if text in self.stderr:
                 return library
@@ -104,13 +103,13 @@ def run(arguments, folder, fault=None, log=None, **options):
 
 
 def contents(folder):
-    """The bytes of all files below a folder by their path; None for folders."""
+    """The bytes of all files below a folder, by path; None for folders."""
     return {str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None
             for path in sorted(folder.rglob("*"))}
 
 
 class Case:
-    """A command line (`cases.Line`), the files that it finds, and those that it makes of them."""
+    """A command line (`cases.Line`), its input files and its output files."""
 
     def __init__(self, folder, line):
         self.line, self.arguments, self.varies = line, line.arguments, set(line.varies)
@@ -133,7 +132,7 @@ class Case:
         return run(self.arguments, self.folder, fault)
 
     def without_fault(self, arguments=None):
-        """Runs the command line again, or another one, in the files as they are. Returns the exit status."""
+        """Runs the command line, or another one, on the present files. Returns the exit status."""
         return subprocess.run([MESHORDER, *map(str, arguments or self.arguments)], cwd=self.folder, capture_output=True,
                               stdin=subprocess.DEVNULL, timeout=SECONDS, check=False).returncode
 
@@ -162,11 +161,11 @@ class Case:
         return self.meanings[key]
 
     def left_over(self):
-        """The paths of what is there and should not be."""
+        """The paths of files that should not exist."""
         return [path for path in contents(self.folder) if path not in self.old and path not in self.new]
 
     def faults_of_files(self):
-        """What is wrong with the files of old and the outputs, as sentences."""
+        """The faults of the old files and the outputs, as sentences."""
         now = contents(self.folder)
         for path in sorted(set(self.old) | set(self.new)):
             if path in self.old and path not in now:
@@ -175,8 +174,8 @@ class Case:
                 yield f"{path} is neither the old nor the new one"
 
     def faults_of_set(self, state=None):
-        """What is wrong with the files that belong together, as sentences: all are to be old or all new, or all in that
-        state."""
+        """The faults of the files that belong together, as sentences: all must be old or all new, or all in `state` if
+        given."""
         now = contents(self.folder)
         changed = [path for path in self.new if self.new[path] != self.old.get(path)]
         states = {path: self.state(path, now[path]) if path in now else "old" for path in changed}
@@ -184,8 +183,8 @@ class Case:
             yield f"{'not all are ' + state if state else 'a mixture'}: {states}"
 
     def faults_of(self, ending, kind=None):
-        """What is wrong with a run that was not killed, as sentences; without the files that belong together. `kind` is
-        that of the calls that failed."""
+        """The faults of a run that was not killed, as sentences, without those of `faults_of_set`. `kind` is the kind of
+        the calls that failed."""
         if ending.status is None:
             yield "it hangs"
             return

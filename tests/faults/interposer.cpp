@@ -1,21 +1,18 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Preloaded into the command (LD_PRELOAD): counts its calls by kind from the first line of main to the end of
-// the process, and makes chosen ones fail. What it is to do stands in the environment:
+// the process, and makes chosen ones fail. Environment variables control it:
 //
-// - FAULTS_COUNTERS=FILE: keeps the calls of each kind, then the number of failures, in FILE, in 64 bits
-// each;
-// - FAULTS_FAIL=KIND:N[+]:WHAT: lets the Nth call of a kind, counted from 1, fail; with + all later ones,
-// too;
+// - FAULTS_COUNTERS=FILE: keeps in FILE the number of calls of each kind and that of failures, 64 bits each;
+// - FAULTS_FAIL=KIND:N[+]:WHAT: the Nth call of a kind fails, counted from 1; with + also all later ones;
 // - FAULTS_LOG=FILE: appends a line for each call that changes files, and the stack of an abort;
 // - FAULTS_OPENED=FILE: appends the path, links resolved, of each file that is opened.
 //
 // KIND is a word of `kKindNames`. WHAT is a number of errno, `short` (half of the bytes), `kill` (SIGKILL
-// before the call) or `torn` (half of the bytes, then SIGKILL). Calls of the C library within itself are not
-// seen: stdio writes and closes unseen, but its opening is seen; the list of what is opened lacks folders
-// that are listed, libraries that are loaded and what the C library reads for itself (locales). Programs that
-// the command starts run without the interposer. Nothing is synced to the disk in fact, which would only take
-// time.
+// before the call) or `torn` (half of the bytes, then SIGKILL). The interposer does not see calls within the
+// C library: it sees the opening of stdio's files, but not their writes and closing. The list of opened files
+// lacks listed folders, loaded libraries and the C library's own files (locales). Programs that the command
+// starts run without the interposer. Syncing does nothing, to save time.
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <fcntl.h>
@@ -85,7 +82,7 @@ void log_descriptor(const char* verb, int descriptor) {
   if (syscall(SYS_readlink, link.data(), path.data(), path.size() - 1) > 0) log_line(verb, path.data());
 }
 
-/// Notes what has been opened, but for folders that are only passed through.
+/// Logs an opened file, unless O_PATH opened it only as a step to another one.
 void log_opened(int descriptor, int flags) {
   if (opened_file < 0 || descriptor < 0 || (flags & O_PATH) != 0) return;
   std::array<char, 64> link{};
@@ -97,8 +94,8 @@ void log_opened(int descriptor, int flags) {
   syscall(SYS_write, opened_file, path.data(), static_cast<std::size_t>(length) + 1);
 }
 
-/// Opens a file of the interposer's own, with a number that leaves those of the command as they are without
-/// it.
+/// Opens a file of the interposer, with a descriptor above all others: the command's descriptors stay the
+/// same.
 int own_file(const char* path) {
   constexpr int kAboveAll = 500;
   const int file = static_cast<int>(syscall(SYS_openat, AT_FDCWD, path, O_WRONLY | O_APPEND | O_CREAT, 0644));
@@ -112,7 +109,7 @@ int own_file(const char* path) {
   for (;;) pause();
 }
 
-/// Writes the functions that are running to the log, under a line of their own.
+/// Writes a line and then the call stack to the log.
 void log_functions(const char* why, const char* what) {
   if (log_file < 0) return;
   active = false;
@@ -122,7 +119,7 @@ void log_functions(const char* why, const char* what) {
   active = true;
 }
 
-/// Counts a call. Returns the fault that it is to have, or nullptr; does not return where it is to be killed.
+/// Counts a call. Returns its fault, or nullptr. Does not return if the fault is `kill`.
 const Fault* fault_of(Kind kind) {
   if (!active) return nullptr;
   const std::uint64_t count = __atomic_add_fetch(&counters[kind], 1, __ATOMIC_RELAXED);
@@ -134,13 +131,13 @@ const Fault* fault_of(Kind kind) {
   return &fault;
 }
 
-/// Returns whether a call that has no half is to fail.
+/// Returns whether a call that cannot be done in part must fail.
 bool fails(Kind kind) {
   const Fault* const found = fault_of(kind);
   return found != nullptr && found->what == What::error;
 }
 
-/// Reads or writes `size` bytes by `call`, or the half of them, or fails.
+/// Reads or writes `size` bytes by `call`, or half of them, or fails.
 template <class Call>
 ssize_t transfer(Kind kind, std::size_t size, const Call& call) {
   const Fault* const found = fault_of(kind);
@@ -327,7 +324,7 @@ ssize_t writev(int descriptor, const iovec* parts, int count) {
 int fsync(int descriptor) { return sync_descriptor(descriptor); }
 int fdatasync(int descriptor) { return sync_descriptor(descriptor); }
 
-// the number is free again after a failure, too, as on Linux
+// the descriptor is free even after a failure, as on Linux
 int close(int descriptor) {
   const bool failed = fails(kClose);
   const int error = errno;

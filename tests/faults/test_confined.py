@@ -1,6 +1,6 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Files that libraries parse are read in a process without rights: what a library does there in the hands of a stranger
-harms nothing, and its crash is one line."""
+"""Libraries parse files in a process without rights: a library under an attacker's control does no harm there, and its
+crash is reported as one line."""
 import os
 import pathlib
 import pty
@@ -24,14 +24,14 @@ ATTACKS = ("read", "write", "cut", "remove", "rename", "link", "hard link", "mak
 
 
 def landlock():
-    """The version of Landlock that the kernel has; 0 for none."""
+    """The kernel's version of Landlock; 0 for none."""
     import ctypes
     libc = ctypes.CDLL(None, use_errno=True)
     return max(0, libc.syscall(444, None, 0, 1))
 
 
 def run(folder, *arguments, hostile=None, path="", seconds=None, **options):
-    """Runs the command with a library that behaves so; within so many seconds of processor time."""
+    """Runs the command with the attack `hostile` in its libraries, within `seconds` of processor time."""
     environment = dict(os.environ)
     if hostile is not None:
         environment |= {"LD_PRELOAD": str(HOSTILE), "HOSTILE": hostile, "HOSTILE_PATH": str(path)}
@@ -58,7 +58,7 @@ def med(tmp_path):
 
 
 def one_line(done, mesh, *words):
-    """Judges that a run ended by one line of error with these words."""
+    """Asserts that a run ended with one line of error that has these words."""
     lines = done.stderr.splitlines()
     assert done.returncode == 2 and len(lines) == 1 and done.stdout == "", (done.returncode, done.stdout, done.stderr)
     assert lines[0].startswith(f"meshorder: {mesh}: "), lines[0]
@@ -97,7 +97,7 @@ def test_what_never_ends_is_one_line(med, how):
 
 
 def victim(folder, attack):
-    """A file outside of what the command is to reach, or a name that is free."""
+    """A file outside of the command's reach, or a free name."""
     elsewhere = folder.with_name(folder.name + "-elsewhere")
     elsewhere.mkdir(exist_ok=True)
     path = elsewhere / "file"
@@ -110,7 +110,7 @@ def victim(folder, attack):
 
 @pytest.mark.parametrize("attack", ATTACKS)
 def test_an_attack_fails(extension, tmp_path, attack):
-    """It fails in a process without rights; files of the user are as before; the mesh is read nevertheless."""
+    """The process has no rights: the attack fails, the user's files stay the same, and the mesh is read nevertheless."""
     if attack in ("read", "write", "remove", "rename", "link", "hard link", "make a folder") and landlock() < 2:
         pytest.skip("this kernel has no Landlock, or one without hard links")
     path = victim(tmp_path, attack)
@@ -125,7 +125,7 @@ def test_an_attack_fails(extension, tmp_path, attack):
 
 @pytest.mark.parametrize("attack", ATTACKS)
 def test_an_attack_on_who_trusts_succeeds(med, attack):
-    """Otherwise the test above shows nothing."""
+    """Otherwise the test above would prove nothing."""
     done = run(med, "info", "mesh.med", "-q", "--trust", hostile=attack, path=victim(med, attack))
     assert done.stdout == ("" if attack == "start a program" else f"hostile: {attack} done\n")
 
@@ -211,7 +211,7 @@ def test_progress_is_drawn_while_a_child_works(med, arguments):
 
 
 def test_companions_and_maps_are_reached(tmp_path):
-    """XDMF's values beside it, maps of another folder, a report, links that the user typed."""
+    """The values beside an XDMF file, maps in another folder, a report, and links that the user names."""
     cases.solid("xdmf")(tmp_path)
     (tmp_path / "maps").mkdir()
     (tmp_path / "link.xdmf").symlink_to("mesh.xdmf")

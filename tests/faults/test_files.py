@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Calls that read and write files fail one after another: the command says so, and leaves the old files or the new ones."""
+"""One call after another that reads or writes files fails: the command reports it and leaves the old or the new files."""
 import errno
 import gzip
 import itertools
@@ -19,7 +19,7 @@ KINDS = ("open", "read", "write", "sync", "close", "rename", "thread")
 
 
 def failures_of(case, most, every_error):
-    """Lets calls of each kind fail, `most` of a kind. Returns how many failed, and what was wrong, by the fault."""
+    """Lets calls of each kind fail, at most `most` of a kind. Returns the number of failures, and the faults of each run."""
     failed, wrong = 0, {}
     for kind in KINDS:
         errors = itertools.cycle(interposed.ERRORS[kind])
@@ -71,14 +71,14 @@ def test_a_call_that_a_signal_interrupts_is_repeated(tmp_path, name):
 
 @pytest.mark.parametrize("name", ["order with maps", "vtu in place", "cgns in place", "med in place", "exo in place"])
 def test_what_a_failing_disk_leaves_unread_is_no_mesh(tmp_path, name):
-    """Every read fails, from one on: the mesh must not be taken for one that ends there."""
+    """Every read from the nth on fails: the part read before must not be taken for the mesh."""
     case = cases.case(name, tmp_path)
     for nth in spread(case.clean.calls["read"], 6):
         ending = case.with_fault(Fault("read", nth, errno.EIO, later=True))
         # libhdf5 crashes where it copies what it cannot read
         faults = list(case.faults_of_files() if ending.culprit() else case.faults_of(ending))
         assert not faults, (nth, faults)
-        if ending.status == 0:  # what failed was of the system's description, which is done without
+        if ending.status == 0:  # only reads of the system's description failed, which the command does not need
             assert not list(case.faults_of_set("new"))
 
 
@@ -93,10 +93,10 @@ def test_a_limit_on_file_sizes_is_told(tmp_path, name, bytes_, ignored):
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN if ignored else signal.SIG_DFL)
 
     case.restore()
-    # without the interposer, whose log has the limit, too
+    # without the interposer, since the limit holds for its log, too
     done = subprocess.run([interposed.MESHORDER, *map(str, case.arguments)], cwd=case.folder, preexec_fn=limit, text=True,
                           capture_output=True, stdin=subprocess.DEVNULL, timeout=interposed.SECONDS, check=False)
-    told = done.returncode == -signal.SIGXFSZ and "SIGXFSZ" in done.stderr  # it cleans up, then ends by the signal
+    told = done.returncode == -signal.SIGXFSZ and "SIGXFSZ" in done.stderr  # the command cleans up, then ends by the signal
     ending = interposed.Ending(2 if told else done.returncode, "", done.stderr, {}, 0, "")
     assert not list(case.faults_of(ending))
 
@@ -104,7 +104,7 @@ def test_a_limit_on_file_sizes_is_told(tmp_path, name, bytes_, ignored):
 @pytest.mark.parametrize("given", [".exo", ".med", ".cgns"])
 @pytest.mark.parametrize("wanted", [".vtkhdf", ".xdmf", ".med", ".cgns", ".exo"])
 def test_libraries_that_cannot_complete_a_file_end_well(tmp_path, given, wanted):
-    """libhdf5 crashes where it tries again at the end of the process, whichever library entered it first."""
+    """libhdf5 crashes when it tries again at the end of the process, whichever library called it first."""
     made = subprocess.run([interposed.MESHORDER, "models", "make", "ball", "--size", "6", "--json"], check=True, capture_output=True)
     ball = json.loads(made.stdout)["models"][0]["path"]
     for name in ("a" + given, "whole" + wanted):
@@ -124,7 +124,7 @@ def test_libraries_that_cannot_complete_a_file_end_well(tmp_path, given, wanted)
 
 
 def mounted(folder, size):
-    """Whether a small file system could be mounted there."""
+    """Mounts a small file system, and returns whether this was possible."""
     folder.mkdir()
     return subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "none", folder], check=False,
                           capture_output=True).returncode == 0
@@ -132,7 +132,7 @@ def mounted(folder, size):
 
 @pytest.fixture
 def small_disk(tmp_path):
-    """A file system of few pages; the test is skipped where none can be mounted."""
+    """A file system of few pages; skips the test if none can be mounted."""
     folder = tmp_path / "disk"
     if not mounted(folder, "256k"):
         pytest.skip("needs the right to mount a file system")
@@ -142,7 +142,7 @@ def small_disk(tmp_path):
 
 @pytest.mark.parametrize("name", ("order with maps", "node in place", "xdmf in place", "simulate", "openfoam"))
 def test_a_full_disk_is_told(tmp_path, small_disk, name):
-    """Each number of free pages from none up: the disk is full at other files."""
+    """With each number of free pages from none up, the disk becomes full at another file."""
     case = cases.case(name, tmp_path)
     case.folder = small_disk / "work"
     statuses = []
@@ -155,14 +155,14 @@ def test_a_full_disk_is_told(tmp_path, small_disk, name):
         filling.write_bytes(bytes(max(0, space - free * page)))
         ending = interposed.run(case.arguments, case.folder, log=tmp_path / "log")
         statuses.append(ending.status)
-        filling.unlink()  # what looks at the files needs room
+        filling.unlink()  # the check of the files needs room
         assert not list(case.faults_of(ending)), (free, list(case.faults_of(ending)))
         assert ending.status in (0, 2) and (ending.status == 0 or "full" in ending.stderr), ending.stderr
     assert statuses[0] == 2
 
 
 def test_a_full_folder_for_temporary_files_is_told(tmp_path, small_disk, monkeypatch):
-    """CGNS files that are compressed are unpacked there for libcgns."""
+    """Compressed CGNS files are unpacked into this folder for libcgns."""
     work = tmp_path / "work"
     work.mkdir()
     cases.write_cube(work, 8)

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The command is killed: each file is the old or the new one, a mixture is refused, and the next run ends well."""
+"""After the command is killed, each file is the old or the new one, a mixture is refused, and the next run succeeds."""
 import random
 import signal
 import statistics
@@ -16,7 +16,7 @@ NAMES = ("order with maps", "apply", "openfoam", "simulate", *cases.OVER)
 
 
 def faults_after(case):
-    """What is wrong after a kill, and after the next run, as sentences."""
+    """The faults after a kill and after the next run, as sentences."""
     yield from case.faults_of_files()
     if case.line.reader and case.without_fault(case.line.reader) == 0:
         yield from case.faults_of_set()
@@ -40,7 +40,7 @@ def test_a_kill_within_a_call_loses_nothing(tmp_path, name, what):
 
 
 def killed_at(case, seconds):
-    """Runs the case and kills it after that time. Returns whether it was alive."""
+    """Runs the case and kills it after some seconds. Returns whether it was still running."""
     case.restore()
     with subprocess.Popen([interposed.MESHORDER, *map(str, case.arguments)], cwd=case.folder, stdin=subprocess.DEVNULL,
                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as child:
@@ -57,7 +57,7 @@ def time_of_run(case):
 
 
 def kill_at_random(case, times, seed):
-    """Kills the case so many times, at instants of the time that it takes. Returns how often it was alive."""
+    """Kills the case `times` times, at random instants of its running time. Returns how often it was still running."""
     length = statistics.median(time_of_run(case) for _ in range(5))
     instants = random.Random(seed)
     alive = 0

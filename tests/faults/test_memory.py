@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Every allocation fails once: the command says so, leaves whole files, and neither aborts nor hangs."""
+"""Every allocation fails once: the command reports it, leaves complete files, and neither aborts nor hangs."""
 import collections
 import errno
 import resource
@@ -11,18 +11,18 @@ import interposed
 from interposed import Fault, spread
 
 
-SET_UP = 3200  # allocations that give the command its options: `methods` has no others, they are the same in all cases
+SET_UP = 3200  # allocations for the command's options, the same in all cases; `methods` makes no others
 
 
 def places_of(case, name, most):
-    """At most so many allocations to fail, spread from those after the set-up to the last."""
+    """At most `most` allocations that are to fail, spread from the first after the set-up to the last."""
     first = 0 if name == "methods" else SET_UP
     return [first + place for place in spread(case.clean.calls["allocation"] - first, min(most, case.line.most))]
 
 
 def failures_of(case, places, later=False):
-    """Runs the case with a failure at each of these allocations. Returns how many failed, what was wrong, by the place, and
-    what other libraries did."""
+    """Runs the case with a failure at each of these allocations. Returns the number of failures, the faults by place, and
+    the number of failures that each foreign library mishandled."""
     failed, wrong, foreign = 0, {}, collections.Counter()
     for nth in places:
         ending = case.with_fault(Fault("allocation", nth, errno.ENOMEM, later))
@@ -46,7 +46,7 @@ def shown(name, failed, wrong, foreign):
 
 @pytest.mark.parametrize("name", cases.COMMANDS)
 def test_an_allocation_that_fails_is_told(tmp_path, name):
-    """A few of them, and a few with all later ones."""
+    """A few single allocations, and a few together with all later ones."""
     case = cases.case(name, tmp_path)
     places = places_of(case, name, 10)
     failed, wrong, foreign = failures_of(case, places)
@@ -69,7 +69,7 @@ def test_every_allocation_that_fails_is_told(tmp_path, name):
 
 @pytest.mark.parametrize("name", ["order with maps", "cgns in place", "order by spectral"])
 def test_a_limit_on_memory_is_told(tmp_path, name):
-    """From a limit at which the program cannot be loaded to one that suffices."""
+    """Limits from one at which the program cannot be loaded to one that suffices."""
     case = cases.case(name, tmp_path)
     statuses = []
     for megabytes in range(60, 1100, 130):
@@ -78,6 +78,6 @@ def test_a_limit_on_memory_is_told(tmp_path, name):
         ending = interposed.run(case.arguments, case.folder,
                                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
         statuses.append(ending.status)
-        if ending.status != 127:  # the loader's own
+        if ending.status != 127:  # the loader's status
             assert not list(case.faults_of(ending)), (megabytes, list(case.faults_of(ending)))
     assert statuses[-1] == 0

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The order of calls: all files are on the disk before the first of them replaces another, and then their folders are."""
+"""The order of calls: all new files are synced before the first one replaces an old file; their folders are synced last."""
 import pathlib
 
 import pytest
@@ -36,7 +36,7 @@ def test_files_are_on_the_disk_before_they_replace_others(tmp_path, name):
     for group in groups:
         for at in group:
             state, path = "not written", calls[at][2]
-            # back from the rename: where the file was then, and what was done to it last
+            # backwards from the rename: the file's earlier path, and the last write or sync
             for verb, *paths in reversed(calls[:at + 1]):
                 if verb == "rename":
                     path = moved(path, paths[1], paths[0])

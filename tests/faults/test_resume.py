@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""A simulation that is killed again and again goes on from its checkpoint, to the same bits."""
+"""A simulation that is killed repeatedly resumes from its checkpoint and gives the same bits."""
 import json
 import random
 import signal
@@ -20,7 +20,7 @@ def start(folder, *arguments):
 
 
 def killed(child, seconds):
-    """Kills a process after that time. Returns whether it was alive."""
+    """Kills a process after some seconds. Returns whether it was still running."""
     try:
         child.wait(seconds)
     except subprocess.TimeoutExpired:
@@ -31,8 +31,8 @@ def killed(child, seconds):
 
 
 def resumed_to_the_end(folder, kills, instants):
-    """Kills the simulation that many times, and resumes it each time; begins anew where it was faster. Returns its
-    result."""
+    """Kills the simulation `kills` times, and resumes it each time; starts from the beginning if it ends before a kill.
+    Returns its result."""
     state = folder / "state"
     while True:
         resume = ("--resume", "state") if state.exists() else ()

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Files that belong together, such as a mesh and its maps: where a call fails, all are the old ones."""
+"""Files that belong together, such as a mesh and its maps: if a call fails, all stay the old ones."""
 import itertools
 
 import pytest
@@ -12,7 +12,7 @@ SETS = ("order with maps", "openfoam", "node in place", "xdmf in place", "node o
 
 
 def faults_of_set(case, kind, nth, what):
-    """What is wrong after a fault, as sentences."""
+    """The faults of the files after a failed call, as sentences."""
     ending = case.with_fault(Fault(kind, nth, what))
     yield from case.faults_of(ending, kind)
     if ending.status != 0:

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Standard streams that are closed or go away, and folders for temporary files that are full."""
+"""Standard streams that are closed or disappear, and full folders for temporary files."""
 import os
 import pty
 import signal
@@ -17,7 +17,7 @@ STUDY = ("reproduce", "-o", "study", "--scenario", "small.json", "--mesh", "mesh
 
 @pytest.mark.parametrize("closed", [(0, 1), (0, 1, 2)])
 def test_a_study_ends_where_streams_are_closed(tmp_path, closed):
-    """Its child processes talk to it by sockets, which must not get the streams' numbers."""
+    """The sockets to its child processes must not get the numbers of the closed streams."""
     cases.scenario(tmp_path)
 
     def close():
@@ -31,7 +31,7 @@ def test_a_study_ends_where_streams_are_closed(tmp_path, closed):
 
 
 def test_a_terminal_that_goes_away_ends_no_simulation(tmp_path):
-    """The line that shows the progress cannot be written any more, as after nohup."""
+    """The progress line cannot be written any more, as after nohup."""
     cases.scenario(tmp_path)
     terminal, stderr = pty.openpty()
     with subprocess.Popen([interposed.MESHORDER, "simulate", "small.json", "--steps", "1000000"], cwd=tmp_path,

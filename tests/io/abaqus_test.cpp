@@ -35,7 +35,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::UnorderedElementsAre;
 
-// two hexahedra with a wedge on them and shells, with all kinds of references
+// two hexahedra, a wedge on them and shells, with all kinds of references
 constexpr std::string_view kDeck =
     "*Heading\n"
     " a deck, 1, 2\n"
@@ -202,7 +202,7 @@ TEST(Abaqus, WritesSetsOfNodesBeforeTheCardsThatUseThem) {
     EXPECT_EQ(test::sorted_members(read_deck(text)).sets, test::sorted_members(mesh).sets) << text;
     return text;
   };
-  // behind the last card that has nodes, not behind one that has none
+  // after the last card with nodes, not after one without
   EXPECT_THAT(order_of_sets(nodes + rest + "*NODE\n"), HasSubstr("4, 0, 0, 1\n" + card + "*ELEMENT"));
   EXPECT_THAT(order_of_sets(nodes + user + rest), HasSubstr(card + user + "*NODE\n"));
   EXPECT_THAT(order_of_sets(nodes + rest + user), HasSubstr("4, 0, 0, 1\n" + card + "*ELEMENT"));
@@ -222,7 +222,7 @@ TEST(Abaqus, MovesLinesAndKeepsNumbers) {
 }
 
 TEST(Abaqus, TakesNumbersAfterACommaAsData) {
-  // what is left of Abaqus/CAE's "*Nset, nset=ends, instance=Part-1-1"
+  // the rest of Abaqus/CAE's "*Nset, nset=ends, instance=Part-1-1"
   const std::string deck(kDeck);
   std::string commas = deck;
   for (const std::string card :
@@ -236,7 +236,7 @@ TEST(Abaqus, TakesNumbersAfterACommaAsData) {
   turn_round(mesh, Ids::renumber);
   Mesh expected = read_deck(deck);
   turn_round(expected, Ids::renumber);
-  // but for commas, comments and blank lines the decks are the same
+  // the decks are the same except for commas, comments and blank lines
   const auto plain = [](const std::string& text) {
     std::string result;
     for (std::size_t begin = 0; begin < text.size();) {
@@ -575,7 +575,7 @@ TEST(Abaqus, WritesAllTypesThatItHolds) {
     Mesh mesh = test::cells_of_type(shape, count, 3);
     mesh.data.clear();
     for (Point& point : mesh.points) {
-      for (double& x : point) x = std::round(x * 1e6) / 1e6;  // to be written in full
+      for (double& x : point) x = std::round(x * 1e6) / 1e6;  // written without loss
     }
     if (!format.holds(mesh, shape, count)) continue;
     ++held;
@@ -757,7 +757,7 @@ TEST(Abaqus, RefusesBrokenFiles) {
   EXPECT_EQ(set_of(sparse, "even").members.size(), 3U) << "in time proportional to the elements";
 }
 
-/// A deck that is long enough for its lines to be read on all threads: tetrahedra along a helix.
+/// A deck long enough to be read by all threads: tetrahedra along a helix.
 std::string long_deck() {
   constexpr int kNodes = 6000;
   std::string nodes = "*NODE, NSET=all\n";
@@ -824,7 +824,7 @@ TEST(Abaqus, ReadsLongDecksOnAllThreadsAsLineByLine) {
 }
 
 TEST(Abaqus, NoticesATruncatedMesh) {
-  // without cards after the mesh, so that a cut can only be in it
+  // no cards after the mesh: each cut is within the mesh
   const std::string mesh(kDeck.substr(0, kDeck.find("*NSET")));
   for (std::size_t length = 0; length < mesh.size(); length += 3) {
     const TemporaryFolder folder;

@@ -26,7 +26,7 @@ namespace {
 
 using test::TemporaryFolder;
 
-/// The bytes of an ADF file, the older kind of CGNS's files.
+/// The bytes of an ADF file, the older kind of CGNS file.
 std::string adf_file() {
   const TemporaryFolder folder;
   const auto path = folder.path() / "a.cgns";
@@ -37,7 +37,7 @@ std::string adf_file() {
   return test::content_of(path);
 }
 
-/// Returns an ADF file as a libcgns configured for 64 bits writes it: pointers and dimensions are binary.
+/// Returns the ADF file as a 64-bit libcgns writes it, with binary pointers and dimensions.
 std::string with_binary_pointers(std::string file) {
   const auto dimension = [&](std::size_t at) {
     const std::uint64_t number = std::stoull(file.substr(at, 8), nullptr, 16);
@@ -73,7 +73,7 @@ std::string with_binary_pointers(std::string file) {
 
 TEST(Cgns, MakesTheSameSetsOfSectionsInAnyOrder) {
   const TemporaryFolder folder;
-  // sections of which a set has one cell: the first in the file, or another
+  // a set has one cell of a section: the first section of the file, or another
   write_mesh(test::mixed_mesh(), folder.path() / "a.cgns");
   Mesh mesh = read_mesh(folder.path() / "a.cgns");
   const std::size_t sets = mesh.sets.size();
@@ -214,7 +214,7 @@ TEST(Cgns, RefusesElementTypesByTheirNumbersInVersion30) {
     std::memcpy(tree.root.child_of_label("CGNSLibraryVersion_t")->bytes.data(), &version, sizeof version);
     cgns::write_tree(tree, path, [](cgns::Node& /*node*/) {});
   };
-  write_as_30(test::tetrahedral_bar(1));  // whose number was the same
+  write_as_30(test::tetrahedral_bar(1));  // the number of tetrahedra was the same
   EXPECT_EQ(read_mesh(path).cell_count(), test::tetrahedral_bar(1).cell_count());
   write_as_30(test::cells_of_type(Shape::hexahedron, 8, 2));
   const std::string message = test::read_error(path);
@@ -276,7 +276,7 @@ TEST(Cgns, ReadsOrRefusesDamagedFilesOfAdf) {
     }
     try {
       (void)read_mesh(folder.file("a.cgns", broken));
-    } catch (const InputError&) {  // which is as good
+    } catch (const InputError&) {  // is allowed, too
     }
   }
 }

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// The C++ example of docs/dofs.md; tests/command/test_docs.py sees to it that both are the same.
+// The C++ example of docs/dofs.md; tests/command/test_docs.py checks that both are the same.
 #include "io/format.hpp"
 #include "mesh/reorder.hpp"
 #include "support/files.hpp"

@@ -167,7 +167,7 @@ TEST(Exodus, TellsWhatItCannotHold) {
                           HasSubstr("'few' is given for some vertices; the others get NaN")));
 }
 
-/// Writes two triangles in two blocks, with what `put` adds.
+/// Writes two triangles in two blocks, and what `put` adds.
 void write_two_blocks(const std::filesystem::path& path, const std::function<void(exodus::NcOutput&)>& put) {
   exodus::NcOutput file(path, exodus::plain_storage(false));
   for (const auto& [name, length] :
@@ -191,7 +191,7 @@ void write_two_blocks(const std::filesystem::path& path, const std::function<voi
   file.finish();
 }
 
-/// Declares variables of nodes or elements, of which each has a name of one letter.
+/// Declares variables of nodes or elements with names of one letter each.
 void put_names(exodus::NcOutput& file, const std::string& of, const std::string& letters) {
   const std::string count = "num_" + of + "_var";
   (void)file.dimension({count, letters.size()});
@@ -220,7 +220,7 @@ TEST(Exodus, NamesWithoutValuesGetNone) {
   ASSERT_EQ(mesh.data.size(), 3U);  // and the labels of blocks
   EXPECT_EQ(array_of(mesh, "v", Association::vertices).values, Values(std::vector<double>{1, 2, 3}));
   test::expect_order_and_back(path);
-  // in memory, where netCDF fills what is not written
+  // in memory, where netCDF fills values that are not written
   const MemoryFiles files = write_mesh_to_memory(mesh, "exodus", "b.exo");
   test::expect_same(read_mesh(std::as_bytes(std::span(files.files.front().bytes))), mesh);
 }
@@ -325,7 +325,7 @@ std::map<Index, std::vector<double>> rows_of(const DataArray& array, bool is_den
   return rows;
 }
 
-/// Reads a file in so many parts, and compares these with the whole.
+/// Reads a file in `parts` parts, and compares these with the whole.
 void expect_parts_of_the_whole(const std::filesystem::path& path, Index parts) {
   const Mesh whole = read_mesh(path);
   std::vector<std::map<Index, std::vector<double>>> rows(whole.data.size());

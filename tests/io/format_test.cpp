@@ -140,7 +140,7 @@ TEST(FormatOf, SaysWhatToDoWithFilesOfOtherPrograms) {
   }
 }
 
-/// The files that a mesh becomes, by name; nothing if the format cannot hold its cells.
+/// The files of a mesh, by name; nothing if the format cannot hold its cells.
 std::vector<MemoryFile> files_of(const Mesh& mesh, const Format& format) {
   try {
     return test::written_as(mesh, format).files;
@@ -178,7 +178,7 @@ TEST(AllFormats, AFileThatIsReadAndWrittenStaysAsItIs) {
       const std::vector<MemoryFile> twice = files_of(test::read_back(once, format), format);
       ASSERT_EQ(twice.size(), once.size());
       if (format.name == "Exodus" || format.name == "XDMF" || format.name == "CGNS" || format.name == "MED" ||
-          format.name == "VTKHDF") {  // what a file of HDF5 holds counts, not its bytes
+          format.name == "VTKHDF") {  // the content of an HDF5 file counts, not its bytes
         expect_same(test::read_back(twice, format), test::read_back(once, format));
         continue;
       }
@@ -197,7 +197,7 @@ TEST(AllFormats, IdsOfAnyNumbersLeaveAFileThatCanBeRead) {
     Mesh mesh = test::tetrahedral_bar(2);
     if (!format.holds(mesh, Shape::tetrahedron, 4)) mesh = test::triangles_and_line(4);
     const std::vector<MemoryFile> files = files_of(mesh, format);
-    if (files.empty()) continue;  // of a format for matrices
+    if (files.empty()) continue;  // a format for matrices
     mesh = test::read_back(files, format);
     std::vector<std::int64_t> doubled(mesh.points.size(), 7);
     std::vector<std::int64_t> negative(mesh.points.size());

@@ -8,11 +8,11 @@
 #include <string>
 #include <string_view>
 
-/// Small Gmsh files with all that such files may have, as Gmsh itself would write them.
+/// Small Gmsh files with all that such files may contain, as Gmsh itself writes them.
 namespace meshorder::test {
 
-/// Two tetrahedra and a triangle in entities of their own, six nodes in blocks of three entities, sparse
-/// numbers, one node that nothing uses, and one of every section.
+/// Two tetrahedra and a triangle in separate entities, six nodes in blocks of three entities, sparse numbers,
+/// one unused node, and one of every section.
 inline constexpr std::string_view kGmsh41 = R"($MeshFormat
 4.1 0 8
 $EndMeshFormat
@@ -127,7 +127,7 @@ $ElementNodeData
 $EndElementNodeData
 )";
 
-/// The same kind of mesh in version 2.2: tags in different numbers, types and dimensions mixed.
+/// A similar mesh in version 2.2, with different numbers of tags, and with mixed types and dimensions.
 inline constexpr std::string_view kGmsh22 = R"($MeshFormat
 2.2 0 8
 $EndMeshFormat

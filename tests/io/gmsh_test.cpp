@@ -58,7 +58,7 @@ const EntitySet& set_of(const Mesh& mesh, std::string_view name) {
   return none;
 }
 
-/// What stands between $name and $Endname.
+/// The text between $name and $Endname.
 std::string section(const std::string& content, const std::string& name) {
   const auto begin = content.find("$" + name + "\n");
   const auto end = content.find("$End" + name + "\n");
@@ -278,7 +278,7 @@ TEST(Gmsh, TakesBlocksOfOneKindThatFollowEachOtherForOne) {
   const Mesh mesh = read_text(head + "3 3 1 3\n" + elements + "$EndElements\n");
   EXPECT_THAT(mesh.cell_blocks, ElementsAre(0, 2));
   EXPECT_EQ(read_text(written(mesh)).cell_blocks, mesh.cell_blocks);
-  // others stand apart: their order matters more than their blocks
+  // blocks that do not follow each other are dropped: the order of cells matters more
   const std::string turns = "2 1 2 1\n1 1 2 3\n2 2 2 1\n2 2 4 3\n2 1 2 1\n3 2 5 4\n";
   const Mesh in_turns = read_text(head + "3 3 1 3\n" + turns + "$EndElements\n");
   EXPECT_THAT(in_turns.cell_blocks, IsEmpty());
@@ -473,7 +473,7 @@ Point middle(const std::vector<Point>& points, const std::vector<int>& of) {
 TEST(Gmsh, PutsMiddleNodesWhereVtkHasThem) {
   for (const SecondOrder& type : second_order()) {
     SCOPED_TRACE(type.type);
-    // corners at powers of two, so that the middle of any set of corners is exact and no other's
+    // corners at powers of two: the means of all sets of corners are exact and distinct
     const int corner_count = corners(type.shape, 0);
     std::vector<Point> points;
     for (int i = 0; i < corner_count; ++i)
@@ -560,7 +560,7 @@ TEST(Gmsh, LabelsOfNamedGroupsAreTheirNumbersAgain) {
                {"body", Association::cells, {4}},
                {"rest", Association::cells, {2, 3}}};
   const std::string file = written(mesh);
-  // "rest" has a cell without label: no number of its own
+  // "rest" has a cell without a label: it gets a new number
   EXPECT_THAT(file,
               HasSubstr("$PhysicalNames\n4\n2 8 \"wall\"\n2 9 \"walls\"\n3 7 \"body\"\n2 10 \"rest\"\n"));
   const Mesh again = read_text(file);
@@ -582,7 +582,7 @@ TEST(Gmsh, LabelsOfSomeCellsAreGroupsOfThese) {
             Values(std::vector<std::int32_t>{0, 3, 8}));
 }
 
-/// The same mesh, as far as Gmsh can hold what others have: data are double, sets of vertices are left out.
+/// EXPECTs the same mesh within the limits of Gmsh's format: data are double, sets of vertices are left out.
 void expect_converted(const Mesh& actual, const Mesh& expected) {
   EXPECT_EQ(actual.points, expected.points);
   EXPECT_EQ(actual.cells, expected.cells);
@@ -607,7 +607,7 @@ TEST(Gmsh, HoldsAMeshFromElsewhere) {
     const Mesh again = read_text(content);
     expect_converted(again, mesh);
     EXPECT_EQ(written(again), content);
-    // the order counts more than the blocks: a later one is free again
+    // the order counts more than the blocks: later orders may mix types again
     EXPECT_THAT(again.cell_blocks, IsEmpty());
   }
 }

@@ -252,7 +252,7 @@ TEST(FacetGraph, JoinsLinesAtTheirEnds) {
 }
 
 TEST(FacetGraph, ChainsTheElementsOfANonManifoldFacet) {
-  // four triangles around one edge: each joined to the next, so that they stay together
+  // four triangles around one edge: each is joined to the next, which keeps them together
   EXPECT_EQ(facet_neighbours({{Shape::triangle, {0, 1, 2}},
                               {Shape::triangle, {1, 0, 3}},
                               {Shape::triangle, {4, 1, 0}},
@@ -316,7 +316,7 @@ TEST(FacetGraph, IsThatOfAllPairsOnWholeMeshes) {
 }
 
 TEST(Facets, BoundEveryVolumeOnceOnEachSide) {
-  // in a closed surface each edge is walked once in each direction
+  // in a closed surface each edge occurs once in each direction
   for (const auto& [shape, corners] : test::linear_types()) {
     if (dimension(shape) != 3) continue;
     std::multiset<std::pair<int, int>> walked;

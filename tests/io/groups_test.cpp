@@ -15,8 +15,8 @@
 namespace meshorder {
 namespace {
 
-/// A bar of cubes with faces at its side, scrambled; "part" gives the cubes 30, −4 and 7 in turns of three
-/// cubes, and every face −100.
+/// A scrambled bar of cubes with faces at its side. "part" is 30, −4 or 7 for runs of three cubes, and −100
+/// for every face.
 Mesh bar_of_parts() {
   Mesh mesh = test::tetrahedral_bar(9);
   mesh.data.clear();
@@ -28,7 +28,7 @@ Mesh bar_of_parts() {
     mesh.cells.push_back(Shape::triangle, std::vector<Index>{4 * i, 4 * i + 4, 4 * i + 5});
     parts.push_back(-100);
   }
-  mesh.points.resize(mesh.points.size() + 3, Point{});  // that nothing uses
+  mesh.points.resize(mesh.points.size() + 3, Point{});  // unused
   mesh.data.push_back({"part", Association::cells, 1, parts, {}, {}});
   mesh.cell_blocks.clear();
   apply_reordering(mesh, test::shuffled(mesh.vertex_count(), 1), test::shuffled_cells(mesh, 2));
@@ -88,7 +88,7 @@ TEST(GroupBy, PutsEachVertexWithTheSmallestValueAmongItsElements) {
     at_vertices.reserve(mesh.points.size());
     for (Index v = 0; v < mesh.vertex_count(); ++v) at_vertices.push_back(smallest_part_at(mesh, v));
     EXPECT_TRUE(std::is_sorted(at_vertices.begin(), at_vertices.end())) << vertices;
-    // −4 takes both interfaces: 4 layers of 4; the others keep 3; then what no element uses
+    // −4 takes both interfaces: 4 layers of 4 vertices; the others have 3 layers; unused vertices come last
     ASSERT_EQ(sizes.size(), 5U);
     const std::vector<std::pair<Index, Index>> expected{{0, 9}, {16, 18}, {12, 18}, {12, 18}, {3, 0}};
     for (std::size_t g = 0; g < sizes.size(); ++g) {

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// What a file may take that claims more than it holds, and which files it may name.
+// Limits for input files: memory for files that claim more data than they hold, and files that they may name.
 #include "base/memory.hpp"
 #include "io/stream/read_limits.hpp"
 #include "support/files.hpp"
@@ -36,7 +36,7 @@ constexpr std::string_view kRemedy = "if you trust the file, raise the limit on 
 constexpr std::string_view kOneTetrahedron =
     "*VERTICES\n4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n*ELEMENTS\nTET\n1 4 0\n1 1 2 3 4\n";
 
-/// A .vtu file of one triangle, with something in its grid and something in its cells' data.
+/// A .vtu file of one triangle, with additions to its grid and to its cells' data.
 std::string triangle(std::string_view in_grid, std::string_view cell_data = "") {
   return fmt::format(
       "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
@@ -49,7 +49,7 @@ std::string triangle(std::string_view in_grid, std::string_view cell_data = "") 
       in_grid, cell_data);
 }
 
-/// The message with which reading a file under these options fails; empty if it is read.
+/// The error message from reading a file with these options; empty if it is read.
 std::string fault(const std::filesystem::path& path, const ReadOptions& options = {}) {
   try {
     (void)read_mesh(path, options);
@@ -281,7 +281,7 @@ TEST(Includes, ThatAreExchangedForLinksInTimeAreNotRead) {
   });
   int plain_ones = 0;
   constexpr int kTimes = 20'000;
-  constexpr int kMost = 2'000'000;  // where the other thread has to wait for a processor
+  constexpr int kMost = 2'000'000;  // if the other thread has to wait for a processor
   for (int k = 0; k < kTimes || (plain_ones == 0 && k < kMost); ++k) {
     if (!may_include(mesh, included)) continue;
     try {

@@ -40,7 +40,7 @@ constexpr std::string_view kReal =
     "4 2 1\n"
     "2 2 8\n";
 
-// a path of 1, 2 and 3, and vertex 4 alone
+// a path of 1, 2 and 3, and the isolated vertex 4
 constexpr std::string_view kGraph =
     "% made by hand\n"
     "4 2 111 2\n"
@@ -74,7 +74,7 @@ Mesh turned(Mesh mesh) {
   return mesh;
 }
 
-/// The file that is left after turning the vertices round, writing, reading and turning them back.
+/// The file after reversing the vertices, writing, reading, and reversing them again.
 std::string turned_twice(const std::string& name, std::string_view content) {
   const std::string once = text_of(turned(read_as(name, content)), name);
   EXPECT_NE(once, content);
@@ -124,7 +124,7 @@ TEST(MatrixMarket, MovesRowsAndColumnsTogether) {
     return text.substr(text.find('\n') + 1);
   };
   EXPECT_EQ(of("general", "real", "3 3 2\n1 2 5\n3 3 1\n"), "3 3 2\n3 2 5\n1 1 1\n");
-  // one half is stored, so an entry that leaves it is turned round
+  // one half is stored: an entry that moves to the other half is transposed
   EXPECT_EQ(of("symmetric", "real", "3 3 1\n2 1 5\n"), "3 3 1\n3 2 5\n");
   EXPECT_EQ(of("skew-symmetric", "integer", "3 3 1\n2 1 5\n"), "3 3 1\n3 2 -5\n");
   EXPECT_EQ(of("hermitian", "complex", "3 3 1\n2 1 5 6\n"), "3 3 1\n3 2 5 -6\n");

@@ -280,7 +280,7 @@ TEST(Medit, SecondOrderNodesComeInVtksOrderWithoutAnOrdering) {
 }
 
 TEST(Medit, FollowsTheOrderingThatAFileGives) {
-  // lexicographic, as many high-order codes have it
+  // lexicographic, as in many high-order codes
   const std::string text = std::string(kQuadratic) +
                            "TrianglesP2\n1\n1 4 2 6 5 3 7\n"
                            "TrianglesP2Ordering\n6\n2 0 0\n1 1 0\n0 2 0\n1 0 1\n0 1 1\n0 0 2\nEnd\n";
@@ -521,7 +521,7 @@ TEST(Medit, NoticesTruncation) {
       "m.mesh",
       "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n1 1 1.5 1\n"
       "Tetrahedra\n2\n1 2 3 4 5\n2 3 4 5 6\nEnd\n");
-  // between two sections nothing but a note can tell
+  // a cut between two sections gives only a note
   const Mesh whole = read(kFile);
   for (std::size_t size = 0; size < kFile.find("End"); ++size) {
     Notes notes;

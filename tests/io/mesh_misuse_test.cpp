@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Every function that takes a mesh with every kind of wrong member: each is refused by an Error, and the mesh
-// stays as it was.
+// Calls every function that takes a mesh with every kind of wrong member. Each call must throw an Error and
+// leave the mesh unchanged.
 #include "base/index.hpp"
 #include "support/sample_meshes.hpp"
 #include <meshorder/error.hpp>

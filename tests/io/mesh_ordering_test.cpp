@@ -24,14 +24,14 @@ ReorderOptions methods(std::string vertices, std::string elements) {
   return {.methods = {std::move(vertices), std::move(elements)}};
 }
 
-/// The vertices of a cell, falling: what lexmax compares in a mesh whose vertices are already reordered.
+/// The vertices of a cell in descending order, which lexmax compares in a mesh with reordered vertices.
 std::vector<Index> falling(const Mesh& mesh, Index cell) {
   std::vector<Index> result(mesh.cells[cell].begin(), mesh.cells[cell].end());
   std::sort(result.rbegin(), result.rend());
   return result;
 }
 
-/// Whether the cells of that dimension from `first` to `end` stand in lexmax order.
+/// Whether the cells of that dimension from `first` to `end` are in lexmax order.
 bool in_lexmax_order(const Mesh& mesh, int of_dimension, Index first, Index end) {
   std::vector<std::vector<Index>> tuples;
   for (Index c = first; c < end; ++c) {
@@ -102,7 +102,7 @@ TEST(MeshOrdering, UnusedVerticesComeLastInOldOrder) {
   for (Index v = 0; v < 12; ++v) mesh.points[v] = {1.0 * v, 0.5 * (v % 3), 0.25 * (v % 5)};
   mesh.cells.push_back(Shape::tetrahedron, std::vector<Index>{1, 3, 4, 6});
   mesh.cells.push_back(Shape::tetrahedron, std::vector<Index>{3, 4, 6, 9});
-  mesh.cells.push_back(Shape::triangle, std::vector<Index>{0, 2, 9});  // lower: does not keep 0 and 2 in use
+  mesh.cells.push_back(Shape::triangle, std::vector<Index>{0, 2, 9});  // lower dimension: 0 and 2 stay unused
   for (const MethodInfo& method : vertex_methods()) {
     if (method.name == "original") continue;
     const CsrGraph graph = vertex_graph(mesh);
@@ -138,7 +138,7 @@ TEST(MeshOrdering, TakesTheVertexGraphThatItIsGiven) {
   const MeshOrder given = reorder(mesh, options, graph);
   EXPECT_EQ(given.vertices.permutation, computed.vertices.permutation);
   test::expect_same(mesh, expected);
-  // one without edges is not replaced
+  // a given graph is not replaced, even if it has no edges
   graph = CsrGraph{std::vector<Offset>(original.points.size() + 1, 0), {}};
   mesh = original;
   EXPECT_NE(reorder(mesh, options, graph).vertices.permutation, computed.vertices.permutation);

@@ -20,7 +20,7 @@ namespace {
 
 using namespace std::string_literals;
 
-/// Names that a file of some format could take for something else.
+/// Names that a format could misread.
 std::vector<std::string> difficult_names() {
   std::vector<std::string> names{
       "",
@@ -99,7 +99,7 @@ std::vector<std::string> difficult_names() {
   return names;
 }
 
-/// The mesh with an array on vertices, one on cells, and sets, each of that name.
+/// The mesh with an array on vertices, an array on cells, and sets, all of that name.
 Mesh named(const Mesh& bare, const std::string& name) {
   Mesh mesh = bare;
   const auto vertices = static_cast<std::size_t>(mesh.vertex_count());
@@ -112,7 +112,7 @@ Mesh named(const Mesh& bare, const std::string& name) {
   return mesh;
 }
 
-/// The formats with a mesh that each can hold; none of those for matrices.
+/// The formats except those for matrices, each with a mesh that it can hold.
 std::vector<std::pair<const Format*, Mesh>> formats_and_meshes() {
   Mesh tetrahedra = test::tetrahedral_bar(2);
   tetrahedra.data.clear();

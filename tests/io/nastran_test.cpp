@@ -83,7 +83,7 @@ constexpr std::string_view kBulk =
     "ENDDATA\n"
     "1 2 3\n";
 
-/// Reads a deck, gives its nodes and elements these places, and returns what is written.
+/// Reads a deck, moves its nodes and elements to these places, and returns the written deck.
 std::string moved(std::string_view deck, const std::vector<Index>& vertices, const std::vector<Index>& cells,
                   Ids ids = Ids::renumber) {
   const TemporaryFolder folder;
@@ -153,7 +153,7 @@ TEST(Nastran, WritesWhatItReadWhereNothingMoves) {
 }
 
 TEST(Nastran, RenumbersAllReferences) {
-  // nodes 1 and 2, 4 and 9 change places; so do the hexahedra
+  // swaps nodes 1 and 2, nodes 4 and 9, and the hexahedra
   const std::string text = moved(kBulk, {1, 0, 2, 8, 4, 5, 6, 7, 3, 9, 10, 11, 12}, {1, 0, 2, 3});
   EXPECT_THAT(text, HasSubstr("BEGIN BULK\n"
                               "PARAM,GRDPNT,5\n"

@@ -12,7 +12,7 @@ namespace {
 using namespace std::string_literals;
 using test::TemporaryFolder;
 
-/// A NumPy file with that header and those bytes behind it.
+/// A NumPy file with that header and those bytes after it.
 std::string npy(const std::string& header, const std::string& data) {
   const auto length = static_cast<char>(header.size());
   return "\x93NUMPY\x01\0"s + std::string{length, '\0'} + header + data;

@@ -214,7 +214,7 @@ TEST(Obj, BrokenFilesStopWithTheirLine) {
        {"unknown", vertices + "call other.obj\n", ":4: the statement 'call' is unknown"}});
 }
 
-// a file that ends after a whole line, or within a number, is whole for OBJ: it promises no counts
+// OBJ has no counts: a file that ends after a line, or within a number, is valid
 TEST(Obj, NoticesThatVerticesAreMissing) {
   const std::string text = "f 1 2 3\nf 2 3 4\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\n";
   expect_truncation_is_noticed("a.obj", text);

@@ -266,7 +266,7 @@ TEST(OutputFile, FollowsNoLinksInNamesThatItDerives) {
   EXPECT_TRUE(fs::is_empty(folder.path() / "elsewhere"));
   write(FilePath::in(folder.path() / "case", folder.path() / "case/constant/order"), "new");
   EXPECT_EQ(content_of(folder.path() / "case/constant/order"), "new");
-  // the user's own links are followed, also where names below them are derived
+  // links that the user names are followed, also for names derived below them
   fs::create_symlink("case", folder.path() / "my case");
   write(FilePath::in(folder.path() / "my case/", folder.path() / "my case/constant/order"), "newer");
   EXPECT_EQ(content_of(folder.path() / "case/constant/order"), "newer");
@@ -286,7 +286,7 @@ TEST(OutputFile, WritesThroughNoPipeThatItDerives) {
 TEST(OutputFile, RemovesWhatDeadProcessesLeftAndNothingElse) {
   const TemporaryFolder folder;
   const fs::path dead = folder.path() / ".meshorder-0123456789abcdef.new";
-  const fs::path inner = dead / ".meshorder-fedcba9876543210.new";  // of a process that wrote there
+  const fs::path inner = dead / ".meshorder-fedcba9876543210.new";  // of a process that wrote into `dead`
   fs::create_directories(inner);
   for (const fs::path& left : {dead, inner}) {
     for (const char* const name : {"lock", "new", "old"}) put(left / name, "half");

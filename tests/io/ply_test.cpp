@@ -213,7 +213,7 @@ TEST(Ply, RowsOfTexturesFollowTheirFaces) {
   Notes notes;
   write_mesh(mesh, folder.path() / "b.ply", &notes);
   EXPECT_EQ(notes, Notes{});
-  // the second number of a row is that of its face
+  // the second number of a row is the number of its face
   std::string expected(kTextured);
   const auto swap = [&](const std::string& old, const std::string& fresh) {
     expected.replace(expected.find(old), old.size(), fresh);
@@ -227,7 +227,7 @@ TEST(Ply, LeavesOutWhatMayNameVerticesOrFaces) {
   struct Doubt {
     const char* what;
     std::string header;  ///< lines of properties and elements after the list of a face's vertices
-    std::string face;    ///< what follows the vertices of the first face
+    std::string face;    ///< text after the vertices of the first face
     std::string rows;    ///< of the elements
     std::string note;
   };
@@ -266,7 +266,7 @@ TEST(Ply, TriangleStripsBecomeTriangles) {
       "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n";
   const TemporaryFolder folder;
   Notes notes;
-  // two strips; the second has a corner twice, which turns it
+  // two strips; the second repeats a corner, which reverses it
   const Mesh mesh = read_mesh(folder.file("a.ply", head + "10 0 1 2 3 -1 3 2 2 5 4\n"), {.notes = &notes});
   EXPECT_EQ(notes, (Notes{"the triangle strips became 3 triangles, which are written as faces"}));
   EXPECT_EQ(mesh.cells.shapes, (std::vector<Shape>(3, Shape::triangle)));

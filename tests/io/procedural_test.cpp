@@ -65,7 +65,7 @@ Index euler_characteristic(const Mesh& mesh) {
          index_size(faces_of(mesh)) - mesh.cell_count();
 }
 
-/// The triangles that one tetrahedron alone has: EXPECTs that no face has more than two.
+/// The triangles of only one tetrahedron; EXPECTs that no triangle has more than two.
 std::vector<std::vector<Index>> boundary_of(const Mesh& mesh) {
   std::vector<std::vector<Index>> result;
   for (const auto& [face, count] : faces_of(mesh)) {

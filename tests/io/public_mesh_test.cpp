@@ -77,7 +77,7 @@ TEST(Ids, AreAttachedAsArraysOfTheOldOnes) {
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     EXPECT_EQ(cells[c], before.cell_ids[order.cells.permutation.new_to_old()[c]]);
   }
-  // a second time they would hide the first ones
+  // attached again, the new ids would hide the first ones
   const Mesh once = mesh;
   const ReorderOptions again{.ids = Ids::attach};
   EXPECT_THROW(reorder(mesh, again), InvalidArgument);
@@ -170,7 +170,7 @@ TEST(WriteMesh, ToMemoryGivesTheBytesOfTheFile) {
     EXPECT_EQ(written.files[0].name, "a");
     // files of CGNS hold the time at which they were written
     EXPECT_TRUE(format.name == "cgns" || written.files[0].bytes == test::content_of(path));
-    // and its bytes tell the format
+    // the format is found from the bytes
     const Mesh back = read_mesh(bytes_of(written.files[0].bytes));
     EXPECT_EQ(back.format, format.name);
     EXPECT_EQ(back.cells, read_mesh(path).cells);

@@ -46,7 +46,7 @@ void expect_alike(const std::string& text, std::size_t most) {
     const RegularNumbers read = read_regular_numbers<Number>(text, values, part);
     values.resize(read.count);
     EXPECT_EQ(values, expected) << text << " in parts of " << part;
-    // blanks alone may lie between the last number and the end
+    // only blanks may be between the last number and the end
     const std::string_view rest = std::string_view(text).substr(words.bytes, read.bytes - words.bytes);
     EXPECT_GE(read.bytes, words.bytes) << text << " in parts of " << part;
     EXPECT_EQ(rest.find_first_not_of(kSeparators), std::string_view::npos) << text;

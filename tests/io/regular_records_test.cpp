@@ -18,14 +18,14 @@ using test::TemporaryFolder;
 
 constexpr Index kRecords = 6;
 
-/// What a reader makes of a text: its numbers, where it ended, or what was wrong.
+/// The result of a reader: its numbers, the rest of the text, or an error.
 struct Outcome {
   std::vector<int> numbers = {};
   std::string rest = {};
   std::string fault = {};
 };
 
-/// Reads records of two numbers, the first `regular` ones of which are read already.
+/// Reads records of two numbers; the first `regular` records are already read.
 Outcome read_rest(Scanner& in, Index regular, std::vector<int> numbers) {
   Outcome outcome{.numbers = std::move(numbers)};
   try {

@@ -16,8 +16,8 @@
 namespace meshorder {
 namespace {
 
-/// Tetrahedra or triangles, whichever a format holds (no cells for one of matrices), with arrays on all and
-/// on some of the vertices and cells. Values are whole numbers, which formats of 32 bits hold, too.
+/// Tetrahedra, or triangles if the format holds no tetrahedra, or no cells for a format of matrices; with
+/// arrays on all and on some vertices and cells. Values are whole numbers that 32-bit formats can hold.
 Mesh with_arrays(const Format& format) {
   Mesh mesh = test::tetrahedral_bar(2);
   if (!format.holds(mesh, Shape::tetrahedron, 4)) {

@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// a square of two triangles on which a quadrilateral stands
+// a square of two triangles and a quadrilateral above it
 constexpr std::string_view kPlane =
     "% made by hand\n"
     "NDIME= 2\n"

@@ -66,7 +66,7 @@ fs::path put(const TemporaryFolder& folder, const Set4& files, const std::string
   return folder.file(stem + ".node", files.node);
 }
 
-/// Returns the content of a file without the mark at its end, which those that are written have.
+/// Returns the content of a file without the mark that meshorder writes at the end.
 std::string unmarked(const fs::path& path) {
   std::string content = test::content_of(path);
   const std::size_t at = content.rfind("# meshorder ");
@@ -156,7 +156,7 @@ TEST(TetGen, RefusesFilesThatWereNotWrittenTogether) {
   EXPECT_THAT(mark, testing::MatchesRegex("# meshorder [0-9a-f]+\n"));
   for (const char* const extension : {".ele", ".face", ".edge"}) {
     EXPECT_THAT(test::content_of(folder.path() / named("a", extension)), testing::EndsWith(mark));
-    // the old file with the new points, and one of another program
+    // an old file with the new points, and a file of another program
     for (const std::string& other : {test::content_of(folder.path() / named("b", extension)),
                                      unmarked(folder.path() / named("a", extension))}) {
       const TemporaryFolder mixed;
@@ -168,7 +168,7 @@ TEST(TetGen, RefusesFilesThatWereNotWrittenTogether) {
                         HasSubstr("remove these lines")));
     }
   }
-  // the mark is that of the mesh: written again, the files are the same
+  // the mark depends only on the mesh: written again, the files are the same
   write_mesh(read_mesh(folder.path() / "a.node"), folder.path() / "c.ele");
   for (const char* const extension : {".node", ".ele", ".face", ".edge"}) {
     EXPECT_EQ(test::content_of(folder.path() / named("a", extension)),
@@ -241,7 +241,7 @@ TEST(TetGen, AttributesThatAreNotRegionsStayReal) {
   test::expect_same(read_mesh(folder.path() / "out.node"), mesh);
 }
 
-/// The mesh with the rows of partial arrays rising, which is how a file gives them.
+/// The mesh with the rows of partial arrays in ascending order, as files give them.
 Mesh with_sorted_rows(Mesh mesh) {
   for (DataArray& array : mesh.data) {
     if (array.is_dense()) continue;
@@ -265,7 +265,7 @@ TEST(TetGen, MarkersOfFacesAloneMoveWithThem) {
 
 // ---- second order
 
-// what TetGen 1.5 makes of one tetrahedron with -o2: nodes 5 to 10 lie on the edges 34 14 12 23 24 13
+// one tetrahedron by TetGen 1.5 with -o2: nodes 5 to 10 are on the edges 34 14 12 23 24 13
 constexpr std::string_view kNode2 =
     "10 3\n1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n5 0 1 1\n6 0 0 1\n7 1 0 0\n8 1 1 0\n9 1 0 1\n10 0 1 0\n";
 constexpr std::string_view kEle2 = "1 10 0\n1 1 2 3 4 5 6 7 8 9 10\n";
@@ -309,7 +309,7 @@ TEST(TetGen, TellsTheTwoOrdersOfSecondOrderFacesApart) {
 }
 
 TEST(TetGen, ReadsTrianglesOfTwoDimensions) {
-  // Triangle's -o2: nodes 4 to 6 lie opposite to corners 1 to 3
+  // Triangle's -o2: nodes 4 to 6 are opposite to corners 1 to 3
   const Set4 files{"6 2 0 1\n1 0 0 1\n2 2 0 1\n3 0 2 1\n4 1 1 0\n5 0 1 0\n6 1 0 0\n",
                    "1 6 1\n1 1 2 3 4 5 6 3\n", "", "1 1\n1 1 2 5\n"};
   const TemporaryFolder folder;
@@ -633,7 +633,7 @@ TEST(TetGen, NoticesTruncationOfEveryFile) {
         const Mesh part = read_mesh(folder.path() / "m.node", {.notes = &notes});
         EXPECT_EQ(part.points, whole.points) << name << " cut after " << size;
         EXPECT_EQ(part.cells, whole.cells) << name << " cut after " << size;
-        // only a last marker can lose digits, and that is noted; comments may be cut anywhere
+        // only the last marker can lose digits, with a note; comments may be cut anywhere
         EXPECT_TRUE(part.data == whole.data || !notes.empty()) << name << " cut after " << size;
       } catch (const InputError&) {
         continue;

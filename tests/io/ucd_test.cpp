@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// a cell of each type, numbers with gaps, data with units in an order of their own, and data of the model
+// a cell of each type, numbers with gaps, data with units in another order than the nodes, and model data
 constexpr std::string_view kUcd =
     "# made by hand\n"
     "# 9 nodes\n"

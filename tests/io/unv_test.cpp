@@ -23,7 +23,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// Two tetrahedra, a wedge's face, a beam that node 30 orients, a rod and a constraint element, with groups,
+// Two tetrahedra, a wedge's face, a beam oriented by node 30, a rod and a constraint element, with groups,
 // results and units. Numbers have gaps.
 constexpr std::string_view kFile =
     "    -1\n"
@@ -92,7 +92,7 @@ constexpr std::string_view kFile =
     "    1.0000000000000000E+00\n"
     "    -1\n";
 
-// loads on the node 50, of which only the number of the dataset is known
+// loads on node 50, in a dataset of which the reader knows only the number
 constexpr std::string_view kLoads =
     "    -1\n"
     "   790\n"
@@ -254,7 +254,7 @@ TEST(Unv, NamesStepsOfResults) {
 
 TEST(Unv, StepsStayInTheirPlacesWhereAHeaderIsMadeAnew) {
   const std::string again = "    -1\n    55\n" + dataset_of(std::string(kFile), 55) + "    -1\n";
-  // the first says whole numbers, and has others
+  // the first one declares whole numbers but has real ones
   const std::string text =
       with(std::string(kFile), "         8         2         3\n", "         8         1         3\n") +
       again;
@@ -292,7 +292,7 @@ TEST(Unv, ReadsOlderDatasets) {
             std::vector<std::int32_t>{6});
   EXPECT_THAT(set_of(mesh, "old", Association::vertices).members, ElementsAre(0, 2));
   EXPECT_EQ(written(mesh), text);
-  // coordinates that six digits do not hold are written with as many as it takes
+  // coordinates with more than six digits are written with all they need
   mesh.points[2][1] = 0.1 + 1e-9;
   EXPECT_EQ(read_text(written(mesh)).points, mesh.points);
 }
@@ -336,7 +336,7 @@ TEST(Unv, SkipsBinaryData) {
   EXPECT_TRUE(written(mesh).starts_with(binary));
 }
 
-/// The corners of the edges whose middle nodes follow the corners of a second-order cell, in VTK's order.
+/// The corners of each edge of a second-order cell, in VTK's order of the middle nodes.
 std::vector<std::pair<int, int>> edges_of(Shape shape) {
   switch (shape) {
     case Shape::line:
@@ -513,7 +513,7 @@ TEST(Unv, RefusesBrokenFiles) {
 }
 
 TEST(Unv, NoticesATruncatedMesh) {
-  // without datasets after the mesh, so that a cut can only be in it
+  // no datasets after the mesh: each cut is within the mesh
   const std::size_t end = kFile.find("\n    -1\n  2467");
   test::expect_truncation_is_noticed("m.unv", kFile.substr(0, end));
 }

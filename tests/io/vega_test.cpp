@@ -321,7 +321,7 @@ TEST(Vega, HexahedraOfARealMeshAreInVtksOrder) {
   const Mesh mesh = read_mesh(path);
   EXPECT_EQ(mesh.vertex_count(), 3923);
   EXPECT_EQ(mesh.cell_count(), 1736);
-  // cubes along the axes: corners 1, 3 and 4 lie along x, y and z from corner 0, corner 6 across
+  // cubes along the axes: corners 1, 3 and 4 are along x, y and z from corner 0, corner 6 is opposite
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const auto corners = mesh.cells[c];
     const Point& origin = mesh.points[corners[0]];

@@ -28,8 +28,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Two tetrahedra and a triangle with arrays of several number types in the order of their names, sets,
-/// fields and roles, as VTK's formats have them.
+/// Two tetrahedra and a triangle with arrays of several number types, sorted by name, and with sets, fields
+/// and roles as in VTK's formats.
 Mesh grid() {
   Mesh mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0.1}};

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// A program of its own: it is linked with a vtu_compressor.cpp and a gzip.cpp that have none of the
-// libraries.
+// A separate program, linked with versions of vtu_compressor.cpp and gzip.cpp without any compression
+// library.
 #include "io/format.hpp"
 #include "io/stream/gzip.hpp"
 #include "io/vtk/vtk.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// A program of its own: it is linked with a format.cpp that has none of the libraries.
+// A separate program, linked with a version of format.cpp without optional libraries.
 #include "io/format.hpp"
 #include <meshorder/error.hpp>
 

@@ -27,8 +27,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-// as XDMF 2 has it: a triangle, two points, a line of three and a quadrilateral, axis by axis, from number 1
-// on
+// XDMF 2: a triangle, two points, a line of three points and a quadrilateral, with coordinates axis by axis
+// and numbers from 1
 constexpr std::string_view kMixed = R"(<?xml version="1.0" ?>
 <!DOCTYPE Xdmf SYSTEM "Xdmf.dtd" []>
 <!-- made by hand -->
@@ -196,7 +196,7 @@ TEST(Xdmf, WedgesHaveTheirFirstTriangleOutwardInTheFile) {
   mesh.cells.push_back(Shape::wedge, std::array<Index, 6>{0, 1, 2, 3, 4, 5});
   const Mesh back = read_files(files_of(mesh));
   EXPECT_EQ(back.cells, mesh.cells);
-  // the same cell as a file has it, and as one of VTK 9.7 would
+  // the same cell in a file's order, and in that of VTK 9.7
   const std::string text =
       "<Xdmf><Domain><Grid><Topology TopologyType=\"Wedge\"><DataItem Dimensions=\"1 6\" "
       "NumberType=\"Int\">0 2 1 3 5 4</DataItem></Topology><Geometry><DataItem Dimensions=\"6 3\">0 0 0 1 0 "

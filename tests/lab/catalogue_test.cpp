@@ -42,10 +42,10 @@ class Variable {
   std::optional<std::string> before_;
 };
 
-/// An empty cache, and no programs but those that a test puts on PATH.
+/// An empty cache, and a PATH with only the programs that a test puts there.
 class Catalogue : public testing::Test {
  protected:
-  /// A shell script; it has the shell's own commands alone.
+  /// Installs a shell script, which can use only the shell's own commands.
   void install(const std::string& name, const std::string& script) const {
     fs::permissions(programs_.file(name, "#!/bin/sh\n" + script + "\n"), fs::perms::owner_all);
   }
@@ -55,7 +55,7 @@ class Catalogue : public testing::Test {
     (void)cache_.file("surfaces/" + name, "OFF\n");
   }
 
-  /// Files in the models' folder, but for the locks.
+  /// The files in the models' folder, without locks.
   [[nodiscard]] std::vector<std::string> kept() const {
     std::vector<std::string> result;
     if (!fs::exists(models_folder())) return result;
@@ -148,7 +148,7 @@ TEST_F(Catalogue, LeavesWhatIsMadeUnlessForced) {
   fs::remove(models_folder() / ".grid-2.lock");
   EXPECT_EQ(make_model("grid", options).vertices, 27);
   EXPECT_TRUE(steps.empty());
-  EXPECT_FALSE(fs::exists(models_folder() / ".grid-2.lock"));  // a cache that is read only will do
+  EXPECT_FALSE(fs::exists(models_folder() / ".grid-2.lock"));  // a read-only cache suffices
 
   fs::resize_file(path, 10);  // its first line is still whole
   EXPECT_EQ(make_model("grid", options).vertices, 27);

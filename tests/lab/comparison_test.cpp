@@ -16,7 +16,7 @@ namespace {
 
 using test::sample_results;
 
-/// Two studies of the same, on two machines.
+/// Two studies of the same scenarios, on two machines.
 struct BothStudies {
   ComparedStudy a{"a/results.json", sample_results()};
   ComparedStudy b{"b/results.json", sample_results()};
@@ -31,7 +31,7 @@ Speedup speedup(double percent, double low, double high) {
   return made;
 }
 
-/// What comparing says of the second study after a change.
+/// The error of a comparison after a change of the second study.
 std::string complaint(const std::function<void(StudyResults&)>& change) {
   BothStudies both;
   change(both.b.results);
@@ -51,7 +51,7 @@ TEST(Comparison, AddsTheSquaresOfBothIntervals) {
   EXPECT_EQ(*difference, (SavingDifference{10, 5, 15, true}));  // 3² + 4² = 5²
   EXPECT_FALSE(difference_of(speedup(10, 7, 13), speedup(14, 10, 18))->beyond_noise);
   EXPECT_TRUE(difference_of(speedup(10, 7, 13), speedup(4, 0, 8))->beyond_noise);
-  // of intervals that are wider to one side, the ends that face each other count
+  // of asymmetric intervals, the ends that face each other count
   const auto uneven = difference_of(speedup(0, -5, 3), speedup(10, 6, 22));
   EXPECT_DOUBLE_EQ(uneven->low, 5);
   EXPECT_DOUBLE_EQ(uneven->high, 23);

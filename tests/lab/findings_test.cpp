@@ -13,7 +13,7 @@ namespace {
 using namespace meshorder;
 using test::sample_results;
 
-/// The one finding that begins so; "" where there is none.
+/// The finding with this beginning; "" if there is none.
 std::string finding(const StudyResults& results, const std::string& beginning) {
   for (const std::string& sentence : findings_of(results)) {
     if (sentence.starts_with(beginning)) return sentence;
@@ -44,7 +44,7 @@ TEST(Findings, TellWhenOrdersArePaid) {
   EXPECT_EQ(finding(results, beginning),
             "Where an order saves time, computing it does not pay off within the measured steps: Fiedler in "
             "falling, Fiedler in stretch, VF Fiedler in falling and VF Fiedler in stretch.");
-  // what the noise swallows, or what costs time, is never paid
+  // an order within the noise, or one that costs time, never pays
   for (ScenarioRecord& scenario : results.scenarios) {
     for (ScenarioOrderRecord& order : scenario.orders) order.speedup.beyond_noise = order.speedup.percent < 0;
   }
@@ -58,7 +58,7 @@ TEST(Findings, TellHowFarPredictionsAreOff) {
                   .ends_with("36 pairs of orders that are more than 10 % apart, all are predicted "
                              "the right way round."))
       << finding(results, beginning);
-  // SpMV: predicted as twice as fast as it is, in all orders but the reference
+  // the predicted time of SpMV is halved in all orders except the reference
   for (MeshOrderRecord& order : results.meshes[0].orders) {
     if (order.ordering != "scrambled") order.kernels[0].predicted_ms /= 2;
   }
@@ -86,13 +86,13 @@ TEST(Findings, CompareWithElementsScrambledToo) {
   for (ScenarioRecord& scenario : results.scenarios) {
     for (ScenarioOrderRecord& order : scenario.orders) {
       if (order.ordering != "vf-fiedler" && order.ordering != "vf-scrambled") continue;
-      // two runs that differ by nothing but the order: 2 s a step against 3 s
+      // two runs that differ only in the order: 2 s per step against 3 s
       const double seconds = order.ordering == "vf-fiedler" ? 2 : 3;
       for (RunRecord& run : order.runs) run.step_seconds.assign(run.step_seconds.size(), seconds);
     }
   }
   EXPECT_NE(finding(results, "If elements are scrambled too").find("33.3 %"), std::string::npos) << before;
-  // noise: now the one is faster, now the other
+  // noise: each of the two is faster in turn
   for (ScenarioOrderRecord& order : results.scenarios[1].orders) {
     for (std::size_t r = 0; r < order.runs.size(); ++r) {
       const bool slow = (order.ordering == "vf-fiedler") == (r % 2 == 0);

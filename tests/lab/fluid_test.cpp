@@ -28,7 +28,7 @@ using TriangulationTest = FluidTest;
 using AlphaShapeTest = FluidTest;
 using ScalarSystemTest = FluidTest;
 
-/// Water of the unit height and length in a basin as long, in units in which gravity is 1.
+/// Water of unit height and length that fills the length of the basin, in units in which gravity is 1.
 FluidOptions water(double spacing, double width) {
   FluidOptions options;
   options.basin = {1, 3, width};
@@ -39,7 +39,7 @@ FluidOptions water(double spacing, double width) {
   return options;
 }
 
-/// A column of Martin and Moyce's, twice as high as long, in a longer basin.
+/// A column of Martin and Moyce, twice as high as long, in a longer basin.
 FluidOptions dam(double spacing, double width) {
   FluidOptions options = water(spacing, width);
   options.basin = {5, 4, width};
@@ -53,7 +53,7 @@ double fastest(const MotionState& state) {
   return most;
 }
 
-/// The foremost particle of the mesh, and the highest at the wall behind.
+/// The position of the front, and the height of the water at the wall behind.
 std::pair<double, double> front_and_height(const Fluid& fluid, double spacing) {
   const MotionState state = fluid.state();
   double front = 0;
@@ -67,7 +67,7 @@ std::pair<double, double> front_and_height(const Fluid& fluid, double spacing) {
   return {front, height};
 }
 
-/// A value between those of two samples.
+/// The value at x, interpolated between two samples.
 double at(const std::vector<std::pair<double, double>>& curve, double x) {
   const auto after = std::ranges::lower_bound(curve, x, {}, &std::pair<double, double>::first);
   const auto& [x1, y1] = *after;

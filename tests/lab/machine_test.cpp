@@ -33,7 +33,7 @@ TEST(Machine, IsDescribedInFull) {
   EXPECT_NE(machine.compiler.find('.'), std::string::npos) << machine.compiler;
   EXPECT_NE(machine.flags.find("-std=c++20"), std::string::npos) << machine.flags;
   EXPECT_EQ(std::count(machine.system.begin(), machine.system.end(), ' '), 2) << machine.system;
-  // as a study keeps it, which refuses what is empty
+  // through the results of a study, which refuse empty members
   const test::TemporaryFolder folder;
   StudyResults results;
   results.began = "2026-11-20T17:30:00Z";

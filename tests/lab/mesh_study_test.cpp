@@ -29,7 +29,7 @@ MeshStudyOptions without_clock() {
   return options;
 }
 
-/// The misses of a least-recently-used cache in the second of two runs, line by line.
+/// The misses of a simulated LRU cache in the second of two runs.
 Offset lru_misses(const AccessStream& stream, Offset bytes) {
   const auto lines = static_cast<std::size_t>(bytes / kLineBytes);
   std::list<Index> by_recency;

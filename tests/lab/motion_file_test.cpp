@@ -103,8 +103,8 @@ TEST(SurfaceFile, GivesBackTheTrianglesOfEachFrame) {
   file.commit();
   const std::vector<Triangles> surfaces = read_surfaces(path, 3, 4);
   EXPECT_EQ(surfaces, (std::vector<Triangles>{{{0, 1, 2}, {2, 1, 3}}, {}, {{3, 0, 1}}}));
-  EXPECT_THROW(read_surfaces(path, 2, 4), Error);  // of more frames
-  EXPECT_THROW(read_surfaces(path, 3, 3), Error);  // of more vertices
+  EXPECT_THROW(read_surfaces(path, 2, 4), Error);  // the file has more frames
+  EXPECT_THROW(read_surfaces(path, 3, 3), Error);  // the file has more vertices
   const std::string content = test::content_of(path);
   EXPECT_EQ(content.substr(10, 58), "{'descr': '<i4', 'fortran_order': False, 'shape': (3, 4), ");
   for (const std::string& broken :

@@ -147,7 +147,7 @@ TEST(Page, HoldsTheViewerAndThreeWithItsLicence) {
   EXPECT_NE(html.find(viewer_sources().scripts), std::string::npos);
   EXPECT_NE(html.find("Permission is hereby granted, free of charge"), std::string::npos);
   EXPECT_NE(html.find("REVISION=\"111\""), std::string::npos);
-  // nothing of it ends the element that it stands in
+  // no source ends the element that contains it
   for (const std::string_view source : {viewer_sources().scripts, viewer_sources().three})
     EXPECT_EQ(source.find("</script"), std::string_view::npos);
   EXPECT_EQ(viewer_sources().style.find("</style"), std::string_view::npos);
@@ -168,7 +168,8 @@ TEST(Page, IsWrittenWholeOrNotAtAll) {
   EXPECT_THROW(write_page(sample_page(), folder.path() / "missing" / "a.html"), InputError);
 }
 
-/// A mesh whose products take 3 ms as it is and 2 ms in another order, and whose springs take longer in that.
+/// A mesh whose products take 3 ms as it is and 2 ms in another order; springs take longer in the other
+/// order.
 StudyResults timed() {
   StudyResults results;
   results.orderings = {{"original", "As it is", "original", "original"},

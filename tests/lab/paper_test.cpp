@@ -10,7 +10,7 @@ namespace {
 
 using namespace meshorder;
 
-/// Half a unit of the last digit that the paper prints.
+/// Half a unit of the last printed digit.
 double half_unit(double printed) {
   for (const double unit : {1.0, 0.1, 0.01}) {
     if (std::abs(printed / unit - std::round(printed / unit)) < 1e-6) return unit / 2;
@@ -23,7 +23,7 @@ TEST(Paper, SecondsAndPercentOfAScenarioTellOfOneScrambledTime) {
   for (const PaperScenario& scenario : paper_scenarios()) {
     const double scrambled = *paper_seconds(scenario.name, "scrambled");
     for (const PaperSaving& saving : scenario.savings) {
-      // what the printed digits allow, and half a per cent for the sum's own rounding
+      // the range of the printed digits, and half a per cent for the rounding of the sum
       const double seconds = half_unit(saving.seconds);
       const double percent = half_unit(saving.percent);
       EXPECT_GT(scrambled, 0.995 * 100 * (saving.seconds - seconds) / (saving.percent + percent))
@@ -34,7 +34,7 @@ TEST(Paper, SecondsAndPercentOfAScenarioTellOfOneScrambledTime) {
   }
 }
 
-// what the project's notes derive from one caption each
+// times that the project's notes derive from one caption each
 TEST(Paper, DerivedTimesAgreeWithThoseOfItsFirstCaptions) {
   EXPECT_NEAR(*paper_seconds("falling", "scrambled"), 1844, 6);
   EXPECT_NEAR(*paper_seconds("constrained", "scrambled"), 2205, 6);

@@ -84,13 +84,13 @@ TEST(ChildProcess, EndsWhereItsOwnerIsKilled) {
   }
   ::close(ends[1]);
   ASSERT_EQ(::waitpid(owner, nullptr, 0), owner);
-  // the child has the pipe's other end as long as it lives
+  // the child holds the pipe's other end while it is alive
   pollfd ended{.fd = ends[0], .events = POLLIN, .revents = 0};
   EXPECT_EQ(::poll(&ended, 1, 60'000), 1);
   ::close(ends[0]);
 }
 
-/// Containers may forbid it.
+/// Whether address randomization can be turned off, which containers may forbid.
 bool addresses_can_be_fixed() {
   const int before = ::personality(0xffffffff);
   const bool allowed = before != -1 && ::personality(static_cast<unsigned>(before) | ADDR_NO_RANDOMIZE) != -1;

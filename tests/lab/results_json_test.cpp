@@ -58,7 +58,7 @@ ScenarioOrderRecord sample_runs(const std::string& ordering, double seconds) {
           .motion = {.by_frame = {0, 1e-9}, .largest = 2e-9}};
 }
 
-/// With no member at its default.
+/// Results in which no member has its default.
 StudyResults sample() {
   StudyResults results;
   results.began = "2026-11-20T17:30:00Z";
@@ -108,7 +108,7 @@ StudyResults sample() {
   return results;
 }
 
-/// What reading says of the sample after a change.
+/// The error from reading the sample after a change.
 std::string complaint(const std::function<void(Json&)>& change) {
   const test::TemporaryFolder folder;
   Json json = to_json(sample());

@@ -43,7 +43,7 @@ TEST(Obstacles, WhatIsShownIsTheirSurface) {
     const auto exact = obstacle_of(obstacle);
     ASSERT_GT(mesh.vertex_count(), 100);
     for (const Point& point : mesh.points) EXPECT_NEAR(exact->distance(point), 0.0, 1e-12);
-    // and all of it: of points around, none is nearer to the obstacle than to what is shown
+    // all of it is shown: for points around, the distances from the obstacle and from the shown mesh agree
     for (const double x : {-1.2, 0.1, 0.9, 1.7}) {
       for (const double y : {-1.1, 0.3, 1.3}) {
         const Point near{obstacle.place[0] + x, obstacle.place[1] + y, obstacle.place[2] + 0.4};

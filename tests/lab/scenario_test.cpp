@@ -139,7 +139,7 @@ TEST(Scenario, ReadsEveryValue) {
   EXPECT_EQ(s.paper, (std::vector<std::string>{"steps", "material.model"}));
 }
 
-/// One of ADMM, in which `from` is replaced.
+/// A scenario of ADMM with `from` replaced.
 std::string projective(const std::string& from = "", const std::string& to = "") {
   std::string text = R"({
     "name": "soft", "mesh": "grid-2", "scale": {"height": 0.5}, "place": {"bottom": [1, 2, 3]},
@@ -358,7 +358,7 @@ TEST(Scenario, NoCutOfAFileIsRead) {
   }
 }
 
-// ---- vertices that are meant
+// ---- choices of vertices
 
 std::vector<Index> all_vertices(const Mesh& mesh) {
   std::vector<Index> all(mesh.points.size());
@@ -366,7 +366,7 @@ std::vector<Index> all_vertices(const Mesh& mesh) {
   return all;
 }
 
-/// Where the chosen vertices lie, in an order that does not depend on their numbers.
+/// The positions of the chosen vertices, sorted independently of their numbers.
 std::multiset<Point> places(const Mesh& mesh, const VertexChoice& choice) {
   const std::vector<Index> chosen = choose_vertices(mesh, all_vertices(mesh), choice, "my.json");
   EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
@@ -412,7 +412,7 @@ TEST(VertexChoice, SetsLabelsBoxesAndNearestAreWhatBruteForceFinds) {
   std::get<std::vector<std::int32_t>>(mesh.data[0].values)[1] = 9;
   EXPECT_EQ(find(choice_of(By::label, "label", 9)), corners);
   EXPECT_EQ(find(choice_of(By::label, "", 9)), corners);
-  // vertices' own labels count before those of cells
+  // labels of vertices take precedence over those of cells
   mesh.data.push_back(mesh.data[0]);
   mesh.data[1].association = Association::vertices;
   mesh.data[1].values = std::vector<std::int32_t>(mesh.points.size(), 3);
@@ -450,7 +450,7 @@ TEST(VertexChoice, OfEquallyNearOnesTakesTheSmallestCoordinates) {
   mesh.points = {{1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 0, 0}};
   EXPECT_EQ(choose_vertices(mesh, all_vertices(mesh), choice_of(By::nearest, "", 0, {0.5, 0.5, 0}), "f"),
             (std::vector<Index>{2, 4}));
-  const std::vector<Index> candidates{0, 1, 3};  // the others take no part
+  const std::vector<Index> candidates{0, 1, 3};  // others cannot be chosen
   EXPECT_EQ(choose_vertices(mesh, candidates, choice_of(By::nearest, "", 0, {0.5, 0.5, 0}), "f"),
             std::vector<Index>{1});
 }

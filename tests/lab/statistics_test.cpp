@@ -40,7 +40,7 @@ TEST(Statistics, TheIntervalIsThatOfHandCalculation) {
   const Speedup speedup = speedup_of(runs, reference, 2, 0);
   EXPECT_DOUBLE_EQ(speedup.saved_seconds, 10);
   EXPECT_DOUBLE_EQ(speedup.percent, 50);
-  // variances 2 and 2, so that √((2 + 2) / 2) s are the standard error; t of 2 degrees; of 20 s
+  // variances 2 and 2: the standard error is √((2 + 2) / 2) s; t of 2 degrees; of 20 s
   const double half_width = 100 * 4.302652729749464 * std::sqrt(2.0) / 20;
   EXPECT_NEAR(speedup.low, 50 - half_width, 1e-9);
   EXPECT_NEAR(speedup.high, 50 + half_width, 1e-9);
@@ -87,7 +87,7 @@ TEST(Statistics, BreaksEvenAtTheEndOfTheFirstStepThatHasPaid) {
   EXPECT_EQ(step(4.5), std::nullopt);
 }
 
-/// 240 steps in turns of 8 of an order that saves a fifth of most steps, with noise.
+/// 240 steps in turns of 8. The order saves a fifth of most steps; times have noise.
 struct NoisyStudy {
   std::vector<RunRecord> runs, reference;
   double true_percent = 0;
@@ -102,7 +102,7 @@ struct Noise {
 NoisyStudy noisy_study(int runs, const Noise& noise, std::mt19937& random) {
   NoisyStudy study;
   std::normal_distribution<double> normal;
-  std::exponential_distribution<double> exponential;  // noise makes slower more than faster
+  std::exponential_distribution<double> exponential;  // noise slows down more than it speeds up
   double spent = 0, saved = 0;
   for (int r = 0; r < runs; ++r) {
     const double phase = exponential(random);
@@ -124,7 +124,7 @@ NoisyStudy noisy_study(int runs, const Noise& noise, std::mt19937& random) {
   return study;
 }
 
-/// In how many of 1000 studies the interval holds the truth.
+/// The number of studies out of 1000 whose interval contains the true value.
 int held(int runs, const Noise& noise) {
   std::mt19937 random(7);
   int count = 0;
@@ -156,7 +156,7 @@ TEST(Statistics, IntervalsOfOneRunHoldTheTruthWhereTheRatioIsTheSame) {
 }
 
 TEST(Statistics, RunsThatDifferAsAWholeWidenThem) {
-  // turns alone would hold the truth in few
+  // intervals from turns alone would rarely contain the true value
   EXPECT_GE(held(3, {.of_step = 0.02, .of_run = 0.05}), 900);
 }
 
@@ -235,7 +235,7 @@ TEST(Summarise, ComparesTheRunsThatBothHave) {
 TEST(Summarise, KeepsSummariesWithoutTheReference) {
   StudyResults results = small_study();
   results.scenarios[0].orders.pop_back();
-  results.scenarios[0].orders[0].speedup.percent = 3;  // of an earlier reference
+  results.scenarios[0].orders[0].speedup.percent = 3;  // from an earlier reference
   summarise(results);
   EXPECT_DOUBLE_EQ(results.scenarios[0].orders[1].time.mean, 3.05);
   EXPECT_EQ(results.scenarios[0].orders[0].speedup, Speedup{});

@@ -75,7 +75,7 @@ TEST_F(Steps, AreThoseOfTheSimulation) {
   EXPECT_GT(times.cg_iterations, 0);
   EXPECT_GT(times.seconds.solve, 0);
 
-  // the first step, taken to warm up, was taken back: six steps, not seven
+  // the first step, a warm-up, was undone: six steps, not seven
   Simulation simulation = set_up(find_scenario("falling"), mesh_, "ball.vtu");
   const Motion motion = read_motion(file("motion.npy"));
   ASSERT_EQ(motion.frames.size(), 4U);  // steps 0, 2, 4, 6

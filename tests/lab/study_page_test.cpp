@@ -19,7 +19,7 @@ namespace {
 
 using test::TemporaryFolder;
 
-/// A study's folder with a ball in two orders that falls for 20 steps past a triangle.
+/// A study's folder with a ball that falls past a triangle for 20 steps, in two orders.
 class StudyPage : public testing::Test {
  protected:
   StudyPage() {
@@ -65,7 +65,7 @@ class StudyPage : public testing::Test {
 
   Page page(const PageDetail& detail = {}) { return page_of(folder, results, notes, {}, detail); }
 
-  /// The message of the Error that making the page ends with.
+  /// The message of the Error from making the page.
   std::string error() {
     try {
       (void)page();

@@ -203,8 +203,8 @@ TEST(Tables, StateTheErrorOfPredictions) {
   EXPECT_NEAR(value("Median error, %"), (11.1111 + 25) / 2, 1e-3);
   EXPECT_NEAR(value("90 % within, %"), 50, 1e-9);
   EXPECT_NEAR(value("Largest, %"), 50, 1e-9);
-  // of ten pairs only scrambled and VF scrambled are not more than 10 % apart, and of the others
-  // original (0.5, predicted 0.8) and Fiedler (0.25, predicted 1) are told wrong
+  // in nine of the ten pairs the times differ by more than 10 %, not for scrambled and VF scrambled; of these
+  // one is predicted wrong: original (0.5, predicted 0.8) and Fiedler (0.25, predicted 1)
   EXPECT_EQ(value("Of pairs"), 9);
   EXPECT_EQ(value("Told right"), 8);
   EXPECT_EQ(cell(tables, "kernels", "dragon, element force, Original", "Error, %").text, "+25.0");
@@ -220,7 +220,7 @@ TEST(Tables, LeaveOutWhatTheResultsDoNotHold) {
             (std::vector<std::string>{"summary", "table-1", "table-2", "table-3", "table-4", "break-even",
                                       "phases", "motions", "misses-1", "misses-2", "prediction-error",
                                       "kernels", "machine", "protocol"}));
-  // a study of meshes alone
+  // a study with meshes only
   results.scenarios.clear();
   EXPECT_EQ(ids(tables_of(results)),
             (std::vector<std::string>{"table-1", "misses-1", "misses-2", "prediction-error", "kernels",

@@ -13,7 +13,7 @@
 
 namespace meshorder::test {
 
-/// What stands between the tags of the script element of that id; "" where there is none.
+/// The content of the script element with that id; "" if there is none.
 inline std::string script_content(const std::string& html, const std::string& id) {
   const auto named = html.find("id=\"" + id + "\"");
   if (named == std::string::npos) return "";
@@ -35,7 +35,7 @@ inline std::string from_base64(const std::string& text) {
   return bytes;
 }
 
-/// The numbers of an array of a manifest, as viewer/README.md says they are to be read.
+/// The numbers of an array of a manifest, by the format of viewer/README.md.
 inline std::vector<std::uint32_t> unpacked(const std::string& html, const nlohmann::ordered_json& array) {
   const std::string packed = from_base64(script_content(html, array["blob"]));
   const std::string type = array["type"];
@@ -58,7 +58,7 @@ inline std::vector<std::uint32_t> unpacked(const std::string& html, const nlohma
   return numbers;
 }
 
-/// Those of places, as coordinates.
+/// The coordinates of an array of positions.
 inline std::vector<Point> unpacked_places(const std::string& html, const nlohmann::ordered_json& array) {
   const std::vector<std::uint32_t> numbers = unpacked(html, array);
   std::vector<Point> places(numbers.size() / 3);

@@ -20,7 +20,7 @@ namespace {
 
 constexpr Index kAll = kMaxIndex / 3;
 
-/// Each side of a triangle and the same side the other way of another.
+/// Whether each side of a triangle occurs once, and once in the opposite direction in another triangle.
 bool is_closed(const SurfaceView& view) {
   std::map<std::pair<Index, Index>, int> sides;
   for (const auto& triangle : view.triangles) {
@@ -32,7 +32,7 @@ bool is_closed(const SurfaceView& view) {
   });
 }
 
-/// What the surface encloses, by the divergence theorem; positive where it is seen from outside.
+/// The enclosed volume by the divergence theorem; positive if triangles face outward.
 double enclosed_volume(const SurfaceView& view, const Mesh& mesh) {
   double six_fold = 0;
   for (const auto& triangle : view.triangles) {
@@ -60,7 +60,7 @@ Index euler_characteristic(const SurfaceView& view) {
   return index_size(view.vertices) - index_size(edges) + index_size(view.triangles);
 }
 
-/// The unit cube as n³ hexahedra, every second of which names its corners the other way round.
+/// The unit cube as n³ hexahedra, every second one with reversed orientation.
 Mesh cube_of_hexahedra(Index n) {
   Mesh mesh;
   const auto number = [&](Index i, Index j, Index k) { return (i * (n + 1) + j) * (n + 1) + k; };
@@ -142,7 +142,7 @@ TEST(SurfaceView, IsAsGoodFarFromTheOrigin) {
 }
 
 TEST(SurfaceView, BecomesSmallWhereTopologyStandsAgainstIt) {
-  // triangles that know nothing of each other, as STL files have them
+  // triangles without shared vertices, as in STL files
   const Mesh ball = make_ball({.size = 12});
   const SurfaceView whole = surface_view(ball, kAll);
   Mesh soup;

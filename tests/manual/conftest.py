@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Where the manual's tests find what they test."""
+"""Import paths and environment of the manual's tests."""
 
 import os
 import pathlib
@@ -8,5 +8,5 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 for folder in ("tests/command", "docs/site", "scripts"):
     sys.path.insert(0, str(ROOT / folder))
-# what is predicted is the same on every machine, and none is measured first
+# the same predictions on every machine, and no measurement before them
 os.environ["MESHORDER_MACHINE"] = "zen3"

@@ -1,7 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The page that orders meshes in the browser, which browser/build makes, compared with the command.
+"""The page of browser/build, which orders meshes in the browser, compared with the command.
 
-BROWSER_PAGE names the page; without, build-browser/meshorder.html is taken. MESHORDER names the command."""
+BROWSER_PAGE names the page; the default is build-browser/meshorder.html. MESHORDER names the command."""
 
 import gzip
 import os
@@ -28,7 +28,7 @@ def command(*arguments, cwd):
 
 
 def box(side):
-    """A Medit file of cubes cut into tetrahedra; its boundary is not in it."""
+    """A Medit file of cubes cut into tetrahedra, without the boundary."""
     corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1), (1, 1, 1)]
     parts = [(0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7)]
     steps = range(side + 1)
@@ -168,7 +168,7 @@ def test_orders_by_each_method(page, meshes, method):
 
 @pytest.mark.parametrize("method", ["spectral", "spectral-fronts"])
 def test_spectral_orders_are_as_good(page, meshes, method):
-    """They depend on rounding, in which processors differ."""
+    """They depend on rounding, which differs between processors."""
     give(page, meshes / "part.msh")
     settled(page)
     choose(page, method)
@@ -259,7 +259,7 @@ def test_says_that_a_module_fails(page):
 
 
 def test_has_no_way_to_the_network(page):
-    """What is tried here complains; this is what the test is for."""
+    """The browser reports the attempt, as this test expects."""
     refused = page.driver.execute_async_script(
         """const done = arguments[0];
         fetch("https://example.org/").then(() => done("sent"), () => done("refused"));"""

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The check of the manual's links finds what it is for."""
+"""The check of the manual's links finds broken ones."""
 
 import links
 import pytest

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The built manual in a browser, opened from disk. MANUAL names its folder; without, build/manual is taken."""
+"""The built manual in a browser, opened from disk. MANUAL names its folder; the default is build/manual."""
 
 import os
 import pathlib
@@ -12,7 +12,7 @@ SITE = pathlib.Path(os.environ.get("MANUAL", ROOT / "build" / "manual"))
 PICTURES = SITE.with_name(SITE.name + "-pictures")
 PAGES = sorted(str(path.relative_to(SITE)) for path in SITE.rglob("*.html"))
 WIDTHS = {"desktop": (1280, 900), "phone": (390, 844)}
-#: pages whose looks are kept
+#: pages of which pictures are kept
 SHOWN = [
     "index.html",
     "start.html",

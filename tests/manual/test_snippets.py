@@ -1,8 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What the manual and the README show is run: Python as it stands, commands where they are quick, C++ by a compiler.
+"""Runs the snippets of the manual and the README: Python code and quick commands; C and C++ code is compiled.
 
-The snippets of a page run one after another in a folder of its own, with small meshes under the names that pages use,
-and share their names. What a page takes for granted stands in a comment of it: `<!-- python`, then code, then `-->`.
+The snippets of a page run one after another in one folder, with small meshes under the file names that pages use, and
+share their variables. A comment of a page contains the code that its snippets presuppose: `<!-- python`, code, `-->`.
 """
 
 import dataclasses
@@ -21,12 +21,12 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COMMAND = os.environ.get("MESHORDER", str(ROOT / "build" / "bin" / "meshorder"))
-#: the command that comes with the Python package, which the page on Python shows
+#: the Python package's command, which the page on Python shows
 PACKAGE_COMMAND = pathlib.Path(sys.executable).with_name("meshorder")
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
-#: subcommands that end within a second on a small mesh; of others the options are checked
+#: subcommands that end within a second on a small mesh; of others only the options are checked
 QUICK = {"order", "info", "compare", "apply", "methods"}
-#: its fragment is part of tests/io/dofs_test.cpp; tests/command/test_docs.py sees to it that both are the same
+#: their fragments are part of tests/io/dofs_test.cpp; tests/command/test_docs.py checks that both are the same
 COMPILED_ELSEWHERE = {"docs/dofs.md"}
 BLOCK = re.compile(r"^```([^\n]*)\n(.*?)^```$|^<!-- (python)\n(.*?)^-->$", re.MULTILINE | re.DOTALL)
 
@@ -53,7 +53,7 @@ def snippets(page):
 
 
 def commands(snippet):
-    """The calls of meshorder in a block of shell, or of what a terminal shows."""
+    """The calls of meshorder in a block of shell commands or of terminal output."""
     if snippet.language in ("", "sh", "text"):
         for line in snippet.code.replace("\\\n", "").splitlines():
             words = shlex.split(line.removeprefix("$ "), comments=True) if re.match(r"(\$ )?meshorder ", line) else []
@@ -71,7 +71,7 @@ def names(pages):
 
 @pytest.fixture(scope="session")
 def sample_files(tmp_path_factory):
-    """The files that pages name: a lattice of tetrahedra, its vertices numbered at random, and its matrix."""
+    """The files that pages use: a lattice of tetrahedra with random vertex numbers, and its matrix."""
     folder = tmp_path_factory.mktemp("files")
     n = 5
     place = numpy.random.default_rng(2).permutation(n**3)
@@ -192,7 +192,7 @@ def test_cpp_compiles(page, tmp_path, generated_headers):
         source = tmp_path / f"snippet.{snippet.language}"
         source.write_text(f'#line {snippet.line} "{page.relative_to(ROOT)}"\n{snippet.code}')
         compiler = ["c++", "-std=c++20"] if snippet.language == "cpp" else ["cc", "-std=c99"]
-        if "distributed.hpp" in snippet.code:  # MPI's own C++ interface is not used, nor free of warnings
+        if "distributed.hpp" in snippet.code:  # MPI's own C++ interface is not needed and gives warnings
             compiler = ["mpicxx", "-std=c++20", "-DOMPI_SKIP_MPICXX"]
         if "eigen.hpp" in snippet.code:
             compiler += ["-isystem", "/usr/include/eigen3"]
@@ -215,7 +215,7 @@ def test_cpp_compiles(page, tmp_path, generated_headers):
 
 
 def test_snippets_are_found():
-    """The patterns above find what there is."""
+    """The patterns above find the snippets."""
     found = [one for page in PAGES for one in snippets(page)]
     assert sum(one.language == "python" for one in found) >= 5
     assert sum(one.language == "cpp" for one in found) >= 2

@@ -1,7 +1,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 import os
 
-# what is predicted is the same on every machine, and none is measured first
+# the same predictions on every machine, and no measurement before them
 os.environ["MESHORDER_MACHINE"] = "zen3"
 
 

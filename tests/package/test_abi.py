@@ -3,8 +3,8 @@
 
     python3 tests/package/test_abi.py
 
-writes the record anew. That is right after a new function and after a member added at the end of a struct that begins
-with its size; anything else breaks programs that are linked already, and needs another soname.
+writes a new record. Do this after adding a function, or a member at the end of a struct that begins with its size. Any
+other change breaks linked programs and needs another soname.
 """
 import pathlib
 import platform
@@ -27,7 +27,7 @@ pytestmark = [
 
 
 def describe(folder, include=ROOT / "include"):
-    """What abidw says of the functions of meshorder.h and their types, read from debugging information."""
+    """abidw's description of the functions of meshorder.h and their types, from debugging information."""
     library = folder / "libmeshorder_c.so.1"
     test_package.run(test_package.cache_value("CMAKE_CXX_COMPILER"), "-std=c++20", "-g", "-O0", "-fPIC", "-shared",
                      "-fvisibility=hidden", f"-fdebug-prefix-map={ROOT}=.", "-DMESHORDER_BUILDING", "-I", include,

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Orders have the committed hashes (tests/threads/order_hashes.txt) from another compiler and other options, too."""
+"""Orders have the committed hashes (tests/threads/order_hashes.txt) also with another compiler and other options."""
 import os
 import shutil
 import subprocess

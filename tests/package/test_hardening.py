@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""What programs and shared libraries have against the abuse of faults, as readelf finds it in them."""
+"""The hardening of programs and shared libraries, as readelf shows it."""
 import os
 import pathlib
 import platform
@@ -60,7 +60,7 @@ def test_copies_are_checked():
 
 
 def test_flags_are_those_of_every_source():
-    """Not every flag leaves a trace in a small file: the commands that compile have all."""
+    """Small binaries do not show every flag: the test reads the compile commands."""
     if not built_with_guards():
         pytest.skip("no hardened Release build")
     wanted = ["-fstack-protector-strong", "-fstack-clash-protection", "-D_FORTIFY_SOURCE="]

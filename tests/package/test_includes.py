@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Who includes whom: the picture in CONTRIBUTING.md, read off the include lines."""
+"""The include lines follow the dependencies that CONTRIBUTING.md shows."""
 import pathlib
 import re
 
@@ -43,7 +43,7 @@ LIBRARIES = {
     "mpi.h": {"distributed", "c"},
     "ptscotch.h": {"distributed"},
 }
-# plugins/: the headers of each solver, by their beginnings, and those that plugins give to users
+# plugins/: the prefixes of each solver's headers, and the headers that plugins give to users
 HOSTS = {"petsc": ("petsc",), "dealii": ("deal.II/",), "dolfinx": ("dolfinx", "basix/", "xtl/", "mpi.h", "petsc")}
 OF_PLUGINS = {"meshorder/dealii.hpp", "meshorder/dolfinx.hpp"}
 #: a communicator is MPI's, a matrix may be Eigen's
@@ -102,7 +102,7 @@ def test_layer_includes_only_those_below(layer):
 
 
 def test_plugins_include_public_headers_and_their_solver_s():
-    """Headers beside them may be made of a .py, as DOLFINx's forms are."""
+    """Headers beside them may be generated from a .py file, like DOLFINx's forms."""
     wrong = [f"{path.relative_to(ROOT)}: {header}" for host, beginnings in HOSTS.items()
              for path in files(f"plugins/{host}") for kind, header in includes(path)
              if not (header.startswith(("meshorder", *beginnings)) or is_standard(header) if kind == "<"
@@ -131,8 +131,8 @@ def test_nothing_below_includes_what_stands_above(folder, above):
     assert not wrong
 
 
-# what opens a file to read it, and the sources that may: the opener, and those that ask the system about itself, lock a
-# file, look at what the same process has just written, or open folders to allow or to clean them
+# calls that open a file for reading, and the sources that may contain them: the common opener, and sources that query
+# the system, lock a file, check a file just written by the same process, or open folders to allow or clean them
 OPENING = re.compile(r"\b(ifstream|fopen|freopen)\b|(?<!\w)::open(at)?\(")
 MAY_OPEN = {
     "src/base/input_file.cpp", "src/io/stream/descriptor.cpp", "src/base/memory.cpp", "src/base/host.cpp",

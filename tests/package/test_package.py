@@ -1,8 +1,8 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""The package, as a project outside uses it: installed, by pkg-config, and as a subproject.
+"""The package as another project uses it: installed, by pkg-config, and as a subproject.
 
-MESHORDER_BUILD names the build folder that is installed; without, build/ is taken. MESHORDER_USER_BUILD names the
-folder in which the subproject is built and kept, for the next time; without, build-package/ is taken.
+MESHORDER_BUILD names the build folder to install; the default is build/. MESHORDER_USER_BUILD names the folder in which
+the subproject is built and kept for the next run; the default is build-package/.
 """
 import gzip
 import json
@@ -34,7 +34,7 @@ def cache_value(name):
 
 
 def configure(source, build, *options):
-    """Returns what CMake says; compilers are those of the build, with ccache if that has it."""
+    """Runs CMake with the compilers of the build, and ccache if the build uses it. Returns CMake's output."""
     launcher = re.search(r"^CMAKE_CXX_COMPILER_LAUNCHER:\w+=(.+)$", (BUILD / "CMakeCache.txt").read_text(),
                          re.MULTILINE)
     return run("cmake", "-S", source, "-B", build, "-G", "Ninja",
@@ -50,7 +50,7 @@ def run_tests(build, expected):
 
 @pytest.fixture(scope="session")
 def prefix(tmp_path_factory):
-    """An installed tree, moved to another place after it was installed."""
+    """An installed tree that was moved after its installation."""
     folder = tmp_path_factory.mktemp("package")
     run("cmake", "--install", BUILD, "--prefix", folder / "installed")
     (folder / "installed").rename(folder / "moved")
@@ -65,11 +65,11 @@ def environment(prefix):
     return {**os.environ, "PKG_CONFIG_PATH": str(folder / "pkgconfig"), "LD_LIBRARY_PATH": str(folder)}
 
 
-# ---- what can be chosen
+# ---- build options
 
 CHOICES = [
     *(["--preset", preset["name"]] for preset in json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]
-      if not preset.get("hidden") and preset["name"] != "browser"),  # which takes emscripten
+      if not preset.get("hidden") and preset["name"] != "browser"),  # which needs emscripten
     ["-DMESHORDER_CLI=OFF", "-DMESHORDER_TESTS=OFF"],
     ["-DMESHORDER_CLI=OFF", "-DMESHORDER_TESTS=OFF", "-DMESHORDER_COMPONENTS=core;c"],
     ["-DMESHORDER_LAB=OFF", "-DMESHORDER_TESTS=OFF"],
@@ -80,10 +80,10 @@ CHOICES = [
 @pytest.mark.parametrize("options", CHOICES, ids=" ".join)
 def test_all_that_is_chosen_can_be_built(tmp_path, options):
     run("cmake", "-S", ROOT, "-B", tmp_path, "-G", "Ninja", *options, cwd=ROOT)
-    run("ninja", "-C", tmp_path, "-n")  # fails where a file is needed that nothing makes
+    run("ninja", "-C", tmp_path, "-n")  # fails if no rule makes a needed file
 
 
-# ---- what is installed
+# ---- installed files
 
 
 def test_installed_files_name_no_folder_of_the_build(prefix):
@@ -92,7 +92,7 @@ def test_installed_files_name_no_folder_of_the_build(prefix):
             text = path.read_text(encoding="utf-8")
             for folder in (ROOT, BUILD, prefix.parent / "installed"):
                 assert str(folder) not in text, path
-            # libraries of the system by name, never by place
+            # system libraries by name, never by path
             if path.suffix in (".cmake", ".pc"):
                 assert not re.search(r"/usr/\S+\.(so|a)\b", text), path
 
@@ -184,7 +184,7 @@ def test_completions_of_other_shells_are_sound(prefix, shell, file):
     run(shell, "-n", next((prefix / "share").glob(file)))
 
 
-# ---- as others use it
+# ---- use by other projects
 
 
 def test_find_package(prefix, tmp_path, environment):
@@ -258,7 +258,7 @@ def test_headers_ask_for_the_standard_that_they_need(prefix, tmp_path, header):
 
 @pytest.mark.parametrize("source, options", [("matrix_test", True), ("plex_test", False)])
 def test_the_plugin_for_petsc(prefix, tmp_path, environment, source, options):
-    """A program that PETSc loads the plugin into, which finds its library beside itself; and one linked with it."""
+    """PETSc loads the plugin into a program, and the plugin finds its library beside itself; another program links to it."""
     plugin = prefix / "lib" / "libmeshorder_petsc.so"
     if not plugin.exists():
         pytest.skip("built without MESHORDER_PETSC")
@@ -292,7 +292,7 @@ def test_the_library_for_many_ranks(prefix, tmp_path, environment, by):
 
 
 def test_subproject():
-    """The core without METIS, within a project that sets no build type. What was compiled is kept."""
+    """The core without METIS, within a project that sets no build type. Compiled files are kept."""
     said = configure(USER, USER_BUILD, "--fresh", f"-DMESHORDER_SOURCE={ROOT}", "-DMESHORDER_METIS=OFF")
     assert "Warning" not in said
     rules = (USER_BUILD / "build.ninja").read_text()

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Two builds of the same sources in two folders, neither helped by ccache, are the same bytes."""
+"""Two builds of the same sources in two folders, without ccache, give the same bytes."""
 import os
 import pathlib
 import shutil
@@ -10,12 +10,12 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 pytestmark = [pytest.mark.package, pytest.mark.long,
               pytest.mark.skipif(not (ROOT / ".git").exists(), reason="not a checkout of the sources")]
-#: what the packages hold: the command and the shared libraries
+#: the content of the packages: the command and the shared libraries
 PRODUCTS = ["bin/meshorder", "src/libmeshorder.so", "src/libmeshorder_c.so"]
 
 
 def build(folder):
-    """Copies the sources as they are in the working tree into the folder, and builds them there."""
+    """Copies the sources of the working tree into the folder, and builds them there."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True).stdout
     for name in filter(None, listed.decode().split("\0")):
         if (ROOT / name).is_file():

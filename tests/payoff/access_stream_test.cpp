@@ -40,7 +40,7 @@ struct Prepared {
 
 enum class Memory { starts, columns, values, x, y, positions, forces, elements, ends, lengths };
 
-/// Accesses as the kernels' sources read, to the data that they are given.
+/// Records accesses in the order of the kernels' source code.
 class Recorder {
  public:
   using Line = std::pair<Memory, Offset>;
@@ -49,7 +49,7 @@ class Recorder {
     for (Offset line = byte / 64; line <= (byte + bytes - 1) / 64; ++line)
       add({array, line}, Access::gathered);
   }
-  /// The same, but only addresses that were not touched before.
+  /// The same, but only for lines that were not touched before.
   void read(Memory array, Offset byte, Offset bytes) {
     for (Offset line = byte / 64; line <= (byte + bytes - 1) / 64; ++line) {
       if (read_.insert({array, line}).second) add({array, line}, Access::streamed);
@@ -184,10 +184,10 @@ TEST(AccessStream, TouchesTheLinesThatTheKernelTouches) {
   }
 }
 
-/// Some lines of many, and the accesses to them.
+/// A sample of lines, and the accesses to them.
 struct Wanted {
   std::vector<std::pair<Index, Access>> accesses = {};
-  Offset gathered = 0;  ///< as told, to lines that are not wanted, too
+  Offset gathered = 0;  ///< calls of `gather`, also for lines that are not wanted
 
   static bool is_wanted(Index line) { return line / 7 % 50 == 1; }
   static bool samples(Index first, Index last) {
@@ -239,13 +239,13 @@ TEST(ReuseOf, HasNoColdAccessesAndMissesTheLeastWithTheLargestCache) {
     EXPECT_EQ(histogram.accesses(), static_cast<Offset>(recorded(kernel, prepared).lines.size()));
     EXPECT_EQ(histogram.misses(2 * lines), 0);
     EXPECT_EQ(histogram.misses(0), histogram.accesses());
-    // the bar in order: whoever keeps a few cubes misses each line once, and each cleared line twice
+    // the bar in order: a cache of a few cubes misses each line once, and each cleared line twice
     EXPECT_LE(histogram.misses(200), 2 * lines);
     EXPECT_GT(histogram.misses(200), lines / 2);
   }
 }
 
-/// Lengths that are not what followed the same eight lengths the time before.
+/// The number of lengths that differ from the one after the previous occurrence of the same eight lengths.
 Offset unforeseen(const std::vector<Offset>& lengths) {
   std::map<std::vector<Offset>, Offset> followed;
   std::vector<Offset> last(8, 0);
@@ -276,7 +276,7 @@ TEST(ReuseOf, CountsLoopsThatDoNotEndWhereTheyAreForeseen) {
         searches.push_back(k - p.starts[a]);
       }
     }
-    // different lengths before are rarely taken for the same ones
+    // different sequences of lengths are rarely mistaken for equal ones
     const Offset expected = unforeseen(searches);
     const Offset found = reuse_of(Kernel::assembly, p.graph, p.simplices).turns;
     EXPECT_NEAR(static_cast<double>(found), static_cast<double>(expected),

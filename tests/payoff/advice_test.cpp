@@ -32,7 +32,7 @@ Advice advice_on(const Mesh& mesh, AdviceOptions options = quick()) {
   return advise(mesh, vertex_graph(mesh), options);
 }
 
-/// Milliseconds a kernel, made up, as it is and in two candidates that cost 20 ms each.
+/// Invented milliseconds per kernel, as it is and for two candidates that cost 20 ms each.
 Advice made_up(const KernelMilliseconds& as_is, const KernelMilliseconds& first,
                const KernelMilliseconds& second) {
   Advice advice;
@@ -130,7 +130,7 @@ TEST(Advice, OnSeveralThreadsCountsWhatTheyComputeTwice) {
   EXPECT_EQ(alone.threads, 1);
   options.threads = 2;
   EXPECT_THROW((void)advice_on(mesh, options), InvalidArgument);
-  options.machine.model.threads = 2;  // with the costs of one, so that only what is computed twice differs
+  options.machine.model.threads = 2;  // with the costs of one thread: only repeated computations differ
   options.measure_within = 0.0;
   const Advice shared = advice_on(mesh, options);
   EXPECT_EQ(shared.threads, 2);
@@ -138,7 +138,7 @@ TEST(Advice, OnSeveralThreadsCountsWhatTheyComputeTwice) {
     return (*shared.as_is.costs.predicted)[k] / (*alone.as_is.costs.predicted)[k];
   };
   EXPECT_EQ(ratio(kSpmv), 1);
-  // all but the elements whose corners are by chance on one thread
+  // twice, except for elements whose corners are all on one thread by chance
   const double twice = times_computed(Kernel::element, vertex_graph(mesh), cut_into_simplices(mesh), 2);
   EXPECT_GT(twice, 1.8);
   EXPECT_NEAR(ratio(kElement), twice, 1e-9);
@@ -202,7 +202,7 @@ TEST(KernelAdvice, TakesTheFastestCandidateAndTellsWhenItHasPaid) {
   EXPECT_EQ(kernels[kElement].candidate, 0U);
   EXPECT_DOUBLE_EQ(kernels[kAssembly].factor, 3);
   EXPECT_EQ(kernels[kAssembly].runs_to_pay, 1);
-  // a difference of one per cent is none
+  // a difference of one per cent does not count
   EXPECT_DOUBLE_EQ(kernels[3].factor, 1);
   EXPECT_EQ(kernels[3].runs_to_pay, 0);
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kKiB = 1024;
 constexpr std::size_t kMiB = 1024 * kKiB;
 
-/// Bytes from a multiple of 4096 on.
+/// The offset from the last multiple of 4096, in bytes.
 std::size_t place_in_page(const void* address) { return reinterpret_cast<std::uintptr_t>(address) % 4096; }
 
 std::size_t distance(const void* a, const void* b) {
@@ -66,7 +66,7 @@ TEST(AlignedVector, IsApartFromTheTwoMadeBefore) {
 
 TEST(AlignedVector, IsApartWhateverOtherThreadsMake) {
   const AlignedVector<char> first(kMiB);
-  // as many as bring a common counter back to the same turn
+  // as many vectors as would bring a counter shared by threads back to the same turn
   std::thread([] {
     const AlignedVector<char> one(kMiB);
     const AlignedVector<char> another(kMiB);

@@ -18,7 +18,7 @@
 namespace meshorder {
 namespace {
 
-/// Tetrahedra, triangles, hexahedra and quadratic cells, with and without vertices that nothing uses.
+/// Tetrahedra, triangles, hexahedra and quadratic cells, with and without unused vertices.
 std::vector<Mesh> some_meshes() {
   std::vector<Mesh> meshes{test::tetrahedral_bar(40),
                            test::mixed_mesh(),

@@ -13,13 +13,13 @@ namespace {
 
 constexpr Offset kLargest = Offset{256} << 20;
 
-/// A cache, and what a miss of it costs more than a hit.
+/// A cache, and the extra cost of a miss compared with a hit.
 struct Level {
   Offset bytes;
   double cost;
 };
 
-/// Latencies of random loads, by counting hits in caches that keep lines at random.
+/// Latencies of random loads, from the hit rates of caches that keep random lines.
 std::vector<ProbePoint> latencies(double first, const std::vector<Level>& levels, double noise = 0) {
   Random random(1);
   std::vector<ProbePoint> points;

@@ -59,7 +59,7 @@ class Variable {
   std::string before_;
 };
 
-/// A calibration of this machine and build, with a number of its own in every place.
+/// A calibration of this machine and build, with a different number in each member.
 Calibration made_up() {
   Calibration calibration;
   calibration.model.machine = "a machine";
@@ -94,7 +94,7 @@ Calibration made_up() {
   return calibration;
 }
 
-/// Runs that take as long as the costs say, without jumps that are farther than so many lines.
+/// Runs whose times follow from the costs, without jumps farther than `farthest` lines.
 std::vector<TimedReuse> runs_that_cost(const KernelCosts& costs, const Caches& caches, Index farthest) {
   CostModel model;
   model.solid[0] = costs;
@@ -227,8 +227,7 @@ TEST(Calibration, OneFactorIsFoundForAllCosts) {
     const CalibrationLattice lattice = make_calibration_lattice(vertices, false, caches, 3);
     const Mesh mesh = in_order(lattice, lattice.orders.back());
     const RunReuse reuse = reuse_of_kernels(vertex_graph(mesh), cut_into_simplices(mesh), 0)[0];
-    // errors of a tenth to both sides: the factor is Σ r / Σ r² of what the costs predict over what was
-    // measured
+    // errors of a tenth in both directions: the factor is Σ r / Σ r², where r is predicted over measured time
     const double error = vertices == 1000 ? 1.1 : vertices == 4000 ? 1 / 1.1 : 1;
     runs.push_back({reuse, 0.6 * error * predicted_ms(reuse, caches, model)});
   }

@@ -11,7 +11,7 @@
 namespace meshorder {
 namespace {
 
-/// Counts with a weight of their own each, so that any mix-up shows.
+/// Distinct weights for all counts, to detect mix-ups.
 CostModel distinct_costs() {
   CostModel model;
   model.solid.fill({.access = 1, .miss = {10, 100, 1000, 1e4}, .jump = {1e5, 1e6, 1e7, 1e8}, .turn = 1e9});
@@ -19,7 +19,7 @@ CostModel distinct_costs() {
   return model;
 }
 
-/// `count` accesses each of distance 10, 100, 1000, 10,000 lines; the last of them a jump.
+/// `count` accesses at each of the distances 10, 100, 1000 and 10,000 lines; the last of all is a jump.
 RunReuse some_reuse(int count) {
   RunReuse reuse;
   reuse.dimension = 3;
@@ -36,7 +36,7 @@ Caches lines(std::vector<Offset> of_levels) {
 }
 
 TEST(CostModel, AddsUpAccessesMissesAndJumps) {
-  // 800 of 1600 lines lets the accesses of distance 1000 miss
+  // 800 of 1600 lines count: accesses of distance 1000 miss
   const double ms = predicted_ms(some_reuse(2), lines({8, 64, 1600}), distinct_costs());
   EXPECT_DOUBLE_EQ(ms, 1e-6 * (8 + 8 * 10 + 6 * 100 + 4 * 1000 + 2 * 1e4 + 1e5 + 1e6 + 1e7 + 1e8));
 }

@@ -32,7 +32,7 @@ inline Patch deformed_patch(int dimension, Index count, std::uint64_t seed = 1) 
   Patch patch;
   Random random(seed);
   for (Index v = 0; v < count + dimension; ++v) {
-    // a helix, so that neighbouring points are in general position
+    // a helix: neighbouring points are in general position
     patch.points.push_back({std::cos(2.0 * v) + 0.2 * random.unit(), std::sin(2.0 * v), 0.4 * v});
   }
   patch.simplices.dimension = dimension;
@@ -61,7 +61,7 @@ inline void expect_near(std::span<const double> actual, std::span<const double> 
   }
 }
 
-/// EXPECTs that forces add up to none, and their moments about the origin too.
+/// EXPECTs the sums of forces and of their moments about the origin to be zero.
 inline void expect_balanced(std::span<const double> forces, std::span<const double> positions) {
   double force[3] = {};
   double moment[3] = {};
@@ -86,7 +86,7 @@ inline void expect_balanced(std::span<const double> forces, std::span<const doub
 template <class Check>
 void for_each_target(Check check) {
   for (std::int64_t targets = simd_targets(); targets != 0; targets &= targets - 1) {
-    // all but the best ones so far; what is left when there is nothing else is the baseline
+    // without the best targets, which were tried before; the last one left is the baseline
     limit_simd_targets(targets);
     check(hwy::TargetName(targets & -targets));
   }

@@ -78,7 +78,7 @@ inline Eigen::MatrixXd dense_stiffness(const Patch& patch, const Elasticity& ela
   return dense(stiffness_of(patch, elasticity, positions));
 }
 
-/// The energy from its definition, by another library's singular values, in another frame of rest.
+/// The energy by its definition, with another library's singular values and another rest frame.
 inline double energy(const Patch& patch, const Elasticity& elasticity,
                      const AlignedVector<double>& positions) {
   const int d = patch.simplices.dimension;
@@ -137,7 +137,7 @@ inline AlignedVector<double> mapped(const std::vector<Point>& points, const Eige
   return padded_positions(result);
 }
 
-/// A state that a simulation may run into, by its singular values.
+/// A state that may occur in a simulation, by its singular values.
 struct State {
   std::string name;
   Eigen::Vector3d sigma;

@@ -29,7 +29,7 @@ INSTANTIATE_TEST_SUITE_P(OfAll, ElasticLaw,
                                          Case{MaterialModel::neo_hookean, Tangent::projected}),
                          test::case_name);
 
-/// Positions of some simplices in a row in ordinary states, collapsed ones among them.
+/// Positions of a row of simplices in ordinary states, some of them collapsed.
 AlignedVector<double> with_collapsed_elements(const test::Patch& patch) {
   AlignedVector<double> x = patch.positions;
   for (std::size_t v = 10; v < patch.points.size(); v += 30) {
@@ -44,7 +44,7 @@ AlignedVector<double> with_collapsed_elements(const test::Patch& patch) {
 TEST_P(ElasticLaw, IsTheSameWithEveryInstructionSet) {
   for (const Index count : {1, 7, 8, 9, 101}) {
     const test::Patch patch = test::deformed_patch(GetParam().dimension, count);
-    // where elements collapse, the rotation is any
+    // the rotation of collapsed elements is arbitrary
     const bool any = GetParam().model != MaterialModel::corotational;
     const AlignedVector<double> x = any ? with_collapsed_elements(patch) : patch.positions;
     const Elasticity elasticity = elasticity_of(GetParam());

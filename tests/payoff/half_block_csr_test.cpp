@@ -71,7 +71,7 @@ double norm_of(std::span<const double> x) {
   return std::sqrt(sum);
 }
 
-/// With every instruction set, also where y held something else before.
+/// EXPECTs the same product with every instruction set, also if y held other values before.
 template <class Value>
 void expect_same_product(const HalfBlockCsrOf<Value>& half, const BlockCsrOf<Value>& matrix) {
   ASSERT_EQ(half.size(), matrix.size());
@@ -96,7 +96,7 @@ void expect_same_product(const HalfBlockCsrOf<Value>& half, const BlockCsrOf<Val
   });
 }
 
-/// In double and in float.
+/// EXPECTs the product in double and in float.
 void expect_product_of(const BlockCsr& matrix) {
   expect_same_product(half_of(matrix), matrix);
   BlockCsrOf<float> rounded;
@@ -247,7 +247,7 @@ void expect_infinity_in_one_row(const HalfBlockCsrOf<Value>& half) {
 
 TEST(MultiplyHalf, KeepsWhatIsNotFiniteToTheRowsThatHaveIt) {
   BlockCsr matrix = symmetric_matrix(row_with_chords(200, 0, 15));
-  // on the diagonal, where loads of the row before would read it as well
+  // on the diagonal, which loads for the row before could read, too
   matrix.values[9 * matrix.find(100, 100)] = std::numeric_limits<double>::infinity();
   expect_infinity_in_one_row(half_of(matrix));
   expect_infinity_in_one_row(half_of<float>(matrix));
@@ -266,7 +266,7 @@ TEST(HalfStorage, PaysForLargeMatricesInGoodOrders) {
   const BlockCsr band = zero_block_csr(row_with_chords(kN, 0, 1));
   EXPECT_LT(share_between_slabs(band), 0.01);
   EXPECT_TRUE(half_storage_pays(band));
-  // nearly all blocks between slabs, but for those on the diagonal and next to it
+  // nearly all blocks are between slabs, except those on the diagonal and next to it
   EXPECT_FALSE(half_storage_pays(zero_block_csr(row_with_chords(kN, 5 * kN, 1))));
   EXPECT_FALSE(half_storage_pays(zero_block_csr(row_with_chords(kN / 10, 0, 1))));
   EXPECT_FALSE(half_storage_pays(BlockCsr{}));

@@ -27,7 +27,7 @@ double largest(std::span<const double> values) {
   return result;
 }
 
-/// Row v of `actual` at its new place is row v of `expected`.
+/// EXPECTs the row at v's new place in `actual` to be row v of `expected`.
 void expect_same_rows(std::span<const double> actual, std::span<const double> expected, Index width,
                       const Permutation& vertices) {
   ASSERT_EQ(actual.size(), expected.size());
@@ -60,7 +60,7 @@ TEST_P(KernelBenches, ComputeTheSamePhysicsInEveryOrder) {
     const auto a = prepared(before, GetParam());
     const auto b = prepared(after, GetParam());
     const bool plain = GetParam() == KernelSet::plain;
-    // what is multiplied by has been assembled
+    // the matrix of the product is already assembled
     for (const Kernel kernel : {Kernel::spmv, Kernel::element, Kernel::springs}) {
       SCOPED_TRACE(to_string(kernel));
       a->run(kernel);

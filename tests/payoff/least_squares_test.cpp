@@ -31,7 +31,7 @@ double squares_left(const Rows& rows, const std::vector<double>& right, const st
   return (dense(rows) * given - wanted).squaredNorm();
 }
 
-/// The least of all solutions with some unknowns 0 and the others free, where these are not negative.
+/// The least sum of squares over all choices of unknowns that are 0, if the free ones come out non-negative.
 double least_by_trying_all(const Rows& rows, const std::vector<double>& right) {
   const Eigen::MatrixXd all = dense(rows);
   const Eigen::VectorXd wanted =
@@ -58,7 +58,7 @@ TEST(LeastSquares, NoChoiceOfUnknownsLeavesLess) {
     std::vector<double> right;
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<double> row;
-      // positive ones depend on each other more; sizes differ as those of counts do
+      // positive columns are closer to dependent; magnitudes differ like those of counts
       for (std::size_t j = 0; j < rows.columns; ++j)
         row.push_back((random.unit() - (round % 2 == 0 ? 0.5 : 0)) *
                       std::pow(10, static_cast<double>(j % 4)));

@@ -38,7 +38,7 @@ TEST(BalancedRanges, TakeFewerRowsThanPartsAndNoEntries) {
   EXPECT_EQ(balanced_ranges(std::vector<Offset>{0, 0, 0}, 2).back(), 2);
 }
 
-/// `batches` of random vertices, near to each other but for some.
+/// `batches` of random vertices, most of them near each other.
 AlignedVector<Index> some_vertices(Index n, Index corners, Index batches) {
   Random random(8);
   AlignedVector<Index> vertices;

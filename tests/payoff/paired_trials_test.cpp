@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// A program whose times vary, as on a busy machine: by so much, and now and then by up to a half.
+/// A program whose times vary by `spread`, and sometimes by up to a half, as on a busy machine.
 class Program {
  public:
   Program(std::vector<double> seconds, double spread, unsigned seed)

@@ -64,8 +64,8 @@ TEST(PublicAdvise, TakesArraysOfItsCaller) {
   EXPECT_EQ(of_arrays.as_is.spans, of_mesh.as_is.spans);
 }
 
-/// The entries of a lattice of side × side rows, each of which has the row after it and the one below, and a
-/// diagonal: a pattern that is not symmetric, in a scrambled order of rows.
+/// A matrix on a lattice of side × side rows, in scrambled order. Each row has entries for itself, the next
+/// row and the row below: the pattern is not symmetric.
 struct ScrambledMatrix {
   explicit ScrambledMatrix(Index side) {
     const Index n = side * side;
@@ -97,7 +97,7 @@ TEST(PublicAdvise, JudgesAMatrixByItsOwnProductAlone) {
   EXPECT_THAT(std::vector(times.begin() + 1, times.end()), testing::Each(0));
   EXPECT_GT(advice.kernels[0].factor, 1.5);
   EXPECT_THAT(to_string(advice), HasSubstr("products"));
-  // the reference: the same entries as a reader of files has them
+  // the reference: the same entries as a file reader gives them
   const Mesh mesh = matrix_mesh(matrix.view());
   EXPECT_EQ(entry_pattern(mesh).entries(), static_cast<Offset>(matrix.columns.size()));
   EXPECT_EQ(meshorder::advise(mesh, {.machine = "zen3"}).as_is.costs.predicted, advice.as_is.costs.predicted);

@@ -49,7 +49,7 @@ class PlainKernels : public testing::Test {
     for (double& x : result) x = number(random_);
     return result;
   }
-  /// The sum of entry · x of its column over a row, by the full matrix.
+  /// The product with the full matrix.
   std::vector<double> dense_product(const std::vector<double>& x) {
     std::vector<double> full(size() * size());
     for (std::size_t row = 0; row < size(); ++row) {
@@ -125,7 +125,7 @@ TEST_F(PlainKernels, AssembleTheLaplacian) {
   EXPECT_NEAR(energy, 14 * volume, 1e-10 * volume);
   for (const double row_sum : dense_product(std::vector<double>(size(), 1.0))) EXPECT_NEAR(row_sum, 0, 1e-12);
 
-  // Gauss and Seidel converge for it with something added to its diagonal
+  // Gauss–Seidel converges after an addition to the diagonal
   for (std::size_t row = 0; row < size(); ++row) {
     for (Index k = starts_[row]; k < starts_[row + 1]; ++k) {
       if (std::size_t(columns_[k]) == row) values_[k] += 1;
@@ -157,7 +157,7 @@ TEST_F(PlainKernels, PressByTheGradientOfTheVolume) {
   }
 }
 
-/// Compares the forces of `press` with differences of the total size.
+/// Compares the forces of `press` with finite differences of the total size.
 template <int Corners>
 void expect_gradients_of_size(const std::vector<Index>& simplices, std::vector<double> positions) {
   const auto total = [&] {

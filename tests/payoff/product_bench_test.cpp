@@ -30,7 +30,7 @@ struct Stored final : StoredMatrix {
   [[nodiscard]] std::vector<std::string> contents() const override { return {}; }
 };
 
-/// A matrix as its file has it.
+/// A matrix as read from a file; `is_half` as the file stores only one half.
 Mesh matrix_of(Index rows, const std::vector<std::pair<Index, Index>>& entries, bool is_half) {
   Mesh mesh;
   mesh.points.resize(rows, {0, 0, 0});
@@ -45,7 +45,7 @@ Mesh matrix_of(Index rows, const std::vector<std::pair<Index, Index>>& entries, 
   return mesh;
 }
 
-/// Entries at random, some of them twice, without a symmetric pattern.
+/// Random entries, some of them twice; the pattern is not symmetric.
 std::vector<std::pair<Index, Index>> scattered_entries(Index rows, int count) {
   std::mt19937 random(7);
   std::vector<std::pair<Index, Index>> entries;
@@ -77,7 +77,7 @@ std::vector<double> expected_product(const Places& places, Index rows) {
   return result;
 }
 
-/// A lattice of a line's neighbours, its rows scrambled.
+/// One half of a symmetric matrix of bandwidth 3, with scrambled rows.
 Mesh scrambled_band(Index rows) {
   std::vector<std::pair<Index, Index>> entries;
   const Permutation order = some_order(rows);

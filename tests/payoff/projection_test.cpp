@@ -8,8 +8,8 @@ namespace {
 
 using test::Case;
 
-/// One tetrahedron whose edges at rest are the axes, so that its shape gradients are orthonormal and the
-/// stiffness of its corners 1, 2 and 3 is ∂²Ψ/∂F∂F times its volume, but for the frame, which the axes are.
+/// One tetrahedron whose edges at rest are the unit vectors of the axes. Its shape gradients are orthonormal,
+/// and the stiffness of its corners 1, 2 and 3 is ∂²Ψ/∂F∂F times its volume, in the frame of the axes.
 test::Patch unit_tetrahedron() {
   test::Patch patch;
   patch.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -26,7 +26,7 @@ Mesh scrambled_grid() {
   return mesh;
 }
 
-/// Races a scrambled grid; order i takes `milliseconds[i]` in every kernel, the mesh's own first.
+/// Races a scrambled grid. Order i takes `milliseconds[i]` in every kernel; the mesh's own order is order 0.
 Race raced(const std::vector<double>& milliseconds, Workload workload = Workload::all, double waiting = 0) {
   const Mesh mesh = scrambled_grid();
   RaceOptions options;

@@ -74,7 +74,7 @@ TEST(MaterialsByRegion, FollowSets) {
                                                   {{"tyre", kRubber}, {"axle", kSteelRegion}}));
 }
 
-/// The energy of the simplices first … last − 1 alone.
+/// The energy of only the simplices first … last − 1.
 double energy_of_some(const RestShapes& rest, MaterialModel model, const Lame& lame, Index first, Index last,
                       const AlignedVector<double>& x) {
   Elasticity some{model, Tangent::exact, {}, {}, {}};

@@ -18,8 +18,8 @@ Eigen::MatrixXd edges(const Index* corner, int d, const std::vector<Point>& poin
   return result;
 }
 
-/// The Hessian column by column, from the variation of the stress in each coordinate of each corner, in
-/// another frame of rest than the kernel's.
+/// The Hessian column by column, from the variation of the stress with each coordinate of each corner. The
+/// rest frame differs from the kernel's.
 Eigen::MatrixXd dense_stiffness(const test::Patch& patch) {
   const int d = patch.simplices.dimension;
   std::vector<Point> deformed(patch.points.size());

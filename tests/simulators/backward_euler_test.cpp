@@ -110,7 +110,7 @@ Eigen::MatrixXd dense_mass(const Body& body, const RestShapes& rest, Index n, Ma
   return mass;
 }
 
-/// f_int and K by finite differences of the energy's gradient, which the tests of materials know to be right.
+/// f_int and K by finite differences of the energy's gradient, which the tests of materials verify.
 struct DenseElasticity {
   Eigen::VectorXd forces;
   Eigen::MatrixXd stiffness;
@@ -299,11 +299,11 @@ TEST(BackwardEuler, RestStaysRest) {
   }
 }
 
-/// The deflection of a slender beam's tip under a load there, static: a time step of a million seconds.
+/// The static deflection of a slender beam's tip under a load there, by a time step of a million seconds.
 double tip_deflection(Index across) {
   const double length = 10;
   auto [points, body] = box({10 * across, across, across}, {length, 1, 1}, MaterialModel::corotational);
-  body.elasticity.lame = Lame::from_young(test::kYoung, 0);  // so that the clamp holds nothing back sideways
+  body.elasticity.lame = Lame::from_young(test::kYoung, 0);  // the clamp does not restrain lateral strain
   ImplicitOptions options = tight();
   options.time_step = 1e6;
   options.solve.max_iterations = 100'000;
@@ -334,7 +334,7 @@ TEST(BackwardEuler, AClampedBeamBendsTowardsEulerAndBernoulliWithRefinement) {
   const double fine = tip_deflection(6) / beam;
   EXPECT_LT(coarse, fine);
   EXPECT_LT(fine, 1.01);
-  // linear tetrahedra err by the square of their size
+  // the error of linear tetrahedra is quadratic in their size
   EXPECT_NEAR((4 * fine - coarse) / 3, 1.0, 0.03);
 }
 
@@ -450,7 +450,7 @@ TEST(BackwardEuler, GoesOnFromAStateBitForBit) {
 }
 
 TEST(BackwardEuler, AMatrixInSinglePrecisionMovesTheBodyTheSameWay) {
-  // of the larger body's matrix half is stored
+  // only half of the larger body's matrix is stored
   for (const bool large : {false, true}) {
     const std::array<int, 3> cells = large ? std::array{20, 16, 12} : std::array{4, 3, 2};
     const auto [points, body] = box(cells, {4, 3, 2}, MaterialModel::stvk);

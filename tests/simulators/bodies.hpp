@@ -11,7 +11,7 @@
 
 namespace meshorder::test {
 
-/// A body with the points where it rests.
+/// A body and its points at rest.
 struct BodyAtRest {
   std::vector<Point> points;
   Body body;
@@ -21,7 +21,7 @@ inline constexpr double kYoung = 1e5;
 inline constexpr double kPoisson = 0.3;
 inline constexpr double kDensity = 1000;
 
-/// A box from the origin, of cubes cut into six tetrahedra each around a diagonal.
+/// A box at the origin, of cubes that are each cut into six tetrahedra around a diagonal.
 inline BodyAtRest box(std::array<Index, 3> cubes, Point lengths, MaterialModel model) {
   BodyAtRest result;
   const auto vertex = [&](Index i, Index j, Index k) {

@@ -27,7 +27,7 @@ using test::dense;
 using test::diagonal;
 using test::shifted_laplacian;
 
-/// In −0.5 … 0.5, the padding 0.
+/// Random numbers in −0.5 … 0.5; the padding is 0.
 template <class Real>
 std::vector<Real> random_vertices(Index n, std::uint64_t seed = 1) {
   Random random(seed);
@@ -149,7 +149,7 @@ TEST(CholeskyFactor, SolvesInPlace) {
   EXPECT_EQ(x, expected);
 }
 
-/// Every seventh of the first ninth, in no order and some of them twice.
+/// Every seventh vertex of the first ninth, unsorted and some twice.
 std::vector<Index> some_vertices(Index n) {
   std::vector<Index> vertices;
   for (Index v = 0; v < n / 9; v += 7) {
@@ -204,8 +204,8 @@ TEST(CholeskyFactor, IsSharedByThreadsAndItsCopies) {
   EXPECT_EQ(x, expected);
 }
 
-/// The full solve of a right-hand side that is 0 elsewhere, against that of the reach, which must neither
-/// read nor write elsewhere.
+/// Compares the full solve with that of the reach, for a right-hand side that is 0 outside the reach. The
+/// solve of the reach must not read or write outside it.
 template <class Real>
 void expect_full_solution(const SparseMatrix& matrix, const std::vector<Index>& vertices, double tolerance) {
   const CholeskyFactor<Real> factor(matrix);
@@ -302,7 +302,7 @@ TEST(CholeskyFactor, RefusesMatricesThatAreNotPositiveDefinite) {
 
 TEST(CholeskyFactor, RefusesForTheSameRowOnAnyNumberOfThreads) {
   SparseMatrix matrix = large_matrix();
-  // far from each other, so that different threads meet them
+  // far from each other, in the work of different threads
   for (const Index row : {5, matrix.size() / 2, matrix.size() - 5}) {
     for (Offset k = matrix.offsets[row]; k < matrix.offsets[row + 1]; ++k) {
       if (matrix.columns[k] == row) matrix.values[k] = -1;

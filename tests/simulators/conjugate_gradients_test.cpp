@@ -26,7 +26,7 @@ std::unique_ptr<Preconditioner> updated(PreconditionerKind kind, const BlockCsr&
   return result;
 }
 
-/// A matrix of diagonal entries alone.
+/// A diagonal matrix.
 BlockCsr diagonal_matrix(const std::vector<double>& entries) {
   BlockCsr matrix = zero_block_csr(graph_from_edges(index_size(entries) / 3, {}));
   for (std::size_t i = 0; i < entries.size(); ++i) matrix.values[9 * (i / 3) + 4 * (i % 3)] = entries[i];

@@ -33,7 +33,7 @@ SoftBody two_cubes() {
   return body;
 }
 
-/// The cubes with the second one turned by little about y, and sunk into the first from above.
+/// The cubes with the second one turned slightly about y, and sunk into the first from above.
 AlignedVector<double> stacked(const SoftBody& body, double depth) {
   AlignedVector<double> positions = padded_positions(body.points);
   for (std::size_t v = body.points.size() / 2; v < body.points.size(); ++v) {
@@ -202,7 +202,7 @@ TEST(ContactFinder, FindsVerticesWithinReachOfTheFloor) {
   EXPECT_DOUBLE_EQ(finder.penetration(positions).into_obstacles, 0.3);
 }
 
-/// Obstacles around and in the cubes, one of which they go through.
+/// Obstacles around and in the cubes, and one far away.
 ContactOptions many_obstacles() {
   ContactOptions options = with_itself();
   options.obstacles.push_back({half_space({0, 0.2, 0}, {0, 1, 0}), 0.1});

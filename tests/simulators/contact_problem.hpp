@@ -86,7 +86,8 @@ inline ContactProblem contact_problem(const Mesh& mesh, double stiffness, std::u
   return problem;
 }
 
-/// Contacts in all directions, on one vertex or between a vertex and a triangle, some met and some not.
+/// Contacts in all directions, of one vertex or between a vertex and a triangle, some satisfied, some
+/// violated.
 inline void add_random_contacts(ContactProblem& problem, int count, bool with_itself, std::uint64_t seed) {
   Random random(seed);
   const auto vertex = [&] {
@@ -166,7 +167,7 @@ struct DenseSolution {
   Eigen::VectorXd x, forces;
 };
 
-/// By trying all sets of contacts that push, for at most some ten contacts.
+/// Solves by trying all sets of pushing contacts; for up to about ten contacts.
 inline DenseSolution by_enumeration(const ContactProblem& problem) {
   const Eigen::LLT<Eigen::MatrixXd> factor(dense_in_space(problem.matrix));
   const Eigen::MatrixXd rows = dense_rows(problem);
@@ -191,7 +192,7 @@ inline DenseSolution by_enumeration(const ContactProblem& problem) {
   return {};
 }
 
-/// By going through the contacts one after the other, again and again (Hildreth 1957).
+/// Solves by cyclic coordinate descent over the contacts (Hildreth 1957).
 inline DenseSolution by_coordinates(const ContactProblem& problem) {
   const Eigen::LLT<Eigen::MatrixXd> factor(dense_in_space(problem.matrix));
   const Eigen::MatrixXd rows = dense_rows(problem);

@@ -58,7 +58,7 @@ TEST(ContactSet, AVertexThatWasInsideComesHalfOfTheWay) {
   (void)set.update(body.with_vertex_at(0.28), {}, 1e-6);
   ASSERT_EQ(set.contacts().size(), 1U);
   EXPECT_NEAR(depth<double>(set.contacts()[0], from), 0.05 / std::sqrt(3.0) + 1e-6, 1e-12);
-  // and all of it where that is not much
+  // and all of the way if that is short
   const AlignedVector<double> almost = body.with_vertex_at(1.0 / 3 - 1e-7);
   set.begin(almost);
   (void)set.update(body.with_vertex_at(0.28), {}, 1e-6);

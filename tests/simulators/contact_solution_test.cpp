@@ -41,7 +41,7 @@ struct Solved {
   }
 };
 
-/// Solves to rounding errors, however long that takes.
+/// Solves up to rounding errors, in any number of iterations.
 constexpr ContactSolverOptions kExact{.tolerance = 1e-11, .max_iterations = 100'000};
 
 void expect_near(const Eigen::VectorXd& actual, const Eigen::VectorXd& expected, double tolerance) {
@@ -166,7 +166,7 @@ TEST(ContactSolution, KeepsTheMomentumOfABodyThatTouchesItself) {
   EXPECT_LE(sum.norm(), 1e-7);
 }
 
-/// A block at rest on a slope that falls along +x by `angle`, for the time step of a hundredth of a second.
+/// A block at rest on a slope that falls along +x by `angle`, for a time step of 0.01 s.
 ContactProblem block_on_slope(double angle, double friction) {
   ContactProblem problem = test::contact_problem(make_grid({.size = 3}), 2000.0);
   const double fall = 9.81 * 1e-4;

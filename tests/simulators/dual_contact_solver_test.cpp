@@ -13,7 +13,7 @@ namespace {
 
 using test::ContactProblem;
 
-/// Some 500 vertices of a block that is pushed onto the floor, of which about half stay on it.
+/// A block that is pushed onto the floor. Some 500 vertices can touch the floor, and about half of them do.
 ContactProblem pushed_block(double stiffness) {
   ContactProblem problem = test::contact_problem(make_grid({.size = test::kSanitized ? 10 : 20}), stiffness);
   problem.push({0.02, -0.1, 0});

@@ -13,8 +13,8 @@
 
 namespace meshorder::test {
 
-/// M + K of a mesh of tetrahedra at rest, the mass `density` times a quarter of a tetrahedron's volume on
-/// each of its corners and at least `density` / 1000 on every vertex.
+/// M + K of a mesh of tetrahedra at rest. Each tetrahedron adds `density` times a quarter of its volume to
+/// the mass of each corner; every vertex has at least the mass `density` / 1000.
 inline BlockCsr elastic_system(const Mesh& mesh, double density) {
   const RestShapes rest = rest_shapes(cut_into_simplices(mesh), mesh.points);
   BlockCsr matrix = zero_block_csr(vertex_graph(mesh));
@@ -33,7 +33,7 @@ inline BlockCsr elastic_system(const Mesh& mesh, double density) {
   return matrix;
 }
 
-/// Every entry.
+/// The matrix in dense form.
 template <class Value>
 Eigen::MatrixXd dense(const BlockCsrOf<Value>& matrix) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * matrix.size(), 3 * matrix.size());

@@ -38,7 +38,8 @@ class DenseOperator final : public ForceOperator {
   Eigen::MatrixXd matrix_;
 };
 
-/// A problem with `normals` normal forces, discs for the first `discs` of them, and S of a rank and a spread.
+/// A problem with `normals` normal forces, discs for the first `discs` of them, and S of given rank and
+/// spread.
 struct Problem {
   DenseOperator matrix;
   ForceBounds bounds;
@@ -62,7 +63,7 @@ struct Problem {
       : matrix(some_matrix(normals + 2 * discs, rank, spread, random)) {
     bounds.normals = normals;
     for (Index k = 0; k < discs; ++k) bounds.radii.push_back(k % 5 == 0 ? 0.0 : 3 * random.unit());
-    // in the range of S, so that the energy has a minimum for any rank
+    // in the range of S: the energy has a minimum for any rank
     Vector aim(normals + 2 * discs);
     for (double& a : aim) a = 8 * random.unit() - 3;
     g = matrix.matrix() * aim;
@@ -74,7 +75,7 @@ struct Problem {
   [[nodiscard]] double energy(const Vector& forces) const {
     return 0.5 * forces.dot(matrix.matrix() * forces) - g.dot(forces);
   }
-  /// By projected gradients with a step that is never too long.
+  /// Minimises by projected gradients with a safe step length.
   [[nodiscard]] Vector by_projected_gradients() const {
     const double step = 1.0 / matrix.matrix().selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
     std::vector<double> forces(static_cast<std::size_t>(g.size()), 0.0);
@@ -140,7 +141,7 @@ TEST(MinimiseForces, FindsTheLeastEnergyThatProjectedGradientsFind) {
 TEST(MinimiseForces, FindsALeastEnergyWhereSIsSingular) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Problem problem(30, seed % 2 == 0 ? 0 : 10, 12, 10.0, seed);
-    // which are many; softness takes one of them
+    // many minima exist; softness selects one of them
     const double size = problem.g.norm();
     const Found found = minimise(problem, 1e-8 * size, 5000, 0.0, 1e-9);
     EXPECT_LE(found.report.residual, 1e-8 * size) << seed;
@@ -195,7 +196,7 @@ TEST(MinimiseForces, EndsWithoutALeastEnergy) {
   const Found found = minimise(problem, 1e-9, 1000);
   EXPECT_GT(found.report.residual, 0.1);
   for (const double force : found.forces) EXPECT_TRUE(std::isfinite(force));
-  // softness gives it one
+  // softness gives it a minimum
   std::vector<double> forces{0.0, 0.0};
   std::vector<double> gradient{0.3, 0.3};
   const ForceSolveReport soft = minimise_forces(

@@ -15,7 +15,7 @@ namespace {
 constexpr Index kVertices = 7;
 constexpr double kSquaredStep = 0.25;
 
-/// The stiffness of springs around a circle, each vertex tied to two on either side.
+/// The stiffness of springs around a circle that join each vertex to two on either side.
 SparseMatrix stiffness() {
   SparseMatrix matrix;
   for (Index v = 0; v < kVertices; ++v) {
@@ -87,7 +87,7 @@ TEST(GlobalSystem, SolvesForTheOthersWhereVerticesAreHeld) {
         EXPECT_DOUBLE_EQ(x[Offset{4} * v + c], places[Offset{4} * v + c]);
         continue;
       }
-      // its row of the whole system holds
+      // its equation of the whole system is satisfied
       double sum = 0.0;
       for (Index w = 0; w < kVertices; ++w) sum += whole(v, w) * x[Offset{4} * w + c];
       EXPECT_NEAR(sum, loads[Offset{4} * v + c], 1e-12);

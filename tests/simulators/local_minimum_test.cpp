@@ -15,7 +15,7 @@ constexpr double kPoisson[] = {0.0, 0.3, 0.45, 0.49};
 
 class LocalMinimum : public testing::TestWithParam<LocalModel> {};
 
-/// The identity and up to `amplitude` in each entry.
+/// The identity plus up to `amplitude` in each entry.
 std::vector<Eigen::Matrix3d> around_rest(std::size_t count, double amplitude, std::uint64_t seed) {
   Random random(seed);
   std::vector<Eigen::Matrix3d> result(count, Eigen::Matrix3d::Identity());
@@ -25,8 +25,8 @@ std::vector<Eigen::Matrix3d> around_rest(std::size_t count, double amplitude, st
   return result;
 }
 
-/// The singular values of the step by brute force: the best of a lattice, then of ever smaller steps from
-/// there.
+/// The singular values of the step by brute force: the best point of a lattice, improved by ever smaller
+/// steps.
 Eigen::Vector3d best_values(const LocalLaw& law, const Eigen::Vector3d& sigma) {
   const double weight = test::weight_of(law);
   const auto cost = [&](const Eigen::Vector3d& z) {
@@ -61,7 +61,7 @@ Eigen::Vector3d best_values(const LocalLaw& law, const Eigen::Vector3d& sigma) {
   return best;
 }
 
-/// EXPECTs that no change of any entry lowers the objective, and that its slope is none.
+/// EXPECTs that no change of any entry lowers the objective, and that its slope is 0.
 void expect_minimum(const LocalLaw& law, const Eigen::Matrix3d& z, const Eigen::Matrix3d& q,
                     double tolerance) {
   const double here = test::objective(law, z, q);
@@ -159,7 +159,7 @@ TEST_P(LocalMinimum, TakesStretchesBeyondTenThousandForThat) {
   const std::vector<Eigen::Matrix3d> q{test::gradient_of({"", {1e7, 1.2, 0.8}}),
                                        test::gradient_of({"", {1e4, 1.2, 0.8}})};
   const Eigen::Vector3d expected = test::singular_values(test::local_steps<double>(law, q)[1]);
-  // 2z − q keeps less of z beside a larger q
+  // 2z − q loses digits of z if q is much larger
   EXPECT_LT((test::singular_values(test::local_steps<double>(law, q)[0]) - expected).cwiseAbs().maxCoeff(),
             1e-6);
   EXPECT_LT(expected[0], 1e4);

@@ -48,14 +48,14 @@ inline double weight_of(const LocalLaw& law) {
   return law.model == LocalModel::strain ? law.stiffness : law.lame.lambda + 2.0 / 3.0 * law.lame.mu;
 }
 
-/// Computes the kernels' local steps of any matrices q, from the forces of unit tetrahedra on their corners.
+/// Computes the kernels' local steps for any matrices q, from the forces of unit tetrahedra on their corners.
 template <class Real>
 class UnitSteps {
  public:
   UnitSteps(const LocalLaw& law, std::size_t count)
       : body_(count), steps_(law, body_.simplices, body_.points), weight_(weight_of(law) / 6.0) {}
 
-  /// 2z − q, from duals 0, of as many as there are tetrahedra.
+  /// 2z − q from duals 0, for one matrix per tetrahedron.
   std::vector<Eigen::Matrix3d> reflections(const std::vector<Eigen::Matrix3d>& q) {
     AlignedVector<Real> sums(kPaddedStride * static_cast<std::size_t>(steps_.room()));
     steps_.reset_duals();

@@ -82,8 +82,8 @@ Eigen::VectorXd unpadded(std::span<const double> x, Index n) {
   return result;
 }
 
-/// z of one element: that of springs here, that of tetrahedra of a kernel that other tests compare with
-/// brute force.
+/// z of one element: springs by their formula, tetrahedra by a kernel that other tests compare with brute
+/// force.
 Eigen::VectorXd step_of(const LocalLaw& law, const DenseElement& element, const Eigen::VectorXd& q) {
   if (law.model == LocalModel::springs) {
     return 0.5 * (q + element.rest.norm() * q.normalized());
@@ -137,7 +137,7 @@ TEST_P(LocalPasses, AreThoseOfDenseMatrices) {
     ASSERT_EQ(actual.size(), rows * elements.size());
     for (std::size_t s = 0; s < elements.size(); ++s) {
       for (Index k = 0; k < rows; ++k) {
-        // row by row, where F's columns follow one another here
+        // the kernel stores F by rows, this test by columns
         const Index from = rows == 9 ? k % 3 * 3 + k / 3 : k;
         EXPECT_NEAR(actual[rows * s + k], duals[s](from), 1e-12);
       }
@@ -281,7 +281,7 @@ TEST_P(LocalPasses, OfFloatsAreThoseOfDoubles) {
   const Outcome expected = outcome<double>(law, patch, 0.1);
   const Outcome actual = outcome<float>(law, patch, 0.1);
   test::expect_near(actual.sums, expected.sums, 2e-5);
-  // differences of coordinates that are a thousand times as large
+  // they are differences of coordinates a thousand times as large
   test::expect_near(actual.duals, expected.duals, 3e-4);
   for (std::size_t i = 0; i < expected.residuals.size(); i += 2) {
     EXPECT_NEAR(actual.residuals[i], expected.residuals[i], 1e-5 * expected.residuals[i + 1]);
@@ -324,7 +324,7 @@ TEST_P(LocalPasses, LeaveABodyAtRest) {
   }
 }
 
-/// z − u of the first element of a body of which all vertices are at one point.
+/// z − u of the first element of a body whose vertices are all at one point.
 TEST_P(LocalPasses, UnfoldWhatIsSquashedToAPoint) {
   const LocalLaw law = test::law_of(GetParam());
   if (law.model != LocalModel::springs && law.model != LocalModel::strain) return;

@@ -56,7 +56,7 @@ void fix(System& system, const std::function<bool(const Point&)>& is_fixed) {
   }
 }
 
-/// A box whose lowest layer is fixed, at rest for ever: the worst conditioned.
+/// A box with its lowest layer fixed and without mass: the worst conditioned.
 System fixed_box(Index size) {
   System system = elastic_system(make_grid({.size = size}), 1.0, 0.0);
   const double lowest = std::accumulate(system.points.begin(), system.points.end(), HUGE_VAL,
@@ -83,7 +83,7 @@ void expect_definite(const System& system) {
   multigrid->update(system.matrix);
   const Eigen::MatrixXd dense = dense_inverse_by(*multigrid, system.matrix.size());
   EXPECT_LT((dense - dense.transpose()).cwiseAbs().maxCoeff(), 1e-4 * dense.cwiseAbs().maxCoeff());
-  // scaled, so that small eigenvalues are not those of other units
+  // scaled, as units differ between unknowns
   const Eigen::VectorXd scale = dense.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * dense * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (scaled + scaled.transpose()));
@@ -177,7 +177,7 @@ TEST(Multigrid, GivesTheSameBitsForAnyNumberOfThreads) {
 TEST(Multigrid, UpdatesToWhatItWouldBeMadeOf) {
   const System soft = elastic_system(make_grid({.size = 8}), 0.1, 1.0);
   System stiff = soft;
-  for (double& value : stiff.matrix.values) value *= 4;  // a power of two, so that nothing rounds otherwise
+  for (double& value : stiff.matrix.values) value *= 4;  // a power of two: rounding is the same
   std::vector<double> r(3 * soft.points.size());
   for (std::size_t i = 0; i < r.size(); ++i) r[i] = std::cos(static_cast<double>(i));
   std::vector<double> of_stiff(r.size()), of_updated(r.size()), of_soft(r.size());
@@ -203,7 +203,7 @@ TEST(Multigrid, TakesAnyOrderOfVertices) {
 }
 
 TEST(Multigrid, TakesPartsAndVerticesApart) {
-  // two boxes, and vertices that no element uses at the front, between and at the end
+  // two boxes, and unused vertices before, between and after them
   const Mesh box = make_grid({.size = test::kSanitized ? 3 : 5});
   Mesh mesh;
   const auto append_box = [&](double x) {
@@ -260,7 +260,7 @@ TEST(Multigrid, TakesTinyMeshes) {
 }
 
 TEST(Multigrid, TakesAggregatesWithoutWidth) {
-  // points on a line (joined by springs, as it were) and in a plane: no rotation about the line
+  // points on a line, as if joined by springs, and in a plane: no rotation about the line
   for (const int dimension : {1, 2}) {
     const Index side = dimension == 1 ? 60 : 8;
     std::vector<Edge> edges;

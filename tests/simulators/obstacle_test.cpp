@@ -33,7 +33,7 @@ void expect_consistent(const Obstacle& obstacle, double size, std::uint64_t seed
                           obstacle.distance(plus_scaled(x, -kStep, place->normal))) /
                          (2 * kStep);
     if (slope > 1.0 - 1e-3) ++steep;  // not where two nearest points are equally near
-    // no longer than the reach, and inside always
+    // found up to the reach, and always inside
     const double d = place->distance;
     EXPECT_TRUE(obstacle.nearest(x, x, std::max(d, 0.0) + 1e-9 * size));
     EXPECT_EQ(obstacle.nearest(x, x, std::abs(d) - 1e-9 * size).has_value(), d < 0.0);
@@ -72,11 +72,11 @@ TEST(Sphere, LeadsBackWhatWentPastItsMiddle) {
     EXPECT_LT(place->distance, 0.0);
     EXPECT_LT(place->normal[0], 0.0);
   }
-  // one that passes by
+  // a point that passes by
   EXPECT_FALSE(ball->nearest({3, 0.6, 0}, {0, 0.6, 0}, 0.01));
 }
 
-/// The distance from the bowl by its definition: all that is within half the thickness of a sampled cap.
+/// The bowl by its definition: all points within half the thickness of a sampled cap.
 TEST(Bowl, IsWhatIsWithinHalfTheThicknessOfACap) {
   const double radius = 1.0;
   const double thickness = 0.2;

@@ -155,11 +155,11 @@ TEST(BlockJacobi, InvertsTheBlocksOfTheDiagonal) {
             1e-14);
 }
 
-// but for the rounding to float
+// up to the rounding to float
 constexpr double kExact = 3e-6;
 
 TEST(IncompleteCholesky, IsExactWhereNothingIsLeftOutWithEveryInstructionSet) {
-  // a path fills nothing, a complete graph has room for all
+  // a path has no fill, a complete graph has room for all fill
   for (const CsrGraph& graph : {test::path(20), test::complete(7), test::path(1)}) {
     const BlockCsr matrix = definite_matrix(graph, 6.0);
     const Eigen::MatrixXd expected = test::dense(matrix).inverse();
@@ -174,8 +174,8 @@ TEST(IncompleteCholesky, IsExactWhereNothingIsLeftOutWithEveryInstructionSet) {
 }
 
 TEST(IncompleteCholesky, LeavesOutLittleWhereChunksJoin) {
-  // so long a path that it is cut in four: behind each cut one block of fill is left out, by which two
-  // eigenvalues of M⁻¹A differ from 1, each thrice
+  // a path so long that it is cut into four chunks. After each cut one block of fill is left out, which
+  // changes two eigenvalues of M⁻¹A from 1, each of multiplicity three
   const Index n = 50'000;
   BlockCsr matrix = zero_block_csr(test::path(n));
   for (Index v = 0; v < n; ++v) {
@@ -192,7 +192,7 @@ TEST(IncompleteCholesky, LeavesOutLittleWhereChunksJoin) {
   EXPECT_LE(report.iterations, 7);
 }
 
-/// (L D Lᵀ)⁻¹ by the textbook's loops over whole matrices, entries outside the pattern left out.
+/// (L D Lᵀ)⁻¹ by textbook loops over full matrices that skip entries outside the pattern.
 Eigen::MatrixXd dense_incomplete_inverse(const BlockCsr& matrix, double shift) {
   const Index n = matrix.size();
   Eigen::MatrixXd a = test::dense(matrix);
@@ -235,7 +235,7 @@ TEST(IncompleteCholesky, EnlargesTheDiagonalOfASolidAsMuchAsItMust) {
 }
 
 TEST(IncompleteCholesky, TakesFewerIterationsThanBlocksAndTheseThanTheDiagonal) {
-  // two chunks, in the grid's own order and in none
+  // two chunks, in the grid's own order and scrambled
   for (const bool scrambled : {false, true}) {
     Mesh mesh = make_grid({.size = 26});
     if (scrambled)

@@ -21,7 +21,7 @@ struct ProjectiveAtRest {
   ProjectiveBody body;
 };
 
-/// The box of `box`, whose stiffness is about kYoung whatever the law.
+/// The box of `box`, with a stiffness of about kYoung for every law.
 inline ProjectiveAtRest projective_box(std::array<Index, 3> cubes, Point lengths, LocalModel model) {
   BodyAtRest plain = box(cubes, lengths, MaterialModel::neo_hookean);
   ProjectiveAtRest result;
@@ -34,7 +34,7 @@ inline ProjectiveAtRest projective_box(std::array<Index, 3> cubes, Point lengths
   return result;
 }
 
-/// The same body with vertex v renamed place[v], and its simplices in another order.
+/// The same body with vertex v renumbered to place[v], and with its simplices in another order.
 inline ProjectiveAtRest renumbered(const ProjectiveAtRest& from, const std::vector<Index>& place) {
   ProjectiveAtRest result = from;
   for (std::size_t v = 0; v < place.size(); ++v) result.points[place[v]] = from.points[v];

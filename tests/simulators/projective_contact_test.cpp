@@ -20,7 +20,7 @@ namespace {
 using test::projective_box;
 
 constexpr double kGravity = 9.81;
-constexpr double kSide = 0.2;  // of the boxes that fall
+constexpr double kSide = 0.2;  // of the falling boxes
 
 ProjectiveOptions with_floor(const Point& normal = {0, 1, 0}, double friction = 0.0) {
   ProjectiveOptions options;
@@ -97,7 +97,7 @@ TEST(ProjectiveContact, ABodyBouncesLowerAndLowerAndComesToRest) {
   }
   EXPECT_TRUE(left);
   const Balance rest = simulator.balance();
-  // without friction it goes on to slide
+  // without friction it keeps sliding
   double rising = 0.0;
   const MotionState end = simulator.state();
   for (std::size_t v = 0; v < points.size(); ++v)
@@ -111,7 +111,7 @@ TEST(ProjectiveContact, TheFloorCarriesTheWeightAndNeverPulls) {
   ProjectiveDynamics<double> simulator(points, body, with_floor());
   test::run(simulator, 100);
   EXPECT_LT(simulator.balance().kinetic, 1e-4);
-  // taken up, it leaves the floor with the pull's acceleration
+  // pulled upward, it leaves the floor with the acceleration of the pull
   ProjectiveOptions up = with_floor();
   up.gravity = {0, 2, 0};
   ProjectiveDynamics<double> pulled(points, body, up);
@@ -162,7 +162,7 @@ TEST(ProjectiveContact, FrictionHoldsABlockOnASlopeThatIsNotTooSteep) {
   }
 }
 
-/// A ring cut open whose ends are driven into each other.
+/// An open ring whose ends are driven into each other.
 test::ProjectiveAtRest open_ring() {
   const int cubes = test::kSanitized ? 2 : 3;  // across the ring
   test::ProjectiveAtRest ring =
@@ -222,7 +222,7 @@ TEST(ProjectiveContact, TheEndsOfARingMeetAndDoNotPass) {
       EXPECT_LT(energy, first);
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(simulator.balance().momentum[c], momentum[c], 1e-6);
     } else {
-      EXPECT_GT(largest, 10);  // so that the test is not trivial
+      EXPECT_GT(largest, 10);  // the test is not trivial
     }
   }
 }
@@ -253,7 +253,7 @@ TEST(ProjectiveContact, HeldVerticesStayWhateverTheyTouch) {
   const auto [points, body] = projective_box({3, 3, 3}, {kSide, kSide, kSide}, LocalModel::strain);
   ProjectiveOptions options = with_floor();
   options.contact.with_itself = true;
-  // a corner is driven through the floor, and takes the body along
+  // a corner is driven through the floor and drags the body along
   options.prescribed.push_back({{{0}}, {0, -0.2, 0}});
   ProjectiveDynamics<double> simulator(points, body, options);
   for (int step = 0; step < 10; ++step) simulator.step();

@@ -26,7 +26,7 @@ using test::projective_box;
 using test::run;
 using testing::HasSubstr;
 
-/// A step of backward Euler to rounding.
+/// Options for a step of backward Euler that converges to rounding errors.
 ProjectiveOptions converged() {
   ProjectiveOptions options;
   options.time_step = 0.02;
@@ -142,7 +142,7 @@ TEST(ProjectiveDynamics, UnfoldsFromOnePoint) {
   std::fill(squashed.positions.begin(), squashed.positions.end(), Point{0.4, 0.5, 0.3});
   simulator.set_state(squashed);
   run(simulator, 60);
-  // the first steps, far from converged, turn it as a whole
+  // the first steps, which do not converge, rotate the body
   const std::vector<Point> positions = simulator.state().positions;
   const auto distance = [](const std::vector<Point>& at, Index a, Index b) {
     return std::hypot(at[a][0] - at[b][0], at[a][1] - at[b][1], at[a][2] - at[b][2]);
@@ -168,7 +168,7 @@ TEST(ProjectiveDynamics, StretchesSymmetrically) {
   simulator.set_state(start);
   for (int step = 0; step < 5; ++step) {
     run(simulator, 10);
-    // the box with its tetrahedra is symmetric in its middle, to which the opposite numbering belongs
+    // the box with its tetrahedra is point-symmetric, and reversed numbers are those of opposite vertices
     const std::vector<Point> positions = simulator.state().positions;
     for (std::size_t v = 0; v < points.size(); ++v) {
       for (int c = 0; c < 3; ++c)
@@ -303,7 +303,7 @@ TEST(ProjectiveDynamics, ItsResidualIsNoLessThanWhatElementsLeave) {
     ProjectiveDynamics<double> before(points, body, options);
     before.set_state(start);
     before.step();
-    // the local steps that the next iteration begins with
+    // the local steps at the start of the next iteration
     LocalSteps<double> local(body.law, body.simplices, points);
     local.set_duals(before.state().memory);
     AlignedVector<double> forces(4 * local.room());
@@ -370,7 +370,7 @@ TEST(ProjectiveDynamics, AMotionThatIsNotFiniteIsAnErrorAndChangesNothing) {
   }
   EXPECT_EQ(simulator.state().positions, state.positions);
   EXPECT_EQ(simulator.state().step, 1);
-  // its duals are sound, too
+  // its duals are finite, too
   state = simulator.state();
   state.velocities[3] = {};
   simulator.set_state(state);

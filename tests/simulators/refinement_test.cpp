@@ -17,7 +17,7 @@ double residual(const BlockCsr& matrix, const std::vector<double>& b, const std:
   return (test::as_eigen(b) - test::as_eigen(product)).norm() / test::as_eigen(b).norm();
 }
 
-/// A system whose rounding to float alone leaves a residual far above the tolerances here.
+/// A system for which rounding to float leaves a residual far above the tolerances of the tests.
 struct Stiff {
   Mesh mesh = make_grid({.size = 6});
   BlockCsr matrix = test::elastic_system(mesh, 1e-2);

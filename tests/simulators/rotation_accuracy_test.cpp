@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// The closest rotations of the kernels, as the local steps of strain have them.
+// The accuracy of the kernels' closest rotations, which the local steps of strain compute.
 #include "base/random.hpp"
 #include "simulators/local_step.hpp"
 
@@ -72,7 +72,7 @@ Eigen::Matrix3d some_rotation(Random& random) {
   return q.normalized().toRotationMatrix();
 }
 
-/// Matrices of one kind after another, from the common to the malicious.
+/// Matrices of ten kinds in turn, from common to hard ones.
 Eigen::Matrix3d some_matrix(std::size_t i, Random& random) {
   const double small = std::pow(10.0, -14 * random.unit());
   const double sign = random.unit() < 0.5 ? -1.0 : 1.0;
@@ -123,8 +123,8 @@ std::vector<Eigen::Matrix3d> some_matrices(std::uint64_t seed) {
   return result;
 }
 
-/// How far R is from a rotation that makes S = RᵀF symmetric and tr(S) I − S semi-definite, relative to F:
-/// the eigenvalues of that matrix are σ₂ + σ₃, σ₁ + σ₃ and σ₁ + σ₂.
+/// The deviation of R, relative to F, from a rotation that makes S = RᵀF symmetric and tr(S) I − S
+/// semi-definite. The eigenvalues of the latter are σ₂ + σ₃, σ₁ + σ₃ and σ₁ + σ₂.
 double defect(const Eigen::Matrix3d& f, const Eigen::Matrix3d& r) {
   const double scale = 1.0 / std::max(f.norm(), 1e-300);
   const Eigen::Matrix3d s = r.transpose() * (scale * f);
@@ -148,7 +148,7 @@ double greatest_defect() {
     const std::vector<Eigen::Matrix3d> r = steps.reflections(f);
     for (std::size_t i = 0; i < kMatrices; ++i) {
       const double here = defect(f[i], r[i]);
-      // a NaN is no small one
+      // also true for NaN
       if (!(here <= result)) result = here;
     }
   }
@@ -159,8 +159,8 @@ TEST(RotationsOfDoubles, AreClosestForAMillionMatrices) { EXPECT_LT(greatest_def
 
 TEST(RotationsOfFloats, AreClosestForAMillionMatrices) { EXPECT_LT(greatest_defect<float>(), 1.5e-4); }
 
-/// Returns the largest error relative to that of rounding F alone: σ₁ / (σ₂ + σ₃), at least 1, of those that
-/// have a rotation of their own.
+/// Returns the largest error of well-conditioned rotations, relative to the error from rounding F, which is
+/// σ₁ / (σ₂ + σ₃), or 1 if that is larger.
 template <class Real>
 double greatest_error() {
   test::UnitSteps<Real> steps(test::law_of(LocalModel::strain), kMatrices);

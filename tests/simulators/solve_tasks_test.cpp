@@ -55,7 +55,7 @@ TEST(FindSupernodes, JoinColumnsForWhatThatSaves) {
   EXPECT_EQ(find_supernodes(factor_of(test::complete(costs.widest))).count(), 1);
 }
 
-/// EXPECTs that every supernode has its task, below which its descendants have theirs.
+/// EXPECTs that every supernode is in one task, and its parent in the same task or in the parent task.
 void expect_tree(const SolveTasks& tasks, const Supernodes& supernodes) {
   std::vector<Index> task_of(supernodes.count(), -1);
   for (Index task = 0; task < tasks.count(); ++task) {

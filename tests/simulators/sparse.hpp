@@ -11,7 +11,7 @@
 
 namespace meshorder::test {
 
-/// −weight for each edge, and for each vertex the sum of its weights and `shift`.
+/// The matrix with −weight for each edge, and on the diagonal the sum of a vertex's weights plus `shift`.
 inline SparseMatrix shifted_laplacian(const CsrGraph& graph, double shift, bool weighted = true) {
   const auto weight = [&](Index u, Index v) { return weighted ? 1.0 + (u + v) % 5 + u * v % 3 : 1.0; };
   SparseMatrix matrix;

@@ -49,7 +49,8 @@ inline Point random_direction(Random& random) {
   return scaled(1.0 / norm(p), p);
 }
 
-/// How often the surface winds around x, by solid angles (van Oosterom, Strackee 1983): 1 inside, 0 outside.
+/// The winding number of the surface around x, by solid angles (van Oosterom, Strackee 1983): 1 inside, 0
+/// outside.
 inline double winding_number(const Surface& surface, const Point& x) {
   double sum = 0.0;
   for (const auto& t : surface.triangles) {

@@ -36,7 +36,7 @@ AlignedVector<double> moved(const std::vector<Point>& points, const Motion& moti
   return padded_positions(result);
 }
 
-/// Every vertex of the surface against every tetrahedron.
+/// The search by testing every vertex of the surface against every tetrahedron.
 std::vector<VertexInside> by_all_pairs(const SoftBody& body, const TetrahedronSearch& search,
                                        std::span<const double> positions) {
   std::vector<VertexInside> result;
@@ -110,7 +110,7 @@ TEST(TetrahedronSearch, FindsWhatAllPairsFind) {
   for (const SoftBody* body : {&torus, &grid, &small}) {
     TetrahedronSearch search(body->simplices, body->points, body->surface);
     std::vector<VertexInside> inside{{7, 7, {}}};  // earlier entries are removed
-    // from one to the other, so that nothing of an earlier motion may stay
+    // one after another with the same search: nothing of an earlier motion may remain
     for (const Motion& motion : std::vector<Motion>{
              [](const Point& p) { return p; }, turned, rolled, pressed, shaken(0.03, 1), shaken(0.5, 2),
              rolled, turned, [](const Point& p) { return scaled(1e-12, rolled(p)); },
@@ -231,7 +231,7 @@ TEST(TetrahedronSearch, TakesNothingAndFlatTetrahedra) {
   std::vector<VertexInside> inside;
   TetrahedronSearch({}, {}, {}).find({}, inside);
   EXPECT_TRUE(inside.empty());
-  // a flat tetrahedron, and one that a vertex of the flat one is in
+  // a flat tetrahedron, and one that contains a vertex of the flat one
   const std::vector<Point> points{{0, 0, 0},       {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
                                   {0.1, 0.1, 0.1}, {2, 0, 0}, {0, 2, 0}};
   const Simplices simplices{3, {1, 4, 5, 5, 0, 1, 2, 3, 0, 1, 2, 6}, {0, 1, 2}};

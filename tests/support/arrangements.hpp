@@ -6,7 +6,7 @@
 
 namespace meshorder::test {
 
-/// The graph as it is: all weights and volumes 1.
+/// The graph with all weights and volumes 1.
 inline ArrangementGraph arrangement_graph(const CsrGraph& graph) {
   return {graph.offsets, graph.neighbours, {}, std::vector<Index>(graph.size(), 1)};
 }

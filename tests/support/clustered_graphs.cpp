@@ -64,7 +64,7 @@ class Builder {
     join(a, b);
   }
 
-  /// The graph; what is not connected gets an edge to what is before it.
+  /// The graph, in which edges join all other components to that of vertex 0.
   ClusteredGraph graph(std::string name) {
     std::vector<Index> root(size_);
     std::iota(root.begin(), root.end(), Index{0});
@@ -93,7 +93,7 @@ class Builder {
   Index size_ = 0;
 };
 
-/// Sizes of clusters that make up n, equal or not.
+/// Sizes of clusters that add up to n, equal or random.
 std::vector<Index> cluster_sizes(Builder& b, Index n, Index clusters) {
   std::vector<double> shares(clusters, 1);
   const double spread = b.one_of({0, 0, 0.5, 1.5});
@@ -119,7 +119,7 @@ ClusteredGraph stochastic_blocks(Builder& b, Index n) {
   return b.graph("stochastic blocks");
 }
 
-/// Clusters joined along the edges of a small graph, by paths between their first or any vertices.
+/// Clusters joined along the edges of a small graph, by paths between their first or random vertices.
 ClusteredGraph joined(Builder& b, Index n, Index clusters, const std::vector<Edge>& edges, std::string name) {
   const double density = b.one_of({1, 1, 1, 0.5});
   for (const Index size : cluster_sizes(b, n, clusters)) b.add_cluster(size, density);

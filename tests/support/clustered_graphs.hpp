@@ -17,17 +17,18 @@ struct ClusteredGraph {
   std::vector<double> weights;    ///< as `fiedler_vectors` takes them
 };
 
-/// How large the graphs of `clustered_graph` are, roughly, in vertices.
+/// The approximate range of sizes of `clustered_graph`, in vertices.
 struct ClusteredSizes {
   Index least = 61;
   Index most = 160;
 };
 
-/// Random graphs on which simple criteria take another eigenvector for the Fiedler vector: stochastic blocks,
-/// cliques joined along paths, cycles, stars and trees, lollipops, hubs, joined bipartite graphs and
-/// expanders, and grids as a control. A third of them have weights, half of them are renumbered at random.
+/// Returns one of the random graphs on which simple criteria mistake another eigenvector for the Fiedler
+/// vector: stochastic blocks, cliques joined along paths, cycles, stars and trees, lollipops, hubs, joined
+/// bipartite graphs and expanders, and grids as a control. A third of them have weights, half have random
+/// numbering.
 ///
-/// @param seed  each graph has one of its own; 13 seeds in a row go through all families
+/// @param seed  selects the graph; 13 consecutive seeds go through all families
 ClusteredGraph clustered_graph(std::uint64_t seed, ClusteredSizes sizes = {});
 
 }  // namespace meshorder::test

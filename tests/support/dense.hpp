@@ -8,7 +8,7 @@
 
 namespace meshorder::test {
 
-/// Every entry of a Laplacian, off-diagonal ones added up.
+/// The Laplacian in dense form; repeated off-diagonal entries are added up.
 inline Eigen::MatrixXd dense(const Laplacian& laplacian) {
   const Index n = laplacian.size();
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
@@ -21,7 +21,7 @@ inline Eigen::MatrixXd dense(const Laplacian& laplacian) {
   return matrix;
 }
 
-/// The combinatorial Laplacian D − A, straight from the edges.
+/// The combinatorial Laplacian D − A from the edges.
 inline Eigen::MatrixXd dense_laplacian(const CsrGraph& graph) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(graph.size(), graph.size());
   for (Index v = 0; v < graph.size(); ++v) {
@@ -33,7 +33,7 @@ inline Eigen::MatrixXd dense_laplacian(const CsrGraph& graph) {
   return matrix;
 }
 
-/// Rising eigenvalues and their vectors.
+/// Eigenvalues in ascending order and their vectors.
 inline Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> dense_eigen(const CsrGraph& graph) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense_laplacian(graph));
 }

@@ -102,7 +102,7 @@ void expect_truncation_is_noticed(const std::string& name, std::string_view cont
     } catch (const InputError&) {
       continue;
     }
-    // what may go unnoticed is the loss of a line end or of an optional section's last blanks
+    // only the loss of a line end or of an optional section's last blanks may go unnoticed
     EXPECT_EQ(part->points, whole.points) << "cut after " << size << " bytes";
     EXPECT_EQ(part->cells, whole.cells) << "cut after " << size << " bytes";
   }

@@ -32,7 +32,7 @@ class TemporaryFolder {
 
 std::string content_of(const std::filesystem::path& path);
 
-/// The text with the first `old` of it, which is EXPECTed, replaced by `fresh`.
+/// The text with the first `old` replaced by `fresh`; EXPECTs that there is one.
 std::string with(std::string text, std::string_view old, std::string_view fresh);
 
 /// The path of a file in the shared folder of real meshes; empty where that is absent (then GTEST_SKIP).
@@ -56,17 +56,18 @@ struct BrokenFile {
 /// file's name.
 void expect_broken(const std::string& name, const std::vector<BrokenFile>& files);
 
-/// EXPECTs that no cut of `content` (at up to 400 places, the end not included) is read as a mesh of as many
-/// vertices and cells as the whole without an Error, and that none crashes.
+/// Reads `content` cut at 400 to 800 places, or after each byte if it is shorter. EXPECTs an InputError, or
+/// the same points and cells as from the whole.
 void expect_truncation_is_noticed(const std::string& name, std::string_view content);
 
 /// Reads `path`, shuffles vertices and cells, writes it with the same name in another folder, reads that
-/// back, reorders by the inverse and EXPECTs the original mesh; then writes that, and EXPECTs it to read the
-/// same.
+/// back, reorders by the inverse and EXPECTs the original mesh. Then writes and reads it again, and EXPECTs
+/// the same.
 void expect_order_and_back(const std::filesystem::path& path);
 
-/// Reads `content`, shuffles vertices and cells, writes and reads that and EXPECTs the same mesh, but for the
-/// order of partial arrays' rows and sets' members; then puts it back and EXPECTs to write `content` again.
+/// Reads `content`, shuffles vertices and cells, writes and reads that and EXPECTs the same mesh, except for
+/// the order of partial arrays' rows and of sets' members. Then restores the order and EXPECTs to write
+/// `content`.
 void expect_order_and_back_to(const std::string& name, std::string_view content);
 
 /// Writes `mesh` to a new file called `name`, reads it, and EXPECTs the same mesh.

@@ -26,7 +26,7 @@ struct CallersGraph {
   [[nodiscard]] GraphView view() const { return {offsets, neighbours, {}, base}; }
 };
 
-/// A view of a graph that somebody else owns.
+/// A view of a graph; the caller keeps the graph alive.
 inline GraphView view_of(const CsrGraph& graph) { return {graph.offsets, graph.neighbours}; }
 
 }  // namespace meshorder::test

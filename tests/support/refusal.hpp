@@ -7,7 +7,7 @@
 
 namespace meshorder::test {
 
-/// The sentence with which a call refuses its input by InvalidArgument; empty if it does not.
+/// The message of the InvalidArgument that a call throws; empty if it throws none.
 template <class Call>
 std::string refusal(const Call& call) {
   try {

@@ -10,7 +10,7 @@
 
 namespace meshorder::test {
 
-/// Whether a sanitizer watches this build, which makes everything about ten times slower.
+/// Whether this build has a sanitizer, which makes everything about ten times slower.
 #ifdef MESHORDER_IS_SANITIZED
 inline constexpr bool kSanitized = true;
 #else
@@ -40,10 +40,10 @@ CsrGraph grid(Index a, Index b, Index c = 1);
 /// 2^d vertices, joined where their numbers differ in one bit.
 CsrGraph hypercube(int d);
 
-/// A random tree and `extra` random edges (some of which may fall together).
+/// A random tree and `extra` random edges, some of which may coincide.
 CsrGraph random_connected(Index n, Index extra, std::uint64_t seed);
-/// The union of d/2 random cycles through all vertices: an expander, degree d but for the few edges that fall
-/// together.
+/// The union of d/2 random cycles through all vertices: an expander of degree d, except at the few edges that
+/// coincide.
 CsrGraph random_regular(Index n, Index d, std::uint64_t seed);
 /// Each new vertex joined to m ends of random earlier edges (Barabási and Albert 1999).
 CsrGraph preferential_attachment(Index n, Index m, std::uint64_t seed);
@@ -51,7 +51,7 @@ CsrGraph preferential_attachment(Index n, Index m, std::uint64_t seed);
 /// The graphs side by side, in their order.
 CsrGraph disjoint_union(const std::vector<CsrGraph>& graphs);
 
-/// Throws InvalidArgument unless the graph keeps the promises of its type.
+/// Throws InvalidArgument unless the graph has the invariants of its type.
 void check_graph(GraphRef graph);
 
 }  // namespace meshorder::test

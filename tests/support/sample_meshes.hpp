@@ -9,12 +9,12 @@
 
 namespace meshorder::test {
 
-/// `copies` disjoint cells of one type, each on vertices of its own, with an int label and a double array on
-/// vertices and on cells ("label", "temperature", "stress" of 3 components), and a set of each kind ("fixed",
-/// "part"). Coordinates are irregular, so that any mix-up shows.
+/// `copies` disjoint cells of one type, with an int label and a double array on vertices and on cells
+/// ("label", "temperature", "stress" of 3 components), and a set of each kind ("fixed", "part"). Irregular
+/// coordinates reveal mix-ups.
 Mesh cells_of_type(Shape shape, int vertices_per_cell, Index copies);
 
-/// That many separate triangles and an edge of the first, nothing attached.
+/// That many separate triangles and an edge of the first one, without data and sets.
 Mesh triangles_and_line(Index triangles);
 
 /// A row of `n` unit cubes cut into six tetrahedra each, sharing vertices; attachments as above.
@@ -38,7 +38,7 @@ Permutation shuffled(Index n, std::uint64_t seed);
 /// A seeded random permutation of the mesh's cells that keeps blocks and dimensions.
 Permutation shuffled_cells(const Mesh& mesh, std::uint64_t seed);
 
-/// The mesh with the rows of partial arrays and the members of sets in rising order.
+/// The mesh with the rows of partial arrays and the members of sets in ascending order.
 Mesh sorted_members(Mesh mesh);
 
 /// EXPECTs that two meshes are the same: points, cells, data, sets, ids, blocks (not residues).

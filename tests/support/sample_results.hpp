@@ -12,16 +12,16 @@
 
 namespace meshorder::test {
 
-/// Made-up figures of a scenario in an order. The reference's runs take 100 s on average.
+/// Invented figures of a scenario in an order. The reference's runs take 100 s on average.
 struct SampleTimes {
   double mean = 0;
   double half_interval = 0;  ///< of the speedup, in per cent
   std::optional<Index> break_even_step;
 };
 
-/// A mesh of 300 vertices and 1000 edges with figures that are simple to check: kernels of 100 accesses, and
-/// a mean span, misses and milliseconds in the ratio `share` to the scrambled order's: 100 a mean span, 80,
-/// 40 and 20 misses on this machine, 90, 60 and 50 on the paper's, 2 ms predicted and 1 ms measured.
+/// A mesh of 300 vertices and 1000 edges with figures that are simple to check. Kernels have 100 accesses.
+/// Each order has `share` times the figures of the scrambled one: a mean span of 100; 80, 40 and 20 misses on
+/// this machine; 90, 60 and 50 on the paper's; 2 ms predicted and 1 ms measured.
 inline MeshRecord sample_mesh(const std::string& name, const std::vector<OrderingSpec>& orderings,
                               const std::vector<double>& share) {
   MeshRecord mesh;
@@ -40,7 +40,7 @@ inline MeshRecord sample_mesh(const std::string& name, const std::vector<Orderin
     order.element_method = orderings[i].elements;
     order.seconds = orderings[i].name == "original" ? 0 : 0.25 * static_cast<double>(i);
     order.span = {100 * share[i], static_cast<Index>(std::min<Offset>(299, of(299))), 6 * share[i]};
-    // bins of 50: what is not near is spread evenly
+    // bins of 50: edges that are not near are spread evenly
     const Offset near = 1000 - std::min<Offset>(800, of(800));
     const Index far_bins = order.span.max / mesh.span_bin;
     order.span_histogram.assign(static_cast<std::size_t>(far_bins + 1), (1000 - near) / far_bins);
@@ -72,7 +72,7 @@ inline std::vector<RunRecord> sample_runs(const ScenarioRecord& scenario, double
   return runs;
 }
 
-/// Fills the orders of a scenario of 4 steps, and all that a study computes from their runs.
+/// Fills in the orders of a scenario of 4 steps, and the figures that a study computes from their runs.
 inline void add_sample_orders(ScenarioRecord& scenario, const std::vector<OrderingSpec>& orderings,
                               const std::vector<SampleTimes>& times) {
   scenario.precision = "double";
@@ -103,8 +103,8 @@ inline void add_sample_orders(ScenarioRecord& scenario, const std::vector<Orderi
   }
 }
 
-/// Two scenarios on one mesh in the paper's five orders, with figures that nobody measured: in `falling`
-/// orders pay, in `stretch` the original one drowns in the noise and the VF scrambled one loses.
+/// Two scenarios on one mesh in the paper's five orders, with invented figures. In `falling` orders save
+/// time; in `stretch` the original order is within the noise, and the VF scrambled one is slower.
 inline StudyResults sample_results() {
   StudyResults results;
   results.began = "2026-11-20T17:30:00Z";

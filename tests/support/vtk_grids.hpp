@@ -21,7 +21,7 @@
 namespace meshorder::test {
 
 /// One cell of each linear volume type and a second wedge, in version 2.2 of Gmsh's format. No face is
-/// exactly plane, no coordinate is there twice in a cell.
+/// exactly plane, and no coordinate occurs twice in a cell.
 inline const std::string kVolumesOfGmsh = R"($MeshFormat
 2.2 0 8
 $EndMeshFormat
@@ -92,7 +92,7 @@ inline void expect_same_grid(vtkUnstructuredGrid* grid, const Mesh& mesh) {
   }
 }
 
-/// EXPECTs that VTK sees every face of every cell anticlockwise from outside of the cell.
+/// EXPECTs that VTK's faces of every cell are anticlockwise from outside of the cell.
 inline void expect_faces_outward(vtkUnstructuredGrid* grid) {
   const auto middle = [](vtkCell* cell) {
     std::array<double, 3> sum{};
@@ -129,8 +129,8 @@ inline void expect_faces_outward(vtkUnstructuredGrid* grid) {
   }
 }
 
-/// A wedge and a Lagrange wedge on its own points each: the first triangle of the second faces inward, that
-/// of the first outward, as VTK up to 9.6 wants it, or `inward`, as later versions do.
+/// A wedge and a Lagrange wedge on separate points. The first triangle of the Lagrange wedge faces inward;
+/// that of the wedge faces outward, as in VTK up to 9.6, or `inward`, as in later versions.
 inline vtkSmartPointer<vtkUnstructuredGrid> grid_of_wedges(bool inward = false) {
   const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   const vtkNew<vtkPoints> points;
@@ -151,7 +151,7 @@ inline vtkSmartPointer<vtkUnstructuredGrid> grid_of_wedges(bool inward = false) 
   return grid;
 }
 
-/// EXPECTs that the edges out of the first corner of every wedge are right-handed, as Gmsh wants them.
+/// EXPECTs that the edges from the first corner of every wedge are right-handed, as in Gmsh.
 inline void expect_wedges_of_gmsh(const Mesh& mesh) {
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     if (mesh.cells.shapes[c] != Shape::wedge) continue;

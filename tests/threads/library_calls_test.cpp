@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Threads of the caller's that use the library at once: what ThreadSanitizer is for.
+// Several threads of the caller use the library at once, for ThreadSanitizer.
 #include "mesh/procedural.hpp"
 #include "support/files.hpp"
 #include "support/sample_meshes.hpp"
@@ -25,7 +25,7 @@ namespace {
 
 using RunOfCall = meshorder::Run;  // gtest's tests have a Run of their own
 
-/// Calls `work(t)` on `count` threads at once, and fails where one throws.
+/// Calls `work(t)` on `count` threads at once, and fails if one throws.
 void on_threads(int count, const std::function<void(int)>& work) {
   std::atomic<int> waiting = count;
   std::atomic<int> failed = 0;
@@ -75,7 +75,7 @@ TEST(LibraryCalls, ReadAndWriteAllFormatsAtOnce) {
       try {
         write_mesh(mesh, path, &notes);
       } catch (const InputError&) {
-        continue;  // no place for tetrahedra
+        continue;  // the format holds no tetrahedra
       }
       EXPECT_EQ(read_mesh(path).vertex_count(), mesh.vertex_count()) << format.name;
       if (!format.single_file) continue;

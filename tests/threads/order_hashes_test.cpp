@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Orders are the same on any number of threads, from any compiler and at any level of optimisation: this
-// program compares the hash of each with that in order_hashes.txt. Coordinates of the samples are sums and
-// products of whole numbers, so that no function of a mathematical library decides them.
+// program compares their hashes with those in order_hashes.txt. Coordinates of the samples are sums and
+// products of whole numbers, and do not depend on a mathematical library.
 #include "mesh/procedural.hpp"
 #include "support/files.hpp"
 #include "support/sample_graphs.hpp"
@@ -102,8 +102,8 @@ std::vector<Index> groups_of(Index n) {
   return groups;
 }
 
-/// Calls `check(what, permutation)` for each method: of vertices, and of elements behind reverse
-/// Cuthill–McKee.
+/// Calls `check(what, permutation)` for each method of vertices, and for each method of elements after
+/// reverse Cuthill–McKee.
 template <class Check>
 void with_all_methods(const Mesh& mesh, const OrderOptions& options, const Check& check) {
   const MeshView given = view(mesh);
@@ -118,7 +118,7 @@ void with_all_methods(const Mesh& mesh, const OrderOptions& options, const Check
   }
 }
 
-/// The committed hashes by their lines' beginnings, to which this run's are compared.
+/// The committed hashes by the beginnings of their lines, for comparison with this run's hashes.
 class Hashes {
  public:
   Hashes() {
@@ -128,7 +128,7 @@ class Hashes {
         committed_[line.substr(0, line.rfind(": "))] = line.substr(line.rfind(": ") + 2);
     }
   }
-  /// Writes what this run found where MESHORDER_WRITE_ORDER_HASHES names a file.
+  /// Appends this run's hashes to the file that MESHORDER_WRITE_ORDER_HASHES names, if set.
   ~Hashes() {
     const char* path =
         std::getenv("MESHORDER_WRITE_ORDER_HASHES");  // NOLINT(concurrency-mt-unsafe): one thread

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// A loop that adds up without a lock: a build with ThreadSanitizer must end this program with a report of the
-// race.
+// A loop that adds up without a lock. In a build with ThreadSanitizer, this program must end with a report of
+// the race.
 #include "base/parallel.hpp"
 
 #include <cstdio>

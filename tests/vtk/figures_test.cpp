@@ -56,7 +56,7 @@ class Svg {
 
   [[nodiscard]] bool well_formed() const { return root_ != nullptr; }
   [[nodiscard]] std::string attribute(const char* name) const { return root_->GetAttribute(name); }
-  /// What it says, but for title and description.
+  /// The texts of the picture, without title and description.
   [[nodiscard]] const std::vector<std::string>& texts() const { return texts_; }
   [[nodiscard]] bool says(const std::string& text) const {
     return std::find(texts_.begin(), texts_.end(), text) != texts_.end();
@@ -175,7 +175,7 @@ TEST_F(Figures, OfSpeedupsHaveAMarkForEachOfOursAndThePapers) {
   ASSERT_EQ(papers.size(), 2);
   EXPECT_EQ(svg.marks(10, 0xcc79a7).size(), 0) << "the paper's text tells nothing of VF scrambled";
 
-  // where they stand: 25 and 12 % here, 26.7 and 12.1 % in the paper
+  // their positions: 25 and 12 % here, 26.7 and 12.1 % in the paper
   std::set<double> ours{fiedler[0][0], fiedler[1][0], fiedler[2][0]};
   const double pixels_of_percent = (papers[0][0] - papers[1][0]) / (26.7 - 12.1);
   EXPECT_GT(pixels_of_percent, 1);

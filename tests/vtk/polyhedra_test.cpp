@@ -45,7 +45,7 @@ std::vector<std::vector<int>> faces_of_cube(int first) {
   return faces;
 }
 
-/// Two cubes as polyhedra, one on the other, and between them in the list two tetrahedra; labels 10 to 13.
+/// Two cubes as polyhedra, one on the other, and two tetrahedra between them in the list; labels 10 to 13.
 vtkSmartPointer<vtkUnstructuredGrid> grid_of_polyhedra() {
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   const vtkNew<vtkPoints> points;
@@ -81,7 +81,7 @@ vtkSmartPointer<vtkUnstructuredGrid> grid_of_polyhedra() {
 
 using Faces = std::vector<std::vector<Point>>;  // each in turn, by its corners' coordinates
 
-/// The faces of every polyhedron that VTK finds, by its label; of other cells their points as one face.
+/// The faces of every polyhedron in VTK, by label; for other cells, their points as one face.
 std::map<int, Faces> faces_by_label(vtkUnstructuredGrid* grid) {
   std::map<int, Faces> result;
   const auto point = [&](vtkIdType p) {
@@ -115,7 +115,7 @@ vtkSmartPointer<vtkUnstructuredGrid> grid_in(const std::filesystem::path& path) 
   return reader->GetOutput();
 }
 
-/// EXPECTs the mesh of grid_of_polyhedra, reordered and written, to have the faces of `grid` in VTK's eyes.
+/// EXPECTs that VTK reads the faces of `grid` from the mesh of grid_of_polyhedra, reordered and written.
 template <class Reader>
 void expect_faces_follow(const std::filesystem::path& path, vtkUnstructuredGrid* grid) {
   Mesh mesh = read_mesh(path);
@@ -137,7 +137,7 @@ void expect_faces_follow(const std::filesystem::path& path, vtkUnstructuredGrid*
   EXPECT_EQ(back.data, mesh.data);
 }
 
-/// The same grid as VTK 9.7 writes it, where the face between the cubes is there once.
+/// The same grid as VTK 9.7 writes it, with the face between the cubes only once.
 constexpr std::string_view kByFace = R"(<?xml version="1.0"?>
 <VTKFile type="UnstructuredGrid" version="2.3" byte_order="LittleEndian" header_type="UInt32">
   <UnstructuredGrid>
@@ -216,7 +216,7 @@ TEST(VtkPolyhedra, AreWrittenByFaceAsTheyWereRead) {
   write_mesh(read_mesh(folder.path() / "b.vtu"), folder.path() / "d.vtk");
   const auto found = faces_by_label(grid_in<vtkUnstructuredGridReader>(folder.path() / "d.vtk"));
   const auto expected = faces_by_label(grid_of_polyhedra());
-  const auto turned = [](Faces faces) {  // the shared face is that of the lower cube, seen from its outside
+  const auto turned = [](Faces faces) {  // the shared face has the lower cube's orientation
     for (auto& face : faces) std::sort(face.begin(), face.end());
     std::sort(faces.begin(), faces.end());
     return faces;

@@ -15,7 +15,7 @@ namespace {
 
 using namespace meshorder;
 
-/// What a file may be called.
+/// A possible file name.
 constexpr const char* kHostile = "a|b,\"c\"\n<i>d</i>&amp;\\|`e`*_[f](g)'#~";
 
 StudyResults hostile_results() {
@@ -25,7 +25,7 @@ StudyResults hostile_results() {
   return results;
 }
 
-/// Fields of a CSV file, read as RFC 4180 has it.
+/// The fields of a CSV file, read by RFC 4180.
 std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
   std::vector<std::vector<std::string>> records{{""}};
   bool quoted = false;

@@ -115,7 +115,7 @@ void write_with_vtk(vtkUnstructuredGrid* grid, const std::filesystem::path& path
   ASSERT_EQ(writer->Write(), 1);
 }
 
-/// A grid with an array of every kind that VTK's writers know.
+/// A grid with an array of every kind that VTK's writers support.
 vtkSmartPointer<vtkUnstructuredGrid> grid_with_everything() {
   const TemporaryFolder folder;
   write_mesh(mixed_mesh(), folder.path() / "mixed.vtk");
@@ -658,7 +658,7 @@ TEST(VtkLegacy, HexahedraOfHigherOrderAreInTheOrderOfTheirVersion) {
 TEST(VtkLegacy, CutFilesAreNoticed) {
   const TemporaryFolder folder;
   expect_truncation_is_noticed("cut.vtk", kSmall);
-  // the loss of whole sections of a POLYDATA file shows only where data follow
+  // the loss of whole sections of a POLYDATA file is noticed only if data follow
   const auto sections = kPolydata.find("POLYGONS");
   const auto data = kPolydata.find("CELL_DATA");
   const auto one = kPolydata.find("VERTICES");

@@ -66,7 +66,7 @@ const std::string kSmallVtu = R"(<?xml version="1.0"?>
 constexpr std::array kCompressorsOfVtk{VtuEncoding::Compressor::none, VtuEncoding::Compressor::lz4,
                                        VtuEncoding::Compressor::zlib, VtuEncoding::Compressor::lzma};
 
-/// How VTK's own writer is to store a grid.
+/// The encoding of a grid by VTK's own writer.
 struct Encoding {
   std::string name;
   int mode;        // 0 text, 1 base64, 2 appended
@@ -117,7 +117,7 @@ vtkSmartPointer<vtkUnstructuredGrid> read_with_vtk(const std::filesystem::path& 
   return reader->GetOutput();
 }
 
-/// What a file says of its encoding: the first tag, the format of its first array, what is appended how.
+/// The encoding in a file: the first tag, the format of its first array, and the encoding of appended data.
 std::string encoding_of(const std::filesystem::path& path) {
   const std::string content = content_of(path);
   const auto part = [&](const char* from, const char* to) {
@@ -479,7 +479,7 @@ TEST(Vtu, FloatPointsStayFloats) {
   write_mesh(mesh, folder.path() / "b.vtu");
   EXPECT_EQ(read_with_vtk(folder.path() / "b.vtu")->GetPoints()->GetDataType(), VTK_FLOAT);
   expect_same(read_mesh(folder.path() / "b.vtu"), mesh);
-  // a coordinate that no float holds
+  // a coordinate that is no float
   mesh.points[0][0] = 0.1;
   write_mesh(mesh, folder.path() / "c.vtu");
   EXPECT_EQ(read_with_vtk(folder.path() / "c.vtu")->GetPoints()->GetDataType(), VTK_DOUBLE);
@@ -664,7 +664,7 @@ TEST(Vtu, RealMeshesComeBackFromAnyOrder) {
 
 TEST(Vtu, FullDiskIsAnErrorAndLeavesNothing) {
   const TemporaryFolder folder;
-  // a limit on the size of files stands for a full disk
+  // a limit on the size of files acts like a full disk
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   rlimit old_limit{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old_limit), 0);

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Orders a path of five vertices that is numbered badly; exit status 0 if neighbours then follow each other.
+// Orders a badly numbered path of five vertices; exit status 0 if neighbours then follow each other.
 #include <meshorder/meshorder.hpp>
 
 #include <cstdlib>
@@ -18,7 +18,7 @@ int main() {
     meshorder::order_vertices({offsets, neighbours}, "no such method");
     return 2;
   } catch (const meshorder::InvalidArgument&) {
-    // the type of an exception survives the way out of a shared library
+    // exceptions keep their type across the shared library's boundary
   }
   return meshorder::version() == MESHORDER_VERSION ? 0 : 3;
 }

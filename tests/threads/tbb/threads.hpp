@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// What the project uses of oneTBB, on std::thread. A build for ThreadSanitizer takes these headers in place
-// of oneTBB's, whose library is not compiled with it: the sanitizer would not see how its threads wait for
-// each other. A loop starts its threads and joins them, so that nothing else orders their work.
+// The part of oneTBB that the project uses, on std::thread. A build for ThreadSanitizer uses these headers
+// instead of oneTBB's, because oneTBB's library is compiled without the sanitizer, which would not see how
+// its threads wait for each other. A loop starts its threads and joins them; nothing else orders their work.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ class global_control {
  private:
   friend class task_arena;
 
-  /// At least four, so that threads meet on small machines, too.
+  /// At least four, to have several threads on small machines, too.
   static std::size_t default_threads() { return std::max(4U, std::thread::hardware_concurrency()); }
   static std::mutex& mutex() {
     static std::mutex mutex;
@@ -59,7 +59,7 @@ class global_control {
   std::size_t limit_;
 };
 
-/// Whether a loop goes on. Belongs to the loop within which it was made.
+/// Whether a loop continues. Belongs to the loop in which it was made.
 class task_group_context {
  public:
   task_group_context();
@@ -78,7 +78,7 @@ namespace detail {
 /// Threads that an arena may still start.
 using Free = std::atomic<int>;
 
-/// What the current thread works for.
+/// The context of the current thread's work.
 struct State {
   task_group_context* context = nullptr;
   int concurrency = 0;  ///< of the arena; 0 outside of arenas
@@ -232,8 +232,8 @@ void parallel_for(const blocked_range<Number>& range, const Body& body, task_gro
   const auto n = static_cast<std::ptrdiff_t>(range.end() - range.begin());
   if (n <= 0 || context.is_group_execution_cancelled()) return;
   detail::Team team(context, n);
-  // Dealt out in turn, not taken: each thread has its share also where the machine runs one of them at a
-  // time.
+  // Pieces are assigned in turn, not taken: each thread has its share even if the machine runs one thread at
+  // a time.
   const std::ptrdiff_t piece = std::max<std::ptrdiff_t>(1, n / (8 * team.size()));
   team.run([&](std::ptrdiff_t t) {
     for (std::ptrdiff_t from = t * piece; from < n; from += team.size() * piece) {
