@@ -1,5 +1,5 @@
-# Debian 12's packages. Each part of the tree asks for what it needs, so that a build of the core alone looks for TBB
-# and Eigen only.
+# Debian 12's packages. Each part of the tree looks for the packages that it needs: a build of only the core looks for
+# TBB and Eigen only.
 
 include(${CMAKE_CURRENT_LIST_DIR}/find_library.cmake)
 

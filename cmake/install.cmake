@@ -94,7 +94,7 @@ if(MESHORDER_HAS_METIS)
 endif()
 set(hdf5_module hdf5)
 if(HDF5_SERIAL_LIBRARY MATCHES "hdf5_serial")
-  set(hdf5_module hdf5-serial)  # Debian's, beside those for MPI
+  set(hdf5_module hdf5-serial)  # Debian also has modules of HDF5 for MPI
 endif()
 set(io_text "meshes with files, C++20")
 set(io_requires meshorder-core fmt)

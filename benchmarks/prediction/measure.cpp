@@ -120,7 +120,7 @@ void judge(const std::string& name, double budget, int threads, const std::strin
   add_auto(name, mesh, graph, orders);
   std::vector<mo::Mesh> meshes;
   std::vector<mo::KernelReuse> reuse;
-  std::vector<std::array<double, mo::kKernels.size()>> computed;  // by so many threads
+  std::vector<std::array<double, mo::kKernels.size()>> computed;  // by the threads
   for (const std::string& order : orders) {
     const auto slash = order.find('/');
     meshes.push_back(mesh);

@@ -18,7 +18,7 @@ ROOT = pathlib.Path(__file__).parents[2]
 MEBIBYTE = 1 << 20
 #: libraries that every machine has for which wheels are made
 SYSTEMS = {"libstdc++", "libgcc_s", "libm", "libc", "libpthread", "libdl", "librt", "ld-linux-x86-64"}
-#: what THIRD_PARTY.md calls the others
+#: the other libraries' names in THIRD_PARTY.md
 NAMES = {
     "libtbb": "oneTBB", "libmetis": "METIS", "libz": "zlib", "liblzma": "XZ Utils", "liblz4": "LZ4", "libfmt": "{fmt}",
     "libhwy": "Highway", "libnetcdf": "netCDF", "libhdf5_serial": "HDF5", "libhdf5": "HDF5", "libpugixml": "pugixml", "libcgns": "CGNS",

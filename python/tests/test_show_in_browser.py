@@ -61,7 +61,7 @@ def picture(chromium, name):
 
 
 def pictures(chromium):
-    """What the canvases show: two of the mesh, two patterns."""
+    """The pixels of the canvases: two of the mesh, two patterns."""
     found = chromium.run("return [...document.querySelectorAll('canvas')]")
     assert len(found) == 4
     return [chromium.pixels(canvas) for canvas in found]

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""PyTorch's tensors and PyTorch Geometric's graphs, by what PyTorch and PyTorch Geometric compute of them."""
+"""PyTorch's tensors and PyTorch Geometric's graphs, checked by computations of these two libraries."""
 
 import pathlib
 import re

@@ -215,8 +215,8 @@ static void test_edges(void) {
   CHECK(mo_order_edges(&ends, NULL, 1, &edges) == MO_INVALID_ARGUMENT);
 }
 
-/* A path of six vertices, 0 - 2 - 4 - 1 - 3 - 5, from 1 on; then the third along it goes and a new one comes
- * to the end. */
+/* A path of six vertices, 0 - 2 - 4 - 1 - 3 - 5, numbered from 1; then the third one along it is removed and
+ * a new one is added at the end. */
 static void test_reorderer(void) {
   static const int32_t path_offsets[] = {1, 2, 4, 6, 8, 10, 11};
   static const int32_t path_neighbours[] = {3, 4, 5, 1, 5, 2, 6, 2, 3, 4};

@@ -85,7 +85,8 @@ TEST(Minla, ComesWithin6PercentOfTheOptimumOfSquareGrids) {
 }
 
 TEST(Minla, ComesWithin30PercentOfTheOptimumOfBinaryTrees) {
-  // Chung 1978, complete trees of k levels: 2^k (k/3 + 5/18) + (−1)^k 2/9 − 2; Fiedler goes up to 30 times it
+  // Chung 1978, complete trees of k levels: 2^k (k/3 + 5/18) + (−1)^k 2/9 − 2; `fiedler` has up to 30 times
+  // it
   for (int k = 3; k <= 12; ++k) {
     const Index n = (1 << k) - 1;
     std::vector<Edge> edges;

@@ -31,7 +31,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-/// Points in a square, joined to near ones; some are removed and others added. Stands for a caller, who keeps
+/// Points in a square, joined to near ones; some are removed and others added. Like a caller, it keeps the
 /// points in the order of the last update.
 class Cloud {
  public:

@@ -102,7 +102,7 @@ TEST(SpectralOrder, PutsBranchesThatEndBeforeThoseThatGoOn) {
     for (Index k = 0; k < length; ++k, ++n) edges.push_back({k == 0 ? 0 : n - 1, n});
   }
   const CsrGraph branches = graph_from_edges(n, edges);
-  // 1.13; 1.22 where the branch that goes on comes first
+  // 1.13; it is 1.22 if the branch that continues comes first
   EXPECT_LT(edge_span(branches, order_of(branches, "spectral")).mean, 1.18);
 }
 

@@ -89,7 +89,7 @@ def test_inverse_gives_the_file_back(tmp_path, ball, name, ranks):
 
 def test_inverse_restores_cells_that_the_output_sorts_by_type(tmp_path):
     source = mixed(tmp_path)
-    mesh = meshio.read(source)  # triangles and tetrahedra in turn, which Medit keeps apart
+    mesh = meshio.read(source)  # triangles and tetrahedra in turn; Medit groups cells by type
     turns = [block for pair in zip(numpy.array_split(mesh.cells_dict["triangle"], 3),
                                    numpy.array_split(mesh.cells_dict["tetra"], 3)) for block in pair]
     meshio.Mesh(mesh.points, [("triangle" if len(block[0]) == 3 else "tetra", block) for block in turns]).write(source)

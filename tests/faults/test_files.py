@@ -28,7 +28,7 @@ def failures_of(case, most, every_error):
                 fault = Fault(kind, nth, what)
                 ending = case.with_fault(fault)
                 failed += ending.failures > 0
-                # libhdf5 crashes where it copies what it cannot read
+                # libhdf5 crashes when it copies data that it could not read
                 faults = list(case.faults_of_files() if ending.culprit() else case.faults_of(ending, kind))
                 if what == "short" and ending.status != 0 and not ending.culprit():
                     faults.append(f"does not go on where a part was done: {ending.stderr!r}")
@@ -75,7 +75,7 @@ def test_what_a_failing_disk_leaves_unread_is_no_mesh(tmp_path, name):
     case = cases.case(name, tmp_path)
     for nth in spread(case.clean.calls["read"], 6):
         ending = case.with_fault(Fault("read", nth, errno.EIO, later=True))
-        # libhdf5 crashes where it copies what it cannot read
+        # libhdf5 crashes when it copies data that it could not read
         faults = list(case.faults_of_files() if ending.culprit() else case.faults_of(ending))
         assert not faults, (nth, faults)
         if ending.status == 0:  # only reads of the system's description failed, which the command does not need

@@ -57,7 +57,7 @@ Mesh through_med(const Mesh& mesh, Notes* notes = nullptr) {
   return read_mesh(folder.path() / "a.med");
 }
 
-/// The mesh with data and sets sorted by name, without the numbers of families.
+/// The mesh with data and sets sorted by name, without labels, which are the numbers of families, and blocks.
 Mesh by_name(Mesh mesh) {
   std::erase_if(mesh.data, [](const DataArray& array) { return array.name == kLabel; });
   const auto less = [](const auto& a, const auto& b) {

@@ -441,7 +441,7 @@ TEST(MachineChoice, IsTheOneNamedThenTheVariableThenThisMachine) {
 TEST(MachineChoice, OnAllThreadsIsACalibrationOnAsMany) {
   const test::TemporaryFolder folder;
   const Variable cache("MESHORDER_CACHE", folder.path().string());
-  EXPECT_EQ(choose_machine("this", true).model.threads, 1);  // stands in
+  EXPECT_EQ(choose_machine("this", true).model.threads, 1);  // a substitute for one thread
   if (thread_count() > 1) {
     EXPECT_THROW((void)choose_machine("zen3", true), InvalidArgument);
   }

@@ -208,7 +208,7 @@ TEST(RestShapes, TurnTheFrameOfATetrahedronTheRightWay) {
 
 TEST(RestShapes, FlatSimplicesHaveNoVolumeAndNoNumberIsInfinite) {
   const std::vector<Point> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 0}, {0, 0, 1}};
-  // flat, a vertex twice, all the same, sound
+  // flat, one vertex twice, one vertex four times, valid
   const Simplices simplices{3, {0, 1, 2, 3, 0, 1, 1, 4, 2, 2, 2, 2, 0, 1, 2, 4}, {}};
   const RestShapes rest = rest_shapes(simplices, points);
   for (const double value : rest.geometry) EXPECT_TRUE(std::isfinite(value));

@@ -60,7 +60,7 @@ TEST(BodySurface, OfACubeOfCubesIsThatOfTheCube) {
 TEST(BodySurface, HasAllComponentsAndCavities) {
   const Mesh mesh = make_grid({.size = 3});
   Simplices simplices = cut_into_simplices(mesh);
-  // without the cube in the middle, and a tetrahedron apart
+  // without the cube in the middle, and with a separate tetrahedron
   simplices.vertices.erase(simplices.vertices.begin() + 4 * 6 * 13, simplices.vertices.begin() + 4 * 6 * 14);
   std::vector<Point> points = mesh.points;
   const Index first = index_size(points);

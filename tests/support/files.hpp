@@ -10,7 +10,7 @@
 
 namespace meshorder::test {
 
-/// An empty folder of its own for the running test, removed at the end.
+/// A new empty folder for the running test, removed at the end.
 class TemporaryFolder {
  public:
   TemporaryFolder();

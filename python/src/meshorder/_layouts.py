@@ -90,7 +90,7 @@ def _given(cells: Any, vertices: int | None) -> tuple[Any, int]:
         return arrays, whole(vertices, 2**31 - 1, "vertices")
     named = [block for _, block in arrays] if isinstance(arrays, list) else [arrays[1]]
     most = max((int(block.max()) + 1 for block in named if block.size), default=0)
-    return arrays, min(most, 2**63)  # the library refuses so many vertices
+    return arrays, min(most, 2**63)  # the library refuses 2⁶³ vertices
 
 
 def _rows(values: NDArray[Any], cells: Any) -> NDArray[Any]:

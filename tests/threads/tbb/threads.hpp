@@ -120,7 +120,7 @@ inline int max_concurrency() {
 }
 }  // namespace this_task_arena
 
-/// A number of threads for the loops of what it executes.
+/// A number of threads for the loops in the functions that it executes.
 class task_arena {
  public:
   static constexpr int automatic = -1;
