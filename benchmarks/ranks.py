@@ -323,7 +323,7 @@ def main():
     parser.add_argument("--folder", help="for the meshes; 50,000 vertices on 32 ranks take 1 GB")
     parser.add_argument("--json", type=pathlib.Path, help="write the runs here")
     parser.add_argument("--from", dest="known", nargs="+", default=[], help="begin with the runs that --json wrote")
-    parser.add_argument("--model", action="store_true", help="print what is predicted for a cluster")
+    parser.add_argument("--model", action="store_true", help="print the predictions for a cluster")
     parser.add_argument("--latency", type=float, default=2, help="of a message, in µs")
     parser.add_argument("--bandwidth", type=float, default=0.2, help="of the network for a rank, in GB/s")
     parser.add_argument("--file-bandwidth", type=float, default=5, help="of the file system for all ranks, in GB/s")

@@ -2,5 +2,5 @@
 find_file(
   MESHORDER_THREE_JS three.min.js
   PATHS /usr/share/javascript/three /usr/share/javascript/three/build
-  DOC "three.js, release 111, of which the page's 3-D views are made"
+  DOC "three.js, release 111, for the page's 3-D views"
   NO_DEFAULT_PATH)

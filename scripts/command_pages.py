@@ -218,10 +218,10 @@ _meshorder() {{
       esac
       [[ $current != -* ]] || words=$options ;;
   esac
-  # of a list its last word
+  # the last word of a list
   local before=''
   [[ -z $comma || $current != *,* ]] || before=${{current%,*}},
-  # files, where nothing of these fits
+  # files, if none of these fits
   mapfile -t COMPREPLY < <(compgen -P "$before" -W "$words" -- "${{current#"$before"}}")
 }}
 complete -o default -F _meshorder meshorder

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Draws what orders are worth in programs, from what `benchmarks/programs.py --json` kept.
+"""Draws how much faster orders make programs, from the results of `benchmarks/programs.py --json`.
 
     docs/pictures/draw_programs.py programs.json OUT.svg [PROGRAM…]
 

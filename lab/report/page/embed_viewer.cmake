@@ -4,7 +4,7 @@
 # then needs no other files to make a page.
 include(${PROJECT_SOURCE_DIR}/cmake/find_three.cmake)
 if(NOT MESHORDER_THREE_JS)
-  message(FATAL_ERROR "three.min.js is missing, which the report page shows meshes with: install Debian's libjs-three, "
+  message(FATAL_ERROR "three.min.js is missing; the report page needs it to show meshes: install Debian's libjs-three, "
                       "or name the file by -DMESHORDER_THREE_JS=…")
 endif()
 
