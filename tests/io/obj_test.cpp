@@ -152,6 +152,7 @@ TEST(Obj, TakesNegativeIndicesContinuedLinesAndIndicesAhead) {
 TEST(Obj, KeepsVertexColors) {
   expect_order_and_back_to("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0 0 1\nv 0 1 0 0.25 0 0\nf 1 2 3\n");
   expect_order_and_back_to("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0.5\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 4 3\n");
+  expect_order_and_back_to("a.obj", "v 0 0 0 nan nan nan\nv 1 0 0 0 0 1\nv 0 1 0 0.25 0 0\nf 1 2 3\n");
 }
 
 TEST(Obj, KeepsNamesThatNoCellHas) {
@@ -188,6 +189,7 @@ TEST(Obj, BrokenFilesStopWithTheirLine) {
        {"nan", "v 0 0 0\nv 0 nan 0\n", ":2: a coordinate is not finite"},
        {"infinite", "v 0 0 inf\n", ":1: a coordinate is not finite"},
        {"no number", "v 0 x 0\n", ":1: a coordinate is 'x'"},
+       {"no colour", "v 0 0 0 1 x 0\n", ":1: a weight or colour is 'x'"},
        {"texture of words", "vt a\n", ":1: a number of vt is 'a'"},
        {"texture of none", "vt\n", ":1: a line vt of 0 numbers; 1 to 3 are right"},
        {"normal of two", "vn 0 0\n", ":1: a line vn of 2 numbers; 3 are needed"},

@@ -184,20 +184,16 @@ class Reader {
                   "v, vt, vn, f, l, p, g, o, s, usemtl … are read");
   }
 
-  double real(std::string_view word, std::string_view what) const {
-    const double value = parse_real(scanner_, word, what);
-    if (!std::isfinite(value))
-      scanner_.fail(std::string(what) + " is not finite", "a finite number is needed");
-    return value;
-  }
-
   void read_vertex(std::string_view line) {
     std::array<double, 6> numbers{};
     std::size_t count = 0;
     for (auto word = next_word(line); !word.empty(); word = next_word(line)) {
       if (count == numbers.size())
         scanner_.fail("a vertex of more than 6 numbers", "x y z, w or r g b are right");
-      numbers[count++] = real(word, "a coordinate");
+      numbers[count] = parse_real(scanner_, word, count < 3 ? "a coordinate" : "a weight or colour");
+      if (count < 3 && !std::isfinite(numbers[count]))
+        scanner_.fail("a coordinate is not finite", "a finite number is needed");
+      ++count;
     }
     if (count < 3 || count == 5) {
       scanner_.fail("a vertex of " + std::to_string(count) + " numbers",
