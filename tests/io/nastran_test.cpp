@@ -262,6 +262,23 @@ TEST(Nastran, TakesPropertiesOfBarsFromBaror) {
   EXPECT_THAT(moved(deck, {2, 1, 0}, {1, 0, 2, 3}), HasSubstr("CBAR,7,,2,1\nCBAR,8,,3,2\nCBAR,9,5,1,3\n"));
 }
 
+TEST(Nastran, KeepsElementsThatHaveNoPropertyYet) {
+  const std::string deck =
+      "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\nGRID,4,,1.,1.,0.\n"
+      "CTRIA3,1,0,1,2,3\nCTRIA3,2,4,2,4,3\nCTRIA3,3,,2,4,3\n";
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(folder.file("a.fem", deck));
+  EXPECT_THAT(labels_of(mesh, Association::cells).values, ElementsAre(0, 4, 3));
+  EXPECT_THAT(moved(deck, {0, 1, 2, 3}, {1, 0, 2}),
+              HasSubstr("CTRIA3,1,4,2,4,3\nCTRIA3,2,0,1,2,3\nCTRIA3,3,,2,4,3\n"));
+}
+
+TEST(Nastran, DoesNotReadTheFirstColumnOfTheNameOfALine) {
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(folder.file("a.bdf", with(std::string(kBulk), "6+A1\n", "6CA1\n")));
+  EXPECT_EQ(mesh.vertex_count(), 13);
+}
+
 TEST(Nastran, TakesTabsForColumnsBeforeACommentWithAComma) {
   const TemporaryFolder folder;
   const Mesh mesh = read_mesh(folder.file("a.bdf",
@@ -438,6 +455,10 @@ TEST(Nastran, RefusesFaultsWithTheirLine) {
       {"CQUAD4  11              1       4       3       2\n", "CQUAD4,11,,1,4,3\n",
        "29: element 11 has 3 of the 4 nodes of CQUAD4"},
       {"6+A1\n", "6+B1\n", "24: continuation lines do not follow their card"},
+      {"PSOLID  5       1\n",
+       "CORD2R  3               0.      0.      0.      0.      0.      1.      +A\n+B      1.\n",
+       "28: continuation lines do not follow their card; write it in fields"},
+      {"CQUAD4  11              1 ", "CQUAD4  11            -3 1 ", "29: the property of an element is '-3'"},
       {"GRID,99,,5.,5.,5.\n", "GRID,99,,5.,5.,5.\n=,*1,=,*1.,==\n", "24: cards are repeated by '='"},
       {"PSOLID  5       1\n", "BEGIN SUPER=2\n", "28: a second section of bulk data begins"},
       {"PSOLID  5       1\n", "INCLUDE 'x.inc'\n", "28: the included file 'x.inc' does not exist"},

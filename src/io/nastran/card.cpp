@@ -108,10 +108,12 @@ class Splitter {
     }
   }
 
-  /// Compares the name of a line with the name at the end of the line before.
+  /// Compares the name of a line with the one at the end of the line before, of which Nastran does not read
+  /// the first column, be it a mark or a letter.
   void check_name(std::string_view name) {
     const std::string_view own = line_name(name);
-    if (!own.empty() && !next_name_.empty() && own != next_name_) {
+    if (own.empty() || line_name(next_name_).empty() || own == line_name(next_name_)) return;
+    if (own != trimmed_blanks(next_name_.substr(1))) {
       result_.fault = "continuation lines do not follow their card";
     }
   }
@@ -123,7 +125,7 @@ class Splitter {
       const std::string_view bytes = line.substr(at, width);
       result_.fields.push_back({begin + at, bytes.size(), width, trimmed_blanks(bytes)});
     }
-    next_name_ = line.size() > kDataEnd ? line_name(trimmed(line.substr(kDataEnd, kNameWidth))) : "";
+    next_name_ = line.size() > kDataEnd ? trimmed(line.substr(kDataEnd, kNameWidth)) : "";
   }
 
   void add_free(std::size_t begin, std::string_view line, bool large) {
@@ -135,7 +137,7 @@ class Splitter {
       const std::size_t comma = ended ? line.size() : std::min(line.find(',', at), line.size());
       const std::string_view bytes = ended ? std::string_view() : line.substr(at, comma - at);
       const std::string_view text = trimmed_blanks(bytes);
-      if (k == most) next_name_ = line_name(text);
+      if (k == most) next_name_ = text;
       if (k > most && !text.empty()) result_.fault = "a line has more than ten fields";
       if (k < most) result_.fields.push_back({begin + (ended ? line.size() : at), bytes.size(), 0, text});
       ended = ended || comma == line.size();

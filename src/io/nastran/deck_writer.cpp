@@ -165,6 +165,7 @@ class BulkWriter {
     const std::int64_t before = number_of(fields_.text(2));
     const bool given = labels_.any() && labels_.given[c];
     const std::int64_t label = given ? labels_.values[c] : before;
+    if (label == 0 && integer_of(fields_.text(2)) == 0) return;  // an element that has no property yet
     if (label < 1 || label > kLargestNumber) {
       lost_labels_ = lost_labels_ || given;
       return;

@@ -181,8 +181,12 @@ class DeckReader {
 
   void add_property(const ElementType& type) {
     if (!type.has_property) return;
-    // a blank field is resolved when all cards are known
-    labels_.push_back(fields_.text(2).empty() ? 0 : number(2, "the property of an element"));
+    const std::string_view text = fields_.text(2);
+    if (text.empty()) {
+      labels_.push_back(kBlank);  // resolved when all cards are known
+    } else {
+      labels_.push_back(integer_of(text) == 0 ? 0 : number(2, "the property of an element"));
+    }
     labelled_.push_back(mesh_.cell_count() - 1);
   }
 
@@ -317,7 +321,7 @@ class DeckReader {
   /// Gives elements without a property the property of BAROR or BEAMOR, else their own number.
   void complete_properties() {
     for (std::size_t k = 0; k < labels_.size(); ++k) {
-      if (labels_[k] != 0) continue;
+      if (labels_[k] != kBlank) continue;
       const Index c = labelled_[k];
       const auto found = deck_->default_properties.find(deck_->elements[c].type->name);
       const bool has_default = found != deck_->default_properties.end();
@@ -472,6 +476,7 @@ class DeckReader {
   CardFields fields_;
   CoordinateSystems systems_{file_};
   static constexpr std::int64_t kDefault = -1;  // of a node that names no system
+  static constexpr std::int64_t kBlank = -1;    // of an element that names no property
   std::int64_t default_system_ = 0;
   std::vector<std::int64_t> system_of_;  // each node
   bool has_systems_ = false;             // whether any is not the basic one

@@ -37,7 +37,9 @@ void CoordinateSystems::add(std::string_view name, const CardFields& fields, std
     default:
       return;
   }
-  if (!fields.fault.empty()) file_.fail(byte, std::string(fields.fault), "correct the coordinate system");
+  if (!fields.fault.empty())
+    file_.fail(byte, std::string(fields.fault),
+               "write it in fields of 8 or 16 columns, its lines one after the other");
   system.byte = byte;
   const auto number = [&](std::size_t field) {
     const std::int64_t result = number_of(fields.text(field));
