@@ -287,6 +287,8 @@ TEST(Vtu, BrokenFilesGiveOneClearError) {
         "has no cells"},
        {"time steps", broken("Name=\"heat\"", "Name=\"heat\" TimeStep=\"0 1\""),
         ":9: the file holds several time steps"},
+       {"a second time step", broken("Name=\"heat\"", "Name=\"heat\" TimeStep=\"1\""),
+        ":9: the file holds several time steps"},
        {"appended data that are not there",
         broken("format=\"ascii\">7 -8", "format=\"appended\" offset=\"0\">"), ":12: the array is appended"},
        {"no base64", broken("format=\"ascii\">7 -8", "format=\"binary\">EAAAAAcA*AAAAAAA+P//////////"),
@@ -331,6 +333,16 @@ TEST(Vtu, AnEmptyNumberOfComponentsIsOne) {
   expect_same(
       read_mesh(folder.file("a.vtu", with(text, "Name=\"heat\"", "Name=\"heat\" NumberOfComponents=\"\""))),
       read_mesh(folder.file("b.vtu", text)));
+}
+
+TEST(Vtu, AFileOfOneTimeStepIsRead) {
+  const TemporaryFolder folder;
+  const std::string text = with(with(kSmallVtu, "<UnstructuredGrid>", "<UnstructuredGrid TimeValues=\"0 \">"),
+                                "Name=\"heat\"", "Name=\"heat\" TimeStep=\"0\"");
+  Notes notes;
+  const Mesh mesh = read_mesh(folder.file("a.vtu", text), {.notes = &notes});
+  EXPECT_EQ(mesh.cell_count(), 2);
+  EXPECT_EQ(notes, Notes{"the time of the only step is left out"});
 }
 
 TEST(Vtu, MixedLineEndsAreRead) {

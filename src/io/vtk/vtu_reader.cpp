@@ -393,9 +393,14 @@ class VtuReader {
         values);
   }
 
+  /// Refuses an array of any step but the first, and notes that the time of an only step is left out.
   void refuse_time_steps(const VtuElement& array) const {
-    if (array.attribute("TimeStep") != nullptr)
+    const std::string* const step = array.attribute("TimeStep");
+    if (step == nullptr) return;
+    if (*step != "0")
       throw file_->error(array, "the file holds several time steps", "save each step as a separate file");
+    const char* const note = "the time of the only step is left out";
+    if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.emplace_back(note);
   }
 
   /// Reads an array of PointData, CellData or FieldData.
