@@ -131,6 +131,15 @@ TEST(MatrixMarket, MovesRowsAndColumnsTogether) {
   EXPECT_EQ(of("skew-symmetric", "complex", "3 3 1\n2 1 5 6\n"), "3 3 1\n3 2 -5 -6\n");
 }
 
+TEST(MatrixMarket, NotesCommentsBetweenTheEntries) {
+  Notes notes;
+  const std::string banner = "%%MatrixMarket matrix coordinate pattern general\n% kept\n";
+  (void)read_as("a.mtx", banner + "2 2 2\n1 2\n2 1\n", &notes);
+  EXPECT_THAT(notes, IsEmpty());
+  (void)read_as("a.mtx", banner + "2 2 2\n1 2 % first\n2 1\n", &notes);
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("a.mtx: comments between the entries are left out")));
+}
+
 TEST(MatrixMarket, RefusesBrokenFiles) {
   const std::string file(kReal);
   const std::string head = "%%MatrixMarket matrix coordinate real general\n";

@@ -192,6 +192,24 @@ TEST(TetGen, KeepsBaseZeroAndTheAbsenceOfMarkers) {
   EXPECT_FALSE(fs::exists(folder.path() / "out.ele"));
 }
 
+TEST(TetGen, LeavesOutColumnsThatTheHeaderDoesNotGive) {
+  const TemporaryFolder folder;
+  Notes notes;
+  const Mesh mesh = read_mesh(put(folder, {.node = replaced(kNode, "1  1\n", "1  0\n"),
+                                           .ele = replaced(kEle, "4  1\n", "4  0\n"),
+                                           .face = "",
+                                           .edge = ""}),
+                              {.notes = &notes});
+  EXPECT_EQ(mesh.cell_count(), 2);
+  ASSERT_EQ(mesh.data.size(), 1U);
+  EXPECT_EQ(mesh.data.front().name, "attribute");  // of the points, whose marker is left out
+  EXPECT_THAT(notes,
+              ElementsAre(".node: columns after those that its header gives are left out (1 in each line)",
+                          ".ele: columns after those that its header gives are left out (1 in each line)"));
+  write_mesh(mesh, folder.path() / "n.node");
+  EXPECT_THAT(test::content_of(folder.path() / "n.ele"), HasSubstr("2 4 0\n1 1 2 3 4\n2 2 3 4 5\n"));
+}
+
 TEST(TetGen, KeepsFilesWithoutCells) {
   const TemporaryFolder folder;
   const Mesh mesh = read_mesh(put(folder, {.face = "0 1\n", .edge = ""}));
@@ -541,6 +559,9 @@ TEST(TetGen, SaysWhatIsWrongAndWhere) {
        {.node = replaced(node, "1.5   0", "1.5")},
        "m.node:7: unexpected end of line; expected the boundary marker"},
       {"long line", {.node = replaced(node, "1.5   0", "1.5 0 3")}, "m.node:7: the line has more columns"},
+      {"a line too short",
+       {.ele = "2 4 0\n1 1 2 3 4 7\n2 2 3 4 5\n"},
+       "m.ele:3: the line has fewer columns than the first one"},
       {"not a number", {.node = replaced(node, "0 0 1", "0 y 1")}, "m.node:7: a coordinate is 'y'"},
       {"nan", {.node = replaced(node, "0 0 1", "0 nan 1")}, "m.node:7: a coordinate is not finite"},
       {"infinite", {.node = replaced(node, "0 0 1", "0 -inf 1")}, "m.node:7: a coordinate is not finite"},

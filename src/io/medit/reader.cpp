@@ -79,6 +79,7 @@ class Reader {
     metadata_->comments_before = comments_before(in_.all(), kComment);
     while (!in_.at_end() && read_section()) {
     }
+    note_comments_left_out();
     if (!has_end_) note_missing_end();
     read_pending();
     arrange_nodes();
@@ -462,6 +463,15 @@ class Reader {
     const std::string_view rest = in_.all().substr(in_.byte());
     // npos + 1 is 0: nothing but blanks
     metadata_->after_end = rest.substr(0, rest.find_last_not_of(" \t\r\n") + 1);
+  }
+
+  /// Notes comments that are neither at the beginning nor in a section that is kept as it is.
+  void note_comments_left_out() {
+    const auto marks_in = [](std::string_view text) { return std::ranges::count(text, kComment); };
+    const std::string_view until_here = in_.all().substr(0, static_cast<std::size_t>(in_.byte()));
+    auto left_out = marks_in(until_here) - marks_in(metadata_->comments_before);
+    for (const auto& section : metadata_->sections) left_out -= marks_in(section.text);
+    if (left_out > 0) notes_.push_back(in_.file() + ": comments between the data are left out");
   }
 
   void note_missing_end() {

@@ -33,10 +33,11 @@ struct CellFile {
 };
 
 struct ReadContext {
-  Mesh mesh;
-  IdMap points;
-  std::array<CellFile, 4> parts;
-  std::string mark;  ///< of the file of points
+  Notes& notes;
+  Mesh mesh = {};
+  IdMap points = {};
+  std::array<CellFile, 4> parts = {};
+  std::string mark = {};  ///< of the file of points
   std::shared_ptr<TetGenMetadata> metadata = std::make_shared<TetGenMetadata>();
   bool second_order = false;
 };
@@ -60,11 +61,34 @@ std::string_view column(Scanner& in, std::string_view what) {
   return in.word(what);
 }
 
-void end_record(Scanner& in) {
-  if (!in.at_line_end()) {
-    in.fail("the line has more columns than the header gives", "correct the header or remove the rest");
-  }
+[[noreturn]] void fail_columns(const Scanner& in) {
+  in.fail("the line has more columns than the header gives", "correct the header or remove the rest");
 }
+
+/// Ends the lines of records. Columns after those that the header gives are left out, as TetGen does, if all
+/// records have equally many.
+class RecordEnds {
+ public:
+  /// @param has_records  whether records without such columns were read before
+  explicit RecordEnds(bool has_records) : further_(has_records ? 0 : -1) {}
+
+  void end(Scanner& in) {
+    Index further = 0;
+    for (; !in.at_line_end(); ++further) (void)in.word("a column");
+    if (further_ < 0) further_ = further;
+    if (further > further_) fail_columns(in);
+    if (further < further_) in.fail("the line has fewer columns than the first one", "add those that lack");
+  }
+  void note_columns_left_out(File file, Notes& notes) const {
+    if (further_ <= 0) return;
+    notes.push_back(
+        fmt::format("{}: columns after those that its header gives are left out ({} in each line)",
+                    kExtensions[file], further_));
+  }
+
+ private:
+  Index further_;  ///< such columns of each record; −1 before the first one
+};
 
 /// Reads an integer; accepts 2.0 because some writers print markers this way.
 std::int64_t whole(Scanner& in, std::string_view what) {
@@ -85,7 +109,7 @@ std::array<std::int64_t, N> header(Scanner& in, std::array<std::int64_t, N> stan
     standard[i] =
         parse_integer<std::int64_t>(in, column(in, "a number of the header"), "a number of the header");
   }
-  end_record(in);
+  if (!in.at_line_end()) fail_columns(in);
   return standard;
 }
 
@@ -186,6 +210,7 @@ void read_points(Scanner& in, ReadContext& to) {
     }
     return take_all(part, attributes_of(v)) && (!marked || part.take_number(markers[v]));
   });
+  RecordEnds ends(regular > 0);
   for (Index v = regular; v < count; ++v) {
     begin_record(in, "a point");
     add_number(in, to.points, "the point");
@@ -196,8 +221,9 @@ void read_points(Scanner& in, ReadContext& to) {
     }
     for (double& value : attributes_of(v)) value = parse_real(in, column(in, "an attribute"), "an attribute");
     if (marked) markers[v] = whole(in, "the boundary marker");
-    end_record(in);
+    ends.end(in);
   }
+  ends.note_columns_left_out(kNode, to.notes);
 
   // As in TetGen, the first number decides whether numbers begin at 0 or at 1. If they are not consecutive,
   // any 0 decides: the points that cells name then do not depend on the order of the points.
@@ -258,14 +284,16 @@ void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, Rea
     for (int k = 0; k < nodes; ++k) cell[k] = as_given[order[k]];
     return take_all(records, attributes_of(c)) && (!marked || records.take_number(part.markers[c]));
   });
+  RecordEnds ends(regular > 0);
   for (Index c = regular; c < part.count; ++c) {
     begin_record(in, "a cell");
     add_number(in, part.numbering, "the cell");
     read_cell_points(in, to.points, order, cells[first + c]);
     for (double& value : attributes_of(c)) value = parse_real(in, column(in, "an attribute"), "an attribute");
     if (marked) part.markers[c] = whole(in, "the boundary marker");
-    end_record(in);
+    ends.end(in);
   }
+  ends.note_columns_left_out(file, to.notes);
 }
 
 /// Makes a label of TetGen's region attribute, one whole number for each cell. Other attributes stay.
@@ -438,7 +466,7 @@ void set_blocks(ReadContext& to) {
   }
 }
 
-void read_cell_file(const FilePath& path, File file, ReadContext& to, Notes& notes) {
+void read_cell_file(const FilePath& path, File file, ReadContext& to) {
   Scanner in(path, kComment);
   const int nodes_in_ele = to.metadata->nodes_in_ele;
   if (file == kFace && (to.mesh.dimension == 2 || nodes_in_ele == 3 || nodes_in_ele == 6)) {
@@ -450,7 +478,7 @@ void read_cell_file(const FilePath& path, File file, ReadContext& to, Notes& not
   } else {
     read_boundary(in, file, to);
   }
-  if (end_file(in, to.metadata->parts[file], notes) != to.mark) {
+  if (end_file(in, to.metadata->parts[file], to.notes) != to.mark) {
     throw NotTogether(
         path.string(),
         fmt::format("was not written together with its .node file: the last lines, which begin with "
@@ -470,7 +498,7 @@ Mesh read(const FilePath& path, Notes& notes) {
                      node_path.path().filename().string() + " is needed");
   }
 
-  ReadContext reading;
+  ReadContext reading{notes};
   {
     Scanner in(node_path, kComment);
     read_points(in, reading);
@@ -478,7 +506,7 @@ Mesh read(const FilePath& path, Notes& notes) {
   }
   for (const File file : kCellFiles) {
     const FilePath cell_path = path.companion(kExtensions[file]);
-    if (cell_path.exists()) read_cell_file(cell_path, file, reading, notes);
+    if (cell_path.exists()) read_cell_file(cell_path, file, reading);
   }
   if (reading.mesh.cell_count() == 0) {
     throw InputError(path.string(), "has no cells",
