@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // admm [--scenarios a,b,…] [--steps N] [--orders a,b,…] [--json FILE]: times the steps of the ADMM scenarios
-// on their own meshes, every order in double on one and two threads, then the last order in single precision.
-// The bodies of a scenario take their steps in turn. Prints medians over the steps:
+// on their own meshes: every order in double precision on one and two threads, then the last order in single
+// precision. The bodies of a scenario take their steps in turn. Prints medians over the steps:
 //   set-up     of the body, s; memory in bytes an element
 //   iteration  of ADMM, ms: local steps, global step and search for contacts; and the times of the local
 //              and global steps if memory delivered their arrays once at the measured bandwidth

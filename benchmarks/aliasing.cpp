@@ -3,13 +3,13 @@
 // aliasing [--rounds N] [--orders a,b,…] [--offsets a,b,…] FILE…: measures the cost of address aliasing. A
 // kernel reads one array and adds to another by the same index, and the addresses of the two differ by a
 // multiple of 4096 bytes plus an offset. Kernels: springs, element forces and the product with the stiffness
-// matrix. Both arrays start at a page of 2 MiB, the second one an offset later. Prints the best ms of
-// processor time on one thread; all orders and offsets run in turn.
+// matrix. The first array starts at a page of 2 MiB, the second one an offset after the start of such a page.
+// Prints the best ms of processor time on one thread; all orders and offsets run in turn.
 #include "base/stopwatch.hpp"
 #include "io/format.hpp"
+#include "kernels/block_csr.hpp"
 #include "kernels/elasticity.hpp"
 #include "kernels/positions.hpp"
-#include "kernels/block_csr.hpp"
 #include "kernels/springs.hpp"
 #include "measuring.hpp"
 #include "mesh/graphs.hpp"

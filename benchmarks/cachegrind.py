@@ -2,10 +2,10 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """Compares the cache model's misses with those that valgrind's cachegrind counts in the running kernels.
 
-Every kernel runs once and then three times under cachegrind; half the difference is a run that finds the caches
-as the previous run left them. Cachegrind's caches map lines to sets, the model's do not; and a load or store across
-two lines that misses both counts once in cachegrind and twice in the model. A mesh of 46,000 vertices takes about
-twenty seconds for each kernel and order. Needs valgrind and SciPy.
+Every kernel runs once and then three times under cachegrind. Half the difference of the counts is that of one run, which
+finds the caches as the previous run left them. Cachegrind's caches map lines to sets, those of the model do not. A load or
+store across two lines that misses both counts once in cachegrind and twice in the model. A mesh of 46,000 vertices takes
+about twenty seconds for each kernel and order. Needs valgrind and SciPy.
 """
 
 import argparse

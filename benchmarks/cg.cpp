@@ -10,10 +10,10 @@
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "io/format.hpp"
+#include "kernels/block_csr.hpp"
 #include "kernels/half_block_csr.hpp"
 #include "kernels/owned_batches.hpp"
 #include "kernels/positions.hpp"
-#include "kernels/block_csr.hpp"
 #include "lab/implicit/elastic_system.hpp"
 #include "lab/linear/cg/solve.hpp"
 #include "lab/linear/preconditioners/preconditioner.hpp"
@@ -213,7 +213,7 @@ void print_halves(std::vector<System>& systems, const Settings& settings) {
 
 /// Returns the bytes that an iteration moves if nothing stays in caches.
 double iteration_bytes(const mo::BlockCsr& matrix, double value_bytes) {
-  // p, q; r, q, r, z, diagonal; x, p, z, x, p
+  // vectors that an iteration reads or writes, loop by loop: p, q; r, q, r, z, diagonal; x, p, z, x, p
   constexpr double kVectors = 12;
   return static_cast<double>(matrix.block_count()) * (9 * value_bytes + sizeof(mo::Index)) +
          matrix.size() * (sizeof(mo::Offset) + kVectors * 3 * sizeof(double));

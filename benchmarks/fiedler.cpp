@@ -1,9 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Measures what a Fiedler vector costs: `fiedler [MESH | grid-N]…`. For each mesh (grid-N: a lattice of N
-// cubes in every direction, its vertices scrambled) the time from cells to graph, and from the graph to the
-// vector at two accuracies on one and two threads, median of five runs; the mean edge span of the order by
-// the vector; the memory that the solver took, relative to the graph's.
+// Measures what a Fiedler vector costs: `fiedler [MESH | grid-N]…`. grid-N is a lattice of N cubes in every
+// direction, its vertices scrambled. Prints for each mesh:
+// - the time from cells to graph;
+// - the time from the graph to the vector, at two accuracies, on one and two threads: medians of five runs;
+// - the mean edge span of the order by the vector;
+// - the memory that the solver took, relative to that of the graph.
 #include "spectral/fiedler.hpp"
 
 #include "base/stopwatch.hpp"

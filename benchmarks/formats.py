@@ -6,8 +6,8 @@ measures both sides in turns.
 
 The mesh is a cube of SIZE³ lattice cells, six tetrahedra each, shuffled, with an array of three numbers on its vertices and
 one on its cells: 50 makes 132,651 vertices and 750,000 tetrahedra. Times are processor time of the whole process, user and
-system, so that other work on the machine counts little; a ratio is that of the medians, above 1 where meshorder is the
-faster one.
+system, so that other work on the machine matters little. A ratio is that of the medians; it is above 1 where meshorder is
+faster.
 """
 
 from __future__ import annotations

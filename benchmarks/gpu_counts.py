@@ -22,7 +22,7 @@ LOADS = "l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum"
 ADDITIONS = "l1tex__t_sectors_pipe_lsu_mem_global_op_red.sum"
 READ = "dram__bytes_read.sum"
 REST = 40  # bytes of other data that a kernel reads for each tetrahedron
-LENGTH = 4  # likewise for each spring
+LENGTH = 4  # bytes of other data that a kernel reads for each spring
 
 
 class Ordered:

@@ -33,7 +33,7 @@ void report(const std::string& name, const CsrGraph& graph, std::optional<double
              unfinished == 0 ? "" : fmt::format("{} not converged", unfinished));
 }
 
-/// Returns weights spread evenly over decades, the same in both rows of an edge.
+/// Returns weights spread evenly over so many decades. An edge has the same weight in both of its rows.
 std::vector<double> weights_over(const CsrGraph& graph, double decades) {
   std::vector<double> weights;
   for (Index v = 0; v < graph.size(); ++v) {

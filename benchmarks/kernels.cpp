@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-// kernels [cubes across, default 40 [plain|tuned]]: the kernels on a lattice of tetrahedra, scrambled, in its
-// own order and along a Hilbert curve: best time, rate of compulsory memory traffic, speedup over scrambled.
+// kernels [cubes across, default 40 [plain|tuned]]: times the kernels on a lattice of tetrahedra in three
+// orders: scrambled, the lattice's own, and along a Hilbert curve. Prints the best time, the rate of
+// compulsory memory traffic, and the speedup over the scrambled order.
 #include "mesh/graphs.hpp"
 #include "mesh/procedural.hpp"
 #include "mesh/reorder.hpp"

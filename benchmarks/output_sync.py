@@ -5,8 +5,8 @@
 Usage: output_sync.py FOLDER [--rounds N] [--largest BYTES]
 
 Each round replaces a file in FOLDER as meshorder does (write a new one, rename it), once without waiting for the disk
-and once with fsync of the file before and of the folder after. Prints medians in milliseconds, and the time of the
-processor, in which the disk has no part.
+and once with fsync of the file before and of the folder after. Prints medians in milliseconds, also of processor time,
+which excludes waiting for the disk.
 """
 import argparse
 import os
@@ -19,7 +19,7 @@ PIECE = 1 << 20
 
 
 def replace(folder, content, synced):
-    """Returns the seconds that it takes, and those of the processor."""
+    """Replaces the file; returns the seconds by the clock and those of the processor."""
     wall, processor = time.perf_counter(), time.process_time()
     file = os.open(folder / "new", os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     for begin in range(0, len(content), PIECE):

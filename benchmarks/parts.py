@@ -11,9 +11,10 @@
   k-way by its defaults. Its cut depends on the numbering of the vertices: the table takes the smaller cut of the file's
   order and of the order along Hilbert's curve;
 - cache misses of the element force and of the matrix-vector product, predicted by `meshorder info` for caches of 32 KiB
-  and 1 MiB, in all pieces of `--pieces OUT --ghosts 0` together and in the worst one, relative to the misses of the same
-  pieces in the serial order: own vertices, then the ghosts of each owner, each in that order, and cells in `lexmax`,
-  which ranks ghosts before own vertices, as in the pieces. A dash: the caches hold every piece.
+  and 1 MiB, in all pieces of `--pieces OUT --ghosts 0` together and in the worst piece, relative to the misses of the same
+  pieces in the serial order. There, a piece has its own vertices first and then the ghosts of each owner; the vertices of
+  each such group are in the serial order, and cells in `lexmax`, which ranks ghosts before own vertices, as in the
+  pieces. A dash: the caches hold every piece.
 
 Meshes have tetrahedra and one component. Needs NumPy, meshio, pymetis and peer-graph_of (MESHORDER_BENCHMARKS).
 """

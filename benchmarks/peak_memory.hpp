@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// Measures by how much the process's memory rises after this is made. Linux, with glibc.
+/// Measures by how much the process's memory rises after the object is made. Needs Linux with glibc.
 class PeakMemory {
  public:
   PeakMemory() {

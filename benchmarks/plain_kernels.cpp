@@ -5,10 +5,11 @@
 // NAME=@FILE.npy takes the order of the vertices from a file: the old place of the vertex at each new place.
 // If the mesh is grid-N and no such file exists, it is a lattice in random order.
 //
-// All orders use the same memory, which each fills before its turn: all have the same pages. Each round has
-// another sequence of orders. A kernel runs alternately in the order and, in separate memory, in the first
-// order, because the speed of a shared machine changes from minute to minute. Prints medians of the ratios of
-// these times, multiplied by the median time in the first order, ms of the thread's processor time.
+// All orders use the same memory, and so the same pages: the data are moved there before an order's turn.
+// Each round has another sequence of orders. A kernel runs alternately in the order and, in separate memory,
+// in the first order, because the speed of a shared machine changes from minute to minute. Prints medians of
+// the ratios of these two times, multiplied by the median time in the first order, in ms of the thread's
+// processor time.
 #include "io/npy.hpp"
 #include "measuring.hpp"
 #include "mesh/graphs.hpp"
@@ -48,7 +49,7 @@ struct Ordered {
   double jumps = 0;
   double span = 0;
   std::vector<mo::Index> tetrahedra;
-  std::vector<mo::Index> ends;  // by the larger
+  std::vector<mo::Index> ends;  // sorted by the larger end
   std::vector<mo::Index> by_smaller_end;
   std::vector<Columns> starts;
   std::vector<Columns> columns;  // with the diagonal
@@ -62,7 +63,7 @@ struct Workspace : Ordered {
   std::vector<std::int64_t> wide_starts;
   std::vector<std::int64_t> wide_columns;
   std::vector<double> blocks;
-  std::vector<double> x;  // 5 a vertex, more than most need
+  std::vector<double> x;  // 5 numbers a vertex; most kernels need fewer
   std::vector<double> y;
   std::vector<float> narrow_x;
   std::vector<float> narrow_y;

@@ -53,7 +53,7 @@ class Block:
         tags, points, _ = gmsh.model.mesh.getNodes()
         _, elements = gmsh.model.mesh.getElementsByType(4)
         gmsh.finalize()
-        # as Gmsh's file has them: nodes by tag
+        # the order in Gmsh's file: nodes by tag
         order = numpy.argsort(tags)
         self.points = points.reshape(-1, 3)[order]
         self.tetrahedra = numpy.searchsorted(tags[order], elements.reshape(-1, 4))

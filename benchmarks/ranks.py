@@ -121,7 +121,7 @@ def measure(options, size, ranks, mesh, method, folder):
         stages = [stage for stage in STAGES if stage in report["seconds"]]
         ends = came - numpy.cumsum([0.0, *(report["seconds"][stage] for stage in reversed(stages))])[::-1]
         user, system = watch.between(ends)
-        # of a stage: in the program and in the system on all ranks, in the program on the rank with most
+        # for each stage: seconds of all ranks in the program, and in the system; those of the busiest rank in the program
         rounds.append([usage.ru_utime, usage.ru_stime, *user.sum(0), *system.sum(0), *user.max(0)])
     medians = [statistics.median(values) for values in zip(*rounds)]
     run = {"size": size, "ranks": ranks, "method": method, "vertices": report["vertices"]["count"],
@@ -215,7 +215,7 @@ def fitted(columns, values):
 
 
 class PerVertex:
-    """A cost of a vertex of a rank, which grows with the logarithms of the ranks and of the vertices of a rank."""
+    """A cost per vertex of a rank. It grows with two logarithms: of the ranks, and of the vertices of a rank."""
 
     def __init__(self, runs, values):
         self.ranks = [min(run["ranks"] for run in runs), max(run["ranks"] for run in runs)]
@@ -226,7 +226,7 @@ class PerVertex:
         self.coefficients = fitted(numpy.array(columns), numpy.array(values))
 
     def at(self, ranks, own):
-        """Returns the least cost, that of the nearest runs, and the most, which grows on beyond them."""
+        """Returns the least cost, that of the nearest runs, and the highest cost, which continues to grow beyond the runs."""
         nearest = [numpy.clip(ranks, *self.ranks), numpy.clip(own, *self.own)]
         beyond = [max(ranks, self.ranks[0]), max(own, self.own[0])]
         return numpy.array([[1.0, *numpy.log2(place)] for place in (nearest, beyond)]) @ self.coefficients

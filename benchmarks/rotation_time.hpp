@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
-/// The time of a closest rotation in one instruction set, ns for each matrix on one thread.
+/// The time to find the rotation closest to a matrix, in one instruction set on one thread, in ns.
 struct RotationTime {
   std::string instructions;
   double double_ns = 0.0, float_ns = 0.0;
 };
 
-/// Times the closest rotations of random deformation gradients in a cache, stretched and sheared by up to a
-/// half, in all instruction sets of this machine, the best one first. The best of several rounds.
+/// Times the closest rotations of random deformation gradients, which are stretched and sheared by up to a
+/// half and fit in a cache. Returns the best of several rounds for each instruction set of this machine, the
+/// best instruction set first.
 std::vector<RotationTime> rotation_times();

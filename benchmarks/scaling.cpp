@@ -3,7 +3,7 @@
 // Measures the cost of one order, in a process of its own for its peak memory; scaling.py runs it.
 //   scaling make CUBES FILE               a grid of tetrahedra, CUBES across, scrambled
 //   scaling vertices|elements METHOD FILE prints vertices, elements, seconds, MB before, MB at the peak
-// Elements are ordered after the vertices' Hilbert order. Memory counts the mesh and its graph.
+// Elements are ordered on vertices in Hilbert order. Memory includes the mesh and its graph.
 #include "base/stopwatch.hpp"
 #include "io/format.hpp"
 #include "mesh/graphs.hpp"

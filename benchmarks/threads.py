@@ -60,7 +60,7 @@ def measure(options, folder, counts):
 
 
 def serial_share(seconds):
-    """Returns the serial share from the times on one thread and on the most; None if one is the most."""
+    """Returns the serial share from the times on one thread and on the most threads; None if all times are on one thread."""
     most = max(seconds)
     if most == 1:
         return None

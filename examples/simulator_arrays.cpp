@@ -25,7 +25,7 @@ struct Body {
   std::vector<double> rest_length;  // of each spring
 };
 
-// Returns the order of the vertices, for what is stored elsewhere.
+// Orders all arrays of the body. Returns the order of the vertices, for data that are stored elsewhere.
 mo::Permutation reorder(Body& b) {
   const mo::MeshView mesh{b.x, mo::CellsView::uniform(mo::Shape::tetrahedron, 4, b.tets)};
   const auto [vertices, tets] = mo::order_mesh(mesh, {}, {.workload = mo::Workload::element});

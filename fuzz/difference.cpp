@@ -74,8 +74,8 @@ std::vector<std::vector<Index>> sorted_cells(const Cells& cells) {
   return result;
 }
 
-/// Returns arrays or sets sorted by association and name; those of one name keep their order. A file may list
-/// them in another order.
+/// Returns arrays or sets sorted by association and name; those with the same name keep their order. A file
+/// may list them in another order.
 template <class Named>
 std::vector<const Named*> by_name(const std::vector<Named>& all) {
   std::vector<const Named*> result(all.size());
@@ -96,8 +96,8 @@ std::string difference_of_arrays(const DataArray& a, const DataArray& b) {
   return {};
 }
 
-/// Returns the ids; none if they count from 1 on, since such ids hold no information: Gmsh files always have
-/// numbers of nodes.
+/// Returns the ids; an empty list if they count from 1 on. Such ids hold no information: Gmsh files always
+/// have numbers of nodes.
 std::vector<std::int64_t> told_ids(const std::vector<std::int64_t>& ids) {
   std::int64_t next = 1;
   const bool counts = std::all_of(ids.begin(), ids.end(), [&](std::int64_t id) { return id == next++; });

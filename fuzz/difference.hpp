@@ -12,14 +12,14 @@ namespace meshorder::fuzz {
 /// The parts of two meshes that are compared.
 enum class Extent : std::uint8_t {
   all,
-  points_and_cells,  ///< points up to 10⁻⁶ of their size, as some formats round them
-  corners,           ///< cells by the points of their vertices
+  points_and_cells,  ///< points may differ by 10⁻⁶ of their size, as some formats round them
+  corners,           ///< the points of the cells' vertices
   pairs,             ///< the number of cells with the same vertices, in any order
 };
 
-/// Returns the first difference between two meshes in words, an empty text if there is none. Numbers are the
-/// same if their bits are, or if neither is a number; rows of partial arrays and members of sets may have any
-/// order. O(size of the meshes · log members).
+/// Returns the first difference between two meshes in words; an empty text if the meshes are equal. Two
+/// values are equal if their bits are equal or if both are NaN. Rows of partial arrays and members of sets
+/// may have any order. O(size of the meshes · log members).
 std::string difference(const Mesh& found, const Mesh& expected, Extent extent);
 
 /// Returns the same for cells, where cell c of `expected` is cell `places.old_to_new()[c]` of `found`.

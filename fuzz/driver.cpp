@@ -4,8 +4,8 @@
 //
 //   meshorder_fuzz_FAMILY EXECUTIONS FOLDER
 //
-// checks the files of the folder, or one file, then EXECUTIONS changed ones. It does not measure coverage, so
-// it finds only faults near the seeds. An input that breaks a promise is left in the file "crash".
+// checks the files of the folder, or one file, then EXECUTIONS changed inputs. It does not measure coverage,
+// so it finds only faults near the seeds. An input that breaks a promise is left in the file "crash".
 #include "fuzz/engine.hpp"
 #include "fuzz/family.hpp"
 
@@ -25,7 +25,7 @@
 #include <utility>
 #include <vector>
 
-// of the sanitizers, where they are built in
+// defined by the sanitizers, if they are built in
 extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*callback)());  // NOLINT
 
 namespace meshorder::fuzz {
@@ -69,7 +69,7 @@ std::string changed(std::string text) {
   }
 }
 
-/// Returns the contents of a file, or of the files in a folder by their names.
+/// Returns the content of a file, or the contents of the files in a folder, sorted by their names.
 std::vector<std::string> seeds_in(const std::filesystem::path& place) {
   std::vector<std::filesystem::path> paths;
   if (std::filesystem::is_regular_file(place)) paths.push_back(place);

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // The functions that a fuzzing engine calls. One program serves all families: its name ends in the family's
-// name, with "_whole_" before it if files that a library reads stay whole.
+// name. "_whole_" before this name means that mutations leave files whole that a library reads.
 #include "fuzz/engine.hpp"
 #include "fuzz/family.hpp"
 
@@ -15,7 +15,7 @@
 #include <string>
 #include <utility>
 
-// of the leak checker, where it is built in
+// defined by the leak checker, if it is built in
 extern "C" __attribute__((weak)) void __lsan_disable();  // NOLINT
 extern "C" __attribute__((weak)) void __lsan_enable();   // NOLINT
 
@@ -79,8 +79,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
                                                unsigned seed) {
-  constexpr unsigned kOneIn = 2;  // mutations that know the structure
-  // libraries crash on some damaged files, in mutations that use them, too
+  constexpr unsigned kOneIn = 2;  // one mutation in so many knows the structure
+  // libraries crash on some damaged files, also in a `mutate` that calls the library
   const bool knows = chosen->by_library ? keeps_files_whole : seed % kOneIn == 0;
   if (chosen->mutate != nullptr && knows) {
     const std::string result = changed({data, data + size}, static_cast<std::uint32_t>(std::mt19937(seed)()));

@@ -8,7 +8,7 @@
 namespace meshorder::fuzz {
 
 /// Writes a file of Exodus II of some kilobytes with blocks, sets, sides, attributes, maps and variables of
-/// all kinds in two steps. Writers of other meshes do not use most of these.
+/// all kinds in two steps. Files written from meshes of other formats lack most of these.
 void write_exodus_seed(const std::filesystem::path& path, const exodus::Storage& storage);
 
 }  // namespace meshorder::fuzz

@@ -20,12 +20,12 @@ struct Family {
   /// Changes an input with knowledge of its structure; `seed` determines all choices. Returns an empty text
   /// if the input has no such structure. Null: bytes are changed without knowledge of their meaning.
   std::string (*mutate)(std::string input, std::uint32_t seed) = nullptr;
-  /// Whether a library reads the bytes. Libraries crash on some damaged files: inputs are changed either by
-  /// `mutate` alone, which leaves files whole, as in tests, or without it.
+  /// Whether a library reads the bytes. Libraries crash on some damaged files. A program therefore changes
+  /// inputs either only by `mutate`, which leaves files whole (as in tests), or never by it.
   bool by_library = false;
 };
 
-/// Returns all families, those of the formats that this build has among them.
+/// Returns all families, including those of the formats that this build has.
 std::span<const Family> families();
 
 /// Writes a sentence to standard error and aborts.

@@ -16,7 +16,7 @@ std::vector<MemoryFile> input_files(std::string_view input, const std::string& f
 /// Joins files to an input; the inverse of `input_files`.
 std::string input_of(const std::vector<MemoryFile>& files);
 
-/// Returns the bytes of the file of that name, none if it is not there.
+/// Returns the bytes of the file of that name; an empty text if there is no such file.
 std::string bytes_of(const std::vector<MemoryFile>& files, std::string_view name);
 
 }  // namespace meshorder::fuzz

@@ -19,8 +19,8 @@
 namespace meshorder::fuzz {
 namespace {
 
-/// Formats in which meshes of other formats are written: without a library that needs files on disk, and with
-/// a point for each vertex.
+/// Formats in which meshes of other formats are written. They need no library that reads files on disk, and
+/// hold a point for each vertex.
 constexpr std::array<std::string_view, 14> kOtherFormats{"gmsh",   "vtu",     "vtk", "medit", "tetgen",
                                                          "vega",   "off",     "ply", "obj",   "su2",
                                                          "abaqus", "nastran", "unv", "ucd"};
@@ -80,21 +80,21 @@ Extent extent_of(std::string_view format, bool is_whole) {
   return is_whole ? Extent::all : Extent::points_and_cells;
 }
 
-/// Returns the mesh without MED's numbers of families: those of vertices change if the file numbers them like
-/// families of cells.
+/// Returns the mesh without MED's numbers of families. The numbers of vertex families change if the file uses
+/// them for families of cells, too.
 Mesh without_families(Mesh mesh) {
   std::erase_if(mesh.data, [](const DataArray& array) { return array.name == "family"; });
   return mesh;
 }
 
-/// Whether numbers ascend by one from 0 or 1.
+/// Returns whether numbers ascend by one from 0 or 1.
 bool is_run(std::span<const std::int64_t> numbers) {
   const auto is_no_step = [](std::int64_t number, std::int64_t next) { return next != number + 1; };
   return !numbers.empty() && (numbers.front() == 0 || numbers.front() == 1) &&
          std::adjacent_find(numbers.begin(), numbers.end(), is_no_step) == numbers.end();
 }
 
-/// Whether the numbers of the cells of each dimension are a run.
+/// Returns whether the numbers of the cells of each dimension ascend by one from 0 or 1.
 bool cells_run(const Mesh& mesh) {
   std::array<std::vector<std::int64_t>, 4> numbers;
   for (std::size_t c = 0; c < mesh.cell_ids.size(); ++c)
@@ -108,11 +108,11 @@ void check_same_format(const Mesh& mesh, std::string_view format, const std::str
   const std::optional<MemoryFiles> files = written(mesh, format, name, notes);
   if (!files) return;
   Mesh again = read_back(format, files->files);
-  // alternating entities of Gmsh make no blocks; if an order has made their cells adjacent, the file read has
-  // some
+  // cells that alternate between entities of Gmsh make no blocks; if the order has made the cells of an
+  // entity adjacent, the mesh that is read back has blocks
   if (format == "gmsh" && mesh.cell_blocks.empty()) again.cell_blocks.clear();
-  // in TetGen's and Vega's files, ids that count from 0 or 1 after the move (in each of TetGen's files) are
-  // read as places
+  // ids that count from 0 or 1 after the move are read back as mere positions from Vega's files, and from
+  // TetGen's if they do so in each file
   if (format == "tetgen" || format == "vega") {
     if (again.vertex_ids.empty() && is_run(mesh.vertex_ids)) again.vertex_ids = mesh.vertex_ids;
     if (again.cell_ids.empty() && cells_run(mesh)) again.cell_ids = mesh.cell_ids;

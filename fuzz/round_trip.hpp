@@ -9,9 +9,10 @@
 
 namespace meshorder::fuzz {
 
-/// Checks what is promised of a mesh file: reading it gives an error of one line or a mesh that `check_mesh`
-/// accepts; that mesh, with vertices and cells moved, is the same after it was written and read; written in
-/// another format that holds its cells, it has the same cells. Aborts with a message otherwise.
+/// Checks what is promised of a mesh file, and aborts with a message if a promise is broken:
+/// - Reading the file gives an error of one line or a mesh that `check_mesh` accepts.
+/// - That mesh, with vertices and cells moved, is the same after it is written and read.
+/// - Written in another format that holds its cells, the mesh has the same cells.
 void check_mesh_files(std::string_view format, const std::vector<MemoryFile>& files);
 
 }  // namespace meshorder::fuzz

@@ -30,7 +30,7 @@ TETGEN = {"kNode": "mesh.node", "kEle": "mesh.ele", "kFace": "mesh.face", "kEdge
 
 
 def constants(path):
-    """Returns the texts of a source by their names, those of more than one line."""
+    """Returns the texts of more than two lines in a source, by their names."""
     source = path.read_text(encoding="utf-8")
     found = dict(RAW.findall(source))
     for name, literals in PLAIN.findall(source):

@@ -44,7 +44,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostOfSeed = 8192;  // of a seed; small ones are quick
+constexpr std::size_t kMostOfSeed = 8192;  // bytes; small seeds are quick to run
 
 class Seeds {
  public:
@@ -86,7 +86,7 @@ void add_meshes(Seeds& seeds) {
   }
 }
 
-/// Returns a mesh that VTK's writers store with this encoding.
+/// Returns a mesh that the writer of .vtu files stores with this encoding.
 Mesh stored_so(const VtuEncoding& encoding) {
   Mesh mesh = test::tetrahedral_bar(1);
   mesh.format = "vtu";

@@ -5,7 +5,7 @@
     table.py BUILD-FOLDER [FAMILY…]    all families that have run, or these
 
 Executions and seconds are those of all runs with logs; coverage is that of the corpus in the last run.
-Exit status 1 if one of them has findings of its own.
+Exit status 1 if a family has findings of its own.
 """
 import os
 import pathlib
@@ -24,7 +24,7 @@ RUNTIME_FUNCTION = re.compile(r"fuzzer::|__(asan|lsan|ubsan|sanitizer|intercepto
 
 
 def progress(family, build):
-    """Returns executions and seconds of all runs, edges and features of the last."""
+    """Returns executions and seconds of all runs, and edges and features of the last run."""
     executions = seconds = edges = features = 0
     for log in sorted((build / "logs").glob(f"{family}.*.log")):
         text = log.read_text(encoding="utf-8", errors="replace")

@@ -71,9 +71,9 @@ struct Case {
   std::vector<std::function<void()>> work;
 };
 
-/// Runs every work of all cases once a round, in a random sequence of the cases, and prints a table in
-/// Markdown: the median of each work's processor time, and how many times faster it is than in the first
-/// case, the median of the rounds.
+/// Runs every work of all cases once a round, in a random sequence of the cases. Prints a table in Markdown:
+/// the median of each work's processor time, and the median, over the rounds, of how many times faster the
+/// work is than in the first case.
 ///
 /// @param titles  of the works
 /// @param facts   titles of `Case::facts`, between their bars

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #
-# Builds the libraries that meshorder needs in a manylinux image, whose own are too old: cibuildwheel's before-all.
+# Builds the libraries that meshorder needs in a manylinux image, because the image's own libraries are too old.
+# cibuildwheel runs this script as its before-all.
 set -euo pipefail
 
 dnf -y install curl git ninja-build perl tar unzip zip

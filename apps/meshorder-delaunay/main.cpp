@@ -2,9 +2,11 @@
 //
 // Triangulates sets of points for `meshorder simulate splash` until its input ends.
 //
-// Reads, in the machine's byte order: a number n (8 bytes), then n points of three doubles. Answers with a
-// number m (8 bytes), the corners of m tetrahedra (four numbers of 4 bytes each), and the four neighbours of
-// each, opposite its corners; −1 outside the hull. Points are numbered from 0.
+// Reads, in the machine's byte order, a number n (8 bytes), then n points of three doubles. Writes:
+// - the number m of tetrahedra (8 bytes);
+// - for each tetrahedron, the numbers of its four corners (4 bytes each); points are numbered from 0;
+// - for each tetrahedron, the numbers of its four neighbours (4 bytes each), each opposite a corner; −1 where
+//   a face is on the hull.
 //
 // These parts of CGAL are under the GPL, so this is a separate program: see README.md of meshorder-models.
 #include <CGAL/Delaunay_triangulation_3.h>

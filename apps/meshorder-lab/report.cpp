@@ -36,7 +36,8 @@ namespace fs = std::filesystem;
 
 struct ReportArguments : Common {
   std::vector<std::string> inputs;
-  std::string output;  ///< empty: report.html (in the study's folder, for a study), or comparison.html
+  /// Empty: report.html, for a study in its folder; for two studies comparison.html.
+  std::string output;
   double budget_seconds = TimingOptions{}.budget_seconds;
   OrderOptions ordering;
   std::string option_of_meshes;  ///< an option that was given but does not apply to studies; empty: none
@@ -53,7 +54,7 @@ std::vector<OrderingSpec> orderings_of_report() {
           {"scrambled", "Scrambled", "scrambled", "scrambled"}};
 }
 
-/// Returns whether an order differs from another one only in its elements, which a matrix lacks.
+/// Returns whether an order differs from another order only in its elements, which a matrix lacks.
 bool orders_elements(const OrderingSpec& ordering) { return ordering.name == "vf-fiedler"; }
 
 /// Returns the predicted and measured times of an order, as `info` takes them.
@@ -123,7 +124,7 @@ std::string add_mesh(Page& page, const std::string& file, const ReportArguments&
   MeshStudyOptions options;
   options.ordering = arguments.ordering;
   options.timing.budget_seconds = arguments.budget_seconds;
-  options.hierarchies = {hierarchies_of_studies().front()};  // without the paper's machine
+  options.hierarchies = {hierarchies_of_studies().front()};  // omits those of the paper's machine
   options.progress = [&](std::string_view what, double fraction) {
     progress.stage(fmt::format("{}: {}", name, what), from + (0.1 + 0.8 * fraction) * (to - from), to);
   };
@@ -157,8 +158,8 @@ std::string title_of(const Page& page) {
   return fmt::format("What the order of {} is worth", fmt::join(names, ", "));
 }
 
-/// Throws InvalidArgument for the name of another kind of file, such as a mesh, which the page would
-/// overwrite.
+/// Throws InvalidArgument for a name that is not that of a page: a page would overwrite such a file, perhaps
+/// a mesh.
 void check_name_of_page(const std::string& output, const char* of) {
   const std::string extension = fs::path(output).extension().string();
   if (same_but_for_case(extension, ".html") || same_but_for_case(extension, ".htm")) return;

@@ -31,7 +31,7 @@ StepReport sums(const MotionRecord& record) {
   return sum;
 }
 
-/// Returns the time of a step that belongs to none of its parts.
+/// Returns the time of a step that no field except `total` contains.
 double other(const StepReport::Seconds& seconds) {
   return seconds.total - seconds.assembly - seconds.solve - seconds.local - seconds.global -
          seconds.collision - seconds.triangulation - seconds.order - seconds.motion;
@@ -207,7 +207,7 @@ std::string contact_in_words(const ProjectiveScenario& options) {
   return words + ", by uzawa";
 }
 
-/// Prints the time of each part of a fluid's steps, and how often it was ordered.
+/// Prints the time of each part of a fluid's steps, and how often the fluid was ordered.
 void print_fluid_steps(const Console& console, const Simulation& simulation, const MotionRecord& record) {
   const auto steps = static_cast<double>(record.steps.size());
   const StepReport sum = sums(record);
@@ -263,8 +263,8 @@ void print_steps(const Console& console, const Scenario& scenario, const MotionR
                   record.steps.back().report.vertices_in_itself);
 }
 
-/// Prints the distance of the body from its shape at rest, and the step from which on it is within 1 % of
-/// its height.
+/// Prints the distance of the body from its shape at rest, and the step from which on this distance is within
+/// 1 % of the body's height.
 void print_shape(const Console& console, const Simulation& simulation, const MotionRecord& record) {
   const BoundingBox box = bounding_box(simulation.mesh.points, simulation.vertices);
   const double near = 0.01 * (box.high[1] - box.low[1]);

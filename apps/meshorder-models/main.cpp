@@ -36,7 +36,7 @@ void run_wrap(const std::string& in, const std::string& out, const WrapOptions& 
 }
 
 int fail(int code, const char* what) {
-  // CGAL and CLI11 give messages of several lines; a failure is reported in one
+  // CGAL and CLI11 give messages of several lines; a failure is reported in one line
   std::string line = what;
   for (char& c : line) {
     if (c == '\n') c = ' ';

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\v\f";
 
-/// Yields the non-blank lines of a text, and the words of the current one.
+/// Yields the non-blank lines of a text, and the words of the current line.
 class Lines {
  public:
   Lines(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}

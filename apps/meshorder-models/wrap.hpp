@@ -5,7 +5,8 @@
 
 namespace meshorder::models {
 
-/// Lengths of a wrap, as fractions of the diagonal of the surface's bounding box: larger ratios are finer.
+/// Lengths of a wrap. Each is given by a ratio: the diagonal of the surface's bounding box divided by the
+/// length. Larger ratios give finer wraps.
 struct WrapOptions {
   double alpha_ratio = 200;  ///< diagonal / alpha; alpha bounds the size of the wrap's triangles
   double offset_ratio =

@@ -43,7 +43,7 @@ int tell(const Communicator& communicator, const std::string& message, int statu
   return communicator.is_root() ? report_failure(message, status) : status;
 }
 
-/// Options of `meshorder order` in one process without parts.
+/// Options of `meshorder order` that are supported only in one process without parts.
 constexpr std::array<std::string_view, 9> kOptionsOfOneProcess{"--elements",  "--group-by",    "--for",
                                                                "--tolerance", "--measure",     "--predict",
                                                                "--machine",   "--all-threads", "--timings"};

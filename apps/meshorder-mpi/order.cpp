@@ -105,9 +105,12 @@ void require_points_of(const Communicator& communicator, const Mesh& mesh, const
   });
 }
 
-/// Returns the input if all ranks can read it, else nothing: for files of other kinds, for maps of
-/// cells whose nodes a Mesh has in another order, for maps without an output, for pieces of .xdmf files, and
-/// for pieces in Nemesis.
+/// Returns the input if all ranks can read it in parts, and nothing in these cases:
+/// - the input is not a .vtu, .vtkhdf or .xdmf file;
+/// - the output has another extension than the input;
+/// - rank 0 has to read and write;
+/// - maps are wanted, but there is no output, or a Mesh would have the nodes of some cells in another order;
+/// - pieces of an .xdmf file, or pieces in Nemesis, are wanted.
 std::optional<FileSlices> slices_of(const Communicator& communicator, const Arguments& arguments) {
   const auto extension = [](const std::string& name) { return std::filesystem::path(name).extension(); };
   const std::filesystem::path kind = extension(arguments.input);
@@ -123,7 +126,8 @@ std::optional<FileSlices> slices_of(const Communicator& communicator, const Argu
   return slices;
 }
 
-/// Returns an Exodus file if all ranks can read it: in runs that write only pieces, perhaps with maps.
+/// Returns the input if it is an Exodus file that all ranks can read in parts, and if the run writes only
+/// pieces, perhaps with maps.
 std::optional<ExodusSlices> exodus_slices_of(const Communicator& communicator, const Arguments& arguments) {
   if (!arguments.output.empty() || needs_root(arguments)) return std::nullopt;
   std::optional<ExodusSlices> slices = ExodusSlices::open(communicator, arguments.input);
@@ -137,7 +141,7 @@ struct Finished {
   const DistributedOptions& options;
   const distributed::DistributedReport& report;
   const OrderOutputs& outputs;
-  const Mesh& whole;  ///< empty where all ranks have read the file
+  const Mesh& whole;  ///< empty if all ranks have read the file
   bool by_all;        ///< all ranks have read and written the files, not the root alone
   GlobalIndex vertices;
   GlobalIndex cells;

@@ -9,10 +9,10 @@ class App;
 
 namespace meshorder::command {
 
-/// Adds the options of `order`. It runs on all ranks once all arguments are parsed, and throws SharedError on
-/// all of them if one fails.
+/// Adds the options of `order`. It runs on all ranks once all arguments are parsed. If a rank fails, it
+/// throws SharedError on all ranks.
 ///
-/// @param is_started_as_rank  whether a launcher started this process, even if it started no other
+/// @param is_started_as_rank  whether a launcher started this process, even if it started no other process
 void add_distributed_order(CLI::App& subcommand, const distributed::Communicator& communicator,
                            bool is_started_as_rank);
 

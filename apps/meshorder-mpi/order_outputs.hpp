@@ -24,7 +24,8 @@ struct OrderFiles : MeshFiles {
   std::string pieces;  ///< folder, a .vtkhdf file, or a name of Exodus II; empty: no pieces
   int ghosts = 1;      ///< layers of ghost cells in pieces, 0 or 1
 
-  /// Returns the files with an output that sets the format, even if only pieces are written.
+  /// Returns the files with an output whose extension sets the format; without an output, the
+  /// extension is that of the pieces.
   [[nodiscard]] MeshFiles with_output() const;
   /// Returns whether the pieces are the partitions of one file.
   [[nodiscard]] bool has_pieces_in_one_file() const;
@@ -41,7 +42,7 @@ class OrderOutputs {
   /// Checks, before the work, that the files can be written.
   ///
   /// @param files  outlives this object
-  /// @throws SharedError if they cannot
+  /// @throws SharedError if the files cannot be written
   OrderOutputs(const distributed::Communicator& communicator, const OrderFiles& files);
 
   /// Checks, before the work, that pieces can hold the cells of a mesh that the root has read.
@@ -59,7 +60,7 @@ class OrderOutputs {
   void write(const distributed::ExodusSlices& slices, const distributed::DistributedOrder& order,
              const MeshChecksums& before, Notes& notes);
 
-  /// Writes a mesh at the root, which is in its new order, and its maps.
+  /// Writes a mesh that the root holds in its new order, and its maps.
   void write(const MeshToOrder& whole, const distributed::DistributedOrder& order, Notes& notes);
 
   /// Puts all files in place.
@@ -88,7 +89,8 @@ class OrderOutputs {
 
   const distributed::Communicator& communicator_;
   const OrderFiles& files_;
-  std::optional<PieceOutputs> pieces_;     ///< at the root; destroyed, with its folder, after the set
+  /// At the root. Destroyed after the set, so that its folder can be removed if no piece was put in place.
+  std::optional<PieceOutputs> pieces_;
   std::optional<NemesisOutputs> nemesis_;  ///< at the root
   OutputSet set_;
   std::vector<std::string> maps_;

@@ -41,7 +41,8 @@ bool names_mesh_file(const fs::path& path) {
   });
 }
 
-/// Returns the files that a .pvtu file names, as written in it; none if it does not exist.
+/// Returns the files that a .pvtu file names, as written in it; an empty set if the .pvtu file does not
+/// exist.
 std::set<std::string> named_by(const fs::path& index) {
   constexpr std::string_view kAttribute = "Source=\"";
   constexpr std::size_t kMost = std::size_t{1} << 28;
@@ -118,7 +119,7 @@ std::vector<std::string> PieceOutputs::open(Index pieces) {
 }
 
 void PieceOutputs::add_to(OutputSet& set, const std::string& index_text) {
-  // a reader would not notice pieces of two runs
+  // a reader would not notice that pieces come from two runs
   set.remove_first(FilePath::derived(index()));
   for (const fs::path& old : old_pieces()) {
     if (std::find(names_.begin(), names_.end(), old.filename().string()) == names_.end())

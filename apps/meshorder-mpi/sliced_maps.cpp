@@ -54,7 +54,7 @@ class MapWriter {
   MapWriter(const Communicator& communicator, OutputSet& outputs)
       : communicator_(communicator), outputs_(outputs) {}
 
-  /// Writes a list of places that is distributed over the ranks, in the format of `write_npy`.
+  /// Writes a list of positions that is distributed over the ranks, in the format of `write_npy`.
   void write(const std::string& name, const Layout& layout, const std::vector<GlobalIndex>& own) {
     write(name, layout, own, layout.size() <= kMaxIndex);
   }
@@ -82,7 +82,7 @@ class MapWriter {
     written.push_back(name);
   }
 
-  /// Writes a map, its inverse and the old numbers, which may be null.
+  /// Writes a map, its inverse, and the file's old numbers unless `ids` is null.
   void write_all(const MapPaths& paths, const Layout& layout, const std::vector<GlobalIndex>& new_numbers,
                  const std::vector<std::int64_t>* ids) {
     write(paths.old_to_new, layout, new_numbers);

@@ -21,9 +21,9 @@ MeshChecksums checksums_of(const distributed::Communicator& communicator,
 /// The data that maps are made of.
 struct SlicedOrder {
   const std::vector<distributed::GlobalIndex>& new_vertices;  ///< new number of each vertex of the old slice
-  const std::vector<distributed::GlobalIndex>& new_cells;     ///< new place of each of its cells
-  const std::vector<distributed::GlobalIndex>& part_starts;   ///< as of `distributed::part_of`
-  /// Number of each vertex and cell of the old slice in the file; null if it is their place.
+  const std::vector<distributed::GlobalIndex>& new_cells;     ///< new number of each cell of the old slice
+  const std::vector<distributed::GlobalIndex>& part_starts;   ///< as in `distributed::part_of`
+  /// Numbers that the file gives the vertices and cells of the old slice; null if these are their positions.
   const std::vector<std::int64_t>* vertex_ids = nullptr;
   const std::vector<std::int64_t>* cell_ids = nullptr;
 };

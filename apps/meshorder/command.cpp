@@ -34,8 +34,8 @@ bool is_digits(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Accepts whole numbers from `lowest` to `highest`. Refuses smaller ones with the words `if_less`, larger
-/// ones with `if_more`.
+/// Accepts whole numbers from `lowest` to `highest`. Refuses smaller numbers with the words `if_less`, larger
+/// numbers with `if_more`.
 CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest, const std::string& if_less,
                             const std::string& if_more) {
   return {[=](const std::string& text) {

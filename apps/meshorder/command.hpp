@@ -22,7 +22,7 @@ namespace meshorder::command {
 struct Common {
   bool json = false;
   bool quiet = false;
-  int threads = 0;  ///< 0: as many as the machine has
+  int threads = 0;  ///< 0: as many threads as the machine has
 };
 
 /// Ends the command with a message and an exit status.

@@ -31,10 +31,10 @@ namespace {
 struct CompareArguments : Common {
   std::string input;
   std::string points;
-  std::vector<std::string> methods;  ///< empty: the order of auto, and all others
+  std::vector<std::string> methods;  ///< empty: `default_methods()`
   OrderOptions ordering;
   double budget_seconds = TimingOptions{}.budget_seconds;
-  std::string caches;  ///< empty: the machine's, unless prediction takes long
+  std::string caches;  ///< empty: those of the machine; large meshes are then not predicted
   std::string machine;
   KernelSet kernels = KernelSet::plain;
   bool details = false;
@@ -55,7 +55,7 @@ std::vector<std::string> names_of(const CompareArguments& arguments) {
   return arguments.methods.empty() ? default_methods() : arguments.methods;
 }
 
-/// Returns the methods of the orders of these names.
+/// Returns the methods of the orders with these names.
 std::vector<MeshMethods> methods_of(const std::vector<std::string>& names) {
   std::vector<MeshMethods> methods;
   methods.reserve(names.size());

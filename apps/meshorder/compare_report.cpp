@@ -46,7 +46,7 @@ std::string sentence_on(const ComparisonReport& report, const Advice& advice, Wo
 
 constexpr int kBarWidth = 12;
 
-/// A column of the table: for each order the speedup over the file's own order, and last that of the band if
+/// A column of the table: the speedup of each order over the file's own order, and last the band's speedup if
 /// it is known.
 struct Column {
   std::string title;
@@ -63,7 +63,7 @@ Column column(std::string title, const KernelTable& table,
   return result;
 }
 
-/// Returns a column for each kernel. For a mesh, one for their geometric mean comes first.
+/// Returns a column for each kernel. For a mesh, a column for the geometric mean of all kernels comes first.
 std::vector<Column> columns_of(const ComparisonReport& comparison, const KernelTable& table) {
   std::vector<Column> columns;
   if (!comparison.is_matrix()) {
@@ -99,7 +99,7 @@ void print_speedups(const Console& console, const ComparisonReport& comparison, 
                     Workload told) {
   std::vector<Column> columns = columns_of(comparison, table);
   std::ranges::move(counted_columns(comparison), std::back_inserter(columns));
-  // a matrix has one column, a mesh one for all kernels before the others
+  // a matrix has one column; a mesh has a column for all kernels, and then one for each kernel
   const std::size_t judged = comparison.is_matrix() || told == Workload::all ? 0 : kernel_of(told) + 1;
   const auto width = [](const Column& c) { return std::max<std::size_t>(7, c.title.size() + 1); };
   std::string heads = fmt::format("{:<26} {:>8}", "order", "cost");
@@ -325,7 +325,8 @@ nlohmann::ordered_json to_json(const ComparisonReport& comparison) {
     }
     methods.push_back(method);
     if (i > 0 || !comparison.auto_keeps) continue;
-    method["vertices"] = comparison.auto_keeps->vertices;  // the same order, named by `auto`
+    // lists the order once more, under the names that `auto` chose
+    method["vertices"] = comparison.auto_keeps->vertices;
     method["elements"] = comparison.auto_keeps->elements;
     methods.push_back(method);
   }

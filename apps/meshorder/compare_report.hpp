@@ -22,8 +22,7 @@ struct ComparisonReport : MeshComparison {
   std::vector<std::vector<GpuCost>> gpu = {};  ///< of each order in each layout; empty without layouts
 };
 
-/// Prints the best order, the command that makes it, and the speedup of each order over the file's
-/// own.
+/// Prints the best order, the command that makes it, and the speedup of each order over the file's own.
 void print_comparison(const Console& console, const ComparisonReport& comparison);
 
 /// Prints costs and spans, predicted misses, and the times of kernels for each number of threads.

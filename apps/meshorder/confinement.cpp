@@ -43,14 +43,14 @@ namespace fs = std::filesystem;
 
 constexpr int kStatusOfBadInput = 2;
 constexpr rlim_t kSecondsToRead = 10;                // of processor time
-constexpr std::uintmax_t kBytesASecond = 1'000'000;  // of a file that are read in a further second
+constexpr std::uintmax_t kBytesASecond = 1'000'000;  // of a file, for each further second
 constexpr std::uintmax_t kMostSeconds = 10'000'000;
 constexpr unsigned kWaiting = 10;  // elapsed seconds for each second of processor time
 constexpr std::array kPassedOn{SIGINT, SIGTERM, SIGHUP};
 constexpr std::array kCrashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS};
 
-/// State of the child's work, in shared memory. This process uses the state only for messages, because a
-/// malicious file may control the child.
+/// State of the child's work, in shared memory. The parent uses it only for messages, because a malicious
+/// file may control the child.
 struct Work {
   std::atomic<bool> is_reading{false};
   std::atomic<std::uint32_t> mesh{0};     ///< index of the mesh that is read, or was read last

@@ -23,11 +23,11 @@ struct Files {
 /// Continues in a child process if a library, not meshorder, parses one of the meshes. The child can reach
 /// only these files and the stored calibrations (see `give_up_rights`): a damaged or malicious file can harm
 /// nothing else. Returns in the child only. This process waits, passes signals on, and ends with the status
-/// of the child. If a library crashes or does not end, it removes unfinished outputs, prints one line of
-/// error and ends with status 2.
+/// of the child. If a library crashes or does not end, this process removes unfinished outputs, prints one
+/// line of error and ends with status 2.
 ///
-/// Does nothing for trusted files (`--trust`), or if the system cannot make a child. Call it
-/// while there is one thread. Throws InputError for an output that cannot be written.
+/// Does nothing for trusted files (`--trust`), or if the system cannot make a child. Call it while there is
+/// one thread. Throws InputError for an output that cannot be written.
 void confine(const Files& files);
 
 /// Trusts all files that this process reads: `confine` then does nothing.

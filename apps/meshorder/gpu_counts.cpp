@@ -130,7 +130,7 @@ Mesh in_order(const Mesh& mesh, const MeshOrder& order) {
 namespace {
 
 bool have_countable_size(const IncidenceRef& elements) {
-  constexpr Offset kMostVertices = 255;  // of a cell in a patch of 256
+  constexpr Offset kMostVertices = 255;  // of a cell; a patch holds 256
   const Offset width = common_size(elements);
   return elements.size() > 0 && width > 0 && width <= kMostVertices;
 }

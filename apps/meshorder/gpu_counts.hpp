@@ -20,17 +20,18 @@ namespace meshorder::command {
 /// Returns the points and cells of a mesh, moved into an order. O(cells).
 Mesh in_order(const Mesh& mesh, const MeshOrder& order);
 
-/// Returns whether a mesh has elements, all with the same number of vertices, and not more than patches can
-/// have. O(cells).
+/// Returns whether a mesh has elements, all with the same number of vertices, and whether patches can hold
+/// elements with so many vertices. O(cells).
 bool counts_additions(const Mesh& mesh);
 
-/// Counts additions to the vertices of a mesh's elements, in its order; nothing unless `counts_additions`.
+/// Counts additions to the vertices of a mesh's elements, in the mesh's order. Returns nothing if
+/// `counts_additions` returns false.
 std::optional<GpuCost> cost_of_additions(const Mesh& mesh, GpuLayout layout);
 
 /// Returns how many times fewer sectors a kernel touches in another order.
 double sector_ratio(const GpuCost& as_is, const GpuCost& ordered);
 
-/// A graphics processor whose times are known: of element forces of tetrahedra in single precision, in the
+/// A graphics processor with known times of the element forces of tetrahedra, in single precision and in the
 /// layouts packed, apart and padded. A time is a constant for the launch, plus a constant for each sector
 /// (benchmarks/gpu_card.py).
 struct GpuCard {
@@ -43,7 +44,7 @@ struct GpuCard {
 /// Returns the names of all cards.
 std::vector<std::string> gpu_card_names();
 
-/// Returns a card by its name; null for an empty or unknown one.
+/// Returns a card by its name; null for an empty or unknown name.
 const GpuCard* gpu_card(std::string_view name);
 
 /// A kernel in the file's order and in that for graphics processors.
@@ -52,15 +53,15 @@ struct CountedKernel {
   std::string_view title;  ///< in a table
   GpuCost as_is;
   GpuCost ordered;
-  std::optional<double> as_is_us = {};  ///< time on a card; only if that is known
+  std::optional<double> as_is_us = {};  ///< time on a card, if known
   std::optional<double> ordered_us = {};
 };
 
 /// The effect of `order --for gpu` on a mesh.
 struct GpuReport {
   MeshOrder order;
-  std::vector<CountedKernel> additions;  ///< one for each layout; none if `cost_of_additions` has none
-  std::vector<CountedKernel> products;   ///< by one and by eight threads a row; none without edges
+  std::vector<CountedKernel> additions;  ///< one for each layout; empty unless `counts_additions`
+  std::vector<CountedKernel> products;   ///< with one and with eight threads a row; empty without edges
   const GpuCard* card = nullptr;
   std::vector<std::string> notes = {};  ///< what was not counted, and why
 
@@ -77,7 +78,7 @@ GpuReport gpu_report(const Mesh& mesh, const CsrGraph& graph, const GpuCard* car
 /// Returns in a sentence whether the mesh is in a good order for a graphics processor.
 std::string to_string(const GpuReport& report);
 
-/// Prints the command that makes the new order, or the reasons to keep the old one.
+/// Prints the command that makes the new order, or the reasons to keep the old order.
 void print_next(const Console& console, const GpuReport& report, const std::string& mesh);
 
 /// Prints a table with a row for each kernel.

@@ -5,8 +5,8 @@
 
 namespace meshorder::command {
 
-/// Merges notes that differ only in their first quoted name, at the place of the
-/// first: "the set 'a' of vertices is not written (likewise 'b', 'c' and 15 more)".
+/// Merges notes that differ only in their first quoted name: "the set 'a' of vertices is not written
+/// (likewise 'b', 'c' and 15 more)". The merged note takes the position of the first of them.
 Notes grouped_by_name(const Notes& notes);
 
 }  // namespace meshorder::command

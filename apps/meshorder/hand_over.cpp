@@ -40,7 +40,8 @@ char** subcommand(char** arguments) {
   return nullptr;
 }
 
-/// Returns the first of these arguments that is an option of `meshorder-mpi order` only; empty if none is.
+/// Returns the first argument that is an option of `meshorder-mpi order` only; empty if there is no such
+/// argument.
 std::string_view option_of_parts(char** arguments) {
   for (; *arguments != nullptr; ++arguments) {
     const std::string_view word = *arguments;
@@ -55,8 +56,8 @@ bool is_of_lab(std::string_view word) {
                      [&](const LabCommand& command) { return command.name == word; });
 }
 
-/// Returns the path of a program beside this one; empty if the system does not report where this one is (a
-/// name alone would mean a file in the present folder).
+/// Returns the path of a program beside this one. Empty if the system does not report where this program is:
+/// a name without a folder would mean a file in the current folder.
 std::filesystem::path beside_this_program(const char* name) {
   std::error_code code;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", code);

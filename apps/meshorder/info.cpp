@@ -45,7 +45,7 @@ namespace {
 struct InfoArguments : Common {
   std::string input;
   std::string points;
-  std::string caches;  ///< empty: the machine's, unless prediction takes long
+  std::string caches;  ///< empty: those of the machine; large meshes are then not predicted
   std::string machine;
   bool all_threads = false;
   bool measure = false;
@@ -58,8 +58,8 @@ struct InfoArguments : Common {
 
 /// Seconds from the start of the command to the end of --measure, for up to about 300 thousand vertices.
 constexpr double kMeasureWithin = 3.8;
-/// The same without --measure, and the largest number of simplices, or of entries of a matrix, for which
-/// kernels run within that time.
+/// The same without --measure. Kernels run within this time on meshes of up to `kMaxQuick` simplices and on
+/// matrices of up to `kMaxQuickEntries` entries.
 constexpr double kMeasureQuicklyWithin = 0.7;
 constexpr Offset kMaxQuick = 250'000;
 constexpr Offset kMaxQuickEntries = 1'000'000;
@@ -107,7 +107,7 @@ int halvings_of(const InfoArguments& arguments, SimplicesRef simplices) {
   return arguments.caches.empty() ? halvings_for(simplices.size()) : 0;
 }
 
-/// Returns the gain of reordering; nothing for a mesh without elements, nor for a large or tiny one unless
+/// Returns the gain of reordering; nothing for a mesh without elements, nor for a large or tiny mesh unless
 /// --cache, --predict or --measure is given.
 std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh, const CsrGraph& graph,
                                 double graph_seconds, SimplicesRef simplices,
@@ -135,8 +135,8 @@ std::optional<Advice> advice_on(const InfoArguments& arguments, const Mesh& mesh
   return advise(mesh, graph, options);
 }
 
-/// Returns the reuse of the mesh in its order; nothing for a large mesh unless --cache is given, nor if
-/// measuring leaves no time for it.
+/// Returns the reuse of the mesh in its order. Returns nothing for a large mesh unless --cache is given, and
+/// nothing if measuring leaves no time for it.
 ///
 /// @param pattern  of a matrix; null for other meshes
 std::optional<KernelReuse> reuse_of(const InfoArguments& arguments, const CsrGraph& graph,
@@ -233,7 +233,7 @@ struct Findings {
   Offset degenerate = 0;
   bool has_elements = true;
   std::optional<KernelReuse> reuse;
-  int halvings = 0;  ///< halvings of the cache lines from which `reuse` is estimated
+  int halvings = 0;  ///< `reuse` is estimated from 2^-halvings of the cache lines
   Caches caches;
   std::optional<Advice> advice;
   std::optional<GpuReport> gpu;  ///< in place of advice

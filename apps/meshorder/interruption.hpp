@@ -11,8 +11,8 @@ void clean_up_at_signals();
 /// SIGXFSZ is ignored: writing a file beyond the limit on sizes then fails.
 void clean_up_quietly_at_signals();
 
-/// While alive, the first Ctrl-C (SIGINT) or SIGTERM sets a flag; a second signal of the same kind has the
-/// effect that it had before. Only one object at a time.
+/// While alive, the first Ctrl-C (SIGINT) or SIGTERM sets a flag. A second signal of the same kind has the
+/// effect that it had before the object was made. Only one object may exist at a time.
 class Interruption {
  public:
   Interruption();

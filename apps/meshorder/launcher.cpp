@@ -7,11 +7,12 @@
 namespace meshorder::command {
 namespace {
 
-// of Open MPI, of MPICH and its derivatives, and of Slurm for the step that a process belongs to
+// Variables of Open MPI, of MPICH and its derivatives, and of Slurm. Slurm's variables describe the step that
+// a process belongs to.
 constexpr std::array kSizes{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
 constexpr std::array kRanks{"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"};
 
-/// Returns the value of the first of these variables that is set; null if none is.
+/// Returns the value of the first of these variables that is set; null if none of them is set.
 template <class Names>
 const char* first_set(const Names& names) {
   const char* value = nullptr;

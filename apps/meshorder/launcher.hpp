@@ -7,7 +7,7 @@ namespace meshorder::command {
 bool is_started_as_rank();
 
 /// Returns whether `mpirun` or `srun` started this process together with others, according to environment
-/// variables. Those of a batch script alone do not count.
+/// variables. Variables that only describe a batch script do not count.
 bool is_one_of_several();
 
 /// Returns whether this process is the first of those started together, or the only one.

@@ -21,8 +21,8 @@ void add_all_threads_option(CLI::App& subcommand, bool& all_threads);
 void add_kernels_option(CLI::App& subcommand, KernelSet& kernels);
 
 /// Returns the machine to predict for. If the choice stands in for this machine, which is not calibrated,
-/// this function calibrates it and stores the result. A line on stderr says so, unless
-/// quiet; `notes` receives a sentence if something went wrong.
+/// this function calibrates this machine and stores the result. A line on stderr says so, unless `quiet`.
+/// `notes` receives a sentence if something went wrong.
 MachineChoice calibrated(MachineChoice choice, bool all_threads, Progress& progress, bool quiet,
                          Notes& notes);
 

@@ -37,7 +37,8 @@ std::string ids_path(const std::string& prefix, const std::string& what) {
 }
 std::string kept_path(const std::string& prefix) { return prefix + ".cells.kept.npy"; }
 
-/// Writes numbers. If there are none, has the file removed that an earlier run may have left.
+/// Writes numbers as a file of the set. If `numbers` is empty, the set instead removes the file that an
+/// earlier run may have left.
 template <class Number>
 void write_or_remove(const std::vector<Number>& numbers, const std::string& path, OutputSet& files,
                      std::vector<std::string>& written) {
@@ -122,8 +123,8 @@ constexpr std::array<std::pair<const char*, std::uint64_t MapChecksums::*>, 5> k
      {"cell_ids", &MapChecksums::cell_ids},
      {"kept", &MapChecksums::kept}}};
 
-/// Content of PREFIX.maps.json: checksums of the mesh before and after, unknown if another program wrote the
-/// mesh; checksums of the maps, unknown if another program wrote them.
+/// Content of PREFIX.maps.json: checksums of the mesh before and after, and of the maps. Checksums of data
+/// that another program wrote may be unknown.
 struct Identity {
   std::optional<MeshChecksums> before;
   std::optional<MeshChecksums> after;
@@ -153,8 +154,8 @@ Identity read_identity(const std::string& path) {
   }
 }
 
-/// Throws Error if the mesh is not in the order that the maps start from; if they move nothing, both orders
-/// are the same.
+/// Throws Error if the mesh is not in the order that the maps start from. If the maps move nothing, both
+/// orders are the same.
 void require_order(const Identity& identity, const Maps& maps, const Mesh& mesh, const std::string& mesh_path,
                    const std::string& path, bool inverse) {
   const std::optional<MeshChecksums>& start = inverse ? identity.after : identity.before;

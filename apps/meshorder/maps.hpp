@@ -12,12 +12,15 @@
 
 namespace meshorder::command {
 
-/// The reordering of a mesh file, on disk as NumPy arrays: PREFIX.vertices.old_to_new.npy and
-/// PREFIX.vertices.new_to_old.npy, and PREFIX.cells.*.npy for all cells. If the input has numbers of vertices
-/// or cells other than 0, 1, … or 1, 2, …, PREFIX.vertices.ids.npy or PREFIX.cells.ids.npy holds them
-/// in the input's order. If cells of the input were left out, the maps of cells number only the others,
-/// and PREFIX.cells.kept.npy holds their positions among all cells of the input. If the mesh is in parts,
-/// PREFIX.vertices.parts.npy and PREFIX.cells.parts.npy hold the part of each in the new order.
+/// The reordering of a mesh file. On disk it is a set of NumPy arrays:
+/// - PREFIX.vertices.old_to_new.npy, PREFIX.vertices.new_to_old.npy, and the same for cells;
+/// - PREFIX.vertices.ids.npy, PREFIX.cells.ids.npy: the input's numbers of vertices and cells, in the input's
+///   order, if they are other than 0, 1, … or 1, 2, …;
+/// - PREFIX.cells.kept.npy: the positions of the kept cells among all cells of the input, if some cells were
+///   left out; the maps of cells then number only the kept cells;
+/// - PREFIX.vertices.parts.npy, PREFIX.cells.parts.npy: the part of each vertex and cell, in the new order;
+///   only for a mesh in parts.
+///
 /// PREFIX.maps.json identifies the mesh of the maps, without the cells that were left out.
 struct Maps {
   Permutation vertices;
@@ -37,8 +40,8 @@ struct MeshChecksums {
   bool operator==(const MeshChecksums&) const = default;
 };
 
-/// Checksums of the maps, which distinguish those of two runs: new places of all vertices and of all cells,
-/// and lists that not every mesh has; these are empty if it has none.
+/// Checksums that distinguish the maps of two runs: of the new numbers of all vertices and of all cells, and
+/// of the lists that not every mesh has. A missing list counts as empty.
 struct MapChecksums {
   std::uint64_t vertices = 0;
   std::uint64_t cells = 0;
@@ -75,19 +78,19 @@ std::vector<std::string> write_maps(const Maps& maps, const MeshChecksums& befor
 std::string write_identity(const MeshChecksums& before, const MeshChecksums& after, const MapChecksums& maps,
                            const std::string& prefix, OutputSet& files);
 
-/// Makes a set remove optional maps that an earlier run left with this prefix: old numbers and kept
-/// cells.
+/// Marks for removal, in `files`, the optional maps that an earlier run left with this prefix: old numbers
+/// and kept cells.
 void remove_other_maps(const std::string& prefix, OutputSet& files);
 
 /// Removes from a mesh the cells that were left out before it was ordered, with the notes of `keep_cells`.
-/// A mesh that has exactly the kept cells stays as it is. Throws Error for positions that do not fit
-/// it.
+/// A mesh that has exactly the kept cells stays as it is. Throws Error for positions that do not fit the
+/// mesh.
 void leave_out_unmapped_cells(const std::string& prefix, Mesh& mesh, Notes& notes);
 
-/// Reads the maps of a mesh, which is in its old order or, if `inverse`, in the new one. Throws Error if a
-/// file is missing, is not a permutation or has another length, and if PREFIX.maps.json exists and shows
-/// that the mesh is another one or in the other order. A mesh whose points were moved is still recognised by
-/// its cells.
+/// Reads the maps of a mesh, which is in its old order or, if `inverse`, in the new one. Throws Error if:
+/// - a file is missing, is not a permutation or has another length;
+/// - PREFIX.maps.json exists and shows that the maps belong to another mesh, or that the mesh is in the other
+///   order. A mesh whose points were moved is still recognised by its cells.
 Maps read_maps(const std::string& prefix, const Mesh& mesh, const std::string& mesh_path, bool inverse);
 
 }  // namespace meshorder::command

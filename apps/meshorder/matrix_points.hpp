@@ -16,7 +16,8 @@ void add_points_option(CLI::App& subcommand, std::string& points);
 std::vector<std::string> named_files(const std::string& name);
 
 /// Gives the rows of a matrix or graph the coordinates in a file (see `read_points`); does nothing for an
-/// empty name. Throws InvalidArgument for a mesh, which has its own, and InputError for a faulty file.
+/// empty name. Throws InvalidArgument for a mesh, which has its own coordinates, and InputError for a faulty
+/// file.
 void take_points(Mesh& mesh, const std::string& input, const std::string& points);
 
 /// Throws InvalidArgument if the mesh is a matrix or graph without coordinates and one of the methods needs
@@ -26,8 +27,8 @@ void require_points(const Mesh& mesh, const std::string& input, const std::strin
 
 /// Throws InvalidArgument if the mesh is a matrix or graph without coordinates.
 ///
-/// @param by      the part that needs them: "order 'hilbert'"
-/// @param others  methods that need none
+/// @param by      what needs the coordinates: "order 'hilbert'"
+/// @param others  methods that need no coordinates
 void require_coordinates(const Mesh& mesh, const std::string& input, const std::string& by,
                          const std::vector<std::string>& others);
 

@@ -15,11 +15,13 @@
 namespace meshorder::command {
 namespace {
 
-/// Blocks cut one after another from an array. The array is free again once all blocks are.
+/// Blocks cut one after another from an array. Their memory is used again only after all blocks are given
+/// back.
 class MemoryReserve {
  public:
-  /// Returns a block aligned for any type, or nullptr if there is none. Takes at most three quarters
-  /// unless the stack is being unwound: the rest is for destructors that run then.
+  /// Returns a block aligned for any type, or nullptr if the array has no room. Blocks take at most three
+  /// quarters of the array, except while the stack is being unwound: the last quarter is for destructors that
+  /// run then.
   void* take(std::size_t size) noexcept {
     const bool unwinding = std::uncaught_exceptions() > 0;
     const std::size_t limit = unwinding ? bytes_.size() : bytes_.size() / 4 * 3;
@@ -45,7 +47,7 @@ class MemoryReserve {
 
  private:
   static constexpr std::size_t kLargest =
-      1024;  // of a block outside of unwinding: a mesh's arrays are larger
+      1024;  // largest block, except while unwinding: a mesh's arrays are larger
 
   std::mutex mutex_;
   std::size_t used_ = 0;

@@ -39,30 +39,30 @@ void add_moving_options(CLI::App& subcommand, MeshFiles& files, std::string& ids
 /// Reads a mesh to compute with. For the rest of the process, its graphs may use the part of the memory limit
 /// that the reading has left.
 ///
-/// @param bytes_of_entry  as of `limit_joins`
+/// @param bytes_of_entry  as in `limit_joins`
 Mesh read_to_work_on(const FilePath& path, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
-/// Like kBytesToOrder: kBytesToPredict for commands that predict times, kBytesToMeasure for those that run
-/// kernels, for each order that they hold at a time.
+/// Like kBytesToOrder. kBytesToPredict is for commands that predict times. kBytesToMeasure is for commands
+/// that run kernels, and counts once for each order that they hold at a time.
 inline constexpr std::uint64_t kBytesToPredict = 64;
 inline constexpr std::uint64_t kBytesToMeasure = 100;
 
 /// Throws, before the work, if the output or its maps cannot be written.
 void check_can_write(const MeshFiles& files);
 
-/// Keeps the cells of one dimension, or all for −1; returns their positions before. Throws InputError for the
-/// file `input` if there are none.
+/// Keeps the cells of one dimension, or all cells for −1. Returns the positions that the kept cells had
+/// before. Throws InputError for the file `input` if it has no such cells.
 std::vector<Index> keep_wanted(Mesh& mesh, const std::string& input, int dimension, Notes& notes);
 
 /// Reads a mesh with the cells that the output can hold. Throws Error for a faulty file, and for cells that
 /// the output would have to hold but cannot.
 ///
-/// @param bytes_of_entry  as of `limit_joins`
+/// @param bytes_of_entry  as in `limit_joins`
 MeshToOrder read_to_order(const MeshFiles& files, Notes& notes, std::uint64_t bytes_of_entry = kBytesToOrder);
 
-/// Writes a mesh that is in its new order, and its maps, whose permutations must be set, as files of a set;
-/// `commit` of the set puts all files in place. Returns the paths of the maps. An empty output is not
-/// written.
+/// Writes, as files of a set, a mesh that is in its new order and its maps. The permutations of the maps must
+/// be set. `commit` of the set puts all files in place. Returns the paths of the maps. If the output's name
+/// is empty, no mesh is written.
 std::vector<std::string> write_ordered(const MeshToOrder& ordered, const MeshFiles& files, OutputSet& outputs,
                                        Notes& notes);
 

@@ -172,7 +172,7 @@ class Case {
     if (missing != meshes_.end()) refuse_missing(poly_mesh(*missing));
   }
 
-  /// Throws InputError if a processor's folder exists but one with a lower number is missing.
+  /// Throws InputError if a processor's folder exists but a folder with a lower number is missing.
   void check_processors() const {
     constexpr std::string_view kProcessor = "processor";
     for (const std::string& name : folders_in(folder_)) {
@@ -232,7 +232,7 @@ struct OrderedMesh {
 
 /// Returns whether a method uses the centres of cells.
 bool needs_centres(const std::string& method, Workload workload) {
-  if (method == "auto") return is_told_by_kernels(workload);  // the other orders use the graph alone
+  if (method == "auto") return is_told_by_kernels(workload);  // otherwise `auto` uses only the graph
   return needs_points(vertex_methods(), method);
 }
 
@@ -269,7 +269,7 @@ OrderedMesh ordered(const Case& meshes, const std::string& name, const OpenFoamA
   return result;
 }
 
-/// The files to be written: the maps, and the dictionary unless an existing one stays.
+/// The files to be written: the maps, and the dictionary unless an existing dictionary stays.
 class Outputs {
  public:
   /// Throws, before the work, if the files cannot be written.
@@ -283,11 +283,11 @@ class Outputs {
     if (dictionary_) {
       (void)OutputFile(*dictionary_);
     } else if (!fs::is_symlink(dictionary.parent_path())) {
-      remove_dead_scratches(dictionary.parent_path());  // of a run that put the dictionary in place
+      remove_dead_scratches(dictionary.parent_path());  // that a killed run left
     }
   }
 
-  /// Returns whether the case keeps its dictionary although that asks for another order.
+  /// Returns whether the case keeps its dictionary although it requests another order.
   [[nodiscard]] bool keeps_other_dictionary() const noexcept { return keeps_other_; }
 
   /// Writes all files, or none; returns their paths.

@@ -93,7 +93,7 @@ void check(const OrderArguments& arguments) {
   }
 }
 
-/// One call of the command; its parts are called one after another.
+/// One call of the command. Its public functions are called once each, in this order.
 class Ordering {
  public:
   /// @param machine  for a race
@@ -115,7 +115,7 @@ class Ordering {
     times_.set_bytes("read", bytes_on_disk(arguments_.input));
   }
 
-  /// Moves the mesh into its order.
+  /// Moves the mesh into its new order.
   void order() {
     if (is_race(arguments_)) calibrate();
     progress_.stage("ordering", 0.4, 0.7);

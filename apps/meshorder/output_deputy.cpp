@@ -45,7 +45,7 @@ void add(std::string& message, Kind kind, std::string_view text) {
   message += '\0';
 }
 
-/// Takes the next part off a message. Throws Error if it has no end.
+/// Takes the next part off a message. Throws Error if the part has no end.
 std::pair<char, std::string> next_part(std::string_view& message) {
   const std::size_t end = message.find('\0');
   if (end == std::string_view::npos || end == 0)
@@ -66,7 +66,7 @@ std::string received(int socket) {
   return message;
 }
 
-/// Asks the other process to put files in place; parameters and result as of `put_in_place`.
+/// Asks the parent to put files in place; parameters and result are those of `put_in_place`.
 std::vector<std::string> ask(int socket, std::span<const FinishedFile> files, std::span<const FilePath> first,
                              std::span<const FilePath> removed) {
   std::string request;

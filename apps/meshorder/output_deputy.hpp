@@ -13,14 +13,14 @@
 namespace meshorder::command {
 
 /// Puts outputs in place for a confined child process. The child writes them in private scratch folders and
-/// can reach no others. It asks over a socket, and this process checks that the user requested each
-/// file. A malicious file that controls the child can damage these outputs, but no other file.
+/// can write in no other folder. The child asks over a socket, and the parent checks that the user requested
+/// each file. A malicious file that controls the child can damage these outputs, but no other file.
 class OutputDeputy {
  public:
   /// Makes a scratch folder in each folder of an output. Throws InputError for an output that cannot be
   /// written.
   ///
-  /// @param outputs  empty ones are skipped
+  /// @param outputs  empty paths are skipped
   /// @param maps     prefix of maps; empty: none
   OutputDeputy(const std::vector<FilePath>& outputs, std::string maps);
 
@@ -56,7 +56,7 @@ class OutputDeputy {
   std::vector<Home> homes_;
   std::vector<std::filesystem::path> through_;
   Descriptor asking_;     ///< the child's end of the socket
-  Descriptor answering_;  ///< the other
+  Descriptor answering_;  ///< the parent's end
 };
 
 }  // namespace meshorder::command

@@ -94,7 +94,8 @@ int run_and_report(const Program& program, int argc, char** argv) {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): read when the process ends
 bool has_run = false;
 
-/// Called at the end of the process. Reports it if libhdf5 has ended the process, as it does without memory.
+/// Called at the end of the process. Reports a failure if libhdf5 ended the process, as it does when memory
+/// runs out.
 extern "C" void tell_if_a_library_ended_it() {
   if (has_run) return;
   remove_unfinished_outputs();

@@ -58,7 +58,7 @@ bool begins_with_error(std::string_view line) {
 
 /// The allowed difference of two numbers of an output: the larger of two limits.
 struct Closeness {
-  double tolerance = 0;  ///< relative to the larger one
+  double tolerance = 0;  ///< relative to the larger number
   double floor = 0;      ///< absolute, for sums that would be zero without rounding
 
   [[nodiscard]] bool agree(double a, double b) const {
@@ -170,7 +170,7 @@ std::vector<std::filesystem::path> printed_files(const std::filesystem::path& lo
 
 std::string error_line(const std::filesystem::path& log) {
   constexpr std::uint64_t kLooksAt = std::uint64_t{1}
-                                     << 24;  // bytes of each file: a program may print far more
+                                     << 24;  // bytes at the end of each file; a program may print far more
   std::string result;
   for (const std::filesystem::path& file : printed_files(log)) {
     for_each_line(end_of(file, kLooksAt), [&](std::string_view line) {

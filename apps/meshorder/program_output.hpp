@@ -18,8 +18,8 @@ std::optional<double> number_of(std::string_view text);
 class PrintedNumbers {
  public:
   /// @param option   option that gave the expression, for messages
-  /// @param pattern  ECMAScript; its group, or else the whole match, is a number
-  /// Throws InvalidArgument for a faulty expression and for one with several groups.
+  /// @param pattern  an ECMAScript expression, whose group, or else the whole match, is a number
+  /// Throws InvalidArgument for a faulty expression and for an expression with several groups.
   PrintedNumbers(std::string option, std::string pattern);
 
   /// Returns the numbers in the lines of these files; each line is cut after 10,000 characters. Throws
@@ -43,8 +43,9 @@ std::string difference(std::string_view expected, std::string_view found, double
 /// Returns the files that hold a program's stdout and stderr; see TrialCommand::log.
 std::vector<std::filesystem::path> printed_files(const std::filesystem::path& log);
 
-/// Returns the last line that begins with "error", in any case, after blanks, "*", "-", "#" or "[": that of
-/// stderr, else of stdout, within the last 16 MiB of each. Empty if there is none. Cut to 300 bytes.
+/// Returns the last line that begins with "error", in any case, after blanks, "*", "-", "#" or "["; empty if
+/// there is no such line. Searches the last 16 MiB of stderr, and then those of stdout. Cuts the line to 300
+/// bytes.
 std::string error_line(const std::filesystem::path& log);
 
 /// Returns the last line of a file that is not blank, cut to 300 bytes.

@@ -76,7 +76,8 @@ void Progress::draw_until_done() noexcept {
 void Progress::draw(double elapsed) {
   double share = share_;
   if (share <= from_ && from_ > 0 && stage_began_ > 0) {
-    // the pace so far gives the expected time of this stage; the estimate approaches its end, but stays below
+    // the pace so far gives the expected time of this stage; the estimated share approaches the end of the
+    // stage, but does not reach it
     const double expected = stage_began_ / from_ * (to_ - from_);
     share = from_ + (to_ - from_) * (1 - std::exp(-(elapsed - stage_began_) / std::max(expected, 1e-3)));
   }

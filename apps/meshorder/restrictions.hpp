@@ -13,10 +13,16 @@ struct Reach {
   std::vector<std::filesystem::path> through;  ///< devices and pipes that may be written to
 };
 
-/// Gives up all other rights of this process and of the threads that it starts, for good: to open other files
-/// (Landlock, from Linux 5.13 on), to use the network, to start programs and processes, to reach other
-/// processes, to change modes and owners of files by their paths, and to type into the terminal (seccomp). It
-/// disables core files. Rights that the system cannot restrict remain. Call it while there is one thread.
+/// Gives up for good, for this process and the threads that it starts, the rights:
+/// - to open files other than those in `reach` (Landlock, from Linux 5.13 on);
+/// - to use the network (this and the following by seccomp);
+/// - to start programs and processes;
+/// - to reach other processes;
+/// - to change modes and owners of files by their paths;
+/// - to type into the terminal.
+///
+/// Also disables core files. Rights that the system cannot restrict remain. Call it while there is one
+/// thread.
 void give_up_rights(const Reach& reach) noexcept;
 
 }  // namespace meshorder::command

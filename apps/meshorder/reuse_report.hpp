@@ -13,7 +13,7 @@
 namespace meshorder::command {
 
 /// Returns {"spmv": {"accesses", "misses": […], "jumps": […], "mean_log2"}, …} for these kernels, which are
-/// the first of kKernels; misses and jumps by level.
+/// the first of kKernels. Misses and jumps have a number for each cache level.
 nlohmann::ordered_json to_json(const KernelReuse& reuse, const Caches& caches,
                                std::span<const Kernel> kernels = kKernels);
 
@@ -22,7 +22,7 @@ inline constexpr std::string_view kReuseLegend =
     "log2: mean log2 of the reuse distances; a cache's size: its misses; jumps: misses of the last\n"
     "level that hardware prefetchers do not predict";
 
-/// Name of the product with a matrix, its only kernel, in rows of tables.
+/// Name, in rows of tables, of the product with a matrix: the only kernel of a matrix.
 inline constexpr std::string_view kProduct = "product";
 
 /// Returns the heads of the columns of reuse_cells: "log2", the caches, "jumps".

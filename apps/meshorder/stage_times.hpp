@@ -45,8 +45,8 @@ class StageTimes {
   std::vector<Stage> stages_;
 };
 
-/// Returns the bytes of a mesh on disk, including the further files of TetGen and XDMF; 0 if it does not
-/// exist.
+/// Returns the bytes of a mesh on disk, including the further files of TetGen and XDMF; 0 if the mesh does
+/// not exist.
 std::uint64_t bytes_on_disk(const std::string& mesh);
 
 }  // namespace meshorder::command

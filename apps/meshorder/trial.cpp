@@ -133,7 +133,7 @@ class Trial {
     }
   }
 
-  /// Returns the remedy for a command that gives CalculiX a name with extension: CalculiX adds its own.
+  /// Returns the remedy for a command that gives CalculiX a name with extension: CalculiX adds the extension.
   [[nodiscard]] std::string remedy() const {
     const bool is_calculix = fs::path(program_).filename().string().starts_with("ccx");
     if (!is_calculix || !std::ranges::count(options_.command, "{}")) return {};
@@ -172,7 +172,8 @@ class Trial {
                                  join(found), options_.tolerance));
   }
 
-  /// Notes the orders in which the number of --count is larger by a tenth or more.
+  /// Notes the orders in which the number of --count is larger by a tenth or more than in the mesh's own
+  /// order.
   void note_counts() {
     constexpr double kMuch = 1.1;
     const double own = report_.orders.front().count;
@@ -202,8 +203,9 @@ class Trial {
 
   // ---- orders
 
-  /// Makes as many orders as the budget allows and runs the program once in each. If an order fails, the next
-  /// one takes its place. Orders that the user named share the budget, if it allows two runs of each.
+  /// Makes as many orders as the budget allows and runs the program once in each order. If an order fails,
+  /// the next order takes its place. Orders that the user named share the budget, if it allows two runs of
+  /// each.
   void find_orders() {
     const bool are_named = !options_.methods.empty();
     const std::vector<std::string> names = are_named ? options_.methods : subject_.orders();
@@ -239,7 +241,7 @@ class Trial {
     });
   }
 
-  /// Makes an order, unless an equal one exists.
+  /// Makes an order, unless an equal order exists.
   void add_order(const std::string& name) {
     TriedOrder order{.name = name, .methods = order_named(name), .by_auto = name == "auto"};
     if (is_there(order.methods)) return;

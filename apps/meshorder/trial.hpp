@@ -26,8 +26,8 @@ struct TrialOptions {
   double timeout_seconds = 600;
 };
 
-/// Runs a program in several orders. Throws InvalidArgument if the subject's own order fails, or all others
-/// do, and Interrupted.
+/// Runs a program in several orders. Throws InvalidArgument if the subject's own order fails or if all others
+/// fail; throws Interrupted at a signal.
 TrialReport run_trial(const TrialSubject& subject, const TrialOptions& options, Progress& progress,
                       Notes& notes);
 

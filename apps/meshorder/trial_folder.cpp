@@ -23,8 +23,8 @@ constexpr std::size_t kMostFiles = 10'000;
 
 bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
 
-/// Calls `take` with the files below a folder and the links to folders, except hidden ones. With `enters`,
-/// also with the files in folders that links lead to.
+/// Calls `take` with the files below a folder and the links to folders, except hidden ones. If `enters`, also
+/// calls it with the files in folders that links lead to.
 void for_each_file(const fs::path& folder, bool enters,
                    const std::function<void(const fs::directory_entry&)>& take) {
   std::error_code code;

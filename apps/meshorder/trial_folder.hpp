@@ -40,7 +40,7 @@ class TrialFolder {
   /// Copies all files beside the mesh into the folder of an order.
   void copy_files(std::size_t order) const;
   /// Records the files that were written for an order. Files equal to those beside the mesh are not part of
-  /// it.
+  /// the order.
   void complete_order(std::size_t order);
   /// Removes the files of the order that was added last.
   void drop_order(std::size_t order);
@@ -50,9 +50,8 @@ class TrialFolder {
   /// Puts the files of an order in place.
   void begin_run(std::size_t order);
   /// Removes the files of the order, restores the files beside the mesh and removes everything else. If
-  /// `kept` is
-  /// not empty, first copies what the program wrote to this folder. Throws InvalidArgument if the program
-  /// changed its mesh or a linked file.
+  /// `kept` is not empty, first copies the program's output files to the folder `kept`. Throws
+  /// InvalidArgument if the program changed its mesh or a linked file.
   void end_run(std::size_t order, const std::filesystem::path& kept = {});
 
  private:

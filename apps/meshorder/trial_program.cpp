@@ -136,7 +136,7 @@ struct Prepared {
 
 // ---- the process that waits
 
-/// Returns the children of this process that have not been waited for; none if the system cannot list them.
+/// Returns the children of this process that have not been waited for; empty if the system cannot list them.
 std::vector<pid_t> children() {
   std::vector<pid_t> result;
 #ifdef __linux__
@@ -277,7 +277,7 @@ TrialRun run_program(const TrialCommand& command) {
   const bool was_executed = ::read(report[0], &error, sizeof error) != sizeof error;
   ::close(report[0]);
   if (interruption != 0) {
-    ::raise(interruption);  // it is blocked, so it stays pending
+    ::raise(interruption);  // the signal is blocked, so it stays pending
     throw Interrupted();
   }
   if (!was_executed)

@@ -22,8 +22,8 @@ class TrialReadings {
   /// Throws InvalidArgument for faulty expressions, and for a file that is not in the program's folder.
   TrialReadings(const TrialOptions& options, const TrialSubject& subject, const TrialFolder& folder);
 
-  /// Reads the results of a run. Throws InvalidArgument if a requested one is missing. Returns how they
-  /// differ from those of the first run; empty if they are the same.
+  /// Reads the results of a run. Throws InvalidArgument if a requested result is missing. Returns how the
+  /// results differ from those of the first run; empty if they are the same.
   std::string read(TriedOrder& order, double& time);
 
  private:

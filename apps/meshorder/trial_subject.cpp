@@ -136,7 +136,8 @@ class TriedMesh final : public TrialSubject {
   OrderingOptions options_;
 };
 
-/// Returns whether a case is decomposed for several processes: has folders processor0, processors4.
+/// Returns whether a case is decomposed for several processes: it has folders such as processor0 or
+/// processors4.
 bool is_decomposed(const fs::path& folder) {
   return std::ranges::any_of(fs::directory_iterator(folder), [](const fs::directory_entry& entry) {
     return entry.is_directory() && entry.path().filename().string().starts_with("processor");

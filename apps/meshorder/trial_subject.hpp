@@ -15,7 +15,7 @@ namespace meshorder::command {
 /// The mesh, or case of OpenFOAM, on which a program is tried.
 class TrialSubject : public Polymorphic {
  public:
-  /// Returns the replacement for {} in the command, and that for {stem}.
+  /// Return the replacements for {} and for {stem} in the command.
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual std::string stem() const = 0;
 
@@ -28,8 +28,8 @@ class TrialSubject : public Polymorphic {
   /// Throws InvalidArgument if no such order exists.
   virtual void check_order(const std::string& name) const = 0;
 
-  /// Writes the subject in another order to the folder of that number, and completes `order`. Returns whether
-  /// the order moves nothing. Throws CommandError if the order cannot be made.
+  /// Writes the subject in another order to the folder of order `number`, and completes `order`. Returns
+  /// whether the order moves nothing. Throws CommandError if the order cannot be made.
   virtual bool make(TriedOrder& order, TrialFolder& folder, std::size_t number) const = 0;
 };
 

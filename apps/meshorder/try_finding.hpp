@@ -34,8 +34,8 @@ std::optional<double> runs_to_pay(const TrialReport& report);
 /// Returns how many orders, besides the mesh's own, `runs` runs can decide among; at least 1.
 std::size_t orders_that_fit(double runs);
 
-/// Returns the budget, in seconds, that an undecided trial needs to get an interval or, if there is one, to
-/// halve its width. Nothing for other trials.
+/// Returns the budget, in seconds, that an undecided trial needs to get an interval or, if it has one, to
+/// halve the interval's width. Returns nothing for other trials.
 std::optional<double> needed_budget(const TrialReport& report);
 
 /// Returns the result of the trial in one sentence, which contains the verdict.

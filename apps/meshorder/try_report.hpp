@@ -14,7 +14,7 @@
 
 namespace meshorder::command {
 
-/// An order in which a program was run. The first one is the mesh's own.
+/// An order in which a program was run. The first order is the mesh's own.
 struct TriedOrder {
   std::string name;             ///< "original", "rcm", "hilbert/hilbert"
   MeshMethods methods;          ///< for the options of `order`
@@ -36,12 +36,12 @@ struct TrialReport {
   PairedTrials trials{0};
   std::vector<std::string> left_out;  ///< names of orders for which there was no time
   double budget_seconds = 0;
-  double run_seconds = 0;  ///< of all runs, by the clock
+  double run_seconds = 0;  ///< wall-clock time of all runs
 };
 
-/// Returns the time of an order that was run: for the mesh's own order the median, for another order this
-/// median divided by its ratio. Ratios compare runs of the same round, so rounds in which the machine was
-/// slower do not distort them.
+/// Returns the time of an order that was run: for the mesh's own order the median; for another order this
+/// median divided by the order's speedup. Speedups compare runs of the same round, so rounds in which the
+/// machine was slower do not distort them.
 double time_of(const TrialReport& report, std::size_t order);
 
 /// Returns the time of an order in words: "2.7 s", or a number that the program prints.

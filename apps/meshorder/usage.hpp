@@ -12,8 +12,8 @@ class ParseError;
 
 namespace meshorder::command {
 
-/// Returns what is wrong with an argument like `--maps=`, for which the parser would take the next one as
-/// the value; nothing if there is no such argument.
+/// Returns what is wrong with an argument like `--maps=`, for which the parser would take the next argument
+/// as the value; nothing if there is no such argument.
 std::optional<std::string> option_without_value(const std::vector<std::string>& arguments);
 
 /// Returns the arguments with `help WORDS…` and `version` replaced by the equivalent options.
@@ -27,8 +27,8 @@ void refuse_empty_values(CLI::App& command);
 /// not exist.
 std::optional<std::string> unknown_command(const CLI::App& app);
 
-/// Returns what is wrong with the parsed arguments and which help to read: first unknown commands and
-/// options, with the nearest known one, else the parser's own error.
+/// Returns what is wrong with the parsed arguments and which help to read. Looks first for unknown commands
+/// and options, and names the nearest known one; otherwise returns the parser's own error.
 std::string usage_fault(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace meshorder::command

@@ -41,7 +41,7 @@ nlohmann::ordered_json costs_json(const OrderCosts& costs, std::size_t kernels) 
           {"measured_milliseconds", milliseconds_json(costs.measured, kernels)}};
 }
 
-/// Returns "pays off after 18 time steps"; for a matrix, after that many products.
+/// Returns "pays off after 18 time steps"; for a matrix, "… 18 products".
 std::string pays_in_words(const Advice& advice, std::size_t candidate) {
   const double steps = steps_to_pay(advice, candidate);
   const char* const what = advice.is_matrix ? "product" : "time step";

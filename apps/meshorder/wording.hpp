@@ -46,7 +46,7 @@ void note_convergence(const std::vector<FiedlerComponent>& components, const std
 /// Returns the file name that messages propose for the mesh in a new order: "ordered-dragon.veg".
 std::string ordered_name(const std::string& mesh);
 
-/// Returns a bar whose length is a share, 0 … 1, of `width` blocks; at least a thin one.
+/// Returns a bar whose length is a share, 0 … 1, of `width` blocks; at least one thin block.
 std::string bar(double share, int width);
 
 /// Returns a word that a shell reads as this text.

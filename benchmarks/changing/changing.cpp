@@ -1,16 +1,20 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Measures what it costs to keep the order of a changing mesh fresh, and how close to a fresh one it stays:
+// Measures what it costs to keep the order of a changing mesh fresh, and how close this order stays to a
+// fresh one:
 //
 //   changing [--traces stir,churn,refine,cut,dam] [--methods hilbert,hilbert-fronts,rcm,fiedler]
 //            [--points 50000] [--steps 120] [--threads 1]
 //
 // For each trace (see traces.hpp), scrambled at first, and each method: `fresh` orders all vertices in each
-// step, `kept` is a Reorderer, `carried` a Reorderer that never orders anew after the first step. Prints by
-// how much mean log2 spans exceed those of the fresh orders (mean of the steps, worst step), and the costs of
-// orders relative to fresh ones: from the graph, without a check, and from cells, where fresh orders include
-// building the graph. Prints the median cost of each kind of repair. Processor time of the calls; with
-// several threads wall-clock time. Needs meshorder-delaunay beside it.
+// step, `kept` is a Reorderer, `carried` a Reorderer that never orders anew after the first step. Prints:
+// - by how much mean log2 spans exceed those of fresh orders: the mean of the steps, and the worst step;
+// - the costs of orders relative to those of fresh orders: from the graph, without a check; and from cells,
+//   where fresh orders include building the graph;
+// - the median cost of each kind of repair.
+//
+// Costs are processor time of the calls; with several threads, wall-clock time. Needs meshorder-delaunay
+// beside this program.
 #include "base/random.hpp"
 #include "base/stopwatch.hpp"
 #include "benchmarks/changing/traces.hpp"
@@ -54,7 +58,7 @@ auto timed(double& seconds, const Call& call) {
 
 OrderOptions options() { return {.check = Check::none, .run = {.threads = threads}}; }
 
-/// A step in the arrays of a program, which has an order of its own.
+/// A step in the arrays of a program, which have an order of their own.
 struct Arrays {
   std::vector<Point> points;
   std::vector<Index> corners;
@@ -63,7 +67,7 @@ struct Arrays {
   [[nodiscard]] CellsView cells() const { return CellsView::uniform(Shape::tetrahedron, 4, corners); }
 };
 
-/// For each place of a program's arrays, the point of the trace that is there.
+/// For each position in a program's arrays, the number of the trace's point that is stored there.
 class Places {
  public:
   /// Returns the arrays of a step, before it is ordered.
@@ -108,7 +112,7 @@ class Places {
     return result;
   }
 
-  /// Returns the place of each point.
+  /// Returns the position of each point.
   static std::vector<Index> inverse(const std::vector<Index>& at) {
     return Permutation::from_new_to_old(at).old_to_new();
   }
@@ -142,7 +146,7 @@ class Strategy {
   double seconds = 0;
   double graph_seconds = 0;
   std::vector<double> spans;
-  std::map<Repair, std::vector<double>> repairs;  ///< seconds of each
+  std::map<Repair, std::vector<double>> repairs;  ///< seconds of each repair
 
  private:
   Permutation permutation(const Graph& graph, const MeshView& mesh, const std::vector<Index>& previous) {

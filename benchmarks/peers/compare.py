@@ -5,9 +5,9 @@
 Every solver gets the largest component of the mesh's vertex graph. Its vector y is judged here, by one rule for all:
 the residual ‖Ly − λy‖ / (λ₂ ‖y‖) with λ = yᵀLy / yᵀy, and the cosine of its angle to the exact eigenspace of λ₂, found
 by shift and invert. meshorder runs at the accuracy itself. Each other solver runs at the loosest of its tolerances 5, 2,
-1, 0.5, 0.2, 0.1 … 1e-12 at which the residual reaches the accuracy and the cosine is above 0.9. The search for these comes
-first and is stored in the work folder. Then all solvers run in turn, round by round, each in a process of its own, which
-solves up to three times within a second. A solver's time is the best of all, without start-up and reading.
+1, 0.5, 0.2, 0.1 … 1e-12 at which the residual reaches the accuracy and the cosine is above 0.9. These tolerances are
+searched first and stored in the work folder. Then all solvers run in turn, round by round, each in a process of its own,
+which solves up to three times within a second. A solver's time is its best solve, without start-up and reading.
 
 Debian's packages: libspectra-dev libslepc-real-dev libhypre-dev python3-scipy python3-networkx. PyAMG is not in Debian; it
 takes part if this Python has it. Peers that are missing are skipped with a message.

@@ -2,7 +2,7 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 """DOLFINx's own partition and order: `mpirun -n N dolfinx_mesh.py TETRAHEDRA OUT` makes a mesh on N ranks of the folder's
 tetrahedra.npy and points.npy, without ghost cells, and writes in OUT the new number of each vertex as numbers.npy and the first one of
-each rank as starts.npy. Prints the processor seconds of all ranks, in the program, that dolfinx.mesh.create_mesh takes."""
+each rank as starts.npy. Prints the processor seconds in user mode that dolfinx.mesh.create_mesh takes on all ranks."""
 import pathlib
 import resource
 import sys

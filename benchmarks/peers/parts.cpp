@@ -26,7 +26,7 @@ int ranks() {
   return result;
 }
 
-/// Returns the processor time of this process in the program.
+/// Returns the processor time of this process in user mode.
 double processor_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -23,7 +23,7 @@ struct Range {
 /// Returns this rank's share of `count` things: ranges as equal as can be.
 Range own_range(std::int64_t count);
 
-/// Partitions, prints the processor seconds of all ranks together, in the program, and writes the parts.
+/// Partitions, prints the processor seconds in user mode of all ranks together, and writes the parts.
 ///
 /// @param path       of the .npy file
 /// @param partition  returns the parts of this rank's range

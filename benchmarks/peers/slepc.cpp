@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // SLEPc's LOBPCG with PETSc's algebraic multigrid: `peer-slepc GRAPH TOLERANCE VECTOR -st_pc_type
-// gamg|hypre`, and any other option of theirs.
+// gamg|hypre`, and any other option of SLEPc and PETSc.
 #include "peer.hpp"
 
 #include <slepceps.h>
@@ -14,7 +14,8 @@ void ok(PetscErrorCode code) {
   if (code != 0) throw std::runtime_error("PETSc error " + std::to_string(code));
 }
 
-/// Returns the matrix as PETSc's, on the given arrays, with constants as its near null space for multigrid.
+/// Returns a matrix of PETSc that uses the arrays of `matrix`. Constants are its near null space for
+/// multigrid.
 Mat petsc_matrix(peer::Matrix& matrix) {
   Mat result = nullptr;
   ok(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, matrix.size, matrix.size, matrix.offsets.data(),

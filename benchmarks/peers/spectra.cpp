@@ -1,7 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Spectra's Lanczos method on the inverse of the Laplacian, factored by Eigen's sparse LDLᵀ:
-// `peer-spectra GRAPH TOLERANCE VECTOR [metis]`, else in the order of approximate minimum degree.
+// `peer-spectra GRAPH TOLERANCE VECTOR [metis]`. Without `metis` the factor is in the order of approximate
+// minimum degree.
 #include "peer.hpp"
 
 // Eigen 3.4's MetisSupport needs <iostream> and does not include it

@@ -30,7 +30,7 @@ SAME = 1.05
 
 
 def measured(arguments):
-    """Returns by kernel and mesh (vertices, by order (one half, the other, predicted…)); and by kernel and mesh auto's order."""
+    """Returns {kernel: {mesh: (vertices, {order: (one half, the other, predicted…)})}} and {kernel: {mesh: auto's order}}."""
     lines = arguments.table.read_text().splitlines() if arguments.table and arguments.table.exists() else []
     for mesh in arguments.meshes:
         if any(line.startswith(f"{mesh},") for line in lines):
@@ -52,7 +52,7 @@ def measured(arguments):
 
 
 def pairs(meshes, column):
-    """Yields the logarithms of the measured ratio and of the ratio in `column`, for each two orders of each mesh."""
+    """Yields the logarithms of the measured ratio and of the ratio in `column`, for each pair of orders of each mesh."""
     for _, orders in meshes.values():
         for a, b in itertools.combinations(orders.values(), 2):
             yield math.log(min(a[:2]) / min(b[:2])), math.log(a[column] / b[column])

@@ -16,10 +16,10 @@
 #include "mesh/reorder.hpp"
 #include "payoff/access_stream.hpp"
 #include "payoff/calibration_store.hpp"
+#include "payoff/kernel_bench.hpp"
 #include "payoff/kernel_timing.hpp"
 #include "payoff/machine.hpp"
 #include "payoff/machine_choice.hpp"
-#include "payoff/kernel_bench.hpp"
 
 #include <fmt/format.h>
 
@@ -85,7 +85,7 @@ mo::Mesh mesh_of(std::string name) {
   return skinned ? skin(mesh) : mesh;
 }
 
-/// Returns the costs of a machine by its name; of a calibration, those of one thread or of all.
+/// Returns the costs of a machine by its name; of a calibration, those of one thread or of all threads.
 mo::CostModel machine_named(const std::string& name, int threads) {
   if (name.ends_with(':')) return machine_named(name.substr(0, name.size() - 1), 1);
   if (name.find('/') != std::string::npos) {
@@ -120,7 +120,7 @@ void judge(const std::string& name, double budget, int threads, const std::strin
   add_auto(name, mesh, graph, orders);
   std::vector<mo::Mesh> meshes;
   std::vector<mo::KernelReuse> reuse;
-  std::vector<std::array<double, mo::kKernels.size()>> computed;  // by the threads
+  std::vector<std::array<double, mo::kKernels.size()>> computed;  // see times_computed
   for (const std::string& order : orders) {
     const auto slash = order.find('/');
     meshes.push_back(mesh);

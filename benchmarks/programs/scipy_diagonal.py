@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""Conjugate gradients with the diagonal in SciPy, which is products of a sparse matrix: scipy_diagonal.py MATRIX"""
+"""Conjugate gradients preconditioned by the diagonal in SciPy, mostly products with a sparse matrix: scipy_diagonal.py MATRIX"""
 import sys
 import time
 

@@ -1,5 +1,5 @@
 # Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-"""BiCGSTAB with an incomplete factor in SciPy, both as they are by default: scipy_ilu.py MATRIX"""
+"""BiCGSTAB with an incomplete factor in SciPy, both with default options: scipy_ilu.py MATRIX"""
 import sys
 import time
 

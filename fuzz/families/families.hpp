@@ -9,7 +9,7 @@ namespace meshorder::fuzz {
 
 /// The files of a mesh (see `input_files` and `check_mesh_files`).
 void check_mesh_family(std::string_view family, Family::Bytes input);
-/// A folder `polyMesh`: `owner`, `neighbour`, `points` and `faces`, read as an order of cells needs them.
+/// A folder `polyMesh`: `owner`, `neighbour`, `points` and `faces`, read as for an order of cells.
 void check_openfoam(std::string_view family, Family::Bytes input);
 /// An array of NumPy as `--maps` reads it: a permutation, written and read again.
 void check_npy(std::string_view family, Family::Bytes input);
@@ -19,8 +19,8 @@ void check_results(std::string_view family, Family::Bytes input);
 /// A checkpoint, written and read again.
 void check_checkpoint(std::string_view family, Family::Bytes input);
 void check_motion(std::string_view family, Family::Bytes input);
-/// Arrays that the bytes describe, given to the C interface: each call returns a status, and a call that
-/// succeeds also a bijection.
+/// Arrays that the bytes describe, given to the C interface: each call returns a status; a call that succeeds
+/// also returns a bijection.
 void check_graphs(std::string_view family, Family::Bytes input);
 void check_cells(std::string_view family, Family::Bytes input);
 /// Reads past the end of an array for one input of 5 bytes: a working fuzzer finds it.

@@ -49,7 +49,7 @@ class Choices {
 /// An array of numbers of any type.
 class Numbers {
  public:
-  /// Converts the values to a type; those that it cannot hold lose their upper bits.
+  /// Converts the values to a type; values that the type cannot hold lose their upper bits.
   Numbers(mo_type type, const std::vector<std::int64_t>& values) : type_(type) {
     for (const std::int64_t value : values) add(value);
   }
@@ -82,7 +82,7 @@ class Numbers {
   }
   [[nodiscard]] mo_in in() const { return {bytes_.data(), count(), type_}; }
   [[nodiscard]] mo_out out() { return {bytes_.data(), count(), type_}; }
-  /// Returns the whole number at a place.
+  /// Returns the whole number at a position.
   [[nodiscard]] std::int64_t at(std::size_t place) const {
     if (kSizes[static_cast<std::size_t>(type_)] == 4) {
       return type_ == MO_INT32 ? std::int64_t{load<std::int32_t>(place)}
@@ -111,7 +111,7 @@ class Numbers {
 
 mo_type whole_type(Choices& from) { return static_cast<mo_type>(from.below(4)); }
 
-/// Returns numbers in base … base + count − 1, sometimes others.
+/// Returns numbers in base … base + count − 1, sometimes other numbers.
 std::vector<std::int64_t> members(Choices& from, std::size_t size, std::size_t count, std::int64_t base) {
   std::vector<std::int64_t> result(size);
   for (std::int64_t& value : result) {
@@ -124,7 +124,7 @@ std::vector<std::int64_t> members(Choices& from, std::size_t size, std::size_t c
   return result;
 }
 
-/// Returns offsets of rows that have `size` entries in all, sometimes others.
+/// Returns offsets of rows that have `size` entries in all, sometimes other numbers.
 std::vector<std::int64_t> offsets(Choices& from, std::size_t rows, std::size_t size, std::int64_t base) {
   std::vector<std::int64_t> result{base};
   for (std::size_t r = 1; r < rows; ++r) {
@@ -154,7 +154,7 @@ std::string method_name(Choices& from) {
   return mo_method_name(choice);
 }
 
-/// The options of a call, with what they refer to.
+/// The options of a call, with the data that they refer to.
 class Options {
  public:
   Options(Choices& from, std::size_t vertices)

@@ -40,7 +40,7 @@ Variable variable_of(int file, int id) {
   Variable variable;
   variable.id = id;
   int rank = 0;
-  if (nc_inq_varndims(file, id, &rank) != NC_NOERR) return variable;  // it has no values to read
+  if (nc_inq_varndims(file, id, &rank) != NC_NOERR) return variable;  // the variable has no values to read
   variable.dimensions.resize(static_cast<std::size_t>(rank));
   (void)nc_inq_var(file, id, name.data(), &variable.type, nullptr, variable.dimensions.data(), nullptr);
   variable.name = name.data();
@@ -54,7 +54,7 @@ Variable variable_of(int file, int id) {
   return variable;
 }
 
-/// Returns all values of a variable of numbers; nothing of another one.
+/// Returns all values of a numeric variable; empty if the variable is not numeric.
 std::vector<double> numbers_of(int file, const Variable& variable) {
   std::vector<double> values(variable.values);
   const bool is_read = !values.empty() && nc_get_var_double(file, variable.id, values.data()) == NC_NOERR;
@@ -80,7 +80,7 @@ void change_values(int file, const Variable& variable, Choice& choice) {
   (void)nc_put_var_double(file, variable.id, values.data());
 }
 
-/// Gives `variable` the values of `other`, repeated from the first one if there are too few.
+/// Gives `variable` the values of `other`, repeated from the first value on if they are too few.
 void copy_values(int file, const Variable& variable, const Variable& other) {
   if (std::max(variable.values, other.values) > kMostValues) return;
   const std::vector<double> source = numbers_of(file, other);

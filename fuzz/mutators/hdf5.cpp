@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
 
-/// Changes one number, or changes all bytes by the engine, but keeps their count.
+/// Changes one number, or lets the engine change all bytes. The count stays the same.
 template <class Number>
 void change(std::vector<Number>& numbers, Choice& choice) {
   if constexpr (std::is_arithmetic_v<Number>) {
@@ -38,7 +38,7 @@ void change(std::vector<Number>& numbers, Choice& choice) {
   }
 }
 
-/// Changes a dataset of numbers. Returns false if there is none.
+/// Changes a dataset of numbers. Returns false if the file has no such dataset.
 bool change_values(hdf5::File& file, Choice& choice) {
   const auto datasets = file.datasets();
   if (datasets.empty()) return false;
@@ -50,7 +50,7 @@ bool change_values(hdf5::File& file, Choice& choice) {
   if (source == path) {
     std::visit([&](auto& numbers) { change(numbers, choice); }, values);
     if (choice.below(16) == 0 && shape.size() > 1) std::swap(shape.front(), shape.back());
-  } else {  // two have the same values
+  } else {  // two datasets have the same values
     file.remove(path);
   }
   file.write(path, values, shape);
@@ -73,7 +73,7 @@ void add_objects(const hdf5::File& file, const std::string& group, int depth,
   }
 }
 
-/// Returns the name of an attribute of an object by its place among them.
+/// Returns the name of the attribute at a position in an object's list of attributes.
 std::string name_of_attribute(hid_t object, std::size_t place) {
   const hdf5::Handle attribute(
       H5Aopen_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, place, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
@@ -129,7 +129,7 @@ bool change_objects(hdf5::File& file, Choice& choice) {
     return H5Lmove(id, from.c_str(), id, to.c_str(), H5P_DEFAULT, H5P_DEFAULT) >= 0;
   };
   switch (choice.below(7)) {
-    case 0:  // they exchange their places
+    case 0:  // the two objects exchange their paths
       if (move(one, "/exchanged")) {
         move(other, one);
         move("/exchanged", other);

@@ -29,7 +29,7 @@ struct Place {
   std::size_t index;  ///< in the owner
 };
 
-/// Adds the places of all values in a list or an object. Returns false where they are nested too deep.
+/// Adds the places of all values in a list or an object. Returns false if they are nested too deep.
 bool add_places(Json& owner, std::vector<Place>& places, int depth = 0) {
   if (depth == kMostDepth) return false;
   std::size_t index = 0;
@@ -40,7 +40,7 @@ bool add_places(Json& owner, std::vector<Place>& places, int depth = 0) {
   return true;
 }
 
-/// Returns a number near `number`, or one that is often handled wrongly.
+/// Returns a number near `number`, or a number that is often handled wrongly.
 Json other_number(const Json& number, Choice& choice) {
   const std::array<Json, 8> numbers{0,
                                     -1,
@@ -66,7 +66,7 @@ Json other_value(const Json& value, Choice& choice) {
   return nullptr;
 }
 
-/// Gives a value in an object the key of another one.
+/// Gives a value in an object the key of another value.
 void change_key(const Place& place, const Place& other) {
   const std::string key = std::next(other.owner->begin(), static_cast<std::ptrdiff_t>(other.index)).key();
   Json value = *place.value;

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// In builds without libnetcdf.
+// Replaces exodus.cpp in builds without libnetcdf.
 #include "fuzz/families/families.hpp"
 
 namespace meshorder::fuzz {

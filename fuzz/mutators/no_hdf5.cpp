@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// In builds without libhdf5.
+// Replaces hdf5.cpp in builds without libhdf5.
 #include "fuzz/families/families.hpp"
 
 namespace meshorder::fuzz {

@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// In builds without pugixml.
+// Replaces xml.cpp in builds without pugixml.
 #include "fuzz/families/families.hpp"
 
 namespace meshorder::fuzz {

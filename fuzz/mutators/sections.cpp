@@ -47,8 +47,8 @@ void put_number(std::string& bytes, std::size_t begin, Choice& choice) {
   std::memcpy(bytes.data() + at, &value, width);
 }
 
-/// Returns the parts that begin with a line "$Name" that is not "$EndName"; the first is the text before
-/// them.
+/// Returns the parts that begin with a line "$Name" that is not "$EndName"; before them, as the first part,
+/// the text before the first such line.
 std::vector<std::string> sections_of(std::string_view text) {
   std::vector<std::string> sections(1);
   for (std::size_t at = 0; at < text.size();) {

@@ -14,7 +14,7 @@
 namespace meshorder::fuzz {
 namespace {
 
-constexpr std::uint64_t kMostOfArray = 1U << 20U;  // of an array
+constexpr std::uint64_t kMostOfArray = 1U << 20U;  // bytes
 
 struct Span {
   std::size_t begin = 0;
@@ -93,7 +93,7 @@ struct Storage {
   }
 };
 
-/// Returns the uncompressed bytes of an array; nothing if it is not whole.
+/// Returns the uncompressed bytes of an array; nothing if the array is not whole.
 std::optional<std::string> uncompressed_values(std::string_view text, const Storage& storage) {
   const std::string header = decoded(text);
   const std::uint64_t blocks = storage.number(header, 0);
@@ -119,7 +119,7 @@ std::optional<std::string> uncompressed_values(std::string_view text, const Stor
 /// Returns an array with some of its values changed, encoded as it was.
 std::string changed_array(std::string_view text, const Storage& storage, Choice& choice) {
   constexpr std::size_t kGrowth = 64;
-  const bool lies = choice.below(8) == 0;  // about its size
+  const bool lies = choice.below(8) == 0;  // about the array's size
   const std::uint64_t beyond = lies ? choice.below(1024) : 0;
   if (storage.compressor == VtuEncoding::Compressor::none) {
     const std::string bytes = decoded(text);

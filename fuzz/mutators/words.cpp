@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Files of lines and words: lines are moved, copied and removed, words are exchanged. Names then occur twice
-// and numbers refer to other places, while readers still understand the lines.
+// and numbers refer to other items, while readers still understand the lines.
 #include "fuzz/families/families.hpp"
 #include "fuzz/mutators/choice.hpp"
 

@@ -23,7 +23,8 @@ std::vector<pugi::xml_node> elements_of(const pugi::xml_document& document) {
   return elements;
 }
 
-/// Returns the path of an element from the root, each step with its place among the siblings of its name.
+/// Returns the path of an element from the root. Each step has a name, and a position among the siblings with
+/// this name.
 std::string path_of(pugi::xml_node element) {
   std::string path;
   for (; element.type() == pugi::node_element; element = element.parent()) {

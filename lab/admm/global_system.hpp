@@ -11,15 +11,15 @@
 namespace meshorder {
 
 /// The matrix A = M + h² Σ Dᵀw²D of ADMM's global step, the same for x, y and z, with its factor. Held
-/// vertices are not unknowns: their rows are those of the identity, and their influence on others goes to the
-/// right-hand side.
+/// vertices are not unknowns: their rows are those of the identity, and their influence on other vertices
+/// goes to the right-hand side.
 template <class Real>
 class GlobalSystem {
  public:
   /// `stiffness` is Σ Dᵀw²D and `squared_step` h². Vertices of mass 0 must be held.
   GlobalSystem(SparseMatrix stiffness, std::span<const double> masses, double squared_step);
 
-  /// Holds these vertices. Refactors and returns true if they differ from the ones held before.
+  /// Holds these vertices. Refactors and returns true if they differ from the vertices held before.
   bool hold(const HeldVertices& held);
 
   /// Sets the held vertices' positions, taken from x, in the right-hand side b and adds their influence on

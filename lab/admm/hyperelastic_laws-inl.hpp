@@ -26,9 +26,9 @@ HWY_INLINE typename Lanes::Value logarithm(typename Lanes::Value a) {
                          Lanes::set(std::numeric_limits<double>::quiet_NaN()));
 }
 
-/// F plus an isotropic law's stress over the bulk modulus is A F + b cof F + γ R, with R the rotation closest
-/// to F (see proximal-inl.hpp). A, b and γ are functions of p = (σ₁ + σ₂ + σ₃, σ₁σ₂ + σ₁σ₃ + σ₂σ₃, σ₁σ₂σ₃).
-/// Each law sets the derivatives that it needs.
+/// The factors of F + P/κ = A F + b cof F + γ R. P is the stress of an isotropic law, κ the bulk modulus, and
+/// R the rotation closest to F (see proximal-inl.hpp). A, b and γ are functions of p = (σ₁ + σ₂ + σ₃, σ₁σ₂ +
+/// σ₁σ₃ + σ₂σ₃, σ₁σ₂σ₃). Each law sets the derivatives that it needs.
 template <class Lanes>
 struct StressFactors {
   typename Lanes::Value a, b, shift;
@@ -172,7 +172,7 @@ struct NeoHookeanSteps {
   }
 };
 
-/// ½m (Σ σᵢ² − 3) − m log J + ½l log² J, J = σ₁σ₂σ₃, infinite unless all are positive.
+/// ½m (Σ σᵢ² − 3) − m log J + ½l log² J, J = σ₁σ₂σ₃; infinite unless all σᵢ are positive.
 template <class Lanes>
 struct LogNeoHookeanSteps {
   using Value = typename Lanes::Value;

@@ -19,8 +19,8 @@ struct LocalPass {
   const OwnedBatches& share;
   const Index* vertices = nullptr;   ///< corners of each batch
   const Real* rest = nullptr;        ///< kTetrahedronNumbers, or the rest length of springs
-  const Real* directions = nullptr;  ///< springs: of the rest edges, 3 quantities
-  /// Hyperelastic models: μ over the bulk modulus, of batch b from softness[softness_stride · b] on.
+  const Real* directions = nullptr;  ///< springs: directions of the rest edges, 3 quantities
+  /// Hyperelastic models: μ / bulk modulus; the numbers of batch b begin at softness[softness_stride · b].
   const Real* softness = nullptr;
   Offset softness_stride = 0;
   Real stiffness = 0;  ///< of springs

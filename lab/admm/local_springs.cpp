@@ -26,7 +26,7 @@ HWY_NOINLINE void find_directions(const typename Lanes::Value (&q)[3],
   const Value largest = Lanes::max(Lanes::max(Lanes::abs(q[0]), Lanes::abs(q[1])), Lanes::abs(q[2]));
   MESHORDER_UNROLL
   for (int c = 0; c < 3; ++c) {
-    // NaN > 0 is false; adding q, otherwise 0 there, keeps the NaN
+    // NaN > 0 is false; q is 0 or NaN there, and adding q keeps the NaN
     direction[c] =
         Lanes::choose(largest, q[c] / largest,
                       Lanes::load(rest_direction + c * kLocalBatch<typename Lanes::Number>) + q[c]);

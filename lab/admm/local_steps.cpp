@@ -143,7 +143,7 @@ void LocalSteps<Real>::set_duals(std::span<const Real> duals) {
       Real* const first = duals_.data() + duals_of(copy++);
       for (Index lane = 0; lane < kLocalBatch<Real>; ++lane) {
         const Offset s = Offset{batch} * kLocalBatch<Real> + lane;
-        // lanes that fill the last batch: springs have no length, and tetrahedra copy the last one
+        // lanes that fill the last batch: springs have no length, and tetrahedra copy the last tetrahedron
         const Offset from = elements_.corners == 4 ? std::min(s, last) : s;
         for (Index k = 0; k < rows; ++k) {
           first[k * kLocalBatch<Real> + lane] = from <= last ? duals[from * rows + k] : Real{0};

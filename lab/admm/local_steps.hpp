@@ -54,19 +54,19 @@ struct LocalResidual {
 };
 
 /// The local steps of all elements, with their dual variables u. Elements are processed in the order of the
-/// simplices (springs by their edges, see springs_on_edges). The same bits on every run and for any number of
-/// threads.
+/// simplices (springs by their edges, see springs_on_edges). Results have the same bits on every run and for
+/// any number of threads.
 ///
-/// Each thread adds to a range of vertices of its own and computes all elements that touch it (see
+/// Each thread adds to a range of vertices of its own and computes all elements that touch this range (see
 /// owned_batches). An element on a boundary has a copy of its duals for each thread. A tetrahedron that is
-/// flat to rounding has no volume and no force; its duals are those of a nearby one. A pass streams 240 bytes
-/// a tetrahedron and 64 a spring in double, about half of that in float.
+/// flat to rounding has no volume and no force; its duals are those of a nearby tetrahedron. A pass streams
+/// 240 bytes for each tetrahedron and 64 for each spring in double, and about half as many in float.
 template <class Real>
 class LocalSteps {
  public:
   /// Makes the elements of `simplices` (tetrahedra) at rest at `points`, with duals 0. Throws
-  /// InvalidArgument, naming the problem, for simplices that are not tetrahedra and numbers that are out of
-  /// range or not finite. O(simplices · log degree).
+  /// InvalidArgument, naming the problem, for simplices that are not tetrahedra and for numbers that are out
+  /// of range or not finite. O(simplices · log degree).
   LocalSteps(const LocalLaw& law, const Simplices& simplices, std::span<const Point> points);
 
   /// Returns Σ Dᵀw²D on the vertices: n × n, the same for x, y and z.
@@ -88,7 +88,7 @@ class LocalSteps {
   /// Throws InvalidArgument unless `duals` has as many numbers as duals() and all are finite.
   void set_duals(std::span<const Real> duals);
 
-  /// Returns Σ U(D x) in J, infinite if a law is. O(elements).
+  /// Returns the energy Σ U(D x), in joules; infinite if the energy of any element is infinite. O(elements).
   [[nodiscard]] double energy(std::span<const Real> positions) const;
 
   [[nodiscard]] Offset element_count() const noexcept;
@@ -96,8 +96,8 @@ class LocalSteps {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  /// Returns the position of the duals of copy c of a batch; batches that several shares compute have one
-  /// copy for each.
+  /// Returns the position of the duals of a copy of a batch. A batch has a copy for each share that computes
+  /// it.
   [[nodiscard]] Offset duals_of(Offset copy) const noexcept {
     return copy * elements_.rows() * kLocalBatch<Real>;
   }
@@ -106,7 +106,7 @@ class LocalSteps {
   Index vertex_count_;
   LocalElements<Real> elements_;
   std::vector<OwnedBatches> shares_;
-  std::vector<Offset> first_copies_;  ///< of each share: its first copy; its copies are consecutive
+  std::vector<Offset> first_copies_;  ///< the first copy of each share, whose copies are consecutive
   std::vector<Offset> copies_;        ///< one copy of each batch
   AlignedVector<Real> duals_;
   std::vector<double> residuals_;  ///< of each copy: primal and magnitude

@@ -263,7 +263,7 @@ template <class Real>
 void ProjectiveDynamics<Real>::finish(StepReport& report) {
   const auto wrong = std::find_if(x_.begin(), x_.end(), [](Real x) { return !std::isfinite(x); });
   if (wrong != x_.end()) {
-    local_.reset_duals();  // they are not finite either
+    local_.reset_duals();  // the duals are not finite either
     throw InputError(
         fmt::format("step {}", steps_ + 1),
         fmt::format("the motion is not finite at vertex {}", (wrong - x_.begin()) / kPaddedStride),
@@ -279,7 +279,7 @@ void ProjectiveDynamics<Real>::finish(StepReport& report) {
       }
     }
   });
-  // the exact velocities, whatever the precision of the iterations
+  // held vertices get their exact velocities, whatever the precision of the iterations
   held_.for_each([&](Index v, const Point& velocity) {
     for (int c = 0; c < 3; ++c) velocities_[Offset{3} * v + c] = velocity[c];
   });

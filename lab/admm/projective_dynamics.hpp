@@ -18,7 +18,7 @@ namespace meshorder {
 struct ProjectiveOptions : MotionOptions {
   int iterations = 20;  ///< of a step; with a tolerance the maximum
   double tolerance =
-      0.0;  ///< ends a step when both residuals (see ProjectiveDynamics) are below it; 0: never
+      0.0;  ///< a step ends when both residuals (see ProjectiveDynamics) are below this; 0: never
   bool keep_duals = true;  ///< from step to step; false: each step starts with zero duals
   ContactOptions contact;
   ContactSolverOptions contact_solver;
@@ -46,7 +46,7 @@ template <class Real>
 class ProjectiveDynamics final : public Integrator {
  public:
   /// Makes the body, at rest at `points`. Throws InvalidArgument, naming the problem, for a body that does
-  /// not consist of tetrahedra, numbers that are not finite or out of range.
+  /// not consist of tetrahedra and for numbers that are not finite or out of range.
   ProjectiveDynamics(std::span<const Point> points, const ProjectiveBody& body, ProjectiveOptions options);
 
   /// Returns the state; its `memory` holds the duals if they are kept.
@@ -80,7 +80,7 @@ class ProjectiveDynamics final : public Integrator {
   HeldVertices held_;
 
   Index steps_ = 0;
-  AlignedVector<double> positions_;      ///< at the step's start, padded as all that follow
+  AlignedVector<double> positions_;      ///< at the step's start; aligned vectors are padded
   std::vector<double> velocities_;       ///< 3 a vertex
   std::vector<double> loads_;            ///< f_ext, 3 a vertex
   AlignedVector<Real> x_;                ///< the iterate

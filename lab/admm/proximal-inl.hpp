@@ -175,9 +175,10 @@ struct InvariantSteps {
     return Lanes::mul_add(a * a, a - b * p[0], b * b * Lanes::mul_add(a, p[1], Lanes::set(0.0) - b * p[2]));
   }
 
-  /// Returns whether the nine curvatures are well above 0, as far as their products and sums show: A − b zₖ
-  /// for opposed rotations of two singular vectors; the curvatures for common rotations, which have the signs
-  /// of zᵢ + zⱼ; and those of the stretches, whose product has the sign of the determinant.
+  /// Returns whether the nine curvatures are well above 0, as far as their products and sums show:
+  /// - for opposed rotations of two singular vectors, A − b zₖ;
+  /// - for common rotations, curvatures with the signs of zᵢ + zⱼ;
+  /// - for the stretches, curvatures whose product has the sign of the determinant.
   [[nodiscard]] HWY_INLINE bool is_minimum(Value determinant) const {
     constexpr double kMin = 0.02;
     const Value& a = factors.a;

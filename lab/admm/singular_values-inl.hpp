@@ -18,8 +18,8 @@ namespace meshorder::HWY_NAMESPACE {
 /// Upper bound of singular values, so that no energy overflows.
 inline constexpr double kLargestStretch = 1e4;
 
-/// Solves (L D Lᵀ) x = −g for a symmetric matrix, of which the upper triangle is read. Each pivot is replaced
-/// by its magnitude, at least kMinPivot, so that x is a descent direction.
+/// Solves (L D Lᵀ) x = −g, where L D Lᵀ is the symmetric matrix h, whose upper triangle is read. Each pivot
+/// is replaced by its magnitude, or by kMinPivot if that is larger, so that x is a descent direction.
 template <class Lanes>
 HWY_INLINE void descent_direction(const typename Lanes::Value (&h)[3][3], const typename Lanes::Value (&g)[3],
                                   typename Lanes::Value (&x)[3]) {
@@ -56,9 +56,9 @@ HWY_INLINE typename Lanes::Value objective(const Law& law, const typename Lanes:
   return Lanes::mul_add(Lanes::set(0.5), squares, law.energy(z));
 }
 
-/// Sorts each pair of z like the pair of σ and gives its sum the sign of theirs. This keeps the energy and
-/// brings z closer to σ, so that minima among singular values become minima among all matrices. Returns
-/// whether any lane changed.
+/// For each pair of indices, sorts the two values of z like those of σ, and gives their sum the sign of the
+/// sum of those of σ. This keeps the energy and brings z closer to σ, so that minima among singular values
+/// become minima among all matrices. Returns whether any lane changed.
 template <class Lanes>
 HWY_INLINE bool match_order(const typename Lanes::Value (&sigma)[3], typename Lanes::Value (&z)[3]) {
   using Value = typename Lanes::Value;
@@ -83,7 +83,7 @@ HWY_INLINE bool match_order(const typename Lanes::Value (&sigma)[3], typename La
 
 /// Finds a local minimum of the objective by Newton's method with backtracking, until no lane moves. Starts
 /// from σ (raised to positive values where the law needs them) or from the step of Hooke's law, whichever has
-/// the lower objective. Finite for finite σ.
+/// the lower objective. The result is finite if σ is.
 template <class Lanes, class Law>
 HWY_NOINLINE void minimise(const Law& law, const typename Lanes::Value (&sigma)[3],
                            typename Lanes::Value (&z)[3]) {

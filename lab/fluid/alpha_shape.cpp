@@ -22,7 +22,7 @@ Kind kind_of(const std::array<Index, 4>& corners, std::span<const Point> points,
   const std::array<Point, 3> normals{cross(edges[1], edges[2]), cross(edges[2], edges[0]),
                                      cross(edges[0], edges[1])};
   const double six_volumes = dot(edges[0], normals[0]);
-  Point centre{};  // of the sphere, relative to `origin`, times 12 volumes
+  Point centre{};  // of the sphere, relative to `origin`; multiplied by 12 times the volume
   for (int i = 0; i < 3; ++i) centre = plus_scaled(centre, dot(edges[i], edges[i]), normals[i]);
   if (!(norm(centre) < kAlpha * spacing * 2 * std::abs(six_volumes))) return Kind::outside;
   return six_volumes > 6 * flat ? Kind::inside : Kind::flat;

@@ -16,7 +16,7 @@ namespace meshorder {
 struct FluidMesh {
   std::vector<Index> corners;       ///< 4 of each tetrahedron, positively oriented
   double flat = 0;                  ///< m³; smaller tetrahedra join vertices but are not integrated
-  std::vector<std::uint8_t> alone;  ///< whether a particle has only flat tetrahedra, or none
+  std::vector<std::uint8_t> alone;  ///< whether a particle has only flat tetrahedra, or no tetrahedra
   std::vector<std::uint8_t> free;   ///< whether a particle is alone or lies on the free surface
 
   [[nodiscard]] CellsView view() const { return CellsView::uniform(Shape::tetrahedron, 4, corners); }
@@ -31,7 +31,7 @@ struct FluidMesh {
 FluidMesh alpha_shape(const Triangulation& triangulation, std::span<const Point> points,
                       std::span<const Walls> walls, double spacing);
 
-/// Returns the faces between the mesh and the outside, anticlockwise as seen from there. O(tetrahedra).
+/// Returns the faces between the mesh and the outside, anticlockwise as seen from outside. O(tetrahedra).
 std::vector<std::array<Index, 3>> outer_faces(const FluidMesh& mesh);
 
 }  // namespace meshorder

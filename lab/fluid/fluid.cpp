@@ -37,8 +37,8 @@ void move_rows(const Permutation& order, std::vector<T>& rows) {
   rows = std::move(moved);
 }
 
-/// Throws InvalidArgument unless `memory` is that of a state of n particles: pressures, walls and places, the
-/// last time step, and the bytes of the order's state.
+/// Throws InvalidArgument unless `memory` is that of a state of n particles: their pressures, walls and
+/// numbers, the last time step, and the bytes of the order's state.
 void check_memory(std::span<const double> memory, std::size_t n) {
   const auto all_within = [&](std::size_t begin, std::size_t end, double least, double most) {
     return std::all_of(memory.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -295,11 +295,12 @@ StepReport Fluid::step() {
   assemble_system();
   report.seconds.assembly = stopwatch.seconds();
   const double dt = next_time_step();
-  const double kick = (last_time_step_ + dt) / 2;  // from the middle of the last step to that of this one
+  const double kick =
+      (last_time_step_ + dt) / 2;  // from the middle of the last step to the middle of this step
   const auto before = std::tuple(positions_, velocities_, pressures_, walls_);
   stopwatch = {};
   if (options_.viscosity > 0) add_viscosity(kick, report);
-  // not held at walls: pressure balances gravity there, too
+  // particles on walls are not held: pressure balances gravity there, too
   for_each(velocities_.size(),
            [&](std::size_t i) { velocities_[i] = plus_scaled(velocities_[i], kick, options_.gravity); });
   report.seconds.solve = stopwatch.seconds();

@@ -15,11 +15,16 @@ namespace meshorder {
 /// Pin 2004): the particles are the vertices of a mesh that is made anew in each step, with linear velocities
 /// and pressures.
 ///
-/// A step: the alpha shape of the particles' Delaunay triangulation; their order; the velocity after
-/// viscosity, u' with (M + τν K) u' = M u, and gravity, u* = u' + τg; the pressure p with τ/ρ ∫ ∇q·∇p = ∫
-/// ∇q·u* for all q and p = 0 on the free surface; u = u* − τ/ρ ∇p; the particles move by Δt u and slightly
-/// apart. Velocities are those midway between two positions, so τ is the mean of this Δt and the last one:
-/// free particles follow their parabola, and waves keep their height. Walls are smooth: ∫ ∇q·u* has no flow
+/// A step computes, one after another:
+/// - the alpha shape of the particles' Delaunay triangulation, and the order of the particles;
+/// - the velocity after viscosity, u' with (M + τν K) u' = M u;
+/// - the velocity after gravity, u* = u' + τg;
+/// - the pressure p with τ/ρ ∫ ∇q·∇p = ∫ ∇q·u* for all q, and p = 0 on the free surface;
+/// - the new velocity u = u* − τ/ρ ∇p;
+/// - the new positions: particles move by Δt u, and slightly apart.
+///
+/// Velocities are those midway between two positions, so τ is the mean of this Δt and the last one. Free
+/// particles follow their parabola, and waves keep their height. Walls are smooth: ∫ ∇q·u* has no flow
 /// through them, and particles stay on a wall that they reach.
 ///
 /// Positions and velocities of states and balances are in the order of the particles at the start.

@@ -13,16 +13,16 @@ namespace meshorder {
 /// Water in a basin with plane walls, and the options of its simulation. `MotionOptions::time_step` is the
 /// longest step; forces and prescribed motions are not used.
 struct FluidOptions : MotionOptions {
-  Point basin{};             ///< its extent from the origin, m: y is the height of its walls
-  bool lid = false;          ///< whether the basin is closed at the top
-  Point column{};            ///< extent of the water in the corner at the origin, m
-  double spacing = 0;        ///< of the particles at the start, m
-  double jitter = 0.2;       ///< largest shift of a particle along each axis at the start, in spacings
-  double wave = 0;           ///< height of a wave cos(πx / L) of the surface, as a share of the column's
-  double density = 1000;     ///< kg/m³
-  double viscosity = 0;      ///< kinematic, m²/s
-  double courant = 0.5;      ///< largest distance that a particle moves in a step, in spacings
-  double evening = 0.05;     ///< largest distance by which a step moves particles apart, in spacings
+  Point basin{};          ///< its extent from the origin, m: y is the height of its walls
+  bool lid = false;       ///< whether the basin is closed at the top
+  Point column{};         ///< extent of the water in the corner at the origin, m
+  double spacing = 0;     ///< of the particles at the start, m
+  double jitter = 0.2;    ///< largest shift of a particle along each axis at the start, in spacings
+  double wave = 0;        ///< height of a wave cos(πx / L) of the surface, as a share of the column's height
+  double density = 1000;  ///< kg/m³
+  double viscosity = 0;   ///< kinematic, m²/s
+  double courant = 0.5;   ///< largest distance that a particle moves in a step, in spacings
+  double evening = 0.05;  ///< largest distance by which a step moves particles apart, in spacings
   double volume_gain = 0.2;  ///< share of lost volume that a step restores
   SolveOptions solve{.tolerance = 1e-5, .max_iterations = 2000};  ///< of the pressure
 };
@@ -49,8 +49,8 @@ struct Particles {
   std::vector<Walls> walls;
 };
 
-/// Returns the particles at the start: a lattice, row by row along z, moved a little within the water. Throws
-/// InvalidArgument as `check_options`. O(particles).
+/// Returns the particles at the start: those of a lattice, row by row along z, each moved a little within the
+/// water. Throws InvalidArgument as `check_options` does. O(particles).
 Particles particles_at_start(const FluidOptions& options);
 
 /// Moves a particle that left the basin back to its wall, on which it stays.

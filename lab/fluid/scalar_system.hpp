@@ -29,7 +29,7 @@ ScalarSystem assemble(const FluidMesh& mesh, std::span<const Point> points);
 
 /// Solves (α K + β M) x = b by conjugate gradients with the diagonal as preconditioner; x is the start and
 /// becomes the result. Where `held` is not 0, x is given and stays. `tolerance` limits ‖b − A x‖ / ‖b‖. The
-/// same bits for any number of threads.
+/// result has the same bits for any number of threads.
 SolveReport solve(const ScalarSystem& system, double alpha, double beta, std::span<const std::uint8_t> held,
                   std::span<const double> b, std::span<double> x, const SolveOptions& options);
 

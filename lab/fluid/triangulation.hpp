@@ -18,9 +18,9 @@ struct Triangulation {
   std::vector<std::array<Index, 4>> neighbours;
 };
 
-/// Triangulates points. None of them may be NaN or infinite. A point that coincides with another has no
-/// tetrahedron, and points of one plane have none at all. The triangulation of points that
-/// differ does not depend on their numbers.
+/// Triangulates points, which must be finite. Of points that coincide, only one has tetrahedra; points that
+/// all lie in one plane have no tetrahedra. If all points differ, the triangulation does not depend on their
+/// numbers.
 using Triangulate = std::function<Triangulation(std::span<const Point>)>;
 
 /// Returns whether the program `meshorder-delaunay` is found.
@@ -29,7 +29,7 @@ bool has_delaunay_program();
 /// Returns a function that triangulates by the program `meshorder-delaunay`, which is started once. The
 /// function checks the program's answers, and throws Error if the program has ended. Throws Error if the
 /// program is not found. It must be beside this program or on PATH, and is trusted like this program; a
-/// scenario cannot name another.
+/// scenario cannot name another program.
 Triangulate delaunay_program();
 
 }  // namespace meshorder

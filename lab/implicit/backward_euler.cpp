@@ -277,7 +277,8 @@ void BackwardEuler::solve(Iterate& iterate, StepReport& report) {
   }
 }
 
-/// Shortens the step until the potential decreases (Armijo). Returns false, with a step of 0, if it does not.
+/// Shortens the step until the potential decreases (Armijo). If the potential does not decrease, sets the
+/// step to 0 and returns false.
 bool BackwardEuler::search_line(Iterate& iterate, StepReport& report) {
   constexpr double kEnough = 1e-4;     // of the decrease that the slope predicts
   constexpr double kRounding = 1e-13;  // of the potential's terms
@@ -318,12 +319,12 @@ Offset BackwardEuler::blocks_read() const noexcept {
 
 std::size_t BackwardEuler::bytes() const {
   const auto of = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
-  // CG keeps three vectors, a step four more
+  // 4 vectors of CG and 4 of a step
   return system_.bytes() + preconditioner_->bytes() + of(damping_.values) + of(damping_.columns) +
          of(rounded_.values) + of(rounded_.columns) + of(half_.values) + of(half_.columns) +
          of(half_.offsets) + of(rounded_half_.values) + of(rounded_half_.columns) +
          of(rounded_half_.offsets) + of(damping_.offsets) + of(positions_) + of(moved_) + of(velocities_) +
-         of(loads_) + of(scratch_) + 7 * of(velocities_);
+         of(loads_) + of(scratch_) + 8 * of(velocities_);
 }
 
 }  // namespace meshorder

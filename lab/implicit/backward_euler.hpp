@@ -31,7 +31,7 @@ struct ImplicitOptions : MotionOptions {
   double stiffness_damping = 0.0;  ///< β, s; K is that at the start of the step
   Mass mass = Mass::lumped;
   int newton_iterations = 1;       ///< 1: one linearised step (Baraff, Witkin 1998)
-  double newton_tolerance = 1e-6;  ///< on ‖g‖ / ‖g at rest‖, where more iterations are allowed
+  double newton_tolerance = 1e-6;  ///< bound of ‖g‖ / ‖g at rest‖, if more than one iteration is allowed
   PreconditionerKind preconditioner = PreconditionerKind::jacobi;
   MatrixPrecision precision = MatrixPrecision::double_;
   SolveOptions solve;
@@ -45,7 +45,8 @@ struct ImplicitOptions : MotionOptions {
 class BackwardEuler final : public Integrator {
  public:
   /// Makes the body, at rest at `points`. Throws InvalidArgument, naming the problem, for a body that does
-  /// not consist of tetrahedra, a vertex without mass, numbers that are not finite or out of range.
+  /// not consist of tetrahedra, for a vertex without mass, and for numbers that are not finite or out of
+  /// range.
   BackwardEuler(std::span<const Point> points, const Body& body, ImplicitOptions options);
 
   [[nodiscard]] MotionState state() const override;

@@ -19,7 +19,8 @@ struct Body {
 };
 
 /// The mass, forces and matrix of an elastic body, assembled by all threads in the order of vertices and
-/// simplices: each thread adds to its own rows (see owned_batches). Same bits for any number of threads.
+/// simplices: each thread adds to its own rows (see owned_batches). Results have the same bits for any number
+/// of threads.
 class ElasticSystem {
  public:
   /// Throws InvalidArgument for a body that is not of tetrahedra, or a vertex without mass that a tetrahedron
@@ -27,7 +28,7 @@ class ElasticSystem {
   ElasticSystem(std::span<const Point> points, const Body& body, Mass mass);
 
   /// Computes forces() = −∂E/∂x at the positions (see padded_positions), and matrix() = mass_factor M +
-  /// stiffness_factor K + `added` (of the same pattern, where given). O(simplices).
+  /// stiffness_factor K + `added`, which has the same pattern or is null. O(simplices).
   void assemble(std::span<const double> positions, Tangent tangent, double mass_factor,
                 double stiffness_factor, const BlockCsr* added = nullptr);
   /// Computes only the forces. O(simplices).

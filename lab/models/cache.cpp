@@ -26,7 +26,7 @@ constexpr const char* kElsewhere = "set MESHORDER_CACHE to a folder that can be 
   throw InputError(path.string(), what, kElsewhere);
 }
 
-/// Returns the first number of a file outside its comments; 0 if there is none, or no such file.
+/// Returns the first number of a file outside its comments; 0 if there is no such number, or no such file.
 Index first_number(const fs::path& path) {
   if (std::error_code code; !fs::exists(path, code)) return 0;
   constexpr std::size_t kMost = 1 << 16;
@@ -63,7 +63,7 @@ MakingLock::MakingLock(const fs::path& folder, std::string_view name)
     : file_(::open((folder / ("." + std::string(name) + ".lock")).c_str(),
                    O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644)) {
   if (file_ < 0) refuse(folder, "cannot be written: " + std::generic_category().message(errno));
-  // on a file system without locks (ENOLCK), continues without one
+  // on a file system without locks (ENOLCK), continues without a lock
   while (::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
   }
 }

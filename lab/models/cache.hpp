@@ -19,7 +19,7 @@ void make_folder(const std::filesystem::path& folder);
 /// the process at the latest.
 class MakingLock {
  public:
-  /// Waits for the lock. `folder` must exist. Throws Error if it cannot be written.
+  /// Waits for the lock. `folder` must exist. Throws Error if the folder cannot be written.
   MakingLock(const std::filesystem::path& folder, std::string_view name);
   ~MakingLock();
   MakingLock(const MakingLock&) = delete;

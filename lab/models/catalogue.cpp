@@ -92,7 +92,7 @@ std::vector<Index> made_sizes(const Rule& rule) {
 
 using Report = std::function<void(std::string_view, double)>;
 
-// Both write a .node and .ele file into `folder` and return their path without extension.
+// Both functions write a .node and a .ele file into `folder` and return their path without extension.
 fs::path make_by_rule(const Rule& rule, Index size, const fs::path& folder, const Report& progress) {
   progress("Building the mesh", 0);
   fs::path path = folder / rule.name;
@@ -153,7 +153,7 @@ void make_kept(const std::string& name, bool force, const Report& progress, cons
                                     join(kRecipes, name_of), join(kRules, name_of)));
 }
 
-/// Throws InvalidArgument if a size is given for a model that has one.
+/// Throws InvalidArgument if a size is given; called for a model of fixed size.
 void check_size(std::string_view name, const MakeOptions& options) {
   if (!options.size) return;
   throw InvalidArgument(fmt::format("model {}: has a fixed size; leave out --size, which is for {}", name,

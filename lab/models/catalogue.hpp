@@ -14,7 +14,7 @@ namespace meshorder {
 
 /// A tetrahedral mesh that meshorder can make by name.
 struct Model {
-  std::string name;            ///< "dragon"; with the size for a procedural model that is made, "grid-20"
+  std::string name;            ///< "dragon"; "grid-20", with the size, if a procedural model is made
   std::string description;     ///< for a list of models
   bool procedural = false;     ///< made in any size, without other programs
   std::filesystem::path path;  ///< the .node file, its .ele beside it; empty until it is made
@@ -22,13 +22,12 @@ struct Model {
   Index elements = 0;          ///< 0 until it is made
 };
 
-/// Returns the folder of the models: `models` in `$MESHORDER_CACHE`, else in
-/// `$XDG_CACHE_HOME/meshorder`, else in `~/.cache/meshorder`. Throws Error if none of the variables is
-/// set.
+/// Returns the folder of the models: `models` in `$MESHORDER_CACHE`, else in `$XDG_CACHE_HOME/meshorder`,
+/// else in `~/.cache/meshorder`. Throws Error if none of the variables is set.
 std::filesystem::path models_folder();
 
-/// Returns all models: the paper's and larger ones, then the procedural ones, each without a size and then in
-/// the sizes that are made. Reads only the first lines of files.
+/// Returns all models: the paper's and larger models, then the procedural models, each without a size and
+/// then in the sizes that are made. Reads only the first lines of files.
 std::vector<Model> list_models();
 
 /// Lattice cubes across a procedural model if no size is given.
@@ -50,7 +49,7 @@ struct MakeOptions {
 /// prepared by `meshorder-models` and filled by `tetgen`. If two processes make the same model, one waits for
 /// the other. An interruption never leaves an incomplete model under its name.
 ///
-/// Throws InvalidArgument for an unknown name, an invalid size or one that the model does not take; Error,
+/// Throws InvalidArgument for an unknown name, an invalid size or a size that the model does not take; Error,
 /// with a remedy, if a program is not installed or fails, or if the folder cannot be written.
 Model make_model(std::string_view name, const MakeOptions& options = {});
 

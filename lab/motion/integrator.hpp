@@ -27,7 +27,7 @@ struct StepReport {
   // implicit
   int newton_iterations = 0;
   int cg_iterations = 0;
-  double newton_residual = 0.0;  ///< ‖g‖ / ‖g at rest‖ at the end, where more iterations are allowed
+  double newton_residual = 0.0;  ///< ‖g‖ / ‖g at rest‖ at the end, if more than one iteration is allowed
   // ADMM
   int admm_iterations = 0;
   int contact_iterations = 0;  ///< of the solver of the global step with contacts
@@ -62,13 +62,13 @@ struct StepReport {
 
 /// Conserved quantities.
 struct Balance {
-  double kinetic = 0.0, elastic = 0.0, potential = 0.0;  ///< J; potential is gravity's, 0 at the origin
+  double kinetic = 0.0, elastic = 0.0, potential = 0.0;  ///< J; potential: of gravity, 0 at the origin
   Point momentum{};                                      ///< kg m/s
   Point angular_momentum{};                              ///< kg m²/s, about the origin
 };
 
 /// Time integration of a body. Processes vertices and elements in the given order. Vertices that no element
-/// uses stay where they are. The same bits on every run and for any number of threads.
+/// uses stay where they are. Results have the same bits on every run and for any number of threads.
 class Integrator : public Polymorphic {
  public:
   [[nodiscard]] virtual MotionState state() const = 0;
@@ -85,7 +85,7 @@ class Integrator : public Polymorphic {
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
 
-/// Throws InvalidArgument unless the state is one of n vertices and finite.
+/// Throws InvalidArgument unless the state has n vertices and is finite.
 void check_state(const MotionState& state, Index n);
 
 /// Returns the conserved quantities of a body whose vertices have these masses, positions (kPaddedStride

@@ -40,7 +40,7 @@ class HeldVertices {
   std::vector<Point> velocities_;  ///< of `vertices_`
 };
 
-/// Vertices and a time span: from the step that begins at `from` to the last one that begins before `until`.
+/// Vertices and a time span: from the step that begins at `from` to the last step that begins before `until`.
 struct Selection {
   std::vector<Index> vertices;
   double from = 0.0;  ///< s
@@ -71,8 +71,8 @@ void check_options(const MotionOptions& options, Index vertex_count);
 /// Throws InvalidArgument with `name`, `value` and `remedy` unless `good`.
 void require(bool good, const char* name, double value, const char* remedy);
 
-/// Sets the forces, 3 numbers for each vertex, and the vertices that are held in the step that follows the
-/// first `steps` ones. Vertices of mass 0 are held at rest. O(vertices + selected ones).
+/// Sets the forces, 3 numbers for each vertex, and the vertices that are held in the step after the first
+/// `steps` steps. Vertices of mass 0 are held at rest. O(vertices + selected vertices).
 void collect_loads(const MotionOptions& options, Index steps, std::span<const double> masses,
                    std::span<double> forces, HeldVertices& held);
 

@@ -27,13 +27,14 @@ struct EnumNames<Mass> {
 std::vector<double> lumped_masses(const RestShapes& rest, std::span<const double> densities,
                                   Index vertex_count);
 
-/// The mass matrix of simplices: m I in each block that has a number m.
+/// The mass matrix of simplices. Each 3×3 block is a multiple m I of the identity.
 struct MassMatrix {
   std::vector<double> vertices;  ///< the mass of each vertex, kg: the sum of its row
   std::vector<double> blocks;    ///< consistent: m of each block of the pattern; lumped: empty
 };
 
-/// Returns the mass matrix. `densities` as above; `map` leads into `pattern`. O(simplices).
+/// Returns the mass matrix. `densities` is as in lumped_masses; `map` lists blocks of `pattern`.
+/// O(simplices).
 MassMatrix mass_matrix(Mass kind, const RestShapes& rest, std::span<const double> densities,
                        const AssemblyMap& map, const BlockCsr& pattern);
 

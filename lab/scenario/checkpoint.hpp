@@ -19,9 +19,10 @@ struct Checkpoint {
 /// Writes a checkpoint, completely or not at all. Throws Error if it cannot be written. O(vertices + steps).
 void write_checkpoint(const Checkpoint& checkpoint, const std::filesystem::path& path);
 
-/// Reads a checkpoint. Throws Error, with the byte, for a file that is not a checkpoint, is truncated or
-/// changed, or has the other byte order; and, naming what differs, if it is of another simulation than
-/// `expected`.
+/// Reads a checkpoint. Throws Error:
+/// - with the byte, for a file that is not a checkpoint, is truncated or changed, or has the other byte
+///   order;
+/// - with what differs, for a checkpoint of another simulation than `expected`.
 Checkpoint read_checkpoint(const FilePath& path, const Fingerprint& expected);
 
 }  // namespace meshorder

@@ -20,8 +20,8 @@ struct EmbeddedVertex {
 };
 
 /// Embeds the nodes on edges, on faces and inside of volume cells. Of the tetrahedra of its cells, each node
-/// takes the one in which it lies deepest, then the first. `simplices` are the mesh's tetrahedra. Vertices
-/// that belong to no volume cell, or only to flat ones, are not embedded. O(tetrahedra · nodes of a cell).
+/// takes the first of those in which it lies deepest. `simplices` are the mesh's tetrahedra. Vertices that
+/// belong to no volume cell, or only to flat volume cells, are not embedded. O(tetrahedra · nodes of a cell).
 std::vector<EmbeddedVertex> embed_vertices(const Mesh& mesh, const Simplices& simplices);
 
 /// Sets positions and velocities of embedded vertices from those of the corners. `rest` are the positions of

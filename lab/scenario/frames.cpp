@@ -38,7 +38,8 @@ std::vector<DataArray> own_arrays(const Mesh& mesh, const MeshOrder& order) {
   return arrays;
 }
 
-/// Returns the metadata of the .vtu files: those of the mesh if it was read from VTK, with compression.
+/// Returns the metadata of the .vtu files, with compression; if the mesh was read from VTK, based on its
+/// metadata.
 std::shared_ptr<vtk::VtkMetadata> metadata_of(const Mesh& mesh) {
   const auto* const own = dynamic_cast<const vtk::VtkMetadata*>(mesh.format_metadata.get());
   auto metadata =

@@ -32,8 +32,8 @@ class FrameWriter {
   /// Returns whether a frame is due after `step`.
   [[nodiscard]] bool is_due(Index step) const { return step % every_ == 0; }
 
-  /// Writes a frame and the collection. Throws Error if it cannot. The bytes depend on the state only. O(size
-  /// of the mesh).
+  /// Writes a frame and the collection. Throws Error if a file cannot be written. The bytes depend on the
+  /// state only. O(size of the mesh).
   void write(MotionState state);
 
   [[nodiscard]] const std::filesystem::path& collection() const noexcept { return collection_; }

@@ -50,9 +50,9 @@ struct StepRecord {
   double shape_distance = 0;  ///< see distance_from_shape, m
 };
 
-/// A warning of one or more steps, whose texts differ at most in their numbers.
+/// A warning that one or more steps gave, in texts that differ at most in their numbers.
 struct WarningRecord {
-  std::string first;     ///< the text of the first time
+  std::string first;     ///< its first text
   Index first_step = 0;  ///< counted from 1
   Index count = 0;
 };
@@ -65,7 +65,7 @@ struct MotionRecord {
 };
 
 /// Adds a warning of a step and returns true. If a warning in the list differs only in its numbers,
-/// increments that one's count instead and returns false.
+/// increments the count of that warning instead and returns false.
 bool add_warning(const std::string& warning, Index step, std::vector<WarningRecord>& warnings);
 
 /// Adds a step, with the shape distance and balance after it.

@@ -60,7 +60,8 @@ struct ScenarioMotion {
   Point velocity{};  ///< m/s
 };
 
-/// Initial positions and velocities of vertices. Without a value they stay as in the mesh and at rest.
+/// Initial positions and velocities of vertices. Without `at`, they keep their positions in the mesh; without
+/// `velocity`, they are at rest.
 struct ScenarioStart {
   VertexChoice on;
   std::optional<Point> velocity;  ///< m/s
@@ -93,18 +94,18 @@ struct FluidScenario : FluidOptions {
   Index order_every = 0;  ///< see FluidOrdering::every
 };
 
-/// A simulation: mesh, material, loads, integrator and solver. Independent of the order of vertices and
-/// elements. A fluid makes its own mesh; it has no material and no loads except gravity. docs/simulate.md
+/// A simulation: mesh, material, loads, integrator and solver. It does not depend on the order of vertices
+/// and elements. A fluid makes its own mesh; it has no material and no loads except gravity. docs/simulate.md
 /// describes the file.
 struct Scenario {
   std::string file;  ///< the path it was read from
   std::string name;
   std::string title;  ///< may be empty
   std::string mesh;   ///< a model's name, or the path of a file; empty for a fluid
-  /// The folder that the mesh must lie in; none if the user named the mesh.
+  /// The folder that the mesh must lie in; empty if the user named the mesh.
   std::optional<std::filesystem::path> mesh_folder;
   double longest_side = 0;      ///< of the bounding box that the mesh is scaled to, m; 0: not scaled
-  double height = 0;            ///< the box's side along y instead, m
+  double height = 0;            ///< the side of that box along y, if given instead of the longest side; m
   std::optional<Point> bottom;  ///< position of the middle of the box's bottom, m
   std::string vertex_order = "original";
   std::string element_order = "original";
@@ -170,7 +171,7 @@ struct BuiltInScenario {
 std::span<const BuiltInScenario> built_in_scenarios();
 
 /// Returns the built-in scenario of that name, else reads that file. Throws Error, which lists the names, if
-/// there is neither.
+/// neither exists.
 Scenario find_scenario(const std::string& name_or_file);
 
 }  // namespace meshorder

@@ -30,7 +30,7 @@ std::vector<Index> used_vertices(const Simplices& simplices, Index vertex_count)
   return result;
 }
 
-/// Sets a selection to the times of the steps, halfway between two steps so that rounding cannot matter.
+/// Sets the time span of a selection. Its ends lie halfway between two steps, so that rounding cannot matter.
 void set_times(const StepRange& steps, double time_step, Selection& selection) {
   selection.from = (steps.first - 1.5) * time_step;
   if (steps.last < kMaxIndex) selection.until = (steps.last - 0.5) * time_step;

@@ -27,7 +27,7 @@ struct Simulation {
 };
 
 /// Makes the fluid of a scenario; `mesh` has its particles at the start, and neither cells nor an order.
-/// Throws as `Fluid`.
+/// Throws as the constructors of `Fluid` do.
 Simulation set_up_fluid(Scenario scenario, const OrderOptions& ordering = {});
 
 /// Returns the mesh of a fluid at the start.
@@ -39,7 +39,7 @@ void require_volume_cells(const Mesh& mesh, const std::string& file);
 /// Scales, places and orders a mesh as the scenario says, finds the vertices of its loads and makes the body
 /// from the mesh's volume cells, cut into tetrahedra. `file` is the mesh's path, for errors. Throws Error,
 /// which names the file and the path in it, for sets, labels or regions that the mesh lacks; InvalidArgument
-/// for unknown methods. O(size of the mesh) and the order's cost.
+/// for unknown methods. Takes O(size of the mesh), and the cost of the order.
 Simulation set_up(Scenario scenario, Mesh mesh, const std::string& file, const OrderOptions& ordering = {});
 
 /// Does the same in a given order. Throws InvalidArgument if the order is of another mesh.

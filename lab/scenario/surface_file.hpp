@@ -11,9 +11,10 @@
 
 namespace meshorder {
 
-/// Writes the surface of a fluid frame by frame, for a MotionFile of the same frames: a NumPy array of
-/// little-endian 32-bit integers, a row for each triangle: the number of its frame, and its three vertices,
-/// anticlockwise as seen from outside. The file appears when it is committed, completely or not at all.
+/// Writes the surface of a fluid frame by frame, for a MotionFile of the same frames. The file is a NumPy
+/// array of little-endian 32-bit integers with a row for each triangle: the number of its frame, and its
+/// three vertices, anticlockwise as seen from outside. It appears when it is committed, completely or not at
+/// all.
 class SurfaceFile {
  public:
   /// Throws Error if the file cannot be written.

@@ -71,8 +71,8 @@ std::vector<Index> in_group(const Mesh& mesh, std::span<const Index> candidates,
   return marks.among(candidates);
 }
 
-/// Returns the arrays to search for a choice's label: the one that it names, else the label arrays of
-/// vertices and cells.
+/// Returns the arrays to search for a choice's label: the array that the choice names, else the label arrays
+/// of vertices and cells.
 std::vector<std::string> arrays_of_labels(const Mesh& mesh, const VertexChoice& choice) {
   std::vector<std::string> names;
   for (const Association association : {Association::vertices, Association::cells}) {

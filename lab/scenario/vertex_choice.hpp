@@ -20,10 +20,11 @@ struct BoundingBox {
 /// Returns the bounding box of `points[v]` for all v in `vertices`, which must not be empty. O(vertices).
 BoundingBox bounding_box(std::span<const Point> points, std::span<const Index> vertices);
 
-/// Returns the vertices that `choice` describes among the `candidates` (ascending: the vertices of the
-/// simulation), ascending. Independent of the numbering: of several nearest points the one with the smallest
-/// coordinates counts, x before y before z, with all vertices at that point. Relative coordinates refer to
-/// the candidates' bounding box; along a side of length 0 they are 0.
+/// Returns the vertices that `choice` describes among the `candidates`, ascending. The candidates are the
+/// vertices of the simulation, ascending, too. The result does not depend on the numbering: of several
+/// nearest points, the one with the smallest coordinates counts (x before y before z), and all vertices at
+/// that point are chosen. Relative coordinates refer to the candidates' bounding box; along a side of length
+/// 0 they are 0.
 ///
 /// Throws Error, which names `file` and the choice's path in it, for an unknown set or label (and lists the
 /// known ones), or if no vertex is found. O(size of the mesh).

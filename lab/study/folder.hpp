@@ -48,12 +48,13 @@ class StudyFolder {
   [[nodiscard]] std::filesystem::path motion(std::string_view scenario) const {
     return data() / (std::string(scenario) + "-motion.npy");
   }
-  /// Returns the path of a fluid's surface in the frames: a NumPy array of rows (frame, three vertices); no
-  /// such file for a body.
+  /// Returns the path of a fluid's surface in the frames: a NumPy array of rows (frame, three vertices). A
+  /// body has no such file.
   [[nodiscard]] std::filesystem::path surfaces(std::string_view scenario) const {
     return data() / (std::string(scenario) + "-surfaces.npy");
   }
-  /// Returns the path of a scenario's obstacles as a surface mesh; no such file without obstacles.
+  /// Returns the path of a scenario's obstacles as a surface mesh. A scenario without obstacles has no such
+  /// file.
   [[nodiscard]] std::filesystem::path obstacles(std::string_view scenario) const {
     return data() / (std::string(scenario) + "-obstacles.vtu");
   }

@@ -11,7 +11,7 @@ namespace meshorder {
 /// Keeps other processes from working on a study's folder, until it is destroyed or the process ends.
 class FolderLock {
  public:
-  /// Throws InputError, which names the process, if another one holds the lock. Where the file system has no
+  /// Throws InputError, which names the process, if another process holds the lock. If the file system has no
   /// locks, the folder is not locked.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();

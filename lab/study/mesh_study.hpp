@@ -40,8 +40,8 @@ Index span_bin_width(Index vertices);
 /// for an order that moves nothing), its edge spans, the simulated misses of the kernels, and their predicted
 /// and measured times. Above a million simplices, reuse is estimated from a sample of the lines. Cell blocks
 /// of the file are ignored, as in simulations. The caller fills in `name`, `file` and `verdict` of the
-/// record. Misses and spans are the same on every run. Throws InvalidArgument for unknown methods. O(size of
-/// the mesh · orders), the orders' costs and the time that `timing` allows.
+/// record. Misses and spans are the same on every run. Throws InvalidArgument for unknown methods. Takes
+/// O(size of the mesh · orders), the costs of the orders, and the time that `timing` allows.
 OrderedMesh study_mesh(const Mesh& mesh, const std::vector<OrderingSpec>& orderings,
                        const MeshStudyOptions& options = {});
 

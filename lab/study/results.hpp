@@ -41,7 +41,7 @@ struct KernelRecord {
 /// A mesh in one of a study's orders.
 struct MeshOrderRecord {
   std::string ordering;
-  std::string vertex_method;  ///< the method that `auto` chose, if that was asked for
+  std::string vertex_method;  ///< the method that `auto` chose, if `auto` was requested
   std::string element_method;
   double seconds = 0;  ///< cost of the order: the vertex graph, both orders, moving the mesh
   EdgeSpan span;
@@ -104,11 +104,11 @@ struct TimeSummary {
 
 /// An order compared with the reference, by turns that were measured side by side.
 struct Speedup {
-  double saved_seconds = 0;              ///< the reference's mean minus this one's
-  double percent = 0;                    ///< of the reference's mean, as the paper's Table 4
+  double saved_seconds = 0;              ///< the reference's mean minus this order's
+  double percent = 0;                    ///< of the reference's mean, as in the paper's Table 4
   double low = 0, high = 0;              ///< 95 % confidence interval of `percent`
   bool beyond_noise = false;             ///< the interval does not contain 0
-  double undisturbed_percent = 0;        ///< of the undisturbed times
+  double undisturbed_percent = 0;        ///< like `percent`, from the undisturbed times
   std::optional<Index> break_even_step;  ///< first step by whose end the order's cost is saved; none: never
 
   bool operator==(const Speedup&) const = default;

@@ -14,7 +14,8 @@ namespace meshorder {
 namespace {
 
 constexpr double kConfidence = 0.95;
-/// Ratio of the variance of the runs' sums to the variance that turns explain; above this whole runs differ.
+/// Ratio of the variance of the runs' sums to the variance that turns explain. Above this ratio, whole runs
+/// differ.
 constexpr double kRunsDiffer = 3.0;
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }

@@ -67,7 +67,7 @@ nlohmann::json to_json(const StepperReady& ready);
 nlohmann::json to_json(const StepperTurn& turn);
 nlohmann::json to_json(const StepperTimes& times);
 
-// These throw nlohmann::json::exception for anything but such a message.
+// These functions throw nlohmann::json::exception for a message of another kind.
 StepperTask stepper_task(const nlohmann::json& message);
 StepperReady stepper_ready(const nlohmann::json& message);
 StepperTurn stepper_turn(const nlohmann::json& message);

@@ -16,32 +16,32 @@ namespace meshorder {
 /// Returns the paper's five orderings (section 5): original, Fiedler, VF Fiedler, scrambled, VF scrambled.
 std::vector<OrderingSpec> paper_orderings();
 
-/// Returns the paper's orderings and the one that `meshorder order` makes.
+/// Returns the paper's orderings and the ordering that `meshorder order` makes.
 std::vector<OrderingSpec> study_orderings();
 
-/// Returns the study's ordering of that name, or the one of methods given as VERTICES/ELEMENTS. Throws
+/// Returns the study's ordering of that name, or an ordering by methods given as VERTICES/ELEMENTS. Throws
 /// InvalidArgument for any other name.
 OrderingSpec study_ordering(std::string_view name);
 
 /// Options of a study.
 struct StudyPlan {
   std::vector<std::string> scenarios;  ///< names or files
-  std::string mesh;                    ///< instead of the scenarios' own: a model's name or a file; or empty
+  std::string mesh;                    ///< a model's name or a file; empty: the scenarios' own meshes
   std::string size = "paper";          ///< see mesh_of_size
   std::vector<OrderingSpec> orderings = study_orderings();
-  std::string reference = "scrambled";  ///< one of them
+  std::string reference = "scrambled";  ///< name of one of the orderings
   int runs = 3;
   int threads = 1;
-  std::optional<Index> steps;              ///< instead of the scenarios' own
-  std::optional<double> scenario_seconds;  ///< or about as many as fit in this time, at least 8
-  double kernel_seconds = 12;              ///< for running kernels, for each mesh
+  std::optional<Index> steps;              ///< instead of the scenarios' own steps
+  std::optional<double> scenario_seconds;  ///< or about as many steps as fit in this time, at least 8
+  double kernel_seconds = 12;              ///< time for running kernels on each mesh
   bool pin = true;                         ///< bind threads to processors
   OrderOptions ordering = {};
 };
 
 /// Returns the mesh of a study's size for a scenario whose own mesh is `mesh`: `mesh` itself for "paper", the
-/// armadillo with 291,000 vertices for "300k", a lattice with 1.9 million for "2m". Throws InvalidArgument
-/// for any other size.
+/// armadillo with 291,000 vertices for "300k", a lattice with 1.9 million vertices for "2m". Throws
+/// InvalidArgument for any other size.
 std::string mesh_of_size(std::string_view size, const std::string& mesh);
 
 /// Returns the names of the built-in scenarios that a study runs: those of the paper's simulators, and the

@@ -138,7 +138,7 @@ class Study {
     if (const ScenarioRecord* const begun = store_.find(subject.scenario.name)) go_on_with(*begun, subject);
   }
 
-  /// Divides further runs of a scenario into the turns of its first one.
+  /// Divides further runs of a scenario into the same turns as its first run.
   void go_on_with(const ScenarioRecord& begun, Subject& subject) const {
     const bool may_have_other_steps = plan_.scenario_seconds && !plan_.steps;
     if (begun.fingerprint != subject.body.fingerprint ||

@@ -24,9 +24,9 @@ struct StudyObserver {
 ///
 /// The orders of a mesh are computed once. In each run of a scenario every order has a fresh process of
 /// `program`, which is meshorder, on the same processors and with its memory at the same addresses. The
-/// processes take turns of about a second, each round begun by the next order, so that changes of the
-/// machine's speed affect all orders alike. If memory cannot hold all orders they run one after another. The
-/// first run stores frames of the motion and compares them between the orders.
+/// processes take turns of about a second. In each run another order begins, so that changes of the machine's
+/// speed affect all orders alike. If memory cannot hold all orders they run one after another. The first run
+/// stores frames of the motion and compares them between the orders.
 ///
 /// Throws Error if the folder holds another study, naming what differs, and for errors in scenarios and
 /// meshes.

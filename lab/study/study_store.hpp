@@ -33,7 +33,7 @@ class StudyStore {
   void keep(const Mesh& mesh, OrderedMesh studied);
   /// Adds the record of a scenario, before its first run is stored.
   void begin(ScenarioRecord record);
-  /// Stores a run of a scenario, one for each order.
+  /// Stores a run of a scenario: one record for each order.
   void keep(std::string_view scenario, const std::vector<RunRecord>& runs);
 
  private:

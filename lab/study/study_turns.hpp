@@ -20,9 +20,12 @@ struct TurnPlan {
   bool interleaved = true;  ///< all orders in memory, by turns
 };
 
-/// Plans turns of about a second, at least eight if there are enough steps; about 48 frames, fewer if their
-/// file would exceed 256 MB; all orders at once if free memory holds them. `budget_seconds` is
-/// StudyPlan::scenario_seconds.
+/// Plans:
+/// - turns of about a second, at least eight if there are enough steps;
+/// - about 48 frames, fewer if their file would exceed 256 MB;
+/// - all orders at once if free memory holds them.
+///
+/// `budget_seconds` is StudyPlan::scenario_seconds.
 TurnPlan plan_turns(const StepperReady& body, Index steps, std::optional<double> budget_seconds, int orders);
 
 /// One run of a scenario in all orders.
@@ -33,7 +36,7 @@ struct Round {
   std::vector<std::string> motions;  ///< a file for each order's frames; empty: no frames
   std::string surfaces;              ///< a file for the surface of a fluid in the first order; empty: none
   TurnPlan plan;
-  int number = 0;  ///< index of the run; the order of index `number` modulo the number of orders begins
+  int number = 0;  ///< index of the run, which begins with order `number` modulo the number of orders
 };
 
 /// Runs a round. `after_turn` is called with the share of the steps that are done; if it returns false the

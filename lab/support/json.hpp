@@ -70,7 +70,7 @@ class JsonValue {
   [[nodiscard]] std::optional<JsonValue> find(std::string_view key) const;
 
   // ---- arrays
-  /// Returns the values of an array. Throws unless there are `min` to `max`.
+  /// Returns the values of an array. Throws unless it has `min` to `max` values.
   [[nodiscard]] std::vector<JsonValue> items(std::size_t min = 0,
                                              std::size_t max = std::numeric_limits<std::size_t>::max()) const;
 
@@ -115,9 +115,9 @@ class JsonValue {
   std::string path_;
 };
 
-/// Returns JSON for people and version control: short values and lists of numbers take one line, the rest is
-/// indented. Doubles read back to the same bits; bytes that are no UTF-8 become U+FFFD. Ends with a line
-/// break. O(size · depth).
+/// Returns JSON for people and version control: short values and lists of numbers take one line, other values
+/// are indented. Doubles read back to the same bits; bytes that are no UTF-8 become U+FFFD. The text ends
+/// with a line break. O(size · depth).
 std::string json_text(const nlohmann::ordered_json& json);
 
 /// Writes json_text to a file, completely or not at all. Throws Error if it cannot be written.

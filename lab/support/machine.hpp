@@ -20,7 +20,7 @@ struct MachineRecord {
   std::string program;            ///< meshorder's version
   std::string revision;           ///< of git, see build_revision; may be empty
   std::string compiler;           ///< "GNU 12.2.0"
-  std::string flags;              ///< its options
+  std::string flags;              ///< the compiler's options
   std::string simd;               ///< the target that the kernels chose at run time: "AVX3"
 
   bool operator==(const MachineRecord&) const = default;

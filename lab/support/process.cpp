@@ -179,7 +179,7 @@ std::string ChildProcess::receive() {
   } while (length < 0 && errno == EINTR);
   const int error = errno;
   std::string line = length > 0 ? std::string(buffer, static_cast<std::size_t>(length)) : std::string();
-  std::free(buffer);  // NOLINT(cppcoreguidelines-no-malloc): getline's
+  std::free(buffer);  // NOLINT(cppcoreguidelines-no-malloc): getline allocated it
   if (line.empty() && error == ENOMEM) throw std::bad_alloc();
   if (line.empty()) throw_ended();
   if (line.back() == '\n') line.pop_back();

@@ -14,8 +14,7 @@
 namespace meshorder {
 
 /// A child process that reads lines of text, or bytes, from its standard input and writes lines or bytes to
-/// its standard output.
-/// Ctrl-C does not reach it. It ends no later than this process.
+/// its standard output. Ctrl-C does not reach it. It ends no later than this process.
 class ChildProcess {
  public:
   /// Starts a program. With `fixed_addresses`, address space randomisation is off where the system allows it:
@@ -34,14 +33,13 @@ class ChildProcess {
   void send(std::string_view line);
 
   /// Waits for the child's next line and returns it without its line break. Throws Error, which says how the
-  /// child ended, if there is none.
+  /// child ended, if there is no further line.
   std::string receive();
 
   /// Sends bytes. Throws Error if the child has ended.
   void send_bytes(std::span<const std::byte> bytes);
 
-  /// Waits until `bytes` is filled. Throws Error, which says how the child ended, if it ends before
-  /// that.
+  /// Waits until `bytes` is filled. Throws Error, which says how the child ended, if it ends before that.
   void receive_bytes(std::span<std::byte> bytes);
 
  private:
@@ -56,7 +54,8 @@ class ChildProcess {
 /// Returns whether this process was started with fixed addresses.
 bool has_fixed_addresses();
 
-/// Returns the program of that name in the running program's folder, else on PATH; empty if there is none.
+/// Returns the program of that name in the running program's folder, else on PATH; empty if there is no such
+/// program.
 std::filesystem::path find_program(std::string_view name);
 
 /// How a process ended.

@@ -145,7 +145,7 @@ void test_the_same_solution() {
   }
 }
 
-// A strip of cubes that were shuffled, each with its place as material, and a marked end.
+// A strip of cubes that were shuffled. The material of each cube is its position; one end is marked.
 void test_cells() {
   dealii::Triangulation<3> strip;
   dealii::GridGenerator::subdivided_hyper_rectangle(strip, {60, 1, 1}, {0, 0, 0}, {60, 1, 1});

@@ -42,8 +42,8 @@ inline std::vector<int> stay(const dolfinx::graph::AdjacencyList<std::int32_t>& 
   return map;
 }
 
-/// Makes a mesh as `create_mesh` does on one process, but with the orders of cells and of points that are
-/// given: `create_mesh` of DOLFINx 0.5 takes none.
+/// Makes a mesh as `create_mesh` does on one process, but with the given orders of cells and of points:
+/// `create_mesh` of DOLFINx 0.5 takes no orders.
 inline std::shared_ptr<dolfinx::mesh::Mesh> create_mesh(const measuring::Tetrahedra& tetrahedra,
                                                         const Reorder& cell_order,
                                                         const Reorder& point_order) {

@@ -78,7 +78,8 @@ std::shared_ptr<dolfinx::fem::FunctionSpace> linear_space(const std::shared_ptr<
       dolfinx::fem::create_functionspace(mesh, element, 1, order));
 }
 
-// A bar of one row of cubes has a bandwidth of at most 7, that of neighbouring squares of 4 points.
+// A bar of one row of cubes has a bandwidth of at most 7: neighbours are in the same or adjacent squares of 4
+// points.
 void test_direction() {
   const measuring::Tetrahedra tetrahedra = bar(60, 1);
   const auto rcm = meshorder::dolfinx_reorder("rcm");

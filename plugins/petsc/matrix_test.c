@@ -6,13 +6,13 @@
 #include <petscksp.h>
 #include <string.h>
 
-/* Number in the matrix of the vertex at place i of a path. 37 is not its own inverse modulo 101. */
+/* Returns the number in the matrix of the i-th vertex of a path. 37 is not its own inverse modulo 101. */
 enum { PATH = 101 };
 static PetscInt scattered(PetscInt i) { return (37 * i + 11) % PATH; }
 
 /* The Laplacian of a path, shifted to be regular, whose vertices are numbered by `scattered`. Each vertex has
- * `block` unknowns, coupled with all of its neighbours' unknowns where block > 1. With `lower_too` 0 the
- * matrix is upper bidiagonal along the path. */
+ * `block` unknowns; if block > 1, they are coupled with all unknowns of its neighbours. If `lower_too` is 0,
+ * the matrix is upper bidiagonal along the path. */
 static PetscErrorCode CreatePath(PetscInt block, int lower_too, Mat* matrix) {
   PetscFunctionBeginUser;
   PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, PATH * block, PATH * block, 3 * block, NULL, matrix));
@@ -71,7 +71,8 @@ static PetscErrorCode TestDirection(int lower_too) {
   PetscFunctionReturn(0);
 }
 
-/* PETSc orders the groups of rows with the same pattern (inodes), and expands them: each stays together. */
+/* PETSc orders the groups of rows with the same pattern (inodes), and expands them: each group stays
+ * together. */
 static PetscErrorCode TestBlocks(MatType type, PetscInt block) {
   Mat path, matrix;
   IS rows, columns;
@@ -96,8 +97,8 @@ static PetscErrorCode TestBlocks(MatType type, PetscInt block) {
   PetscFunctionReturn(0);
 }
 
-/* Solves with a matrix by PETSc's factors in that order; `fill` is the entries of the factors over those of
- * the matrix. */
+/* Solves with a matrix by PETSc's factors in that order. `fill` is the number of entries of the factors
+ * divided by that of the matrix. */
 static PetscErrorCode Solve(Mat matrix, PCType type, const char* ordering, PetscReal* fill) {
   KSP solver;
   PC preconditioner;

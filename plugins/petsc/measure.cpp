@@ -4,7 +4,7 @@
 //
 //   petsc_measure PREFIX ROUNDS mesh      the mesh in each order: assembly, products, CG with ICC
 //   petsc_measure PREFIX ROUNDS factors   the mesh as it is, ICC in each MatOrdering
-//   petsc_measure PREFIX ROUNDS direct    likewise, complete Cholesky factors
+//   petsc_measure PREFIX ROUNDS direct    the mesh as it is, complete Cholesky factors in each MatOrdering
 #include "../measuring.hpp"
 #include "meshorder_petsc.h"
 

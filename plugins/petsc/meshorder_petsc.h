@@ -34,7 +34,7 @@ PETSC_EXTERN PetscErrorCode MeshorderMatOrderingRegister(void);
  * @param dm      a mesh that is not distributed, or on one process; not changed
  * @param method  name of a vertex method without "meshorder_", such as "auto"; methods by coordinates use
  *                the means of the cells' coordinates
- * @param perm    perm[old point number] = new point number, as DMPlexPermute wants it; the caller destroys it
+ * @param perm    perm[old point number] = new point number, as DMPlexPermute needs it; the caller destroys it
  *
  * DMPlexGetOrdering ignores the type that it is given and computes only its own order.
  */

@@ -49,7 +49,7 @@ static PetscErrorCode Centres(DM dm, PetscInt begin, PetscInt end, PetscInt* dim
 typedef struct Kinds {
   PetscInt* kind;    /* of each point */
   PetscInt* numbers; /* the points' numbers, kind after kind, ascending in each */
-  PetscInt* next;    /* of each kind: place in `numbers` of the first one that is not taken yet */
+  PetscInt* next;    /* of each kind: position in `numbers` of the first number that is not taken yet */
   PetscInt count;
 } Kinds;
 
@@ -87,7 +87,8 @@ static PetscErrorCode KindsDestroy(Kinds* kinds) {
   PetscFunctionReturn(0);
 }
 
-/* Finds the order of the cells in [first, last): cells[k] is the old number of the cell at place k, from 0.
+/* Finds the order of the cells in [first, last): cells[k] is the old number, from 0, of the cell at position
+ * k.
  */
 static PetscErrorCode OrderCells(DM dm, PetscInt begin, PetscInt end, PetscInt first, PetscInt last,
                                  const char* method, PetscInt* cells) {
@@ -111,7 +112,8 @@ static PetscErrorCode OrderCells(DM dm, PetscInt begin, PetscInt end, PetscInt f
   PetscFunctionReturn(0);
 }
 
-/* Numbers all points: cells in their order, then points of each lower depth as those above meet them.
+/* Numbers all points: cells in their order, then the points of each lower depth as the points above meet
+ * them.
  */
 static PetscErrorCode NumberPoints(DM dm, PetscInt begin, PetscInt end, PetscInt cell_count,
                                    const PetscInt* cells, PetscInt first_cell, PetscInt* old_to_new) {

@@ -9,7 +9,7 @@
 #define CHECK(condition) \
   PetscCheck((condition), PETSC_COMM_SELF, PETSC_ERR_PLIB, "line %d: not true: %s", __LINE__, #condition)
 
-/* Fails unless the two maps are different ones: a test of direction needs a permutation that is not its own
+/* Fails if a permutation equals its inverse: a test of direction needs a permutation that is not its own
  * inverse. */
 static inline PetscErrorCode CheckNotInvolutive(IS perm, IS* inverse) {
   PetscBool same;

@@ -30,7 +30,7 @@ IndexView index_view(const Array& array);
 IndexSpan index_span(const MutableArray& array);
 /// Returns a view of float or double numbers; throws likewise.
 RealView real_view(const Array& array);
-/// Returns a view of points: one in each row of one to three coordinates, float or double. Throws likewise.
+/// Returns a view of points, whose rows have one to three coordinates, float or double. Throws likewise.
 PointsView points_view(const nb::ndarray<nb::ro, nb::device::cpu>& array);
 
 /// Moves a vector to an array that Python owns, without a copy.

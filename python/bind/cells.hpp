@@ -21,7 +21,8 @@
 
 namespace meshorder::python {
 
-/// Cells in the form of Python's half: blocks of one shape each; or offsets, vertices and types (or none).
+/// Cells as Python's half of the module passes them: blocks, each of one shape; or offsets, vertices and, if
+/// given, types.
 using Blocks = std::vector<std::pair<std::string, Array>>;
 using Mixed = std::tuple<Array, Array, std::optional<Array>>;
 using GivenCells = std::variant<Blocks, Mixed>;

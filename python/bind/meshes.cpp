@@ -137,7 +137,7 @@ Result<Index> surface_of(const Mesh& mesh) {
   }));
 }
 
-/// Returns a view of an array of a mesh, which lives as long as the view.
+/// Returns a view of an array of a mesh. The view keeps the mesh alive.
 template <class T>
 Result<T> viewed(nb::handle mesh, const std::vector<T>& values) {
   return Result<T>(values.data(), {values.size()}, mesh);
@@ -158,8 +158,8 @@ nb::object values_of(nb::handle mesh, const DataArray& array) {
       array.values);
 }
 
-/// Copies an array of Python's, of rank 1 or 2, into an array of a mesh. Throws InvalidArgument unless it
-/// holds real numbers.
+/// Copies a Python array of rank 1 or 2 into a new array for a mesh. Throws InvalidArgument unless the Python
+/// array holds real numbers.
 DataArray array_of(const std::string& name, bool of_vertices, const Array& values) {
   DataArray array{.name = name,
                   .association = of_vertices ? Association::vertices : Association::cells,
@@ -192,7 +192,7 @@ EntitySet set_of(const std::string& name, bool of_vertices, const Array& members
   return set;
 }
 
-/// Adds what a mesh has: arrays that refer to its own memory.
+/// Adds the properties of the class. Their arrays are views of the mesh's memory.
 void add_properties(nb::class_<Mesh>& mesh) {
   using Self = nb::handle_t<Mesh>;
   const auto of = [](Self self) -> const Mesh& { return nb::cast<const Mesh&>(self); };
@@ -239,7 +239,7 @@ void add_properties(nb::class_<Mesh>& mesh) {
       });
 }
 
-/// Adds what can be done with a mesh.
+/// Adds the methods of the class.
 void add_methods(nb::class_<Mesh>& mesh) {
   mesh.def("add_data", [](Mesh& self, const std::string& name, bool of_vertices,
                           const Array& values) { self.data.push_back(array_of(name, of_vertices, values)); })

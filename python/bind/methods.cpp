@@ -15,8 +15,8 @@
 namespace meshorder::python {
 namespace {
 
-/// Returns the registered Python functions. They must be released before the interpreter ends: `end` runs at
-/// exit.
+/// Returns the registered Python functions. They must be released before the interpreter ends, so `end` runs
+/// at exit.
 std::map<std::string, Registration>& registrations() {
   static std::map<std::string, Registration> all;
   return all;

@@ -10,7 +10,7 @@
 
 NB_MODULE(_core, module) {
   using namespace meshorder::python;
-  nanobind::set_leak_warnings(false);  // objects may live until the process ends, as a user's global variable
+  nanobind::set_leak_warnings(false);  // a user's global variables keep objects until the process ends
   add_errors(module);
   add_permutation(module);
   add_graphs(module);

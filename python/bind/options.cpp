@@ -24,16 +24,17 @@ std::thread::id ending_thread;  // set before `interpreter_ends`
   while (true) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
-/// Returns whether an object is False: Python's, or NumPy's, which comparisons of its numbers return.
+/// Returns whether an object is Python's False or NumPy's, which comparisons of NumPy's numbers return.
 bool is_false(const nb::object& answer) {
   const std::string_view type = Py_TYPE(answer.ptr())->tp_name;  // numpy.bool_ before NumPy 2
   return answer.is(Py_False) ||
          ((type == "numpy.bool" || type == "numpy.bool_") && !nb::cast<bool>(answer.attr("item")()));
 }
 
-/// Returns a progress function that calls a Python function, or none, and handles signals: Ctrl-C ends the
-/// call with KeyboardInterrupt. Only the result False stops the call; None does not. The library may copy it
-/// while Python is unlocked: the copies share one reference, which the options hold to the end.
+/// Returns a progress function that calls the given Python function, unless it is None, and handles signals:
+/// Ctrl-C ends the call with KeyboardInterrupt. Only the result False stops the call; None does not. The
+/// library may copy the progress function while Python is unlocked: the copies share one reference to the
+/// Python function, which the options hold to the end.
 std::function<bool(const Progress&)> reporter(const nb::object& given) {
   return [shared = std::make_shared<const nb::object>(given)](const Progress& progress) {
     if (interpreter_ends) return false;

@@ -13,7 +13,7 @@
 namespace meshorder::python {
 namespace {
 
-/// Returns a view of one direction of a permutation, which lives as long as the array.
+/// Returns a view of one direction of a permutation. The view keeps the permutation alive.
 Result<Index> direction(nb::handle self, std::span<const Index> map) {
   return Result<Index>(map.data(), {map.size()}, self);
 }

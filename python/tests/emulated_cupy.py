@@ -58,7 +58,7 @@ class Cupy(types.ModuleType):
         patches: pairs (old, new) of texts to replace in the source of the kernels.
         vector_additions: whether the device can add four numbers at once.
         memory: bytes of the device.
-        devices: their number.
+        devices: number of devices.
     """
 
     def __init__(self, folder):

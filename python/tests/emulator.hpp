@@ -111,7 +111,7 @@ static void release(int begin, int end) {
 }
 
 /// Runs the fibres of a warp up to a barrier or their end. `run_block` reports a shuffle at which only some
-/// arrive.
+/// fibres arrive.
 static void run_warp(int begin, int end) {
   for (;;) {
     for (int i = begin; i < end; ++i) {

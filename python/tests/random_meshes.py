@@ -20,7 +20,7 @@ CORNERS: dict[str, list[Any]] = {
     "wedge": [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1)],
     "hexahedron": [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
 }
-#: corners between which further nodes lie: of edges, then of faces, then of the interior
+#: for each further node, the corners between which it lies: first nodes of edges, then of faces, then of the interior
 _QUAD_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0)]
 _HEXAHEDRON_EDGES = [*_QUAD_EDGES, (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
 _WEDGE_EDGES = [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)]

@@ -10,7 +10,7 @@ import numpy as np
 
 @dataclasses.dataclass
 class Changes:
-    """Differences after writing and reading; `silent` has those without a note of the writer."""
+    """Differences after writing and reading. `silent` lists those that no note of the writer mentions."""
 
     notes: list[str]
     silent: list[str] = dataclasses.field(default_factory=list)

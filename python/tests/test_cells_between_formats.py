@@ -19,7 +19,7 @@ from vtkmodules.vtkIOExodus import vtkExodusIIReader  # noqa: E402
 from vtkmodules.vtkIOLegacy import vtkUnstructuredGridReader  # noqa: E402
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader  # noqa: E402
 
-# meshio's name, Gmsh's number
+# by meshio's name of a cell type, Gmsh's number of it
 TYPES = {
     "line": 1, "triangle": 2, "quad": 3, "tetra": 4, "hexahedron": 5, "wedge": 6, "pyramid": 7,
     "line3": 8, "triangle6": 9, "quad9": 10, "tetra10": 11, "hexahedron27": 12, "wedge18": 13,
@@ -115,7 +115,7 @@ def assert_right_by_meshio(kind, path):
 
 def meshio_reads(name, target):
     linear = not any(letter.isdigit() for letter in name)
-    turned = name == "wedge" and target in (".vtk", ".su2", ".xdmf")  # first triangle outward, as by VTK up to 9.6
+    turned = name == "wedge" and target in (".vtk", ".su2", ".xdmf")  # first triangle outward, as in VTK up to 9.6
     if (name, target) == ("pyramid", ".inp"):  # a type that meshio does not know in decks
         return False
     return name not in UNKNOWN_TO_MESHIO and not turned and (

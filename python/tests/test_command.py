@@ -88,7 +88,7 @@ def test_streams_and_status_are_the_commands_own(mesh, tmp_path):
         done = run(*arguments, cwd=tmp_path)
         direct = subprocess.run([_command.program(), *arguments], cwd=tmp_path, capture_output=True, text=True)
         assert (done.returncode, done.stderr) == (direct.returncode, direct.stderr)
-        if "--json" not in arguments:  # which contains times
+        if "--json" not in arguments:  # JSON contains times
             assert done.stdout == direct.stdout
     assert ok("--version", cwd=tmp_path).stdout.strip() == meshorder.__version__
     # a closed pipe ends the command by SIGPIPE, as it ends other programs
@@ -266,7 +266,7 @@ def test_signals_end_it(deck, tmp_path, number):
         command, cwd=tmp_path, stderr=subprocess.PIPE, env=environment, preexec_fn=heed
     ) as child:
         assert child.stderr
-        child.stderr.readline()  # that meshio was used
+        child.stderr.readline()  # the note that meshio was used
         time.sleep(1)
         child.send_signal(number)
         assert child.wait(10) == -number

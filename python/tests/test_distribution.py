@@ -16,7 +16,7 @@ from meshorder import _command, _core
 
 ROOT = pathlib.Path(__file__).parents[2]
 MEBIBYTE = 1 << 20
-#: libraries that every machine has for which wheels are made
+#: libraries that exist on every machine for which wheels are made
 SYSTEMS = {"libstdc++", "libgcc_s", "libm", "libc", "libpthread", "libdl", "librt", "ld-linux-x86-64"}
 #: the other libraries' names in THIRD_PARTY.md
 NAMES = {

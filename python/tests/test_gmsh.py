@@ -92,7 +92,7 @@ def test_file_is_what_others_read(model, tmp_path, version):
         sizes = [sum((values == group).sum() for values in mesh.cell_data["gmsh:physical"]) for mesh in (before, after)]
         assert sizes[0] == sizes[1] > 0
     read = meshorder.read(tmp_path / "after.msh")
-    # both versions list nodes by entity; 4.1 keeps their tags, 2.2 renumbers them
+    # files of both versions list nodes by entity; 4.1 keeps the nodes' tags, 2.2 renumbers the nodes
     assert (len(read.vertex_ids) == 0) == (version == 2.2)
     if version == 4.1:
         expected = meshorder.read(tmp_path / "before.msh")

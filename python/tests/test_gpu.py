@@ -84,7 +84,7 @@ def test_counted_additions_are_those_of_gpu_cost(cupy):
 
 
 @pytest.mark.parametrize("kernel, old, new", [
-    # missing barriers: shared memory is read before it is cleared, and passed on before all is added
+    # missing barriers: shared memory is read before it is cleared, or passed on before all additions
     ("forces_patches", "    own[i] = 0;\n  }\n  __syncthreads();", "    own[i] = 0;\n  }"),
     ("forces_patches", "rest, n, e));\n  }\n  __syncthreads();", "rest, n, e));\n  }"),
     # lanes that are left out

@@ -131,12 +131,12 @@ def test_csgraph_is_about_as_good_as_scipys(sizes):
     graph = lattice(*sizes)
     found = meshorder.csgraph.reverse_cuthill_mckee(graph)
     assert found.dtype == np.int32 and sorted(found) == list(range(graph.shape[0]))
-    # the two break ties differently
+    # meshorder and SciPy break ties differently
     assert bandwidth(graph, found) <= 1.05 * bandwidth(graph, scipys_rcm(sp.csr_matrix(graph)))
 
 
 def test_csgraph_on_scipys_own_example():
-    # scipy.sparse.csgraph.reverse_cuthill_mckee's documentation
+    # the example in the documentation of scipy.sparse.csgraph.reverse_cuthill_mckee
     graph = sp.csr_matrix([[0, 1, 2, 0], [0, 0, 0, 1], [2, 0, 0, 3], [0, 0, 0, 0]])
     found = meshorder.csgraph.reverse_cuthill_mckee(graph)
     both = graph + graph.T
@@ -190,7 +190,7 @@ def test_networkx_refusals():
     "graph",
     [
         nx.Graph([(1, 2), (2, 3), (3, 4), (5, 3), (6, 2)]),  # networkx's issue 2381
-        nx.random_regular_graph(5, 100, seed=1),  # 3418
+        nx.random_regular_graph(5, 100, seed=1),  # networkx's issue 3418
         nx.complete_graph(9),  # λ₂ eight times over
         nx.star_graph(12),
     ],
@@ -207,10 +207,10 @@ def test_networkx_graphs_on_which_networkx_once_hung(graph):
 def test_networkx_edges_are_taken_as_networkx_takes_them():
     parallel = nx.MultiGraph([(0, 1), (0, 1), (1, 2), (2, 3)])  # their weights are summed
     zero = nx.Graph([(0, 1), (1, 2), (2, 3), (3, 0)])
-    zero[3][0]["weight"] = 0.0  # no edge
+    zero[3][0]["weight"] = 0.0  # a weight of 0 means no edge
     signed = nx.Graph()
     signed.add_weighted_edges_from([("a", "b", -2.0), ("b", "c", 1.0), ("c", "a", 0.5), ("c", "c", 9.0)])
-    opposite = nx.MultiGraph([(0, 1, {"weight": 1}), (0, 1, {"weight": -1}), (1, 2)])  # each without its sign
+    opposite = nx.MultiGraph([(0, 1, {"weight": 1}), (0, 1, {"weight": -1}), (1, 2)])  # signs of weights are ignored
     for graph in (parallel, zero, signed, opposite):
         theirs = nx.algebraic_connectivity(graph)
         assert meshorder.networkx.algebraic_connectivity(graph) == pytest.approx(theirs, abs=1e-7)
@@ -457,5 +457,5 @@ def test_any_arrays_give_an_order_or_an_error(offsets, neighbours, strided):
     except (ValueError, OverflowError) as error:
         assert isinstance(error, meshorder.Error)
         return
-    # two tables of numbers are points and cells
+    # a pair of arrays of rank 2 is taken for points and cells
     assert len(order.permutation) == (len(offsets) if offsets.ndim == 2 else max(offsets.size - 1, 0))

@@ -173,7 +173,7 @@ def test_a_permutation_shows_where_things_went():
     back = image(Parsed(meshorder.Permutation(old_to_new=np.arange(999, -1, -1))._repr_html_()).values("src")[0])
     assert (same.diagonal() < 0.2).all() and same[~np.eye(64, dtype=bool)].min() == 1.0
     np.testing.assert_array_less(back[::-1].diagonal(), 0.8)
-    # the first hundred go to the end: old places from the left, new ones from the top
+    # the first hundred go to the end; old places run from left to right, new ones from top to bottom
     turned = meshorder.Permutation(old_to_new=np.roll(np.arange(1000), 100))
     picture = image(Parsed(turned._repr_html_()).values("src")[0])
     assert picture[57, 0] < 0.9 and picture[0, 6] < 0.9 and picture[6, 0] == 1.0
@@ -352,7 +352,7 @@ def test_without_three_js_show_says_how_to_get_it(made, tmp_path, monkeypatch):
 
 
 def test_outside_a_notebook_the_browser_opens_the_page(made, show, monkeypatch, tmp_path):
-    show(made)  # skips where there is no three.js
+    show(made)  # skips the test where there is no three.js
     opened = []
 
     def open_page(url):

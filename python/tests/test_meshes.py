@@ -262,7 +262,7 @@ def test_the_library_takes_each_number_of_vertices_that_a_name_stands_for(shape)
     for width in _WIDTHS[shape]:
         points = np.random.default_rng(width).random((width, 3))
         assert len(meshorder.order_mesh(points, {shape: [range(width)]}).cells.permutation) == 1
-    if shape != "line":  # which alone may have 23 vertices
+    if shape != "line":  # only lines may have 23 vertices
         with pytest.raises(InvalidArgument, match="23 vertices"):
             meshorder.order_mesh(np.random.default_rng(7).random((23, 3)), {f"{shape}23": [range(23)]})
 

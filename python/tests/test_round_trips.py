@@ -24,7 +24,7 @@ from vtkmodules.vtkIOLegacy import vtkUnstructuredGridReader  # noqa: E402
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader  # noqa: E402
 
 SUFFIXES = {name: extensions[0] for name, extensions, _ in meshorder._core.formats()}
-#: STL keeps no vertices, the two others no coordinates
+#: STL keeps no vertices, the formats of matrices and graphs keep no coordinates
 ALMOST_EMPTY = {"stl", "matrixmarket", "metis"}
 FORMATS = [name for name in SUFFIXES if name not in ALMOST_EMPTY]
 unwatched = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.function_scoped_fixture]

@@ -79,7 +79,7 @@ def test_the_page_shows_both_orders_and_asks_for_nothing(chromium, path, size, n
     assert (before != after).any(axis=-1).mean() > 0.1
     dark = [np.argwhere(shown[..., 0] < 250) for shown in patterns]
     spread = [np.abs(places[:, 0] - places[:, 1]).mean() for places in dark]
-    assert spread[1] < 0.4 * spread[0]  # around the diagonal after, everywhere before
+    assert spread[1] < 0.4 * spread[0]  # after the order, entries lie around the diagonal; before it, everywhere
     assert chromium.run("return document.documentElement.scrollWidth") <= size[0]
     assert chromium.requests() == [path.resolve().as_uri()]
     assert not chromium.complaints()

@@ -351,7 +351,7 @@ def test_types_of_nodes_and_edges_keep_their_own(geometric):
 def test_batches_of_types(geometric):
     graphs = [hetero(geometric) for _ in range(3)]
     for graph in graphs:
-        graph["venue"].x = torch.rand(4, 1)  # without it PyTorch Geometric cannot part the batch
+        graph["venue"].x = torch.rand(4, 1)  # without it PyTorch Geometric cannot split the batch
     batch = geometric.data.Batch.from_data_list(graphs)
     moved, order = meshorder.reorder(batch, vertices="rcm")
     for graph, found in zip(graphs, moved.to_data_list()):

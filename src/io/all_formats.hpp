@@ -8,7 +8,7 @@
 
 namespace meshorder {
 
-/// Extensions of Exodus II, also in builds without it.
+/// File extensions of Exodus II, which builds without Exodus II know, too.
 inline constexpr std::array<std::string_view, 4> kExodusExtensions{".exo", ".e", ".ex2", ".g"};
 
 // Each function is defined in the folder of its format; format.cpp lists the formats.

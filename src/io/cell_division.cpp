@@ -13,15 +13,15 @@
 namespace meshorder {
 namespace {
 
-/// Returns the labels of cells if they can be ids of blocks; else none.
+/// Returns the labels of the cells; empty if they cannot be ids of blocks.
 std::vector<std::int64_t> usable_labels(const Mesh& mesh, bool with_wide_ones) {
   Labels labels = labels_of(mesh, Association::cells);
   const bool are_usable = with_wide_ones || fit_32_bits(labels.values);
   return are_usable ? std::move(labels.values) : std::vector<std::int64_t>();
 }
 
-/// Returns the number of each cell's set, from 1; 0 for cells without one. Skips sets that share a cell with
-/// an earlier set. Empty if there are no sets of cells.
+/// Returns the number of each cell's set, from 1; 0 for cells without a set. Skips sets that share a cell
+/// with an earlier set. Empty if there are no sets of cells.
 std::vector<std::int64_t> sets_of_cells(const Mesh& mesh) {
   std::vector<std::int64_t> result;
   std::int64_t number = 0;
@@ -36,7 +36,7 @@ std::vector<std::int64_t> sets_of_cells(const Mesh& mesh) {
   return result;
 }
 
-/// Divides the cells by type and, unless `values` is empty, by the value of each. Returns false if the values
+/// Divides the cells by type and, unless `values` is empty, by each cell's value. Returns false if the values
 /// give more than kMostBlocks parts.
 bool divide_by(const Mesh& mesh, const std::vector<std::int64_t>& values, CellDivision& division) {
   std::map<std::tuple<std::int64_t, Shape, int>, Index> known;

@@ -30,7 +30,7 @@ struct CellDivision {
   std::vector<CellPart> keys;      ///< the blocks, in the order of their first cells; `first` is not used
 };
 
-/// Divisors of cells into blocks besides their types and 32-bit labels.
+/// What divides the cells into blocks besides their types and 32-bit labels.
 struct DividedBy {
   bool sets = false;         ///< sets of cells, if there are no labels to use
   bool wide_labels = false;  ///< labels of 64 bits

@@ -23,7 +23,7 @@ struct FilePart {
   Index components = 1;                             ///< numbers of a row
   std::int64_t rows = 0;                            ///< for the connectivity: number of vertices in it
   std::size_t number = 0;                           ///< index of its name in FileLayout::names
-  std::int64_t at = 0;      ///< byte offset of the size words before the values, if any, else of the values
+  std::int64_t at = 0;      ///< byte offset of the size words before the values; without these, of the values
   std::int64_t stored = 0;  ///< bytes in the file, including those words
   std::int64_t blocks = 0;  ///< number of compressed blocks; 0: not compressed
   std::int64_t block = 0;   ///< uncompressed bytes of a block; the last one may be smaller
@@ -59,7 +59,7 @@ class SplitFile : public Polymorphic {
   /// Writes data to a path on disk. Allocates space for the values of all parts, which the caller must then
   /// write.
   ///
-  /// @param document  path of the new document, which is not written
+  /// @param document  path of the new document; the caller writes it
   /// @param checksum  marks both files: a `Checksum` of all points, then of the vertices of each cell
   /// @return the text of the document
   /// @throws InputError if the data cannot be written

@@ -69,7 +69,8 @@ const std::vector<LackingFormat> kLackingFormats{
                                 where, format.name, format.library, format.option));
 }
 
-/// Returns a format whose library is loaded. Throws Unavailable if it cannot be.
+/// Loads the library of a format, if it has one, and returns the format. Throws Unavailable if the library
+/// cannot be loaded.
 const Format& with_library(const Format& format, const std::string& where) {
   try {
     if (format.load_library != nullptr) format.load_library();

@@ -29,8 +29,9 @@ struct Format {
   /// Returns whether a file of this mesh can hold cells of this type in a form that other programs read. If
   /// the mesh came from the format, it is enough that meshorder reads them. `write` gets no other cells.
   bool (*holds)(const Mesh& mesh, Shape shape, int vertices);
-  /// Returns why cells whose types the format `holds` do not fit one file together: a clause that begins with
-  /// the format's name, empty if they fit. Null: they always fit. `write` gets no mesh with a conflict.
+  /// Returns why the cells of a mesh cannot share a file, although the format `holds` each of their types: a
+  /// clause that begins with the format's name; empty if they can. Null: they always can. `write` gets no
+  /// mesh with a conflict.
   std::string (*conflict)(const Mesh& mesh) = nullptr;
   /// Returns the position in a file of each cell of a mesh from another format; `blocks` receives the first
   /// cell of each part that stays together. Null: `groups_cells_by_type` decides.
@@ -51,7 +52,7 @@ struct Format {
   bool holds_ids = true;          ///< whether files can give vertices and cells any numbers
   std::string_view library = {};  ///< name of the library that parses the files; empty: meshorder parses them
   /// Loads that library. A process must call it before it gives up its right to open files. Null: the library
-  /// is linked, or there is none.
+  /// is linked, or the format needs none.
   void (*load_library)() = nullptr;
 
   /// Returns the name in lower case, as the public functions take it.
@@ -61,16 +62,16 @@ struct Format {
 /// Returns all formats, in the order of the help text.
 std::span<const Format> all_formats();
 
-/// Returns the format of the extension of `path`; case and a final ".gz" are ignored. Throws InputError,
-/// which suggests or lists known extensions, if the extension is unknown, and Unavailable if this build lacks
-/// the library of the format or cannot load it.
+/// Returns the format of the extension of `path`; case and a final ".gz" are ignored. Throws InputError if
+/// the extension is unknown; the error suggests or lists known extensions. Throws Unavailable if this build
+/// lacks the library of the format or cannot load it.
 const Format& format_of(const std::filesystem::path& path);
 
 /// As `format_of`, for a file to be written. Throws InputError for .pvtu: it lists pieces and is only read.
 const Format& output_format_of(const std::filesystem::path& path);
 
-/// Returns the format of that name; case is ignored. Throws InvalidArgument, which lists the known names, if
-/// the name is unknown, and Unavailable as `format_of` does.
+/// Returns the format of that name; case is ignored. Throws InvalidArgument if the name is unknown; the error
+/// lists the known names. Throws Unavailable as `format_of` does.
 const Format& format_named(std::string_view name);
 
 /// Guesses the format of a file from its bytes; returns null if it recognises none. Never recognises TetGen's
@@ -79,10 +80,9 @@ const Format* format_of_bytes(std::string_view bytes);
 
 /// Arranges the cells of a mesh as a file of the format `to` has them, before reordering and writing. A mesh
 /// that came from `to` stays as it is. Otherwise cells are sorted by `to.places`, which also gives the
-/// blocks; without it, the mesh loses its blocks and, if the format groups cells, cells are sorted by type,
-/// each type a block.
-/// Returns the applied permutation of cells. A reordering that is computed afterwards refers to the cells in
-/// the order of the file.
+/// blocks. If `to.places` is null, the mesh loses its blocks. If the format then groups cells by type, cells
+/// are sorted by type, and each type becomes a block. Returns the applied permutation of cells. A reordering
+/// that is computed afterwards refers to the cells in the order of the file.
 Permutation arrange_cells(Mesh& mesh, const Format& to);
 
 /// Returns an order of cells that puts the cells of each group of `to.together` together, except cells that

@@ -90,7 +90,7 @@ Mesh read_together(const FilePath& path, const Format& format, Notes& notes) {
   throw InputError(path.string(), "has no entries", "a matrix needs at least one");
 }
 
-/// @param stored  bytes of a file in memory before decompression; 0 if it was not compressed, or is on disk
+/// @param stored  size in bytes of a compressed file in memory; 0 if the file is not compressed or is on disk
 Mesh read_checked(const FilePath& path, const Format& format, const ReadOptions& options,
                   std::uint64_t stored = 0) {
   Notes ignored;

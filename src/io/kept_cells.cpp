@@ -70,8 +70,8 @@ int highest_dimension_of(const std::vector<TypeCount>& types) {
   return highest;
 }
 
-/// Returns the types that a file of the format does not hold and leaves out; none if a type of the highest
-/// dimension is among them.
+/// Returns the types that the format does not hold and that a file leaves out; empty if the format lacks a
+/// type of the highest dimension.
 std::vector<TypeCount> types_left_out(const Mesh& mesh, const std::vector<TypeCount>& types,
                                       const Format& format) {
   const int highest = highest_dimension_of(types);
@@ -84,7 +84,7 @@ std::vector<TypeCount> types_left_out(const Mesh& mesh, const std::vector<TypeCo
   return result;
 }
 
-/// Returns the positions of the cells of all types but these.
+/// Returns the positions of the cells whose types are not in `left_out`.
 std::vector<Index> cells_but(const Mesh& mesh, const std::vector<TypeCount>& left_out) {
   std::vector<Index> kept;
   kept.reserve(mesh.cells.shapes.size());
@@ -111,7 +111,7 @@ std::string in_words(const TypeCount& type) {
                      linear ? "" : fmt::format(" of {} vertices", type.vertices));
 }
 
-/// Keeps the rows of an array on cells; `place` is the new position of each old one, −1 for none.
+/// Keeps the rows of an array on cells; `place` is the new position of each cell, −1 if the cell is left out.
 void keep_rows(DataArray& array, const std::vector<Index>& kept, const std::vector<Index>& place) {
   std::vector<Index> rows;
   if (array.is_dense()) {
@@ -193,7 +193,8 @@ void keep_cells_at(Mesh& mesh, const std::vector<Index>& kept, Notes& notes) {
 std::string fault_of_cells(const Mesh& mesh, const Format& format) {
   std::vector<TypeCount> types = counted_types(mesh);
   std::erase_if(types, [&](const TypeCount& type) { return format.holds(mesh, type.shape, type.vertices); });
-  const int highest = highest_dimension_of(types);  // name one of these: lower ones may be left out
+  // the message names a type of this dimension: lower types may be left out
+  const int highest = highest_dimension_of(types);
   for (const TypeCount& type : types) {
     if (dimension(type.shape) < highest) continue;
     return fmt::format("{} cannot hold a cell of type {}", format.name, type_name(type.shape, type.vertices));
@@ -217,7 +218,7 @@ void require_held_cells(const Mesh& mesh, const std::vector<Index>& kept, const 
   std::string fault;
   if (index_size(kept) == mesh.cell_count()) {
     fault = fault_of_cells(mesh, format);
-  } else if (format.conflict != nullptr) {  // kept cells are held by their types
+  } else if (format.conflict != nullptr) {  // the format holds the type of each kept cell
     Mesh part = mesh;
     Notes ignored;
     keep_cells_at(part, kept, ignored);

@@ -11,7 +11,7 @@ namespace meshorder {
 void* LoadedLibrary::handle() const {
   void* handle = handle_.load(std::memory_order_acquire);
   if (handle != nullptr) return handle;
-  handle = ::dlopen(file_, RTLD_LAZY | RTLD_LOCAL);  // counted: the same handle for all threads
+  handle = ::dlopen(file_, RTLD_LAZY | RTLD_LOCAL);  // all threads get the same handle
   if (handle == nullptr) {
     const char* const cause = ::dlerror();
     throw Unavailable(

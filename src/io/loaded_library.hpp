@@ -5,8 +5,8 @@
 
 namespace meshorder {
 
-/// A shared library that is loaded on first use. The libraries of file formats load 40 others, which would
-/// take half of the time of a small task. For objects with static storage duration.
+/// A shared library that is loaded on first use. The libraries of file formats load 40 other libraries, which
+/// would take half of the time of a small task. For objects with static storage duration.
 class LoadedLibrary {
  public:
   /// @param name  as users know it: "HDF5"

@@ -25,13 +25,13 @@ struct MeshRange {
   }
 };
 
-/// A range of the vertices of a mesh and one of its cells.
+/// A range of a mesh's vertices and a range of its cells.
 struct MeshRanges {
   MeshRange vertices;
   MeshRange cells;
 };
 
-/// The part of a mesh in two such ranges, for readers that give each process a part of a large mesh.
+/// The vertices and cells of a mesh in two ranges, for readers that give each process a part of a large mesh.
 struct MeshPart {
   /// Where the members of a set of `mesh` are in the file's list.
   struct SetRows {
@@ -56,10 +56,10 @@ struct MeshPart {
   /// Cells name vertices by their positions in the whole mesh. Rows of arrays and members of sets count from
   /// the first vertex or cell of the range. Ids are given even if they are 1, 2, …
   Mesh mesh;
-  std::vector<ArrayRows> arrays;  ///< of each array of the mesh
-  std::vector<SetRows> sets;      ///< of each set of the mesh
+  std::vector<ArrayRows> arrays;  ///< for each array of the mesh
+  std::vector<SetRows> sets;      ///< for each set of the mesh
   std::vector<List> lists;
-  std::string vertex_ids;  ///< name of the vertex ids in the file; empty if it has none
+  std::string vertex_ids;  ///< name of the vertex ids in the file; empty if the file has none
   std::string cell_ids;
 };
 

@@ -51,9 +51,9 @@ class UniqueNames {
   std::map<Association, NameNumbers> numbers_;
 };
 
-/// Adds an array to a mesh under a name that no other has; returns that name.
+/// Adds an array to a mesh under a name that no other array has; returns that name.
 std::string add_named(Mesh& mesh, DataArray array, UniqueNames& names);
-/// Adds a set to a mesh under a name that no other has; returns that name.
+/// Adds a set to a mesh under a name that no other set has; returns that name.
 std::string add_named(Mesh& mesh, EntitySet set, UniqueNames& names);
 
 // Names of arrays and sets as a format can hold them.
@@ -64,7 +64,7 @@ std::string plain_name(std::string_view name, std::string_view forbidden = {});
 /// Names that are unique in a file.
 class DistinctNames {
  public:
-  /// `longest`: most bytes of a name, at least 12. Names are cut between characters of UTF-8.
+  /// `longest`: maximum size of a name in bytes, at least 12. Names are cut between characters of UTF-8.
   explicit DistinctNames(std::size_t longest = std::string::npos) : longest_(longest) {}
 
   /// Takes and returns a free name: the wanted one, cut to the longest size, with a number at its end if it
@@ -74,7 +74,7 @@ class DistinctNames {
  private:
   std::size_t longest_;
   std::set<std::string> taken_;
-  std::map<std::string, int> last_numbers_;  // by the wanted name
+  std::map<std::string, int> last_numbers_;  // last number given, by the wanted name
 };
 
 /// Notes "the set 'a b' is written as 'a_b'" if the names differ.

@@ -17,8 +17,8 @@ namespace meshorder {
 void write_npy(std::span<const std::int32_t> values, const FilePath& path);
 void write_npy(std::span<const std::int64_t> values, const FilePath& path);
 
-/// Reads a one-dimensional NumPy array of 32- or 64-bit integers. Unsigned ones are read as signed: the upper
-/// half of their range becomes negative. Throws Error, with the byte, for anything else.
+/// Reads a one-dimensional NumPy array of 32- or 64-bit integers. Unsigned integers are read as signed: the
+/// upper half of their range becomes negative. Throws Error, with the byte, for other files.
 std::vector<std::int64_t> read_npy(const FilePath& path);
 
 /// Reads the new position of each of `count` vertices or cells; `what` names them in the plural. Throws Error

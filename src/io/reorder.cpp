@@ -32,7 +32,7 @@ std::int64_t first_number(const Mesh& mesh, Association of) {
   return own->first_number_of != nullptr ? own->first_number_of(mesh, of) : own->first_number;
 }
 
-/// Writes the numbers that a file gives by position into ids: they then move with vertices and cells.
+/// Stores the numbers that a file gives by position as ids, which move with vertices and cells.
 void write_down_ids(Mesh& mesh, bool of_vertices, bool of_cells) {
   if (of_vertices && mesh.vertex_ids.empty()) {
     mesh.vertex_ids.resize(mesh.points.size());
@@ -59,7 +59,8 @@ void move_with_ids(Mesh& mesh, const Permutation& vertices, const Permutation& c
   }
 }
 
-/// Returns the format in which the mesh will be written: the named one, else its own; null without both.
+/// Returns the format in which the mesh will be written: the format called `name`, or the mesh's own format
+/// if `name` is empty; null if it has none.
 const Format* format_to_write(const Mesh& mesh, const std::string& name) {
   if (!name.empty()) return &format_named(name);
   return mesh.format.empty() ? nullptr : &format_named(mesh.format);

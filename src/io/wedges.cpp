@@ -14,7 +14,7 @@ struct Handedness {
   std::array<std::size_t, 3> ends;
 };
 
-/// By shape.
+/// The edges for each Shape.
 constexpr std::array<Handedness, kShapes> kHandedness = [] {
   std::array<Handedness, kShapes> all{};
   all[static_cast<std::size_t>(Shape::tetrahedron)] = {4, {1, 2, 3}};

@@ -8,9 +8,9 @@
 
 namespace meshorder {
 
-/// Returns the volume of the parallelepiped of three edges at the first corner of a cell. It has the sign of
-/// the cell's volume if the cell is convex. Returns 0 for cells other than linear tetrahedra, pyramids,
-/// wedges and hexahedra. O(1).
+/// Returns the volume of the parallelepiped that three edges at the first corner of a cell span. It has the
+/// sign of the cell's volume if the cell is convex. Returns 0 for cells other than linear tetrahedra,
+/// pyramids, wedges and hexahedra. O(1).
 double volume_at_first_corner(const std::vector<Point>& points, Shape shape, std::span<const Index> cell);
 
 /// Finds out from volumes how a file numbers its linear wedges.
@@ -22,13 +22,13 @@ class WedgeVote {
   /// `points`: the vertices of the cells; they must outlive this object.
   explicit WedgeVote(const std::vector<Point>& points) : points_(points) {}
 
-  /// Counts a cell in the order of the file. Only linear tetrahedra, hexahedra, pyramids and wedges count.
-  /// O(1).
+  /// Adds a cell, whose vertices are in the order of the file. Ignores all cells but linear tetrahedra,
+  /// hexahedra, pyramids and wedges. O(1).
   void add(Shape shape, std::span<const Index> cell);
 
-  /// Returns whether the first triangles of wedges face inward. They do if, read that way, more than 20 of 21
-  /// wedges have volumes with the sign of the other cells' volumes, or positive volumes if there are no other
-  /// cells. Returns false if signs are mixed.
+  /// Returns whether the first triangles of wedges face inward. They do if more than 20 of 21 wedges, read
+  /// that way, have volumes of the right sign: the sign of the other cells' volumes, or plus if there are no
+  /// other cells. Returns false if signs are mixed.
   [[nodiscard]] bool wedges_face_inward() const;
 
   /// Returns 1 or −1 if more than 20 of 21 cells have volumes of that sign, else 0. Wedges count as if their
@@ -36,12 +36,12 @@ class WedgeVote {
   [[nodiscard]] int sign_of_volumes() const;
 
  private:
-  /// Cells by the sign of their volumes.
+  /// Numbers of cells by the sign of their volumes.
   struct Volumes {
     Offset positive = 0;
     Offset negative = 0;
 
-    /// Returns 1 or −1 if more than 20 of 21 have that sign, else 0.
+    /// Returns 1 or −1 if more than 20 of 21 cells have volumes of that sign, else 0.
     [[nodiscard]] int sign() const;
   };
 

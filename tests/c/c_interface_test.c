@@ -208,7 +208,7 @@ static void test_edges(void) {
   int32_t new_to_old[3];
   const mo_out edges = out32(new_to_old, 3);
   CHECK(mo_order_edges(&ends, &vertices, 1, &edges) == MO_OK);
-  /* places (2, 0), (3, 0), (3, 1) */
+  /* the larger and the smaller place of the ends: (2, 0), (3, 0), (3, 1) */
   CHECK(new_to_old[0] == 1 && new_to_old[1] == 2 && new_to_old[2] == 3);
   CHECK(mo_order_edges(&odd, &vertices, 1, &edges) == MO_INVALID_ARGUMENT);
   CHECK(mo_order_edges(&outside, &vertices, 0, &edges) == MO_INVALID_ARGUMENT);
@@ -520,7 +520,7 @@ static void test_own_methods(void) {
 
 typedef struct Reports {
   int count;
-  int good; /* all had a stage and a fraction in range */
+  int good; /* all reports had a stage and a fraction in range */
 } Reports;
 
 /* Stops at the second report. */
@@ -641,7 +641,8 @@ static void test_sorted_corners(void) {
   CHECK(mo_sort_corners(&offsets, &vertices, &types, 5, &options, &sorted) == MO_INVALID_ARGUMENT);
 }
 
-/* 32 edges without a common vertex: both ends of a warp's edges are side by side. The matrix is of the path.
+/* 32 edges without a common vertex: the first ends of a warp's edges are side by side, and so are the second
+ * ends. The matrix is that of the path.
  */
 static void test_gpu_costs(void) {
   int32_t edge_offsets[33];

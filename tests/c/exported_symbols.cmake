@@ -1,4 +1,4 @@
-# Fails unless the library LIBRARY exports exactly the symbols that the file EXPECTED lists, one a line.
+# Fails unless the library LIBRARY exports exactly the symbols that the file EXPECTED lists, one in each line.
 execute_process(COMMAND ${NM} -D --defined-only ${LIBRARY} OUTPUT_VARIABLE table COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "[^ \n]+\n" exported "${table}")
 list(TRANSFORM exported STRIP)

@@ -22,8 +22,8 @@ def text_list(rows):
 
 
 def block(nx, ny, nz):
-    """Points, faces, owners and neighbours of a block of boxes, whose sizes change along each axis at another rate. Cells
-    are numbered with x fastest, faces in OpenFOAM's order."""
+    """Points, faces, owners and neighbours of a block of boxes, whose sizes change at another rate along each axis.
+    Cells are numbered with x fastest, faces in OpenFOAM's order."""
     sizes = nx, ny, nz
     axes = [numpy.linspace(0, 1, n + 1) ** (1.2 + 0.3 * a) for a, n in enumerate(sizes)]
     points = [(x, y, z) for z in axes[2] for y in axes[1] for x in axes[0]]
@@ -155,7 +155,7 @@ def openfoam(program, case, *arguments, before=()):
 
 
 def write_settings(case, region="", **entries):
-    """Writes the dictionaries of a flow that a moving lid drives; `entries` replaces some, all as text."""
+    """Writes the dictionaries of a flow that a moving lid drives; `entries` replaces some of them. All are texts."""
     known = {
         "controlDict": "application icoFoam; startFrom startTime; startTime 0; stopAt endTime; endTime 0.04; "
                        "deltaT 0.01; writeControl timeStep; writeInterval 4; writeFormat ascii; writePrecision 15; "

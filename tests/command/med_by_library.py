@@ -12,7 +12,7 @@ import numpy
 
 FULL, ALL, CELL, NODE, NODE_OF_ELEMENT, COMPACT = 0, 0, 0, 3, 4, 2
 TE4, PE6, HE8, TR3, QU4, SE2 = 304, 306, 308, 203, 204, 102
-Int = ctypes.c_int  # of Debian's library
+Int = ctypes.c_int  # med_int of Debian's library
 File = ctypes.c_long
 
 
@@ -68,7 +68,7 @@ def main(path, seed=1):
     call("MEDmeshEntityFamilyNumberWr", mesh, *step, NODE, 0, Int(count), ints(chance.integers(0, 4, count)))
     for kind, rows in cells.items():
         call("MEDmeshElementConnectivityWr", mesh, *step, time, CELL, kind, 0, FULL, Int(len(rows)), ints(rows + 1))
-        if kind != TE4:  # not all have numbers and names
+        if kind != TE4:  # tetrahedra get no numbers and names
             call("MEDmeshEntityNumberWr", mesh, *step, CELL, kind, Int(len(rows)),
                  ints(1000 * kind + 2 * chance.permutation(len(rows))))
             call("MEDmeshEntityNameWr", mesh, *step, CELL, kind, Int(len(rows)),
@@ -78,7 +78,7 @@ def main(path, seed=1):
                  ints(-chance.integers(0, 5, len(rows))))
     families = [(b"FAMILLE_ZERO", 0, ()), (b"fixed", 1, ("fixed",)), (b"top and fixed", 2, ("top", "fixed")),
                 (b"free of groups", 3, ()), (b"steel", -1, ("steel",)), (b"steel, hot", -2, ("steel", "hot")),
-                (b"hot", -4, ("hot",)), (b"of nothing", -9, ("nothing",))]  # -3 has no family
+                (b"hot", -4, ("hot",)), (b"of nothing", -9, ("nothing",))]  # no family has -3, which cells use
     for name, number, groups in families:
         call("MEDfamilyCr", mesh, name, Int(number), Int(len(groups)), words(*groups, width=80))
 

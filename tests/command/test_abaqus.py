@@ -173,7 +173,7 @@ def test_meshio_reads_the_same_mesh(command, tmp_path):
     assert sorted(map(tuple, before.points[some[0]].tolist())) == sorted(map(tuple, after.points[some[1]].tolist()))
     assert not numpy.array_equal(before.points, after.points)
 
-    # and a mesh of another format
+    # a deck written from a mesh of another format has the same cells
     command.ok("order", tmp_path / "a.inp", "-o", tmp_path / "c.vtu")
     command.ok("order", tmp_path / "c.vtu", "-o", tmp_path / "d.inp", "--vertices", "hilbert")
     assert shape_of(meshio.read(tmp_path / "d.inp")) == shape_of(before)
@@ -198,7 +198,7 @@ def test_gmsh_and_this_writer_agree_on_the_order_of_nodes(command, tmp_path):
             gmsh.write(str(tmp_path / name))
     finally:
         gmsh.finalize()
-    # Gmsh's deck read here is Gmsh's mesh, and the deck written of the mesh has Gmsh's lines
+    # the mesh read from Gmsh's deck is Gmsh's mesh, and the deck written from that mesh has the lines of Gmsh's deck
     command.ok("order", "a.inp", "-o", "b.msh", "--vertices", "original", "--elements", "original", "--ids", "keep")
     command.ok("order", "a.msh", "-o", "c.inp", "--vertices", "original", "--elements", "original", "--ids", "keep")
 

@@ -133,7 +133,7 @@ def test_costs_of_all_threads_that_are_not_known_are_refused(here, stored):
 
 def test_measuring_does_not_wait_for_a_calibration(here):
     result = here.json("info", "mesh.node", "--measure")
-    # which one depends on the family of the processor
+    # the processor's family decides whose costs are used
     stands_in = [f"this machine's caches at the costs of {name}" for name in ("zen3",)]
     assert result["verdict"]["machine"] in stands_in
     assert not (here.folder / "cache").exists()
@@ -166,7 +166,7 @@ def test_costs_are_printed_in_columns(here):
     heading = next(k for k, line in enumerate(lines) if line.split()[:2] == ["access", "misses"])
     assert lines[heading].split() == ["access", "misses", "jumps", "turn", "condition", "error", "floor"]
     row = lines[heading + 1].removeprefix("SpMV").split()
-    # an access, four misses, four jumps, a turn
+    # costs of an access, of four kinds of misses, of four kinds of jumps and of a turn
     assert len(row) == 13 and all(float(number) >= 0 for number in row[:10])
 
 

@@ -90,7 +90,7 @@ def put_section(zone, name, number, first, count, connectivity, whole="int32", o
 
 
 def put_condition(zone, name, location, points, whole="int32", kind="BCWall"):
-    """`points`: numbers, or a pair of the first and the last one."""
+    """`points`: numbers, or a pair of the first and the last number."""
     conditions = zone["ZoneBC"] if "ZoneBC" in zone else put(zone, "ZoneBC", "ZoneBC_t")
     condition = put(conditions, name, "BC_t", text(kind))
     if isinstance(points, tuple):

@@ -135,7 +135,7 @@ def put_rows(zone, name, kind, first, rows, offsets, whole="int32", shift=0):
 
 def write_zone(base, name, n, seed, offsets=True, whole="int32", at=0.0, signs=1, parents="elements", cells_first=False,
                general=False):
-    """`general`: n³ Voronoi cells, else polyhedra that have the shapes of standard cells."""
+    """If `general`, n³ Voronoi cells; else polyhedra that have the shapes of standard cells."""
     chance = numpy.random.default_rng(seed)
     if general:
         points, cells, faces, users = voronoi(n**3, seed, at)
@@ -283,7 +283,8 @@ def face(cell, k):
 
 
 def cells_in_vtu(path):
-    """By type of cells in a .vtu file, their number and least volume by VTK's faces; and whether values fit the centres."""
+    """For each type of cells in a .vtu file, their number and their least volume, by VTK's faces. Also whether values
+    fit the cells' centres."""
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
     reader.Update()

@@ -115,7 +115,7 @@ def write_all(path, kind="NETCDF3_64BIT_OFFSET", n=3, steps=3, real="f8"):
         f.createDimension("num_df_ns1", len(node_sets[0][2]))
         add("dist_fact_ns1", rng.uniform(size=len(node_sets[0][2])), ("num_df_ns1",), real)
 
-        # sides 1, 2 and 5 of hexahedra, one of wedges and one of tetrahedra, not sorted
+        # sides 1, 2, 5 and 6 of hexahedra, two sides of wedges and one of a tetrahedron, not sorted
         first_wedge, first_tet = n * n, 3 * n * n
         sides = [(4, 5), (1, 2), (4, 1), (0, 6), (first_wedge + 2, 1), (first_wedge + 3, 4), (first_tet + 1, 3), (1, 5)]
         counts = [4, 4, 4, 4, 4, 3, 3, 4]
@@ -261,7 +261,7 @@ def test_everything_follows_the_order(command, tmp_path, kind):
         assert (places != numpy.arange(len(places))).any()
         assert (b["coordx"][:][places] == a["coordx"][:]).all()
         assert not (b["connect4"][:] == a["connect4"][:]).all()
-    # and back
+    # the inverse restores the old content
     command.ok("apply", "m", "b.e", "-o", "c.exo", "--inverse")
     assert content(tmp_path / "c.exo") == before
     with netCDF4.Dataset(tmp_path / "a.exo") as a, netCDF4.Dataset(tmp_path / "c.exo") as c:
@@ -393,7 +393,7 @@ def test_side_sets_go_through_vtu(command, tmp_path):
 
 
 def nodes_of_sides(dimension):
-    """Returns by type the numbers of nodes of an element and of its sides, as ex_get_side_set_node_count gives them."""
+    """Returns for each type the numbers of nodes of an element and of each side, as ex_get_side_set_node_count does."""
     found = {"QUAD4": (4, [2] * 4), "SHELL4": (4, [4, 4, 2, 2, 2, 2]), "QUAD8": (8, [3] * 4), "SHELL9": (9, [9, 9, 3, 3, 3, 3]),
              "TRI3": (3, [2] * 3)}
     if dimension == 3:
@@ -658,7 +658,7 @@ TETRA = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
 
 
 def only_cell_of_vtk(content):
-    """The coordinates of the nodes of the one cell of a binary legacy file."""
+    """The nodes' coordinates in a binary legacy file with one cell."""
     def numbers(keyword, type, skip=0):
         line, _, rest = content.split(b"\n" + keyword + b" ", 1)[1].partition(b"\n")
         return numpy.frombuffer(rest, type, int(line.split()[skip]) * (3 if keyword == b"POINTS" else 1))

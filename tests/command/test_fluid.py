@@ -107,7 +107,7 @@ def test_study_times_its_phases_and_plays_its_surface(command, pool, tmp_path):
     assert len(by_order) == 6
     for name, seconds in by_order.items():
         assert min(seconds[part] for part in ("triangulation", "order", "assembly", "solve", "motion")) > 0, name
-    assert by_order["fiedler"]["order"] > by_order["scrambled"]["order"]  # anew in each step
+    assert by_order["fiedler"]["order"] > by_order["scrambled"]["order"]  # each step computes the order anew
     assert all(order["motion"]["largest"] < 1e-4 for order in scenario["orders"])
     assert "Mesh, s" in (tmp_path / "study" / "tables.csv").read_text()
     driver = browser.open_chromium(tmp_path / "profile")

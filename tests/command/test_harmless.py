@@ -104,7 +104,7 @@ def test_writing_removes_no_files_of_others(command, tmp_path, mesh, precious):
     assert (tmp_path / ".meshorder-0123456789abcdef.new/thesis.tex").read_text() == "a stranger's"
 
 
-# a link, and a command that writes to its name although the user typed another name
+# the name of a link, and a command that writes to that name although the user typed another one
 DERIVED = {
     "tetgen": ("out.ele", ("order", "mesh.node", "-o", "out.node")),
     "tetgen by its cells": ("out.node", ("order", "mesh.node", "-o", "out.ele")),

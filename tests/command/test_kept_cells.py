@@ -59,7 +59,7 @@ def test_a_gmsh_mesh_with_faces_and_points_becomes_vega_and_its_maps_fit(command
     assert numpy.array_equal(points[vertices], CORNERS)
     for old, new in zip(kept, elements):
         assert tets[new].tolist() == vertices[list(cells[old][1])].tolist()
-    # the maps lead there again, and back
+    # the maps make the same file again, and restore the old order
     command.ok("apply", "m", "a.msh", "-o", "again.veg")
     assert (tmp_path / "again.veg").read_bytes() == (tmp_path / "b.veg").read_bytes()
     command.ok("apply", "m", "b.veg", "-o", "back.veg", "--inverse")

@@ -110,7 +110,7 @@ def test_dimensions_of_netcdf(tmp_path):
 
 
 def test_cells_of_many_vertices(command, tmp_path):
-    """A graph that joins all vertices of a cell has about the square of their number of edges."""
+    """A graph that joins all n vertices of a cell has about n² entries."""
     count = 20_000
     numbers = " ".join(map(str, range(count)))
     (tmp_path / "a.vtk").write_text(f"# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {count} float\n"

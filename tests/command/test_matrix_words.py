@@ -12,7 +12,7 @@ OTHER_KERNELS = ("element", "assembly", "springs")
 
 
 def lattice(n, seed=1):
-    """The entries of the Laplacian of an n × n × n lattice, below the diagonal and on it, and each row's point."""
+    """The entries on and below the diagonal of the Laplacian of an n × n × n lattice, and each row's point."""
     places = list(range(n**3))
     random.Random(seed).shuffle(places)
     points = [None] * n**3

@@ -128,7 +128,7 @@ def test_all_that_a_file_of_the_library_has_moves_with_its_mesh(command, by_libr
         return assert_same(after, before)
     assert_same(after, before, but_for=numbers_of(before))
     for key, numbers in numbers_of(after).items():
-        # in the new order, ascending
+        # the numbers ascend along the new order
         assert list(numbers.values()) == sorted(numbers.values()), key
     assert sorted(after.items["NOE", "NUM"].values()) == sorted(before.items["NOE", "NUM"].values())
 

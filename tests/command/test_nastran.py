@@ -6,7 +6,7 @@ import meshio
 import numpy
 import pytest
 
-# edges by their corners, in VTK's order of the nodes on them
+# the corners of each edge; edges in VTK's order of their middle nodes
 EDGES = {
     "triangle6": "01 12 02",
     "quad8": "01 12 23 03",
@@ -66,7 +66,7 @@ def bulk(points, cards, elements):
     return "BEGIN BULK\n" + "\n".join(lines) + "\nENDDATA\n"
 
 
-# Debian's meshio has no quadratic wedges and pyramids: tests/io/nastran_test.cpp
+# Debian's meshio has no quadratic wedges and pyramids: tests/io/nastran_test.cpp tests these
 @pytest.mark.parametrize("kind", ["triangle6", "quad8", "tetra10", "hexahedron20"])
 def test_nodes_of_edges_lie_on_them(command, tmp_path, kind):
     points, cells = row_of(kind, NASTRAN)

@@ -61,7 +61,7 @@ def test_bandwidth_never_grows(command, lattice, tmp_path):
     command.ok("order", "rows.vtu", "-o", "out.vtu", "--for", "bandwidth")
     after = spans(graph_of(tmp_path / "out.vtu")).max()
     assert after <= before
-    # in its best order already
+    # the mesh is in its best order already
     result = command.json("order", "out.vtu", "-o", "again.vtu", "--for", "bandwidth")
     assert spans(graph_of(tmp_path / "again.vtu")).max() <= after
     assert result["vertices"]["kept"]
@@ -93,7 +93,7 @@ def test_for_a_gpu_additions_cost_less_or_nothing_moves(command, lattice, tmp_pa
 
 
 def test_fill_is_judged_by_the_entries_of_the_factor(command, tmp_path):
-    # a strip of triangles: its band is its factor
+    # a strip of triangles: the factor fills exactly the matrix's band
     points = [[0.5 * k, k % 2, 0] for k in range(400)]
     meshio.write(tmp_path / "strip.vtu", meshio.Mesh(points, [("triangle", [[k, k + 1, k + 2] for k in range(398)])]))
     entries = factor_entries(graph_of(tmp_path / "strip.vtu"))
@@ -137,7 +137,7 @@ def test_elements_are_judged_apart(command, lattice, tmp_path):
 def test_elements_by_a_method_asked_for_by_name_give_a_warning(command, lattice, tmp_path):
     command.ok("order", "random.vtu", "-o", "good.vtu")
     done = command.run("order", "good.vtu", "-o", "out.vtu", "--vertices", "original", "--elements", "scrambled")
-    assert done.returncode == 0 and "no better" not in done.stderr  # nobody expects that to be better
+    assert done.returncode == 0 and "no better" not in done.stderr  # users of scrambled do not expect a better order
     done = command.run("order", "good.vtu", "-o", "out.vtu", "--vertices", "original", "--elements", "mean")
     assert "warning: mean is no better: the mean number of vertices that " in done.stderr
     assert "--elements original keeps the order" in done.stderr

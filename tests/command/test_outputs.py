@@ -264,7 +264,7 @@ def test_the_mode_of_the_old_file_is_kept(command, tmp_path, mesh, mode):
         if command.run("order", mesh, "-o", out, "-q").returncode == 0:
             assert stat.S_IMODE(out.stat().st_mode) == mode
         else:
-            assert out.read_text() == "old"  # a build without that library
+            assert out.read_text() == "old"  # this build lacks the format's library
 
 
 def test_the_owner_and_the_group_are_kept(command, tmp_path, mesh):

@@ -4,7 +4,8 @@ import meshio
 import numpy
 import pytest
 
-#: two tetrahedra on a triangle, one a piece, each the other's ghost; ids as the whole mesh numbers them
+#: two tetrahedra with a common triangle. Each is in a piece of its own, and a ghost cell in the other piece. Ids are
+#: the numbers in the whole mesh
 POINTS = numpy.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)], float)
 CELLS = [(0, 1, 2, 3), (1, 2, 3, 4)]
 OWNERS = [0, 0, 1, 1, 1]
@@ -33,7 +34,7 @@ def write_list(path, pieces):
 
 
 def write_pieces(folder, ids=(True, True), ghosts=True, moved=0.0, first_id=0):
-    """Both pieces and their list; `ids`: of points, of cells."""
+    """Writes both pieces and their list. `ids`: whether points and whether cells have ids."""
     folder.mkdir(exist_ok=True)
     for part in (0, 1):
         cells = [part, 1 - part] if ghosts else [part]

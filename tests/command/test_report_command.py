@@ -90,7 +90,7 @@ def test_the_page_holds_each_order_of_the_surface(report):
     places = numpy.load(command.folder / "m.vertices.old_to_new.npy")
     for ordering in ("fiedler", "vf-fiedler"):
         assert (page.array(shown["ranks"][ordering]) == places[vertices]).all()
-    # the triangles are faces of one cell each, and all of these
+    # the triangles are exactly the faces that belong to one cell only
     faces = numpy.sort(cells[:, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]].reshape(-1, 3), axis=1)
     faces, counts = numpy.unique(faces, axis=0, return_counts=True)
     triangles = numpy.sort(vertices[page.array(shown["triangles"])], axis=1)
@@ -240,7 +240,7 @@ def test_two_studies_are_compared(two):
     for saving in savings:
         a, b, difference = saving["a"], saving["b"], saving["difference"]
         assert difference["points"] == pytest.approx(3)
-        # both intervals are the same and even: √2 times as wide
+        # both intervals are equal and symmetric, so that of the difference is √2 times as wide
         half = 2**0.5 * (a["high"] - a["low"]) / 2
         assert difference["low"] == pytest.approx(3 - half) and difference["high"] == pytest.approx(3 + half)
         assert difference["beyond_noise"] == (half < 3)

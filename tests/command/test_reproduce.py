@@ -90,7 +90,7 @@ def test_the_motion_is_the_same_in_every_order(study):
     for scenario in results_of(study)["scenarios"]:
         for order in scenario["orders"]:
             assert order["motion"]["largest"] < 1e-6, (scenario["name"], order["ordering"])
-    # and something moves
+    # the body does move
     motion = numpy.load(study / "data" / "bounce-motion.npy")
     assert motion.shape == (49, 64, 3)
     integrator = json.loads((conftest.ROOT / "scenarios" / "bounce.json").read_text())["integrator"]
@@ -102,7 +102,7 @@ def test_the_motion_is_the_same_in_every_order(study):
 
 
 def test_orders_that_are_kept_are_those_that_were_simulated(study):
-    """An order's span, from its file and the mesh's copy, is the one in the results."""
+    """The span computed from an order's file and the mesh's copy is the span in the results."""
     meshio = pytest.importorskip("meshio")
     mesh = meshio.read(study / "data" / "ball-3.vtu")
     cells = mesh.cells_dict["tetra"]

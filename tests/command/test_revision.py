@@ -76,7 +76,7 @@ def test_sources_from_a_tarball_have_none_even_within_another_checkout(checkout,
 
 
 def test_only_one_source_tells_the_revision():
-    """Each commit would compile other sources again, without hits in ccache, if they included it."""
+    """If other sources included the revision, each commit would compile them again, without hits in ccache."""
     said = [path.relative_to(conftest.ROOT).as_posix() for folder in ("src", "lab", "apps", "include")
             for path in (conftest.ROOT / folder).rglob("*") if path.is_file()
             and re.search(r'support/revision\.hpp"|@REVISION@', path.read_text(errors="replace"))]

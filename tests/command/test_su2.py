@@ -86,7 +86,8 @@ def test_a_mesh_is_ordered_and_read_by_meshio(command, tmp_path):
 
 def test_wedges_of_other_formats_are_not_turned_inside_out(command, tmp_path):
     points, hexahedra, wedges, _, _ = box(2)
-    # in memory meshio's wedges are like Gmsh's: the first triangle faces inward. It reverses those of .vtu, not of .su2
+    # in memory meshio's wedges are like Gmsh's: the first triangle faces inward. meshio reverses wedges of .vtu, not of
+    # .su2
     inward = wedges[:, [0, 2, 1, 3, 5, 4]]
     meshio.write(tmp_path / "a.vtu", meshio.Mesh(points, [("hexahedron", hexahedra), ("wedge", inward)]))
     command.ok("order", tmp_path / "a.vtu", "-o", tmp_path / "b.su2")

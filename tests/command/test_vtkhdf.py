@@ -160,7 +160,7 @@ def test_meshes_of_other_formats_become_files_that_vtk_reads(command, tmp_path):
         command.ok("order", "a.vtkhdf", "-o", f"b.{extension}", "--vertices", "scrambled", "--elements", "scrambled")
         command.ok("order", f"b.{extension}", "-o", "c.vtkhdf", "--vertices", "hilbert", "--elements", "lexmax")
         after = by_place(by_vtk(tmp_path / "c.vtkhdf"))
-        if extension == "xdmf":  # has no fields of VTK
+        if extension == "xdmf":  # XDMF has no fields
             after["fields"] = before["fields"]
         assert after == before, extension
 

@@ -296,7 +296,7 @@ def test_a_mesh_of_another_format_becomes_one_grid_for_each_dimension(command, t
     assert (back["tetra"][1][cells[:len(tetrahedra)]] == labels[0]).all() and (back["triangle"][1][facets] == labels[1]).all()
 
 
-# nodes of second-order cells by the corners that each is the mean of, in VTK's order
+# for each further node of second-order cells, in VTK's order, the corners whose mean it is
 HEXAHEDRON = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
 MIDDLES = {
     "line3": [(0, 1)], "triangle6": [(0, 1), (1, 2), (2, 0)], "quad8": [(0, 1), (1, 2), (2, 3), (3, 0)],
@@ -340,7 +340,7 @@ def test_nodes_of_second_order_cells_are_where_vtk_has_them(command, tmp_path, k
     with h5py.File(tmp_path / "c.h5") as file:
         nodes = file["/Mesh/mesh/geometry"][()][file["/Mesh/mesh/topology"][()]]
     assert sorted(nodes.tolist()) == sorted(points[cells].tolist())
-    if kind not in ("wedge15", "pyramid13"):  # which meshio 5.0 does not read
+    if kind not in ("wedge15", "pyramid13"):  # meshio 5.0 does not read these two
         gmsh = meshio.read(tmp_path / "b.msh")
         assert sorted(gmsh.points[gmsh.cells[0].data].tolist()) == sorted(points[cells].tolist())
 
@@ -355,7 +355,7 @@ def test_arrays_that_share_a_dataset_keep_their_values(command, tmp_path):
     values = numpy.arange(27, dtype="int32") ** 2
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["points"], file["edges"], file["values"] = points, edges.astype("int32"), values
-        file["Attributes/0"] = 7  # which no element names
+        file["Attributes/0"] = 7  # no element names this dataset
     shared = item("a.h5", "/values", (27,), "Int", 4)
     (tmp_path / "a.xdmf").write_text(xdmf(
         '<Grid Name="g" GridType="Uniform">' + topology("a.h5", "/edges", "Polyline", (27, 2)) + '<Geometry GeometryType="XYZ">'

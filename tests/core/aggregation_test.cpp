@@ -146,7 +146,8 @@ TEST(Aggregation, HidesWhatDenseSolversFindWithinAggregates) {
     for (Index v = 0; v < n; ++v) masses[v] = seed % 2 == 0 ? 1 : 1 + (v * 7919 % 13);
     const Aggregation aggregation = aggregate(laplacian, RowChunks::whole(n), kStrength, masses);
     const Eigen::MatrixXd dense = test::dense(laplacian);
-    double second = std::numeric_limits<double>::infinity();  // the smallest of all aggregates
+    // the smallest second eigenvalue of all aggregates
+    double second = std::numeric_limits<double>::infinity();
     for (Index a = 0; a < aggregation.count(); ++a) {
       std::vector<Index> members;
       for (Index v = 0; v < n; ++v) {
@@ -157,12 +158,12 @@ TEST(Aggregation, HidesWhatDenseSolversFindWithinAggregates) {
     const double scale = *std::max_element(laplacian.diagonal.begin(), laplacian.diagonal.end());
     for (const double share : {0.00117, 0.1317, 0.4117, 0.9017, 0.9917, 1.0117, 1.1017, 4.017, 100.17}) {
       const double eigenvalue = share * second * kDoubtful;
-      if (eigenvalue < 1e-10 * scale) continue;  // rounding hides it
+      if (eigenvalue < 1e-10 * scale) continue;  // the eigenvalue would be lost in rounding errors
       const bool hides = may_hide(laplacian, aggregation, masses, eigenvalue);
       if (share < 1) {
         EXPECT_FALSE(hides) << clustered.name << ", seed " << seed << ", " << share;
       }
-      if (share > 2.001) {  // slack is right up to a factor of 2
+      if (share > 2.001) {  // the slack estimates `second` up to a factor of 2
         EXPECT_TRUE(hides) << clustered.name << ", seed " << seed << ", " << share;
       }
       ++(hides ? hidden : shown);
@@ -179,8 +180,8 @@ TEST(Aggregation, HidesWhatDenseSolversFindWithinAggregates) {
 }
 
 TEST(Aggregation, OfTwoCliquesAndABridgeMayHideTheirDifference) {
-  // all are one aggregate: the founder is one end of the bridge, and the other clique is joined to the other
-  // end
+  // all vertices are one aggregate: its founder is one end of the bridge, and the other clique is joined to
+  // the other end
   constexpr Index kSize = 20;
   std::vector<Edge> edges;
   for (Index first : {Index{0}, kSize}) {

@@ -50,7 +50,7 @@ TEST(ArrangementGraph, CoarsensIntoGroupsOfNeighbours) {
       EXPECT_GE(members[g].size(), 1U);
       EXPECT_LE(members[g].size(), 8U);
       EXPECT_EQ(coarse.graph.volumes[g], index_size(members[g]));
-      // each vertex of a group of several has a neighbour in it
+      // in a group of several vertices, each one has a neighbour in the group
       for (const Index v : members[g]) {
         bool joined = members[g].size() == 1;
         for (const Index u : fine[v]) joined |= coarse.group_of[u] == g;
@@ -86,7 +86,7 @@ TEST(ArrangementGraph, AddsUpTheEdgesBetweenGroupsAndTheirVolumes) {
 }
 
 TEST(ArrangementGraph, GroupsByWeightOverDistance) {
-  // 1 ═2═ 0 ─?─ 2 ═9═ 3 in the order of the numbers: 2 is twice as far from 0 as 1
+  // 1 ═2═ 0 ─?─ 2 ═9═ 3 in the order of the numbers: 2 is twice as far from 0 as 1 is
   const auto groups = [](Offset weight) {
     const ArrangementGraph graph{
         {0, 2, 3, 5, 6}, {1, 2, 0, 0, 3, 2}, {2, weight, 2, weight, 9, 9}, {2, 2, 2, 2}};

@@ -106,7 +106,7 @@ TEST(Auto, JudgesByTheUse) {
   EXPECT_NE(reason_to_keep(graph, dissected, "metis-nd", Workload::all), "");
 }
 
-/// The edges of a path, in that order.
+/// The edges of a path, in the given order.
 Incidence edges_of_path(std::span<const Index> order) {
   Incidence edges{index_size(order) + 1, {0}, {}};
   for (const Index e : order) {
@@ -201,7 +201,7 @@ TEST(Auto, KnowsLatticesByTheirNumbersOfNeighbours) {
     return choose_vertex_method({lattice.graph, lattice.points}, Workload::all).name;
   };
   EXPECT_EQ(taken(), "bfs");
-  // independent of the points
+  // the choice does not depend on the points
   for (Point& point : lattice.points) point = {std::sin(point[0]) + point[1], point[0] - point[1], 0};
   EXPECT_EQ(taken(), "bfs");
   lattice.graph = test::random_connected(lattice.graph.size(), 2 * lattice.graph.size(), 1);

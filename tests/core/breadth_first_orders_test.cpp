@@ -44,7 +44,7 @@ TEST(BreadthFirstOrders, RcmHasASmallerProfileThanItsReverse) {
 }
 
 TEST(BreadthFirstOrders, RcmListsNeighboursByDegree) {
-  // 0 at the rim, then 1 with neighbours 4 (degree 1), 3 (2), 2 (3): read from the back
+  // from the back: 0 at the rim, then 1, then its neighbours 4 (degree 1), 3 (degree 2) and 2 (degree 3)
   const std::vector<Edge> edges{{0, 1}, {1, 2}, {1, 3}, {1, 4}, {2, 3}, {2, 5}, {5, 6}};
   const CsrGraph graph = graph_from_edges(7, edges);
   std::vector<Index> sequence = order_of(graph, "rcm").new_to_old();

@@ -25,7 +25,7 @@ NeighbourRows rows(const std::vector<std::vector<Index>>& lists) {
 }
 
 TEST(Carried, VerticesThatStayKeepTheirOrder) {
-  // places 0 … 5 before, of which 1 and 4 are gone
+  // the places were 0 … 5; the vertices at 1 and 4 are gone
   const std::vector<Index> places{5, 0, 3, 2};
   EXPECT_THAT(carried_order(places, 6, {}, {}), ElementsAre(1, 3, 2, 0));
 }
@@ -37,7 +37,7 @@ TEST(Carried, NewVerticesComeAfterTheMedianOfTheirNeighbours) {
 }
 
 TEST(Carried, ChainsOfNewVerticesFollowEachOther) {
-  // 3 – 4 – 5 – 6 is a chain from 1, in either direction; 7 and 8 are joined only to each other
+  // 3 – 4 – 5 – 6 is a chain whose end 6 is joined to 1; 7 and 8 are joined only to each other
   const std::vector<Index> places{0, 1, 2, -1, -1, -1, -1, -1, -1};
   const std::vector<Index> added{3, 4, 5, 6, 7, 8};
   const NeighbourRows of{rows({{4}, {3, 5}, {4, 6}, {5, 1}, {8}, {7}})};

@@ -57,8 +57,8 @@ TEST(SparseRows, TransposedSwapsRowsAndColumns) {
 }
 
 TEST(Collapsed, HasTheSameRowsWhereItSeesOnlySomeOfAGraph) {
-  // a ring of 8 vertices in aggregates of two; only rows 0 … 3 are known, and vertices 4 and 7 as columns 4
-  // and 5
+  // a ring of 8 vertices in aggregates of two; only rows 0 … 3 are known; their columns 4 and 5 are the
+  // vertices 4 and 7
   Laplacian ring;
   Laplacian half;
   for (Index v = 0; v < 8; ++v) {
@@ -84,7 +84,8 @@ TEST(Collapsed, HasTheSameRowsWhereItSeesOnlySomeOfAGraph) {
 }
 
 TEST(GalerkinProduct, IsThatOfDenseMatricesAndNoneWhereItHasTooManyEntries) {
-  // a hub, 0, and a rim of 600 vertices around it: aggregates of three meet in its row
+  // a hub, 0, and a rim of 600 vertices around it: the hub's row has entries of many aggregates of three
+  // vertices
   constexpr Index kRim = 600;
   Laplacian wheel;
   const auto end_row = [&] {

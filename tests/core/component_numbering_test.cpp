@@ -47,7 +47,7 @@ TEST(ComponentNumbering, OfAMeshIsABandWithRowsSortedByLength) {
     if (k > 0 && graph.degree(v) != graph.degree(numbering.order[k - 1])) ++changes;
   }
   EXPECT_LT(widest, 2000);  // two levels of the search
-  // a batch of 256 starts anew, and has four different degrees
+  // vertices that a batch of 256 has found are sorted together, and have four different degrees
   EXPECT_LT(changes, 4 * (graph.size() / 100));
 }
 
@@ -70,7 +70,7 @@ TEST(ComponentNumbering, IsTheSameOnAnyNumberOfThreads) {
 
 TEST(ComponentNumbering, GivesTheLaplacianOfEachComponent) {
   const CsrGraph graph = mixed();
-  std::vector<double> weights;  // symmetric: of the sum of both ends
+  std::vector<double> weights;  // symmetric: each depends on the sum of both ends
   for (Index v = 0; v < graph.size(); ++v) {
     for (const Index u : graph[v]) weights.push_back(1 + (u + v) % 7);
   }

@@ -57,7 +57,7 @@ TEST(ElementsByRanks, LexmaxComparesFallingRanksLikeWords) {
 }
 
 TEST(ElementsByRanks, LexmaxComparesAllRanksOfLargeElements) {
-  // of three vertices, so that many of up to nine tie in their largest four or in all
+  // elements of up to nine of only three different vertices: many tie in their largest four ranks, or in all
   const Incidence elements = elements_of_any_size(3, 500, 9, 5);
   const Permutation order = test::shuffled(3, 2);
   EXPECT_EQ(order_incidence("lexmax", {elements, order, {}, {}}).permutation.new_to_old(),

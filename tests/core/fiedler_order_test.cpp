@@ -75,7 +75,7 @@ TEST(FiedlerOrder, OfAMeshHasAMeanSpanOfAboutASlice) {
   const CsrGraph graph = scrambled(vertex_graph(make_torus({8, 0.15, 0})), 4);
   const double before = edge_span(graph, Permutation::identity(graph.size())).mean;
   EXPECT_NEAR(before, graph.size() / 3.0, 0.02 * graph.size());
-  // the order goes along two halves of the ring, each of 64/2 slices, at once: 2 · 81 vertices a step
+  // the order goes along both halves of the ring at once, 64/2 slices each: a step has 2 · 81 vertices
   EXPECT_LT(edge_span(graph, fiedler_order(graph)).mean, 1.5 * 2 * 81);
 }
 

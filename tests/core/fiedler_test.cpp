@@ -438,8 +438,8 @@ TEST(FiedlerVector, CutsWhereTheWeightsAreWeak) {
   const auto half = [](Index v) { return v / 25 < 20; };
   const FiedlerVectors result = fiedler_vectors(
       graph, weights_of(graph, [&](Index a, Index b) { return half(a) == half(b) ? 1e6 : 1e-6; }));
-  // λ₂ is that of two vertices of mass 500 joined by 25 weak edges
-  // and 14 decades below the largest eigenvalue, where the vector itself has few digits left
+  // λ₂ is that of two vertices of mass 500 joined by 25 weak edges. It is 14 decades below the largest
+  // eigenvalue, where the vector itself has few digits left
   EXPECT_GE(result.components[0].lambda2, 0.999 * 25e-6 * 2 / 500);
   EXPECT_LT(result.components[0].lambda2, 3 * 25e-6 * 2 / 500);
   for (Index v = 1; v < graph.size(); ++v) {
@@ -487,7 +487,7 @@ double dense_lambda2(const CsrGraph& graph, const std::vector<double>& weights) 
 }
 
 TEST(FiedlerVector, OfClusteredGraphsIsNoOtherEigenvector) {
-  // at the default tolerance x may mix eigenvectors of eigenvalues closer than this
+  // at the default tolerance, x may mix eigenvectors whose eigenvalues differ by less than the 20 % below
   const std::uint64_t count = test::kSanitized ? 60 : 2600;
   for (std::uint64_t seed = 0; seed < count; ++seed) {
     const test::ClusteredGraph clustered = test::clustered_graph(seed);

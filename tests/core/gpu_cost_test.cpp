@@ -155,7 +155,7 @@ TEST(GpuProductCost, CountsTheSectorsOfAllLoads) {
       SCOPED_TRACE(lanes);
       const GpuCost cost = gpu_product_cost({graph.offsets, graph.neighbours}, lanes);
       const Requests requests = requests_of(rows, lanes, 4);
-      Requests values;  // as columns
+      Requests values;  // values are read like columns
       for (const auto& [request, sectors] : requests)
         if (request[1] == 2) values[request] = sectors;
       EXPECT_EQ(cost.sectors, sectors_in(requests) + sectors_in(values));

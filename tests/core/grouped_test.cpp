@@ -26,7 +26,7 @@ TEST(OrderInGroups, IsTheMethodsOrderOfEachGroupsOwnGraph) {
   const std::vector<Point> points = lattice_points(20, graph.size());
   std::vector<Index> group_of(graph.size());
   for (Index v = 0; v < graph.size(); ++v)
-    group_of[v] = (v % 20) / 7 == 1 ? 0 : v < 150 ? 3 : 1;  // 2 is empty
+    group_of[v] = (v % 20) / 7 == 1 ? 0 : v < 150 ? 3 : 1;  // group 2 is empty
   for (const MethodInfo& method : vertex_methods()) {
     if (method.name == "auto") continue;
     SCOPED_TRACE(method.name);

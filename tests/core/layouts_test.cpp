@@ -151,7 +151,7 @@ TEST(Colours, OfAStarAreAsManyAsItsEdges) {
 }
 
 TEST(Colours, BeyondTheFirstOnesAreProper) {
-  // all pairs of 300 vertices, which need 299
+  // all pairs of 300 vertices, which need 299 colours
   Mesh complete;
   complete.points.resize(300);
   for (Index a = 0; a < 300; ++a)

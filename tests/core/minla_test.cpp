@@ -85,8 +85,8 @@ TEST(Minla, ComesWithin6PercentOfTheOptimumOfSquareGrids) {
 }
 
 TEST(Minla, ComesWithin30PercentOfTheOptimumOfBinaryTrees) {
-  // Chung 1978, complete trees of k levels: 2^k (k/3 + 5/18) + (−1)^k 2/9 − 2; `fiedler` has up to 30 times
-  // it
+  // Chung 1978, complete trees of k levels: 2^k (k/3 + 5/18) + (−1)^k 2/9 − 2; the sum of `fiedler` is up to
+  // 30 times as large
   for (int k = 3; k <= 12; ++k) {
     const Index n = (1 << k) - 1;
     std::vector<Edge> edges;
@@ -166,7 +166,7 @@ TEST(Minla, KeepsComponentsWhereFiedlerPutsThem) {
     place += static_cast<std::ptrdiff_t>(component.size());
   }
   EXPECT_EQ(order.fiedler.size(), components.size());
-  // each as good as by itself
+  // each component's order is as good as for the component by itself
   EXPECT_LE(minla(graph),
             minla(test::grid(20, 9)) * 1.02 + 150.0 * 150 / 4 + minla(test::grid(7, 5)) * 1.02 + 5);
 }

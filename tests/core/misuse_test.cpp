@@ -142,7 +142,7 @@ TEST(Misuse, OfMatricesToBeMovedIsRefused) {
   const Permutation four = Permutation::identity(4);
   std::vector<Misuse> misuses;
   for (const auto& [what, graph] : wrong_graphs()) {
-    // weights are not looked at, and patterns need not be symmetric
+    // these functions ignore weights, and patterns need not be symmetric
     if (!graph.weights.empty() || what == "an entry without its counterpart") continue;
     misuses.push_back(
         {"csr_entry_map: " + what, [&four, graph = graph] { (void)four.csr_entry_map(graph.view()); }});

@@ -228,7 +228,7 @@ TEST(OrderVertices, StartsFromAnEarlierVector) {
 
 TEST(OrderVertices, ChoosesByTheUse) {
   Problem problem(test::grid(20, 20));
-  const Permutation places = test::shuffled(400, 11);  // as Problem numbers them
+  const Permutation places = test::shuffled(400, 11);  // the numbering that Problem uses
   for (Index v = 0; v < 400; ++v) {
     problem.points[places.old_to_new()[v]] = {1.0 * (v % 20), 1.0 * (v / 20), 0};
   }
@@ -236,7 +236,7 @@ TEST(OrderVertices, ChoosesByTheUse) {
     return order_vertices(problem.view(), "auto", {.workload = workload}, points).method;
   };
   EXPECT_EQ(chosen(Workload::bandwidth, problem.points).name, "rcm");
-  EXPECT_EQ(chosen(Workload::all, problem.points).name, "bfs");  // on a lattice
+  EXPECT_EQ(chosen(Workload::all, problem.points).name, "bfs");  // the graph is a lattice
   EXPECT_EQ(chosen(Workload::all, {}).name, "bfs");
   EXPECT_FALSE(chosen(Workload::all, {}).reason.empty());
   EXPECT_EQ(order_vertices(problem.view(), "rcm").method, (MethodChoice{"rcm", ""}));
@@ -603,7 +603,7 @@ std::size_t shared(std::span<const Index> a, std::span<const Index> b) {
 TEST(VertexGraph, JoinsTheVerticesOfEveryElement) {
   const Mesh mesh = test::tetrahedral_bar(3);
   const CellsView cells = CellsView::uniform(Shape::tetrahedron, 4, mesh.cells.vertices);
-  const auto n = static_cast<std::size_t>(mesh.vertex_count()) + 2;  // two that no cell uses
+  const auto n = static_cast<std::size_t>(mesh.vertex_count()) + 2;  // two vertices that no cell uses
   std::vector<std::vector<Index>> rows(n);
   for (Index v = 0; v < index_size(rows); ++v) {
     for (Index u = 0; u < index_size(rows); ++u) {
@@ -714,8 +714,8 @@ TEST(FiedlerVector, HasNumbersEvenWhereTheWeightsOverflow) {
   }
 }
 
-/// A grid of triangles with random vertex numbers, and its points. Squares are cut along either diagonal, for
-/// `auto` not to treat it as a lattice.
+/// A grid of triangles with random vertex numbers, and its points. Squares are cut along either diagonal, so
+/// that `auto` does not treat the grid as a lattice.
 struct Sheet {
   static constexpr Index kSide = 30;
   std::vector<Point> points{static_cast<std::size_t>(kSide * kSide)};

@@ -77,7 +77,7 @@ TEST(Polyhedron, FacesInAnyOrderAndDirectionGiveTheCell) {
       EXPECT_TRUE(cell.signs_agree);
       EXPECT_EQ(outward_faces_of(cell), expected);
 
-      // a wrong sign is detected, and at most turns the cell inside out
+      // a wrong sign is detected; at worst it turns the cell inside out
       inward[chance() % inward.size()].flip();
       CellOfFaces other = cell_of_faces(with_signs(faces, inward));
       ASSERT_EQ(other.kind, CellOfFaces::Kind::standard);

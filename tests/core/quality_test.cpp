@@ -23,7 +23,7 @@ using testing::ElementsAre;
 
 /// The same numbers by their definitions. Rows may be unsorted, with loops and repeated entries.
 Quality by_definition(const CsrGraph& graph, const Permutation& order) {
-  std::set<std::pair<Index, Index>> edges;  // by places, the first one first
+  std::set<std::pair<Index, Index>> edges;  // pairs of places, the smaller place first
   for (Index v = 0; v < graph.size(); ++v) {
     for (const Index u : graph[v]) {
       if (u != v) edges.insert(std::minmax({order.old_to_new()[u], order.old_to_new()[v]}));
@@ -78,13 +78,13 @@ TEST(Quality, OfAGridInRowsIsKnown) {
   constexpr Index kRows = 5;
   const CsrGraph grid = test::grid(kColumns, kRows);
   const Quality quality = meshorder::quality(test::view_of(grid));
-  constexpr Offset kAlong = (kColumns - 1) * kRows;   // of span 1
-  constexpr Offset kAcross = kColumns * (kRows - 1);  // of span 8
+  constexpr Offset kAlong = (kColumns - 1) * kRows;   // edges of span 1
+  constexpr Offset kAcross = kColumns * (kRows - 1);  // edges of span 8
   EXPECT_EQ(quality.edges, kAlong + kAcross);
   EXPECT_DOUBLE_EQ(quality.mean_span, (kAlong + 8.0 * kAcross) / (kAlong + kAcross));
   EXPECT_DOUBLE_EQ(quality.mean_log2_span, 3.0 * kAcross / (kAlong + kAcross));
   EXPECT_EQ(quality.bandwidth, kColumns);
-  // the first row's vertices but one have their neighbour to the left, all others the one above
+  // the first entry of a vertex is its neighbour above; in the first row its left neighbour, if it has one
   EXPECT_EQ(quality.profile, (kColumns - 1) + kColumns * kColumns * (kRows - 1));
   EXPECT_THAT(quality.histogram_log2, ElementsAre(kAlong, 0, 0, kAcross));
   EXPECT_THAT(span_histogram(test::view_of(grid), Permutation::identity(grid.size()), 3),

@@ -42,14 +42,14 @@ class Cloud {
   [[nodiscard]] const std::vector<Point>& points() const { return points_; }
   [[nodiscard]] const std::vector<Index>& previous() const { return previous_; }
 
-  /// Moves the points by up to that much.
+  /// Moves each coordinate of the points by up to `by`.
   void stir(double by) {
     for (Point& point : points_) {
       for (std::size_t axis = 0; axis < 2; ++axis) point[axis] += by * (2 * unit() - 1);
     }
     same();
   }
-  /// Takes out that many points, and adds as many at the end.
+  /// Removes `count` points, and adds as many at the end.
   void churn(std::size_t count) {
     same();
     for (std::size_t i = 0; i < count; ++i) {
@@ -64,7 +64,7 @@ class Cloud {
   }
   void follow(const Update& update) { update.permutation.move_in_place(std::span(points_)); }
 
-  /// Joins points that are nearer than that.
+  /// Joins points that are nearer to each other than `reach`.
   [[nodiscard]] CsrGraph graph(double reach = 0.05) const {
     std::vector<Edge> edges;
     for (std::size_t a = 0; a < points_.size(); ++a) {
@@ -297,7 +297,7 @@ TEST(Reorderer, LeavesANumberingThatIsReadForwardUntilItIsNot) {
     EXPECT_EQ(update.repair, Repair::none) << update.reason;
     EXPECT_THAT(update.reason, i == 0 ? HasSubstr("already reads memory forward") : HasSubstr(""));
   }
-  // then other vertices take its places
+  // then the vertices are numbered at random
   std::vector<Index> places(static_cast<std::size_t>(graph.size()));
   std::iota(places.begin(), places.end(), Index{0});
   std::shuffle(places.begin(), places.end(), random);

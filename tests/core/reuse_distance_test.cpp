@@ -18,10 +18,10 @@
 namespace meshorder {
 namespace {
 
-/// The lines from the most recently used one on, in a plain list: Mattson's stack itself.
+/// Mattson's stack as a plain list: all lines, the most recently used one first.
 class Stack {
  public:
-  /// The line's place, −1 when it is new; it moves to the front.
+  /// Returns the line's place, −1 for a new line, and moves the line to the front.
   Index access(Index line) {
     const auto found = std::find(lines_.begin(), lines_.end(), line);
     const bool is_new = found == lines_.end();
@@ -101,7 +101,7 @@ Offset misses_of_lru(const std::vector<Index>& stream, std::size_t capacity) {
   return misses;
 }
 
-/// Near and far reuses of all distances: a random walk with leaps, some lines never accessed.
+/// A random walk with leaps, which has reuses at all distances. It never accesses some of the lines.
 std::vector<Index> wandering(Index lines, Index length, std::uint64_t seed) {
   Random random(seed);
   std::vector<Index> stream;
@@ -169,7 +169,7 @@ TEST(ReuseDistance, WhenRepeatedJumpsAsInEveryLaterRun) {
   const ReuseHistogram repeated = measured(stream, lines).repeated().jumps;
   EXPECT_EQ(repeated.cold(), 0);
   for (const Offset capacity : {512, 2048, 8192}) {
-    // apart from accesses that the end of the previous run leads to, or keeps near
+    // equal except for accesses near the start: `later` lacks the far accesses of the previous run
     const auto expected = static_cast<double>(later.misses(capacity));
     EXPECT_GT(expected, 300.0);
     EXPECT_NEAR(static_cast<double>(repeated.misses(capacity)), expected, 0.01 * expected + 3.0) << capacity;
@@ -179,7 +179,7 @@ TEST(ReuseDistance, WhenRepeatedJumpsAsInEveryLaterRun) {
 TEST(ReuseDistance, OfASweepJumpsOnce) {
   const Index n = 3000;
   EXPECT_EQ(measured(count_up(n, 1), n).repeated().jumps.accesses(), 1);
-  // of 80 sweeps side by side, each access comes too long after the line before
+  // 80 interleaved sweeps: each access comes too long after that to the preceding line
   std::vector<Index> interleaved;
   for (Index k = 0; k < 40; ++k) {
     for (Index sweep = 0; sweep < 80; ++sweep) interleaved.push_back(50 * sweep + k);

@@ -67,7 +67,7 @@ TEST(ReuseSample, TellsWhetherOneOfSomeLinesIsSampled) {
   for (; first < 2000; first += 40) {
     bool some = false;
     for (Index line = first; line < first + 40; ++line) some = some || is_sampled(line);
-    // the first two of a block are sampled and not counted
+    // the first two lines of a block are sampled, but not counted
     const bool told = sample.samples(first, first + 39);
     EXPECT_TRUE(told || !some) << first;
     with += told ? 1 : 0;

@@ -105,7 +105,7 @@ TEST(TakeTurns, TheCallBeginsNoTurnAfterOneHasFailedOnAnotherThread) {
   std::atomic<int> begun_later = 0;
   RunOfCall run;
   run.threads = 4;
-  run.progress = [](const Progress&) { return true; };  // else polls end the call's own turns, too
+  run.progress = [](const Progress&) { return true; };  // without it, polls would end the caller's turns
   EXPECT_THROW(in_call(run,
                        [&] {
                          take_turns(20'000, [&](Index i) {

@@ -33,7 +33,7 @@ std::vector<Point> full_lattice(int axes, int k) {
 
 Permutation order_of(std::string_view method, const std::vector<Point>& points) {
   const CsrGraph complete_enough = [&] {
-    // no vertex may be isolated: those are moved to the end
+    // no vertex may be isolated: isolated ones would be moved to the end
     std::vector<Edge> ring;
     const auto n = index_size(points);
     for (Index v = 0; v < n; ++v) ring.push_back({v, (v + 1) % n});
@@ -83,7 +83,8 @@ TEST(Hilbert, DoesNotDependOnScaleAndPlace) {
   EXPECT_EQ(order_of("hilbert", points), order);
 }
 
-/// The same number by Skilling's transformation of the coordinates, scale by scale (2004, AxestoTranspose).
+/// The number of a cell on the Hilbert curve, by Skilling's transformation of the coordinates, scale by scale
+/// (2004, AxestoTranspose).
 std::uint64_t skillings_number(std::array<std::uint32_t, 3> x, int axes, int bits) {
   for (std::uint32_t q = 1U << static_cast<unsigned>(bits - 1); q > 1; q /= 2) {
     for (int a = 0; a < axes; ++a) {

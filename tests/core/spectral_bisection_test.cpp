@@ -86,7 +86,7 @@ TEST(SpectralOrder, KeepsComponentsTogetherLargestFirst) {
   const CsrGraph graph = test::disjoint_union(
       {test::path(3), test::grid(90, 60), test::path(1), test::cycle(8), test::grid(80, 60)});
   const std::vector<Index> sequence = order_of(graph, "spectral").new_to_old();
-  // 0 … 2, 3 … 5402, 5403, 5404 … 5411, 5412 … 10211
+  // the components' vertices: 0 … 2, 3 … 5402, 5403, 5404 … 5411, 5412 … 10211
   for (Index k = 0; k < graph.size(); ++k) {
     const Index v = sequence[k];
     const int component = v < 3 ? 3 : v < 5403 ? 0 : v < 5404 ? 4 : v < 5412 ? 2 : 1;
@@ -102,7 +102,7 @@ TEST(SpectralOrder, PutsBranchesThatEndBeforeThoseThatGoOn) {
     for (Index k = 0; k < length; ++k, ++n) edges.push_back({k == 0 ? 0 : n - 1, n});
   }
   const CsrGraph branches = graph_from_edges(n, edges);
-  // 1.13; it is 1.22 if the branch that continues comes first
+  // the mean is 1.13; it is 1.22 if the branch that continues comes first
   EXPECT_LT(edge_span(branches, order_of(branches, "spectral")).mean, 1.18);
 }
 

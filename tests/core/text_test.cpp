@@ -60,7 +60,7 @@ TEST(Utf8Prefix, EndsWithAWholeCharacter) {
   EXPECT_EQ(utf8_prefix("ab€", 5), "ab€");
   EXPECT_EQ(utf8_prefix("a\U0001F600b", 4), "a");
   EXPECT_EQ(utf8_prefix("a\U0001F600b", 5), "a\U0001F600");
-  // no UTF-8: cut where asked
+  // not UTF-8: cut at the requested byte
   EXPECT_EQ(utf8_prefix("\x80\x80\x80\x80\x80\x80", 5), "\x80\x80\x80\x80\x80");
 }
 

@@ -132,7 +132,7 @@ TEST(BreadthFirstCopy, IsTheSameOnAnyNumberOfThreads) {
 TEST(BreadthFirstCopy, IsTheSameGraphInTheOrderOfASearch) {
   CsrGraph graph =
       test::disjoint_union({test::path(5), test::random_connected(200, 60, 1), CsrGraph{{0, 0}, {}}});
-  for (Index v = 0; v < graph.size(); v += 3) {  // rows in descending order keep it
+  for (Index v = 0; v < graph.size(); v += 3) {  // rows that descend must keep their order
     std::reverse(graph.neighbours.begin() + graph.offsets[v],
                  graph.neighbours.begin() + graph.offsets[v + 1]);
   }
@@ -175,7 +175,7 @@ std::vector<Index> with_zero_at(Index start, Index size) {
 
 TEST(SearchFromTheRim, IsAnEndOfAPathAndACornerOfAGrid) {
   EXPECT_EQ(found_from_zero(test::path(1000), with_zero_at(400, 1000)), 999);
-  // of two ends, the one with the smaller name
+  // the end with the smaller name
   EXPECT_EQ(found_from_zero(test::path(7), {1, 2, 3, 0, 4, 5, 6}), 0);
   EXPECT_EQ(found_from_zero(test::path(7), {6, 2, 3, 0, 4, 5, 1}), 6);
   const Index corner = found_from_zero(test::grid(9, 7), with_zero_at(31, 63));

@@ -21,7 +21,7 @@
 namespace meshorder {
 namespace {
 
-/// The sectors of x in the cost of a product, which has also those of offsets, columns and values.
+/// The sectors of x alone. The cost of a product also counts those of offsets, columns and values.
 Offset vector_sectors(const CsrGraph& graph) {
   CsrGraph matrix;
   for (Index v = 0; v < graph.size(); ++v) {

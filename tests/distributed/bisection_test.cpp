@@ -32,7 +32,7 @@ std::vector<Index> bisected_parts(const Communicator& communicator, const Mesh& 
 constexpr Index kPathVertices = 61;
 constexpr Index kPathStep = 7;
 
-/// The parts of a path's vertices, one after another along it.
+/// The parts of a path's vertices, in the order of the path.
 std::vector<Index> along_path(const std::vector<Index>& part_of) {
   std::vector<Index> along;
   for (Index k = 0; k < kPathVertices; ++k)

@@ -40,7 +40,7 @@ class SharedMesh {
                 }))
                 .front();
   }
-  ~SharedMesh() { (void)communicator_.gathered(0); }  // all have read it
+  ~SharedMesh() { (void)communicator_.gathered(0); }  // waits until all ranks have read the file
   SharedMesh(const SharedMesh&) = delete;
   SharedMesh(SharedMesh&&) = delete;
   SharedMesh& operator=(const SharedMesh&) = delete;
@@ -54,7 +54,7 @@ class SharedMesh {
   std::string path_;
 };
 
-/// A mesh as rank 0 holds it after reading it to write .vtu files.
+/// Reads a mesh as rank 0 does if it will write .vtu files.
 Mesh read_for_vtu(const std::string& path) {
   Mesh mesh = read_mesh(path);
   (void)arrange_cells(mesh, format_named("vtu"));

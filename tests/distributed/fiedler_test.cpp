@@ -47,7 +47,8 @@ Order serial(const Mesh& mesh, const OrderOptions& options = {}) {
   return order_graph("fiedler", {.graph = graph}, options);
 }
 
-/// Separate grids of different sizes, with the vertices of all numbered in turn, and two isolated vertices.
+/// Separate grids of different sizes, and two isolated vertices. Numbers go to the vertices of the grids in
+/// turn.
 Mesh grids_in_turn(const std::vector<Index>& sizes) {
   Mesh all;
   std::vector<std::vector<Index>> number_of;
@@ -83,7 +84,7 @@ TEST(SharedFiedler, HasTheEigenvalueAndSpansOfTheSerialOne) {
   for (const SharedSizes sizes : {kAllTogether, SharedSizes{.alone = 0, .few = 400}}) {
     for (const Mesh& mesh : {make_torus({.size = 6}), make_torus({.size = 10}), make_ball({.size = 10})}) {
       const Found together = found(communicator, mesh, sizes);
-      if (!communicator.is_root()) continue;  // judged once
+      if (!communicator.is_root()) continue;  // the root alone checks the result
       const Order alone = serial(mesh);
       ASSERT_EQ(together.components.size(), 1);
       const FiedlerComponent& component = together.components.front();
@@ -128,7 +129,7 @@ TEST(SharedFiedler, OrdersComponentAfterComponent) {
   const Communicator communicator;
   const Mesh mesh = grids_in_turn({3, 6, 3, 5});
   const Order alone = serial(mesh);
-  // the two of size 3 are solved by one rank, the others by all
+  // one rank solves the two components of size 3, all ranks solve the others
   for (const SharedSizes sizes : {kAllTogether, SharedSizes{.alone = 64, .few = 20}}) {
     const Found together = found(communicator, mesh, sizes);
     ASSERT_EQ(together.components.size(), alone.fiedler.size());

@@ -59,7 +59,7 @@ void expect_kept(const Communicator& communicator, const Kept& kept) {
   encoding.compressor = kept.compressor;
   encoding.wide_headers = false;
   const std::string path = new_file_of_rows(communicator);
-  // rank 0 has nothing, the last one twice as much as the others
+  // rank 0 has nothing, the last rank about twice as much as the others
   std::vector<GlobalIndex> sizes(static_cast<std::size_t>(communicator.size()), 0);
   for (std::size_t r = 1; r < sizes.size(); ++r) sizes[r] = kept.values / std::ssize(sizes);
   sizes.back() = 0;

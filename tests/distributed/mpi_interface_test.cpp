@@ -32,7 +32,7 @@ struct Solver {
             slice.cell_vertices.entries,
             std::span(slice.points.empty() ? nullptr : slice.points.front().data(), 3 * slice.points.size())};
   }
-  /// Values of all ranks on each of them.
+  /// Returns the values of all ranks, on each rank.
   [[nodiscard]] std::vector<Index> all(const std::vector<std::int64_t>& own) const {
     const std::vector<std::int64_t> values = communicator.broadcast(communicator.gathered_at_root(own));
     return {values.begin(), values.end()};

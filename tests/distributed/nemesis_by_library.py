@@ -8,7 +8,7 @@ import json
 import sys
 
 exodus = ctypes.CDLL("libexoIIv2c.so.5")
-VERSION = 602  # of the header that this follows
+VERSION = 602  # of the header that this program follows
 
 
 def check(status):
@@ -52,7 +52,7 @@ def read(path):
                          for one, size in zip(*maps[2:])],
         "ids": [maps[0], maps[2]],
         "blocks": lists(exodus.ex_get_eb_info_global, [whole[2]] * 2),
-        # not asked for if there are none
+        # without sets, the library is not asked for them
         "node sets": lists(exodus.ex_get_ns_param_global, [whole[3]] * 3) if whole[3] else [[], [], []],
         "side sets": lists(exodus.ex_get_ss_param_global, [whole[4]] * 3) if whole[4] else [[], [], []],
     }

@@ -26,7 +26,7 @@ TEST_P(Methods, HaveSpansLikeTheSerialOrder) {
     std::vector<WholeOrder> orders;
     for (const Index parts : {2, 8})
       orders.push_back(ordered(communicator, mesh, {.partitioner = GetParam(), .parts = parts}));
-    if (!communicator.is_root()) continue;  // judged once
+    if (!communicator.is_root()) continue;  // the root alone checks the result
     const CsrGraph graph = vertex_graph(mesh);
     const EdgeSpan serial = edge_span(graph, order_graph("spectral", {.graph = graph}).permutation);
     // parts that are ranges of a curve have rougher boundaries

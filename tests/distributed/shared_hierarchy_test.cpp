@@ -40,7 +40,7 @@ SharedLevel grid_level(const Communicator& communicator, GlobalIndex width, Glob
   return level;
 }
 
-/// The own rows of a vector that is a sum of two waves and sums to 0 over all ranks.
+/// This rank's rows of a vector that is a sum of two waves and sums to 0 over all ranks.
 VectorBlock<1> waves(const Communicator& communicator, const Layout& layout, double frequency) {
   VectorBlock<1> x;
   double sum = 0;

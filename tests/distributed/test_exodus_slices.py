@@ -151,7 +151,7 @@ def test_what_only_the_whole_mesh_tells_is_done_by_rank_0(tmp_path, options):
     write(tmp_path / "a.e", blocks=BLOCKS[:1])
     options = [tmp_path / option if option == "b.e" else option for option in options]
     done = launch(2, "order", tmp_path / "a.e", "--pieces", tmp_path / "p", "--json", *options)
-    if "--strict" in options:  # sets and ids are arrays there
+    if "--strict" in options:  # in pieces, sets and ids would become arrays
         assert done.returncode == 2 and "--strict forbids data loss" in own_lines(done)[0]
     else:
         assert done.returncode == 0 and by(done) == "rank 0", done.stderr

@@ -25,7 +25,7 @@ if not MESHORDER.with_name("meshorder-mpi").exists():
 
 
 def environment(**variables):
-    """The environment in which Open MPI runs as root, which needs two variables, and ranks that share cores yield."""
+    """The environment for Open MPI: two variables allow it to run as root, one makes ranks that share cores yield."""
     return {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
             "OMPI_MCA_mpi_yield_when_idle": "1", **variables}
 
@@ -60,7 +60,7 @@ def ball():
 
 
 def mixed(folder):
-    """Tetrahedra, triangles of one of their faces each, data on both and on points, and points that nothing uses."""
+    """Tetrahedra, a triangle on every seventh of them, data on both and on points, and points that no cell uses."""
     random = numpy.random.default_rng(3)
     points = random.random((300, 3))
     tetrahedra = numpy.array([random.choice(290, 4, replace=False) for _ in range(500)])
@@ -164,7 +164,7 @@ def test_parts_have_equally_much_of_the_elements(tmp_path, partition):
         result = json.loads(done.stdout)["partition"]
         assert result["balance"] == balance and 1 <= result["imbalance"] <= 1.03 and result["method"] == partition
         elements[balance] = numpy.bincount(numpy.load(tmp_path / "m.cells.parts.npy"), minlength=4)
-    # elements between two parts are of the later one
+    # elements between two parts belong to the later part
     assert elements["cells"].max() < 1.25 * elements["cells"].mean() < 1.5 * elements["vertices"].mean() < elements["vertices"].max()
 
 

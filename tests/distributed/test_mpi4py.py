@@ -12,7 +12,7 @@ MESHORDER = pathlib.Path(os.environ.get("MESHORDER", ROOT / "build" / "bin" / "m
 LIBRARY = MESHORDER.parents[1] / "src" / "libmeshorder_mpi.so"
 SECONDS = 60  # after which ranks are taken to wait for each other
 
-# only this module: the wheel with the rest is for another interpreter
+# imports only this module: the wheel with the other modules is for another interpreter
 BEGINNING = f"""
 import sys, types
 package = types.ModuleType("meshorder")

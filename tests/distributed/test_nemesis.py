@@ -40,7 +40,7 @@ def paths_of(name, parts):
 
 
 class Exodus:
-    """The content of a file: of each node and element, by its number in the whole mesh, and in common."""
+    """The content of a file: what belongs to each node and element, by its number in the whole mesh, and all else."""
 
     def __init__(self, path, is_piece=True):
         self.path = path
@@ -169,14 +169,14 @@ def by_library(paths):
 
 
 def assert_maps(whole, pieces):
-    """Asserts that the library reads the nodes and elements of each part, and those it shares with each other part."""
+    """Asserts that the library reads the nodes and elements of each part, and those that it shares with other parts."""
     parts = len(pieces)
     read = by_library([piece.path for piece in pieces])
     holders = collections.defaultdict(set)
     for p, piece in enumerate(pieces):
         for node in piece.nodes:
             holders[node].add(p)
-    sides = collections.defaultdict(dict)  # of volumes and surfaces, by their corners: cells and sides
+    sides = collections.defaultdict(dict)  # of volumes and surfaces; by the corners of a side, its number in each cell
     part_of = {element: p for p, piece in enumerate(pieces) for element in piece.elements}
     size = whole.sizes
     for element, row in whole.cells.items():
@@ -256,7 +256,7 @@ def test_pieces_together_are_the_whole_file(tmp_path, kind, ranks, parts):
 @pytest.mark.parametrize("options", [["--only", "volume"], ["--only", "surface"], ["--ids", "attach"], ["--ids", "keep"],
                                      ["--interface", "last"]])
 def test_pieces_follow_the_options(tmp_path, options):
-    """Blocks, sets and variables without remaining cells are left out of the pieces as they are of the file."""
+    """The pieces, like the file of the mesh, lack blocks, sets and variables without remaining cells."""
     write_all(tmp_path / "a.exo", "NETCDF3_64BIT_DATA", real="f4")
     order(2, tmp_path / "a.exo", "-o", tmp_path / "b.e", "--pieces", tmp_path / "out.g", "--parts", "5", *options)
     whole, pieces = Exodus(tmp_path / "b.e", is_piece=False), [Exodus(path) for path in paths_of(tmp_path / "out.g", 5)]

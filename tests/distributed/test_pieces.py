@@ -199,7 +199,7 @@ def test_every_piece_has_the_fields(tmp_path, wide, stored):
 
 
 def test_fields_that_stand_compressed_in_the_xml_are_those_of_every_piece(tmp_path):
-    """Rank 0 reads such a file, and the pieces are not compressed."""
+    """Rank 0 reads a file with such fields, and the pieces are not compressed."""
     write(tmp_path / "a.vtu", grid(), **STORED["compressed"])
     write(tmp_path / "inline.vtu", grid(), compressor=vtkZLibDataCompressor, mode="binary")
     fields = re.search(rb"<FieldData>.*?</FieldData>", (tmp_path / "inline.vtu").read_bytes(), re.DOTALL)[0]

@@ -55,7 +55,7 @@ def cells_of(found):
 
 
 def assert_same_but_for_order(old, new, with_types=True):
-    """Asserts that each point and cell is the old one of its id, with its arrays."""
+    """Asserts that each point and cell equals the old one with its id, also in all arrays."""
     u, c = new["PointData/id"], new["CellData/id"]
     assert sorted(u) == list(range(len(old["Points"]))) and sorted(c) == list(range(len(old["Types"])))
     assert u.tolist() != sorted(u)

@@ -84,7 +84,8 @@ def read(path):
 
 
 def assert_same_but_for_order(old, new):
-    """Asserts that each point and cell is the old one of its id, with its arrays, and that dimensions kept their places."""
+    """Asserts that each point and cell equals the old one with its id, also in all arrays, and that dimensions kept
+    their places."""
     old_points, old_cells, (old_u, old_c), old_fields = old
     points, cells, (u, c), fields = new
     assert sorted(u["id"]) == list(range(len(old_points))) and sorted(c["id"]) == list(range(len(old_cells)))

@@ -88,7 +88,7 @@ def read(path):
 
 
 def assert_same_but_for_order(old, new):
-    """Asserts that each point and cell is the old one of its id, with its arrays."""
+    """Asserts that each point and cell equals the old one with its id, also in all arrays."""
     u, c = new["Node/id"], new["Cell/id"]
     assert sorted(u) == list(range(len(old["Node/id"]))) and sorted(c) == list(range(len(old["Cell/id"])))
     assert u.tolist() != sorted(u)

@@ -143,7 +143,7 @@ COMMANDS = {
 }
 COMMANDS |= {f"{extension} in place": Line(("order", f"mesh.{extension}", "-o", f"mesh.{extension}", *SCRAMBLED), before)
              for extension, before in [(one, solid(one)) for one in SOLIDS] + [(one, surface(one)) for one in SURFACES]}
-# an output that replaces another mesh and is no input: a second run gives the same
+# an output that replaces another mesh and is no input: a second run gives the same files
 OVER = {f"{extension} over another": Line(("order", "mesh.node", "-o", f"out.{extension}", *SCRAMBLED), over(extension),
                                           reader=("info", f"out.{extension}"))
         for extension in ("node", "vtu", "xdmf", "cgns", "exo")}

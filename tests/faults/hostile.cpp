@@ -127,7 +127,7 @@ void attack_once() {
 using Opening = std::int64_t(const char* name, unsigned flags, std::int64_t access);
 using ClassicOpening = int(const char* name, int mode, std::size_t* buffer, int* file);
 
-// the libraries' own
+// the libraries' own functions
 Opening* real_opening = nullptr;
 ClassicOpening* real_classic_opening = nullptr;
 
@@ -136,7 +136,7 @@ std::int64_t open_file(const char* name, unsigned flags, std::int64_t access) {
   return real_opening(name, flags, access);
 }
 
-// files of netCDF-3, which libhdf5 does not see
+// opens files of netCDF-3, which libhdf5 does not see
 int open_classic_file(const char* name, int mode, std::size_t* buffer, int* file) {
   attack_once();
   return real_classic_opening(name, mode, buffer, file);
@@ -144,7 +144,7 @@ int open_classic_file(const char* name, int mode, std::size_t* buffer, int* file
 
 }  // namespace
 
-/// The command finds the functions of both libraries by their names.
+/// The command finds the functions of both libraries by their names. Returns the attacking ones instead.
 extern "C" void* dlsym(void* library, const char* name) {
   static const auto find =
       reinterpret_cast<void* (*)(void*, const char*)>(::dlvsym(RTLD_NEXT, "dlsym", kVersion));
@@ -160,7 +160,7 @@ extern "C" void* dlsym(void* library, const char* name) {
   return found;
 }
 
-/// The library cannot be loaded.
+/// Fails to load any library if HOSTILE is "be absent".
 extern "C" void* dlopen(const char* name, int mode) {
   static const auto load =
       reinterpret_cast<void* (*)(const char*, int)>(::dlvsym(RTLD_NEXT, "dlopen", kVersion));

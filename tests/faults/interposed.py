@@ -66,8 +66,8 @@ class Ending:
     status: int  # negative: the signal; None: it hung
     stdout: str
     stderr: str
-    calls: dict  # of each kind
-    failures: int  # how many of them failed
+    calls: dict  # number of calls of each kind
+    failures: int  # number of calls that failed
     log: str
 
     def culprit(self):

@@ -32,7 +32,7 @@
 #include <cstdlib>
 #include <cstring>
 
-// the C library's own, which its manual allows a replacement to call
+// the C library's own functions; its manual allows a replacement to call them
 extern "C" void* __libc_malloc(std::size_t size);
 extern "C" void* __libc_calloc(std::size_t count, std::size_t size);
 extern "C" void* __libc_realloc(void* block, std::size_t size);

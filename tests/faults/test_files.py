@@ -142,7 +142,7 @@ def small_disk(tmp_path):
 
 @pytest.mark.parametrize("name", ("order with maps", "node in place", "xdmf in place", "simulate", "openfoam"))
 def test_a_full_disk_is_told(tmp_path, small_disk, name):
-    """With each number of free pages from none up, the disk becomes full at another file."""
+    """With each number of free pages, from 0 on, the disk becomes full at another file."""
     case = cases.case(name, tmp_path)
     case.folder = small_disk / "work"
     statuses = []

@@ -46,7 +46,7 @@ def shown(name, failed, wrong, foreign):
 
 @pytest.mark.parametrize("name", cases.COMMANDS)
 def test_an_allocation_that_fails_is_told(tmp_path, name):
-    """A few single allocations, and a few together with all later ones."""
+    """Lets a few single allocations fail, then a few together with all later ones."""
     case = cases.case(name, tmp_path)
     places = places_of(case, name, 10)
     failed, wrong, foreign = failures_of(case, places)
@@ -69,7 +69,7 @@ def test_every_allocation_that_fails_is_told(tmp_path, name):
 
 @pytest.mark.parametrize("name", ["order with maps", "cgns in place", "order by spectral"])
 def test_a_limit_on_memory_is_told(tmp_path, name):
-    """Limits from one at which the program cannot be loaded to one that suffices."""
+    """Limits of the address space: the first is too low to load the program, the last suffices."""
     case = cases.case(name, tmp_path)
     statuses = []
     for megabytes in range(60, 1100, 130):

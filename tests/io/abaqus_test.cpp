@@ -202,7 +202,7 @@ TEST(Abaqus, WritesSetsOfNodesBeforeTheCardsThatUseThem) {
     EXPECT_EQ(test::sorted_members(read_deck(text)).sets, test::sorted_members(mesh).sets) << text;
     return text;
   };
-  // after the last card with nodes, not after one without
+  // the set is written after the last card with nodes, not after a card without nodes
   EXPECT_THAT(order_of_sets(nodes + rest + "*NODE\n"), HasSubstr("4, 0, 0, 1\n" + card + "*ELEMENT"));
   EXPECT_THAT(order_of_sets(nodes + user + rest), HasSubstr(card + user + "*NODE\n"));
   EXPECT_THAT(order_of_sets(nodes + rest + user), HasSubstr("4, 0, 0, 1\n" + card + "*ELEMENT"));
@@ -222,7 +222,7 @@ TEST(Abaqus, MovesLinesAndKeepsNumbers) {
 }
 
 TEST(Abaqus, TakesNumbersAfterACommaAsData) {
-  // the rest of Abaqus/CAE's "*Nset, nset=ends, instance=Part-1-1"
+  // what remains of Abaqus/CAE's "*Nset, nset=ends, instance=Part-1-1" without its last parameter
   const std::string deck(kDeck);
   std::string commas = deck;
   for (const std::string card :

@@ -214,7 +214,7 @@ TEST(Cgns, RefusesElementTypesByTheirNumbersInVersion30) {
     std::memcpy(tree.root.child_of_label("CGNSLibraryVersion_t")->bytes.data(), &version, sizeof version);
     cgns::write_tree(tree, path, [](cgns::Node& /*node*/) {});
   };
-  write_as_30(test::tetrahedral_bar(1));  // the number of tetrahedra was the same
+  write_as_30(test::tetrahedral_bar(1));  // the type number of tetrahedra was the same in 3.0
   EXPECT_EQ(read_mesh(path).cell_count(), test::tetrahedral_bar(1).cell_count());
   write_as_30(test::cells_of_type(Shape::hexahedron, 8, 2));
   const std::string message = test::read_error(path);

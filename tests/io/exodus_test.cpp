@@ -217,7 +217,7 @@ TEST(Exodus, NamesWithoutValuesGetNone) {
     put_values(file, "vals_elem_var2eb1", "one", exodus::kDouble, {4});
   });
   const Mesh mesh = read_mesh(path);
-  ASSERT_EQ(mesh.data.size(), 3U);  // and the labels of blocks
+  ASSERT_EQ(mesh.data.size(), 3U);  // "v", "b" and the labels of blocks
   EXPECT_EQ(array_of(mesh, "v", Association::vertices).values, Values(std::vector<double>{1, 2, 3}));
   test::expect_order_and_back(path);
   // in memory, where netCDF fills values that are not written

@@ -21,7 +21,7 @@ std::string changed(std::string_view file, std::string_view what, std::string_vi
 std::string in_41(std::string_view what, std::string_view by) { return changed(kGmsh41, what, by); }
 std::string in_22(std::string_view what, std::string_view by) { return changed(kGmsh22, what, by); }
 
-/// All up to `where`.
+/// The text before `where`.
 std::string until(std::string_view file, std::string_view where) {
   return std::string(file.substr(0, file.find(where)));
 }

@@ -195,7 +195,8 @@ TEST(Gmsh, ReadsAllOfVersion1) {
 }
 
 TEST(Gmsh, ReadsManyElementsAsOneAfterAnother) {
-  // as a file of version 1, whose elements are read one after another; runs, turns and broken lines
+  // the reader takes elements of version 1 one after another. Both files have long runs of one type, types in
+  // turn, and broken lines
   constexpr int kNodes = 50;
   constexpr int kElements = 9000;
   std::string nodes = fmt::format("{}\n", kNodes);
@@ -655,7 +656,7 @@ TEST(Gmsh, NotesWhatItCannotHold) {
 }
 
 TEST(Gmsh, FindsItsEntitiesAgainAfterADetour) {
-  // another format keeps arrays and sets, but not the residue
+  // another format keeps arrays and sets, but not the other sections of Gmsh's file
   Mesh mesh = read_text(kGmsh41);
   mesh.format_metadata.reset();
   mesh.cell_blocks.clear();

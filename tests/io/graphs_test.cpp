@@ -331,7 +331,8 @@ TEST(Facets, BoundEveryVolumeOnceOnEachSide) {
 }
 
 TEST(Facets, OfVolumesFaceOutward) {
-  // the volumes between the origin and the facets add up to the cell's, positive when these face outward
+  // the volumes between the origin and the facets add up to the cell's volume; it is positive when the facets
+  // face outward
   const std::vector<std::pair<Shape, std::vector<Point>>> cells{
       {Shape::tetrahedron, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
       {Shape::pyramid, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}}},

@@ -39,7 +39,7 @@ const std::vector<std::int64_t>& values_of(const Mesh& mesh, std::string_view na
   return std::get<std::vector<std::int64_t>>(find_array(mesh, name, association)->values);
 }
 
-/// The smallest part among the tetrahedra at a vertex; the largest number where there is none.
+/// The smallest part among the tetrahedra at a vertex; the largest integer if it has no tetrahedra.
 std::int64_t smallest_part_at(const Mesh& mesh, Index vertex) {
   std::int64_t smallest = std::numeric_limits<std::int64_t>::max();
   for (Index c = 0; c < mesh.cell_count(); ++c) {

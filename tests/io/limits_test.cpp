@@ -79,7 +79,7 @@ TEST(ReadLimits, AddUpClaimsAndGrowWithTheFiles) {
   const FilePath file("a.msh");
   const ReadScope scope(file);
   count_file(file, kMebibyte);
-  // each counts four times
+  // each claim counts four times
   EXPECT_EQ(refused_claim(75 * kMebibyte, "a list"), "");
   EXPECT_EQ(refused_claim(25 * kMebibyte, "a list"),
             "a list would take 100 MiB in addition to 300 MiB, more than the limit of 356 MiB");
@@ -146,7 +146,7 @@ TEST(ReadLimits, SetsOfRangesAreAddedUp) {
   const std::string element = "*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n";
   std::string ranges = "*NSET,NSET=s,GENERATE\n";
   for (int k = 0; k < 2000; ++k) ranges += "1,2000000000,1\n";
-  // 1,000 nodes × 2,000 lines × 4 bytes, four times
+  // the ranges claim 1,000 nodes × 2,000 lines × 4 bytes, which count four times
   const auto deck = folder.file("a.inp", nodes + element + ranges);
   EXPECT_EQ(fault(deck), "");
   EXPECT_THAT(fault(deck, {.memory_limit = 4 * kMebibyte}),
@@ -281,7 +281,7 @@ TEST(Includes, ThatAreExchangedForLinksInTimeAreNotRead) {
   });
   int plain_ones = 0;
   constexpr int kTimes = 20'000;
-  constexpr int kMost = 2'000'000;  // if the other thread has to wait for a processor
+  constexpr int kMost = 2'000'000;  // for tries, if the other thread has to wait for a processor
   for (int k = 0; k < kTimes || (plain_ones == 0 && k < kMost); ++k) {
     if (!may_include(mesh, included)) continue;
     try {
@@ -327,7 +327,7 @@ TEST(Includes, AreBoundedInDepthAndInAll) {
   };
   EXPECT_THAT(fault(path(0)), HasSubstr("f15.txt:2: files are included more than 16 deep"));
   EXPECT_EQ(fault(path(25)), "");
-  // one file many times
+  // one file is included many times
   (void)folder.file("big.txt", "# " + std::string(100'000, 'x') + "\n");
   std::string many(kOneTetrahedron);
   for (int k = 0; k < 100; ++k) many += "*INCLUDE big.txt\n";

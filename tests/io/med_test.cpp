@@ -57,7 +57,8 @@ Mesh through_med(const Mesh& mesh, Notes* notes = nullptr) {
   return read_mesh(folder.path() / "a.med");
 }
 
-/// The mesh with data and sets sorted by name, without labels, which are the numbers of families, and blocks.
+/// The mesh with data and sets sorted by name, without blocks and without labels. In a file of MED, labels
+/// are the numbers of families.
 Mesh by_name(Mesh mesh) {
   std::erase_if(mesh.data, [](const DataArray& array) { return array.name == kLabel; });
   const auto less = [](const auto& a, const auto& b) {
@@ -82,7 +83,7 @@ TEST(Med, NumbersFamiliesByTheirGroups) {
   const Mesh read = through_med(tagged());
   const DataArray* const families = find_array(read, kLabel, Association::cells);
   ASSERT_NE(families, nullptr);
-  // "both", none, "skin", and both of them
+  // the cells are in "both", in no set, in "skin", and in both of these sets
   const auto& numbers = std::get<std::vector<std::int32_t>>(families->values);
   EXPECT_EQ(numbers[1], 0);
   EXPECT_EQ(std::set<std::int32_t>(numbers.begin(), numbers.end()), (std::set<std::int32_t>{0, -1, -2, -3}));
@@ -114,7 +115,7 @@ TEST(Med, LabelsWithoutSetsBecomeGroups) {
 TEST(Med, FollowsCellsThatAreLeftOut) {
   const TemporaryFolder folder;
   Mesh mesh = through_med(tagged());
-  // the triangles
+  // the triangles are left out
   Mesh volumes = mesh;
   volumes.cells = {};
   for (Index c = 0; c < 2; ++c) volumes.cells.push_back(mesh.cells.shapes[c], mesh.cells[c]);

@@ -384,7 +384,7 @@ TEST(Medit, GroupsInterleavedCells) {
 TEST(Medit, KeepsSetsThatItKnowsAndNamesWhatIsLost) {
   Mesh mesh = test::tetrahedral_bar(2);
   mesh.sets.push_back({"RequiredVertices", Association::vertices, {3, 1}});
-  mesh.sets.push_back({"RequiredTriangles", Association::cells, {0}});  // which is a tetrahedron
+  mesh.sets.push_back({"RequiredTriangles", Association::cells, {0}});  // cell 0 is a tetrahedron
   mesh.cell_ids.resize(mesh.cell_count(), 0);
   mesh.data.push_back({"NormalAtVertices", Association::vertices, 1, std::vector<double>{1}, {0}, {}});
   mesh.data.push_back({"names", Association::cells, 1, std::vector<std::string>(mesh.cell_count()), {}, {}});

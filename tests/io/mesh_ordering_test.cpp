@@ -128,7 +128,7 @@ TEST(MeshOrdering, IsTheSameTwice) {
 TEST(MeshOrdering, TakesTheVertexGraphThatItIsGiven) {
   const Mesh original = bar_with_boundary();
   ReorderOptions options = methods("rcm", "lexmax");
-  options.format = "tetgen";  // sorts the cells before
+  options.format = "tetgen";  // this format sorts the cells first
   Mesh mesh = original;
   std::optional<CsrGraph> graph;
   const MeshOrder computed = reorder(mesh, options, graph);

@@ -138,7 +138,7 @@ TEST(Nastran, ReadsNodesElementsPropertiesAndSets) {
   EXPECT_THAT(mesh.cells[3], ElementsAre(1, 12));
   EXPECT_THAT(mesh.cell_ids, ElementsAre(1, 2, 11, 20));
   EXPECT_THAT(labels_of(mesh, Association::cells).values, ElementsAre(5, 5, 11, 7));
-  EXPECT_THAT(mesh.cell_blocks, ElementsAre(0, 2));  // another card between the elements
+  EXPECT_THAT(mesh.cell_blocks, ElementsAre(0, 2));  // another card is between the elements
   ASSERT_EQ(mesh.sets.size(), 1U);
   EXPECT_EQ(mesh.sets[0].name, "top and others");
   EXPECT_THAT(mesh.sets[0].members, ElementsAre(8, 9, 10, 11));
@@ -409,8 +409,8 @@ TEST(Nastran, WritesAndReadsMeshesOfOtherFormats) {
 }
 
 TEST(Nastran, PutsNodesOfOtherSystemsIntoTheBasicOne) {
-  // 1: x along the basic y, from (1, 0, 0). 2: cylinders in 1. 3: spheres in the basic system. 4: by the
-  // nodes 1, 2 and 3, z along the basic x.
+  // 1: x along the basic y, from (1, 0, 0). 2: cylindrical, within system 1. 3: spherical, within the basic
+  // system. 4: given by the nodes 1, 2 and 3, z along the basic x.
   const std::string systems =
       "GRDSET,,1\n"
       "GRID,1,0,0.,0.,0.\n"

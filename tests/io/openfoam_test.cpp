@@ -52,7 +52,7 @@ struct Files {
       "1(wall);\n    nFaces 10;\n    startFace 1;\n})");
 };
 
-// two cubes side by side; the point at (x, y, z) is x + 3y + 6z
+// two cubes side by side; the point at (x, y, z) has the number x + 3y + 6z
 const std::vector<Index> kOwners{0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1};
 const std::vector<Index> kNeighbours{1};
 const std::vector<Index> kFacePoints{1, 4, 10, 7,  0,  6, 9, 3,  0, 1, 7, 6,  3,  9, 10,
@@ -347,7 +347,7 @@ TEST(OpenFoam, NoticesEveryCut) {
        {text_files(), binary_files<std::int64_t, float>("LSB;label=64;scalar=32", std::endian::little)}) {
     for (const auto file : {&Files::owner, &Files::neighbour, &Files::points, &Files::faces}) {
       const std::size_t whole = (good.*file).rfind(')');
-      const std::size_t step = (good.*file).rfind("* //") / 10;  // through the header
+      const std::size_t step = (good.*file).rfind("* //") / 10;  // larger steps through the header
       for (std::size_t size = 0; size <= whole; size += size < 10 * step ? step : 3) {
         Files files = good;
         (files.*file).resize(size);

@@ -368,7 +368,7 @@ TEST(OutputSet, PutsTheOldFilesBackIfOneCannotBeReplaced) {
   files.remove(gone);
   write({folder.path() / "b.txt", files}, "new b");
   write({folder.path() / "c.txt", files}, "new c");
-  fs::create_directory(folder.path() / "c.txt");  // in the way
+  fs::create_directory(folder.path() / "c.txt");  // a folder in place of the file
   EXPECT_THROW(files.commit(), InputError);
   EXPECT_EQ(content_of(a), "old a");
   EXPECT_EQ(content_of(gone), "old");

@@ -228,7 +228,7 @@ TEST(Ply, LeavesOutWhatMayNameVerticesOrFaces) {
     const char* what;
     std::string header;  ///< lines of properties and elements after the list of a face's vertices
     std::string face;    ///< text after the vertices of the first face
-    std::string rows;    ///< of the elements
+    std::string rows;    ///< lines of the elements
     std::string note;
   };
   const TemporaryFolder folder;

@@ -65,7 +65,7 @@ Index euler_characteristic(const Mesh& mesh) {
          index_size(faces_of(mesh)) - mesh.cell_count();
 }
 
-/// The triangles of only one tetrahedron; EXPECTs that no triangle has more than two.
+/// The triangles that belong to only one tetrahedron; EXPECTs that none belongs to more than two.
 std::vector<std::vector<Index>> boundary_of(const Mesh& mesh) {
   std::vector<std::vector<Index>> result;
   for (const auto& [face, count] : faces_of(mesh)) {

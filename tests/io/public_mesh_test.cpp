@@ -224,7 +224,7 @@ TEST(MakeMesh, CopiesAViewOfAnyLayout) {
   EXPECT_THROW((void)make_mesh({.points = PointsView(points, 2),
                                 .cells = CellsView::uniform(Shape::triangle, 3, outside, 1)}),
                InvalidArgument);
-  // and back
+  // a mesh of the mesh's own view is the same
   const Mesh again = make_mesh(view(mesh));
   EXPECT_EQ(again.cells, mesh.cells);
 }

@@ -344,7 +344,7 @@ TEST(TetGen, ReadsTrianglesOfTwoDimensions) {
 
 // ---- writing meshes of other formats
 
-/// The mesh without arrays and sets but labels, with its cells in blocks of one type.
+/// The mesh without sets, and without arrays other than labels; its cells are in blocks of one type.
 Mesh with_labels_only(Mesh mesh) {
   std::erase_if(mesh.data, [](const DataArray& array) { return array.name != kLabel; });
   mesh.sets.clear();
@@ -497,7 +497,7 @@ TEST(TetGen, NotesCompanionsThatHoldForTheOldOrder) {
   const fs::path path = put(folder, {});
   (void)folder.file("m.neigh", "2 4\n");
   (void)folder.file("m.poly", "# refers to m.node\n0 3 0 1\n");
-  (void)folder.file("m.smesh", "8 3 0 1\n");  // has points of its own
+  (void)folder.file("m.smesh", "8 3 0 1\n");  // this file has points of its own
   Notes notes;
   const Mesh mesh = read_mesh(path, {.notes = &notes});
   EXPECT_THAT(notes,

@@ -140,7 +140,7 @@ TEST(Ucd, HoldsAllThatOtherMeshesHave) {
     if (!format_named("ucd").holds({}, shape, vertices)) continue;
     Mesh mesh = test::cells_of_type(shape, vertices, 3);
     mesh.sets.clear();
-    mesh.format = "ucd";  // no notes on the other one
+    mesh.format = "ucd";  // no notes on another format
     const Mesh back = read_ucd(ucd_text(mesh));
     EXPECT_EQ(back.cells, mesh.cells) << to_string(shape);
     EXPECT_EQ(back.points, mesh.points);

@@ -254,7 +254,7 @@ TEST(Unv, NamesStepsOfResults) {
 
 TEST(Unv, StepsStayInTheirPlacesWhereAHeaderIsMadeAnew) {
   const std::string again = "    -1\n    55\n" + dataset_of(std::string(kFile), 55) + "    -1\n";
-  // the first one declares whole numbers but has real ones
+  // the first dataset of results declares whole numbers, but has real ones
   const std::string text =
       with(std::string(kFile), "         8         2         3\n", "         8         1         3\n") +
       again;
@@ -355,7 +355,8 @@ std::vector<std::pair<int, int>> edges_of(Shape shape) {
 }
 
 TEST(Unv, PutsMiddleNodesBetweenTheirCorners) {
-  // a ring of corners with the middle nodes between them, the middle nodes above its corners, the rest
+  // first a ring: corners, with middle nodes between them. In volumes then the middle nodes of the edges that
+  // lead up from its corners, and the other nodes
   for (const auto& [shape, nodes] : test::quadratic_types()) {
     const unv::ElementKind kind{shape, nodes};
     if (unv::type_of(kind) == 0) continue;
@@ -374,7 +375,7 @@ TEST(Unv, PutsMiddleNodesBetweenTheirCorners) {
       EXPECT_EQ(edge(k), (std::pair{order[k - 1], order[(k + 1) % ring]}));
     }
     if (dimension(shape) < 3) continue;
-    const std::size_t above = ring + ring / 2;  // of the middle nodes that lead there
+    const std::size_t above = ring + ring / 2;  // end of those middle nodes
     for (std::size_t k = ring; k < above; ++k) {
       const std::size_t end = shape == Shape::tetrahedron ? above : above + 2 * (k - ring);
       EXPECT_EQ(edge(k), (std::pair{order[2 * (k - ring)], order[end]}));

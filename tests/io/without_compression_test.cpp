@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// A separate program, linked with versions of vtu_compressor.cpp and gzip.cpp without any compression
-// library.
+// A separate program, linked with vtu_compressor.cpp and gzip.cpp as a build without compression libraries
+// compiles them.
 #include "io/format.hpp"
 #include "io/stream/gzip.hpp"
 #include "io/vtk/vtk.hpp"

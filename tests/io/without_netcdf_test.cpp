@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// A separate program, linked with a version of format.cpp without optional libraries.
+// A separate program, linked with format.cpp as a build without optional libraries compiles it.
 #include "io/format.hpp"
 #include <meshorder/error.hpp>
 

@@ -18,7 +18,7 @@ namespace meshorder {
 namespace {
 namespace fs = std::filesystem;
 
-/// Sets an environment variable while it lives.
+/// Sets an environment variable for the lifetime of the object.
 class Variable {
  public:
   Variable(std::string name, const std::string& value) : name_(std::move(name)) {

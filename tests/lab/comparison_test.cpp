@@ -51,7 +51,7 @@ TEST(Comparison, AddsTheSquaresOfBothIntervals) {
   EXPECT_EQ(*difference, (SavingDifference{10, 5, 15, true}));  // 3² + 4² = 5²
   EXPECT_FALSE(difference_of(speedup(10, 7, 13), speedup(14, 10, 18))->beyond_noise);
   EXPECT_TRUE(difference_of(speedup(10, 7, 13), speedup(4, 0, 8))->beyond_noise);
-  // of asymmetric intervals, the ends that face each other count
+  // asymmetric intervals: the halves that face each other give the low end, the other halves the high end
   const auto uneven = difference_of(speedup(0, -5, 3), speedup(10, 6, 22));
   EXPECT_DOUBLE_EQ(uneven->low, 5);
   EXPECT_DOUBLE_EQ(uneven->high, 23);
@@ -163,7 +163,7 @@ TEST(Comparison, ShowsBothStudiesSideBySide) {
     }
   }
   EXPECT_EQ(tables[2].rows[0][5].text, "2.00");  // 100 s over 50 s
-  EXPECT_EQ(tables[2].rows[1][5].text, "–");     // not the same steps
+  EXPECT_EQ(tables[2].rows[1][5].text, "–");     // the numbers of steps differ
   EXPECT_EQ(tables[3].rows.size(), 16);
 
   const auto findings = comparison_findings(both.a, both.b);

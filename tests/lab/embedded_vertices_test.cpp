@@ -29,7 +29,7 @@ Mesh straight_quadratic() {
     }
     mesh.cells.push_back(Shape::tetrahedron, cell);
   }
-  mesh.points.push_back({9, 9, 9});  // of no cell
+  mesh.points.push_back({9, 9, 9});  // a point of no cell
   return mesh;
 }
 

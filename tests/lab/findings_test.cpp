@@ -92,7 +92,7 @@ TEST(Findings, CompareWithElementsScrambledToo) {
     }
   }
   EXPECT_NE(finding(results, "If elements are scrambled too").find("33.3 %"), std::string::npos) << before;
-  // noise: each of the two is faster in turn
+  // noise: each of the two orders is faster in turn
   for (ScenarioOrderRecord& order : results.scenarios[1].orders) {
     for (std::size_t r = 0; r < order.runs.size(); ++r) {
       const bool slow = (order.ordering == "vf-fiedler") == (r % 2 == 0);

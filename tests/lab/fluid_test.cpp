@@ -201,7 +201,7 @@ TEST_F(FluidTest, sloshes_with_the_period_of_its_wave) {
   const double volume = fluid.volume();
   double last_height = options.wave;
   double last_time = 0;
-  std::vector<double> zeros;  // of the wave's height
+  std::vector<double> zeros;  // times at which the wave's height is 0
   while (zeros.size() < 10) {
     fluid.step();
     const MotionState state = fluid.state();
@@ -311,7 +311,7 @@ TEST_F(FluidOrderTest, states_continue_on_any_number_of_threads_to_the_bit) {
   const MotionState continued = run(2, &half, 16);
   EXPECT_EQ(continued.positions, whole.positions);
   EXPECT_EQ(continued.velocities, whole.velocities);
-  const std::size_t n = whole.positions.size();  // after these numbers: what orders cost in seconds
+  const std::size_t n = whole.positions.size();  // 3 n + 1 numbers, then seconds that orders cost
   EXPECT_TRUE(std::equal(whole.memory.begin(), whole.memory.begin() + 3 * n + 1, continued.memory.begin()));
   EXPECT_EQ(continued.time, whole.time);
 }

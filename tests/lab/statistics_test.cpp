@@ -40,7 +40,8 @@ TEST(Statistics, TheIntervalIsThatOfHandCalculation) {
   const Speedup speedup = speedup_of(runs, reference, 2, 0);
   EXPECT_DOUBLE_EQ(speedup.saved_seconds, 10);
   EXPECT_DOUBLE_EQ(speedup.percent, 50);
-  // variances 2 and 2: the standard error is √((2 + 2) / 2) s; t of 2 degrees; of 20 s
+  // both turns have the variance 2, so the standard error is √((2 + 2) / 2) s. Times Student's t for 2
+  // degrees of freedom, and as a share of 20 s
   const double half_width = 100 * 4.302652729749464 * std::sqrt(2.0) / 20;
   EXPECT_NEAR(speedup.low, 50 - half_width, 1e-9);
   EXPECT_NEAR(speedup.high, 50 + half_width, 1e-9);
@@ -51,7 +52,8 @@ TEST(Statistics, TheIntervalIsThatOfHandCalculation) {
 TEST(Statistics, TheIntervalOfOneRunIsThatOfARatio) {
   const Speedup speedup = speedup_of(runs_of({{4, 9, 2}}), runs_of({{5, 10, 5}}), 1, 0);
   EXPECT_DOUBLE_EQ(speedup.percent, 25);
-  // residuals 4 − ¾·5, 9 − ¾·10, 2 − ¾·5: squares 0.0625 + 2.25 + 3.0625; variance of the sum 3/2 of it
+  // residuals 4 − ¾·5, 9 − ¾·10, 2 − ¾·5: their squares are 0.0625 + 2.25 + 3.0625; the variance of the sum
+  // is 3/2 times their sum
   const double half_width = 100 * 4.302652729749464 * std::sqrt(1.5 * 5.375) / 20;
   EXPECT_NEAR(speedup.low, 25 - half_width, 1e-9);
   EXPECT_NEAR(speedup.high, 25 + half_width, 1e-9);

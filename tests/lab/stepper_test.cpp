@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The answers to these questions.
+/// The stepper's answers to these questions.
 std::vector<json> answers_to(const std::vector<json>& questions) {
   std::stringstream in, out;
   for (const json& question : questions) in << question.dump() << '\n';

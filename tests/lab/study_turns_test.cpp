@@ -38,7 +38,7 @@ TEST(StudyTurns, KeepFewerFramesOfLargeBodies) {
 
 TEST(StudyTurns, TakeAsManyStepsAsTheTimeAllows) {
   EXPECT_EQ(plan_turns(body_of(0.1), 240, 20.0, 5).steps, 40);
-  EXPECT_EQ(plan_turns(body_of(10), 240, 20.0, 5).steps, 8);  // at least
+  EXPECT_EQ(plan_turns(body_of(10), 240, 20.0, 5).steps, 8);  // the least number
   EXPECT_EQ(plan_turns(body_of(10), 4, 20.0, 5).steps, 4);
   EXPECT_EQ(plan_turns(body_of(1e-4), 240, 20.0, 5).steps, 240);
 }

@@ -187,14 +187,15 @@ TEST(Tables, SayWhatIsCertainInEveryFormat) {
 
 TEST(Tables, StateTheErrorOfPredictions) {
   StudyResults results = sample_results();
-  // element force; measured 1 ms scrambled and 0.5, 0.25, 0.2, 1.1 in the others, predicted twice as much
+  // element force: 1 ms were measured in the scrambled order, 0.5, 0.25, 0.2 and 1.1 ms in the others; twice
+  // as much was predicted
   const auto predict = [&](std::size_t order, double ms) {
     results.meshes[0].orders[order].kernels[1].predicted_ms = ms;
   };
-  predict(0, 0.8);   // 2.5 times faster for 2: +25 %
-  predict(1, 1);     // twice for 4 times: −50 %
-  predict(2, 0.4);   // 5 times for 5 times
-  predict(4, 1.98);  // 1/0.99 for 1/1.1: +11.1 %, and the wrong way round
+  predict(0, 0.8);   // 2.5 times as fast as scrambled; measured: 2 times: +25 %
+  predict(1, 1);     // 2 times; measured: 4 times: −50 %
+  predict(2, 0.4);   // 5 times; measured: 5 times
+  predict(4, 1.98);  // 1/0.99; measured: 1/1.1: +11.1 %, and of the wrong sign
   const auto tables = tables_of(results);
   const auto value = [&](const char* column) {
     return *cell(tables, "prediction-error", "element force", column).value;
@@ -203,8 +204,8 @@ TEST(Tables, StateTheErrorOfPredictions) {
   EXPECT_NEAR(value("Median error, %"), (11.1111 + 25) / 2, 1e-3);
   EXPECT_NEAR(value("90 % within, %"), 50, 1e-9);
   EXPECT_NEAR(value("Largest, %"), 50, 1e-9);
-  // in nine of the ten pairs the times differ by more than 10 %, not for scrambled and VF scrambled; of these
-  // one is predicted wrong: original (0.5, predicted 0.8) and Fiedler (0.25, predicted 1)
+  // the times differ by more than 10 % in nine of the ten pairs, all except scrambled and VF scrambled. One
+  // of the nine is predicted wrong: original (0.5, predicted 0.8) and Fiedler (0.25, predicted 1)
   EXPECT_EQ(value("Of pairs"), 9);
   EXPECT_EQ(value("Told right"), 8);
   EXPECT_EQ(cell(tables, "kernels", "dragon, element force, Original", "Error, %").text, "+25.0");

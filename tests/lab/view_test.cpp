@@ -165,7 +165,7 @@ TEST(SurfaceView, OfASurfaceIsItsTriangles) {
 }
 
 TEST(SurfaceView, IsOpenWherePolyhedraAre) {
-  Mesh mesh;  // a cube with a polyhedron above it, whose faces are not known
+  Mesh mesh;  // a cube, and a polyhedron with unknown faces above it
   for (const double z : {0.0, 1.0, 2.0}) {
     for (const auto& [x, y] : {std::pair(0.0, 0.0), {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}})
       mesh.points.push_back({x, y, z});

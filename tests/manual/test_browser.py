@@ -78,14 +78,14 @@ def browser(tmp_path_factory):
     PICTURES.mkdir(exist_ok=True)
     opened.resize(*WIDTHS["desktop"])
     driver.get("about:blank")
-    opened.requests()  # those of the browser's own first page
+    opened.requests()  # drops those of the browser's own first page
     yield opened
     driver.quit()
 
 
 @pytest.fixture
 def page(browser):
-    """The page; opened again only if a test has set more than its files."""
+    """The page; opened again only if an earlier test has changed more than the page's files."""
     if not browser.is_as_new:
         open_page(browser)
     browser.is_as_new = True
@@ -168,7 +168,7 @@ def test_orders_by_each_method(page, meshes, method):
 
 @pytest.mark.parametrize("method", ["spectral", "spectral-fronts"])
 def test_spectral_orders_are_as_good(page, meshes, method):
-    """They depend on rounding, which differs between processors."""
+    """Spectral orders depend on rounding, which differs between processors."""
     give(page, meshes / "part.msh")
     settled(page)
     choose(page, method)

@@ -36,7 +36,7 @@ def browser(tmp_path_factory):
     PICTURES.mkdir(exist_ok=True)
     opened = Browser(driver)
     driver.get("about:blank")
-    opened.requests()  # those of the browser's own first page
+    opened.requests()  # drops those of the browser's own first page
     yield opened
     driver.quit()
 

@@ -26,14 +26,14 @@ PACKAGE_COMMAND = pathlib.Path(sys.executable).with_name("meshorder")
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 #: subcommands that end within a second on a small mesh; of others only the options are checked
 QUICK = {"order", "info", "compare", "apply", "methods"}
-#: their fragments are part of tests/io/dofs_test.cpp; tests/command/test_docs.py checks that both are the same
+#: pages whose fragments are part of tests/io/dofs_test.cpp; tests/command/test_docs.py checks that both are the same
 COMPILED_ELSEWHERE = {"docs/dofs.md"}
 BLOCK = re.compile(r"^```([^\n]*)\n(.*?)^```$|^<!-- (python)\n(.*?)^-->$", re.MULTILINE | re.DOTALL)
 
 
 @dataclasses.dataclass
 class Snippet:
-    """A fenced block of a page, or a comment that prepares those after it."""
+    """A fenced block of a page, or a comment that prepares the blocks after it."""
 
     page: pathlib.Path
     line: int

@@ -46,7 +46,7 @@ LIBRARIES = {
 # plugins/: the prefixes of each solver's headers, and the headers that plugins give to users
 HOSTS = {"petsc": ("petsc",), "dealii": ("deal.II/",), "dolfinx": ("dolfinx", "basix/", "xtl/", "mpi.h", "petsc")}
 OF_PLUGINS = {"meshorder/dealii.hpp", "meshorder/dolfinx.hpp"}
-#: a communicator is MPI's, a matrix may be Eigen's
+#: public headers, each with another header that it may include: for MPI's communicator or Eigen's matrices
 OF_OTHERS = {("distributed.hpp", "mpi.h"), ("distributed.hpp", "meshorder_mpi.h"), ("meshorder_mpi.h", "meshorder.h"),
              ("eigen.hpp", "Eigen/Core"), ("eigen.hpp", "Eigen/SparseCore")}
 SYSTEM = re.compile(r"(dirent|dlfcn|fcntl|poll|sched|spawn|unistd|sys/\w+)\.h")
@@ -102,7 +102,7 @@ def test_layer_includes_only_those_below(layer):
 
 
 def test_plugins_include_public_headers_and_their_solver_s():
-    """Headers beside them may be generated from a .py file, like DOLFINx's forms."""
+    """A header beside a plugin's source may be generated from a .py file, as for DOLFINx's forms."""
     wrong = [f"{path.relative_to(ROOT)}: {header}" for host, beginnings in HOSTS.items()
              for path in files(f"plugins/{host}") for kind, header in includes(path)
              if not (header.startswith(("meshorder", *beginnings)) or is_standard(header) if kind == "<"

@@ -59,7 +59,7 @@ def prefix(tmp_path_factory):
 
 @pytest.fixture
 def environment(prefix):
-    """For programs that are linked with the installed libraries, and for pkg-config."""
+    """The environment for programs that are linked with the installed libraries, and for pkg-config."""
     folder = next(prefix.glob("**/pkgconfig")).parent
     assert folder.is_relative_to(prefix / "lib")
     return {**os.environ, "PKG_CONFIG_PATH": str(folder / "pkgconfig"), "LD_LIBRARY_PATH": str(folder)}

@@ -49,7 +49,7 @@ class Recorder {
     for (Offset line = byte / 64; line <= (byte + bytes - 1) / 64; ++line)
       add({array, line}, Access::gathered);
   }
-  /// The same, but only for lines that were not touched before.
+  /// Records streamed accesses, only to lines that no earlier call of `read` has recorded.
   void read(Memory array, Offset byte, Offset bytes) {
     for (Offset line = byte / 64; line <= (byte + bytes - 1) / 64; ++line) {
       if (read_.insert({array, line}).second) add({array, line}, Access::streamed);
@@ -245,7 +245,8 @@ TEST(ReuseOf, HasNoColdAccessesAndMissesTheLeastWithTheLargestCache) {
   }
 }
 
-/// The number of lengths that differ from the one after the previous occurrence of the same eight lengths.
+/// Counts the lengths that a simple prediction misses: it predicts the length that has followed the last
+/// occurrence of the eight preceding lengths.
 Offset unforeseen(const std::vector<Offset>& lengths) {
   std::map<std::vector<Offset>, Offset> followed;
   std::vector<Offset> last(8, 0);

@@ -88,7 +88,7 @@ TEST(Advice, SamplingChangesPredictedRatiosLittle) {
   const Advice measured = advice_on(mesh, exact);
   EXPECT_NE(*sampled.as_is.costs.predicted, *measured.as_is.costs.predicted);
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    // not the advice's factors, which are 1 below a threshold
+    // ratios of times; the advice's own factors are 1 below a threshold
     const auto ratio = [&](const Advice& advice) {
       return (*advice.as_is.costs.predicted)[k] / (*advice.candidates.front().costs.predicted)[k];
     };
@@ -130,7 +130,7 @@ TEST(Advice, OnSeveralThreadsCountsWhatTheyComputeTwice) {
   EXPECT_EQ(alone.threads, 1);
   options.threads = 2;
   EXPECT_THROW((void)advice_on(mesh, options), InvalidArgument);
-  options.machine.model.threads = 2;  // with the costs of one thread: only repeated computations differ
+  options.machine.model.threads = 2;  // costs of one thread: only repeated computations differ
   options.measure_within = 0.0;
   const Advice shared = advice_on(mesh, options);
   EXPECT_EQ(shared.threads, 2);

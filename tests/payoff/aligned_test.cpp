@@ -46,7 +46,7 @@ TEST(AlignedVector, OfWhicheverSizeBeginsAtACacheLine) {
 }
 
 TEST(AlignedVector, IsApartFromTheTwoMadeBefore) {
-  // of one size and of different ones
+  // groups of vectors of one size, and of different sizes
   const std::vector<std::vector<std::size_t>> groups{{64 * kKiB, 64 * kKiB, 64 * kKiB, 64 * kKiB},
                                                      {700'000, 700'000, 700'000},
                                                      {kMiB, kMiB, kMiB, kMiB, kMiB},

@@ -60,7 +60,8 @@ TEST(IdealBand, JoinsEachVertexToItsNearestOnes) {
   const Mesh mesh = test::tetrahedral_bar(40);
   const CsrGraph graph = vertex_graph(mesh);
   const Band band = ideal_band(cut_into_simplices(mesh), graph);
-  // 4 vertices a cube and k or k + 1 edges for each: the average, and nothing beyond
+  // each vertex is joined to the next k or k + 1 ones, where k is the rounded-down mean number of edges per
+  // vertex
   const auto k = static_cast<Index>(graph.edge_count() / graph.size());
   for (Index v = 0; v + k + 1 < band.graph.size(); ++v) {
     const auto row = band.graph[v];

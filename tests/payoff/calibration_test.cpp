@@ -35,7 +35,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Sets an environment variable as long as it lives.
+/// Sets an environment variable for the lifetime of the object.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {
@@ -212,7 +212,7 @@ TEST(Calibration, LatenciesBehindSizesAreThoseOfTheNextLevels) {
   const FoundCaches found{.levels = {{30 << 10, 1.0}, {1100 << 10, 4.0}, {16 << 20, 24.0}},
                           .memory_nanoseconds = 124};
   EXPECT_EQ(latencies_behind(found, parse_cache_sizes("32K,1M,16M")), (Latencies{3, 20, 50, 50}));
-  // a level that is only found behind the second one that costs
+  // the level of 1 MB is found, but is no cache of the cost model
   EXPECT_EQ(latencies_behind(found, parse_cache_sizes("32K,16M")), (Latencies{3, 120, 1, 1}));
   EXPECT_EQ(
       latencies_behind({.levels = {{32 << 10, 2.0}}, .memory_nanoseconds = 2.5}, parse_cache_sizes("32K")),

@@ -27,7 +27,7 @@ struct Patch {
   AlignedVector<double> positions;
 };
 
-/// `count` simplices of that dimension on count + dimension vertices, neighbours sharing all but one.
+/// `count` simplices of that dimension on count + dimension vertices. Neighbours share all vertices but one.
 inline Patch deformed_patch(int dimension, Index count, std::uint64_t seed = 1) {
   Patch patch;
   Random random(seed);

@@ -34,7 +34,7 @@ CsrGraph row_with_chords(Index n, Index chords, std::uint64_t seed) {
   return graph_from_edges(n, edges);
 }
 
-/// Random numbers, A_vw = A_wvᵀ.
+/// A matrix of random blocks with A_vw = A_wvᵀ.
 BlockCsr symmetric_matrix(const CsrGraph& graph, std::uint64_t seed = 5) {
   BlockCsr matrix = zero_block_csr(graph);
   Random random(seed);
@@ -171,7 +171,7 @@ TEST(MultiplyHalf, EqualsTheFullProductWhereEntriesAreAskedForEarly) {
 }
 
 TEST(MultiplyHalf, HasRowsWithoutBlocks) {
-  // rows 1 and 4, the last one, have none, not even on the diagonal
+  // rows 1 and 4 (the last) have no blocks, not even on the diagonal
   BlockCsr matrix;
   matrix.columns = {0, 2, 0, 2, 3};
   matrix.offsets = {0, 2, 2, 4, 5, 5};
@@ -247,7 +247,7 @@ void expect_infinity_in_one_row(const HalfBlockCsrOf<Value>& half) {
 
 TEST(MultiplyHalf, KeepsWhatIsNotFiniteToTheRowsThatHaveIt) {
   BlockCsr matrix = symmetric_matrix(row_with_chords(200, 0, 15));
-  // on the diagonal, which loads for the row before could read, too
+  // a block on the diagonal, which loads for the preceding row could read, too
   matrix.values[9 * matrix.find(100, 100)] = std::numeric_limits<double>::infinity();
   expect_infinity_in_one_row(half_of(matrix));
   expect_infinity_in_one_row(half_of<float>(matrix));

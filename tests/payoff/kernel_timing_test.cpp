@@ -188,7 +188,7 @@ TEST(TimeOrders, PreparesEachOrderOnceAndAsManyAtATimeAsFit) {
     EXPECT_EQ(seen, (std::vector<Index>{0, 1, 2, 3, 4, 5}));
     ASSERT_EQ(times.size(), 6U);
     for (const OrderTimes& order : times) EXPECT_GT(order[Kernel::element].best_ms, 0.0);
-    // the reference is timed with every group: one other at a time, two, or all
+    // the reference is timed with every group of other orders; a group has one order, two or all
     const int groups = fitting == 1 ? 5 : fitting == 3 ? 3 : 1;
     EXPECT_EQ(times[0][Kernel::spmv].samples, 4 * groups);
     EXPECT_EQ(times[5][Kernel::spmv].samples, 4);

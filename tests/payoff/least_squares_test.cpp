@@ -58,7 +58,7 @@ TEST(LeastSquares, NoChoiceOfUnknownsLeavesLess) {
     std::vector<double> right;
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<double> row;
-      // positive columns are closer to dependent; magnitudes differ like those of counts
+      // columns of positive numbers are closer to linear dependence; magnitudes differ like those of counts
       for (std::size_t j = 0; j < rows.columns; ++j)
         row.push_back((random.unit() - (round % 2 == 0 ? 0.5 : 0)) *
                       std::pow(10, static_cast<double>(j % 4)));

@@ -82,7 +82,7 @@ TEST(OwnedBatches, AddToEveryOwnedVertexWhatTheSerialKernelAdds) {
   }
   actual.resize(kN);
   EXPECT_EQ(actual, expected);
-  // and no two shares write to one place, spare or not
+  // and no two shares write to the same place, spare or not
   for (std::size_t a = 0; a < written.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       for (const Index v : written[a]) EXPECT_FALSE(written[b].contains(v)) << v;

@@ -30,7 +30,7 @@ struct Stored final : StoredMatrix {
   [[nodiscard]] std::vector<std::string> contents() const override { return {}; }
 };
 
-/// A matrix as read from a file; `is_half` as the file stores only one half.
+/// A matrix as read from a file. If `is_half`, the file stores only one half of it.
 Mesh matrix_of(Index rows, const std::vector<std::pair<Index, Index>>& entries, bool is_half) {
   Mesh mesh;
   mesh.points.resize(rows, {0, 0, 0});

@@ -59,7 +59,7 @@ TEST(ClosestRotation, ExistsWhereItIsNotUnique) {
     const Eigen::Matrix3d f = test::gradient_of(state);
     const Eigen::Matrix3d r = rotation_of(f);
     expect_rotation(r);
-    // as close as any
+    // no rotation is closer to f
     EXPECT_NEAR((r.array() * f.array()).sum(), state.sigma.sum(), 1e-14 * (1.0 + state.sigma.sum()));
   }
   EXPECT_EQ(rotation_of(Eigen::Matrix3d::Zero()), Eigen::Matrix3d::Identity());

@@ -155,7 +155,7 @@ TEST(CellSimplices, MoveWithTheirCells) {
     const CellSimplices moved = CellSimplices(mesh).moved(vertices, cells);
     move_mesh(mesh, vertices, cells, Ids::keep);
     EXPECT_EQ(corners_of(moved), cut_into_simplices(mesh).vertices);
-    // and once more
+    // and moved once more, back
     const CellSimplices back = moved.moved(vertices.inverse(), cells.inverse());
     move_mesh(mesh, vertices.inverse(), cells.inverse(), Ids::keep);
     EXPECT_EQ(corners_of(back), cut_into_simplices(mesh).vertices);

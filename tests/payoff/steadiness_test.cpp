@@ -54,7 +54,7 @@ TEST(SteadinessWatch, TakesMediansAndShares) {
   EXPECT_DOUBLE_EQ(watch.result().repeat, 0.02);
   EXPECT_EQ(watch.result().pace, 0);
   watch.tick();
-  EXPECT_EQ(watch.result().pace, 0);  // of a single piece
+  EXPECT_EQ(watch.result().pace, 0);  // only one piece has been timed
   watch.tick();
   EXPECT_GE(watch.result().pace, 0);
 }

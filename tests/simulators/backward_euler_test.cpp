@@ -199,7 +199,7 @@ TEST(BackwardEuler, NewtonSolvesTheNonlinearEquation) {
     const Eigen::MatrixXd m = dense_mass(body, rest, n, Mass::lumped);
     const MotionState after = simulator.state();
     const double h = options.time_step;
-    // C holds the stiffness at the start, the held vertices moved
+    // C has the stiffness at the start of the step, but with the held vertices moved
     std::vector<Point> start = before.positions;
     for (const Index v : {0, 1}) start[v][1] += h * 0.1;
     const Eigen::MatrixXd damping = 0.5 * m + 0.01 * DenseElasticity(rest, body.elasticity, start).stiffness;
@@ -328,7 +328,8 @@ double tip_deflection(Index across) {
 }
 
 TEST(BackwardEuler, AClampedBeamBendsTowardsEulerAndBernoulliWithRefinement) {
-  // P L³ / 3 E I, I = 1/12; shear adds 0.8 % at this slenderness, a load of 1e-4 keeps it small
+  // the deflection is P L³ / 3 E I with I = 1/12; a load of 1e-4 keeps it small. Shear adds 0.8 % at this
+  // slenderness
   const double beam = 1e-4 * 1000 / 3 * 12;
   const double coarse = tip_deflection(3) / beam;
   const double fine = tip_deflection(6) / beam;

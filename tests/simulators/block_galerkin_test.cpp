@@ -115,7 +115,7 @@ TEST(RigidProlongation, GivesTheModesBackWithOrthonormalColumns) {
 }
 
 TEST(RigidProlongation, LeavesOutModesThatAnAggregateCannotTell) {
-  // far from the mean of all, where rotations are large
+  // far from the mean of all points, where rotations are large
   std::vector<Point> points{{50, 50, 50}, {-90, 3, 1}, {-89, 4, 2}, {-88, 5, 3},
                             {7, 7, 0},    {8, 7, 0},   {7, 8, 0}};
   const Aggregates aggregates{{0, 1, 4, 7}, {0, 1, 2, 3, 4, 5, 6}};  // a point, a line, a triangle

@@ -67,8 +67,8 @@ Eigen::VectorXd compact(const AlignedVector<float>& x) {
   return result;
 }
 
-/// The part of A to the left of D in the order of the sweeps: of rows in chunks of an earlier colour, or
-/// before in the same chunk.
+/// The part of A to the left of D in the order of the sweeps: columns of rows that are in chunks of an
+/// earlier colour, or earlier in the same chunk.
 template <int R>
 Eigen::MatrixXd left_of(const Band<R>& band, const RowChunks& chunks) {
   std::vector<Index> place(Band<R>::kRows);

@@ -167,7 +167,7 @@ TEST(SelfContact, IsThatOfTheDeepestTetrahedronByAllTriangles) {
       for (const Point& place : places) away = std::min(away, std::abs(norm(minus(at, place)) - depth));
       EXPECT_NEAR(away, 0.0, 1e-9);
       if (norm(minus(at, body.points[v])) < 0.5) ++near_own_place;
-      // outward, as deformed
+      // the normal faces outward from the deformed triangle
       const auto corner = [&](int a) { return point_of(positions, contacts[i].vertices[a]); };
       const Point normal = cross(minus(corner(2), corner(1)), minus(corner(3), corner(1)));
       EXPECT_NEAR(dot(normal, contacts[i].normal), norm(normal), 1e-12);

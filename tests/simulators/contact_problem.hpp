@@ -135,7 +135,7 @@ inline Eigen::MatrixXd dense_in_space(const SparseMatrix& matrix) {
   return result;
 }
 
-/// A row for each contact.
+/// A matrix with a row for each contact.
 inline Eigen::MatrixXd dense_rows(const ContactProblem& problem) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(index_size(problem.contacts), 3 * problem.size());
   for (Index k = 0; k < index_size(problem.contacts); ++k) {

@@ -27,7 +27,7 @@ struct TwoTetrahedra {
     return ContactSet(ContactFinder(simplices, points, options));
   }
 
-  /// Vertex 4 at (t, t, t): inside the first below 1/3.
+  /// Positions with vertex 4 at (t, t, t), which is inside the first tetrahedron if t < 1/3.
   [[nodiscard]] AlignedVector<double> with_vertex_at(double t) const {
     std::vector<Point> moved = points;
     moved[4] = {t, t, t};
@@ -45,7 +45,7 @@ TEST(ContactSet, AVertexThatEntersMustStayOutside) {
   ASSERT_EQ(set.contacts().size(), 1U);
   const Contact contact = set.contacts()[0];
   EXPECT_EQ(contact.vertices[0], 4);
-  EXPECT_DOUBLE_EQ(contact.offset, 1e-7);  // a little beside the surface
+  EXPECT_DOUBLE_EQ(contact.offset, 1e-7);  // a little outside the surface
   EXPECT_NEAR(depth<double>(contact, inside), 0.1 / std::sqrt(3.0) + 1e-7, 1e-12);
   EXPECT_LT(depth<double>(contact, from), 0.0);
 }
@@ -58,7 +58,7 @@ TEST(ContactSet, AVertexThatWasInsideComesHalfOfTheWay) {
   (void)set.update(body.with_vertex_at(0.28), {}, 1e-6);
   ASSERT_EQ(set.contacts().size(), 1U);
   EXPECT_NEAR(depth<double>(set.contacts()[0], from), 0.05 / std::sqrt(3.0) + 1e-6, 1e-12);
-  // and all of the way if that is short
+  // a vertex near the surface comes all of the way
   const AlignedVector<double> almost = body.with_vertex_at(1.0 / 3 - 1e-7);
   set.begin(almost);
   (void)set.update(body.with_vertex_at(0.28), {}, 1e-6);
@@ -73,7 +73,7 @@ TEST(ContactSet, KeepsAContactOfTheBodyForAsLongAsItPushes) {
   const AlignedVector<double> outside = body.with_vertex_at(0.34);
   set.begin(from);
   (void)set.update(body.with_vertex_at(0.3), {}, 1e-6);
-  EXPECT_FALSE(set.update(outside, std::vector{2.0}, 1e-6));  // pushed out, and to be held there
+  EXPECT_FALSE(set.update(outside, std::vector{2.0}, 1e-6));  // pushed out, and held there from now on
   ASSERT_EQ(set.contacts().size(), 1U);
   // its normal follows the triangle: the corner 3 comes nearer
   AlignedVector<double> turned = outside;
@@ -83,10 +83,10 @@ TEST(ContactSet, KeepsAContactOfTheBodyForAsLongAsItPushes) {
   const Point& normal = set.contacts()[0].normal;
   EXPECT_NEAR(normal[2] / normal[0], 1 / 0.9, 1e-12);
   EXPECT_NEAR(normal[1] / normal[0], 1.0, 1e-12);
-  // no force, no contact
+  // a contact without force is removed
   EXPECT_FALSE(set.update(outside, std::vector{0.0}, 1e-6));
   EXPECT_TRUE(set.contacts().empty());
-  // and none of an earlier step
+  // and so is a contact of an earlier step
   (void)set.update(body.with_vertex_at(0.3), {}, 1e-6);
   set.begin(from);
   EXPECT_FALSE(set.update(outside, std::vector{1.0}, 1e-6));

@@ -64,7 +64,7 @@ TEST(ContactSolution, FindsTheSetOfPushingContactsThatEnumerationFinds) {
     EXPECT_LE(run.report.violation, 1e-8);
     pushing += run.report.pushing;
   }
-  // no trivial problems
+  // the problems are not trivial
   EXPECT_GT(pushing, 60);
   EXPECT_LT(pushing, 140);
 }
@@ -145,7 +145,7 @@ TEST(ContactSolution, EndsAndSaysSoWhereContactsContradictEachOther) {
   EXPECT_GE(run.report.violation, 0.19);
   for (const double c : run.x) EXPECT_LT(std::abs(c), 3.0);
   for (const double force : run.solver->forces()) EXPECT_TRUE(std::isfinite(force));
-  // and go on from there
+  // the solver goes on from there, without the contradiction
   problem.contacts.resize(1);
   run.again(problem);
   EXPECT_TRUE(run.report.converged);

@@ -91,7 +91,7 @@ TEST(DualContactSolver, TakesForcesAlongWhereContactsComeAndGo) {
   const auto solver = DualContactSolver<double>::make(problem.matrix, factor, {.tolerance = 1e-4});
   AlignedVector<double> x = problem.rest;
   const int cold = solver->solve(problem.contacts, problem.b, problem.rest, x).iterations;
-  // contacts in another order, some gone
+  // contacts in another order, some of them removed
   std::reverse(problem.contacts.begin(), problem.contacts.end());
   problem.contacts.erase(problem.contacts.begin(), problem.contacts.begin() + 20);
   const int warm = solver->solve(problem.contacts, problem.b, problem.rest, x).iterations;

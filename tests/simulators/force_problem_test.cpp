@@ -63,7 +63,7 @@ struct Problem {
       : matrix(some_matrix(normals + 2 * discs, rank, spread, random)) {
     bounds.normals = normals;
     for (Index k = 0; k < discs; ++k) bounds.radii.push_back(k % 5 == 0 ? 0.0 : 3 * random.unit());
-    // in the range of S: the energy has a minimum for any rank
+    // g is in the range of S, so the energy has a minimum for any rank
     Vector aim(normals + 2 * discs);
     for (double& a : aim) a = 8 * random.unit() - 3;
     g = matrix.matrix() * aim;
@@ -196,7 +196,7 @@ TEST(MinimiseForces, EndsWithoutALeastEnergy) {
   const Found found = minimise(problem, 1e-9, 1000);
   EXPECT_GT(found.report.residual, 0.1);
   for (const double force : found.forces) EXPECT_TRUE(std::isfinite(force));
-  // softness gives it a minimum
+  // softness gives the energy a minimum
   std::vector<double> forces{0.0, 0.0};
   std::vector<double> gradient{0.3, 0.3};
   const ForceSolveReport soft = minimise_forces(

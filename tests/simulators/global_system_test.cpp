@@ -68,7 +68,7 @@ TEST(GlobalSystem, SolvesForTheOthersWhereVerticesAreHeld) {
   HeldVertices held;
   held.hold(5, {});
   held.hold(1, {1, 0, 0});
-  held.hold(5, {0, 1, 0});  // twice
+  held.hold(5, {0, 1, 0});  // held twice
   ASSERT_TRUE(system.hold(held));
   EXPECT_TRUE(system.is_held(1));
   EXPECT_FALSE(system.is_held(2));
@@ -87,7 +87,7 @@ TEST(GlobalSystem, SolvesForTheOthersWhereVerticesAreHeld) {
         EXPECT_DOUBLE_EQ(x[Offset{4} * v + c], places[Offset{4} * v + c]);
         continue;
       }
-      // its equation of the whole system is satisfied
+      // the vertex's equation of the whole system is satisfied
       double sum = 0.0;
       for (Index w = 0; w < kVertices; ++w) sum += whole(v, w) * x[Offset{4} * w + c];
       EXPECT_NEAR(sum, loads[Offset{4} * v + c], 1e-12);

@@ -39,7 +39,7 @@ TEST(FactorLdl, GivesFactorsWhoseProductIsTheMatrix) {
 }
 
 TEST(FactorLdl, IsSparseOnAGridInThePlane) {
-  // 31/4 n log₂ n at most (George 1973)
+  // at most 31/4 n log₂ n entries (George 1973)
   const Index side = 100;
   const Ldl ldl = factor_ldl(test::shifted_laplacian(test::grid(side, side), 0.1));
   const double n = side * side;

@@ -30,7 +30,7 @@ struct UnitTetrahedra {
     }
   }
 
-  /// D x = q exactly.
+  /// Returns positions x with D x = q exactly.
   template <class Real>
   static AlignedVector<Real> positions(const std::vector<Eigen::Matrix3d>& q) {
     AlignedVector<Real> result(16 * q.size(), Real{0});
@@ -43,7 +43,7 @@ struct UnitTetrahedra {
   }
 };
 
-/// w² per volume.
+/// Returns w² per volume.
 inline double weight_of(const LocalLaw& law) {
   return law.model == LocalModel::strain ? law.stiffness : law.lame.lambda + 2.0 / 3.0 * law.lame.mu;
 }
@@ -55,7 +55,7 @@ class UnitSteps {
   UnitSteps(const LocalLaw& law, std::size_t count)
       : body_(count), steps_(law, body_.simplices, body_.points), weight_(weight_of(law) / 6.0) {}
 
-  /// 2z − q from duals 0, for one matrix per tetrahedron.
+  /// Returns 2z − q of a step that begins with duals 0, for one matrix per tetrahedron.
   std::vector<Eigen::Matrix3d> reflections(const std::vector<Eigen::Matrix3d>& q) {
     AlignedVector<Real> sums(kPaddedStride * static_cast<std::size_t>(steps_.room()));
     steps_.reset_duals();
@@ -77,7 +77,7 @@ class UnitSteps {
   double weight_;
 };
 
-/// z of one local step.
+/// Returns z of one local step for each q.
 template <class Real>
 std::vector<Eigen::Matrix3d> local_steps(const LocalLaw& law, const std::vector<Eigen::Matrix3d>& q) {
   std::vector<Eigen::Matrix3d> result = UnitSteps<Real>(law, q.size()).reflections(q);
@@ -90,7 +90,7 @@ inline std::string name_of(LocalModel model) {
   return names[static_cast<int>(model)];
 }
 
-/// Tetrahedra of which neighbours share three vertices.
+/// A row of tetrahedra; neighbours share three vertices.
 inline Patch tetrahedra(Index count) { return deformed_patch(3, count); }
 
 template <class Real = double>

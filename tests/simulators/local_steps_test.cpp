@@ -281,7 +281,7 @@ TEST_P(LocalPasses, OfFloatsAreThoseOfDoubles) {
   const Outcome expected = outcome<double>(law, patch, 0.1);
   const Outcome actual = outcome<float>(law, patch, 0.1);
   test::expect_near(actual.sums, expected.sums, 2e-5);
-  // they are differences of coordinates a thousand times as large
+  // duals are differences of coordinates a thousand times as large
   test::expect_near(actual.duals, expected.duals, 3e-4);
   for (std::size_t i = 0; i < expected.residuals.size(); i += 2) {
     EXPECT_NEAR(actual.residuals[i], expected.residuals[i], 1e-5 * expected.residuals[i + 1]);
@@ -311,7 +311,7 @@ TEST_P(LocalPasses, LeaveABodyAtRest) {
   EXPECT_LT(residual.primal, 1e-24 * residual.magnitude);
   EXPECT_LT(test::largest(steps.duals()), 1e-12);
   EXPECT_NEAR(steps.energy(x), 0.0, 1e-14);
-  // then Σ Dᵀw²z is the stiffness times the rest positions
+  // at rest Σ Dᵀw²z is the stiffness times the rest positions
   const SparseMatrix matrix = steps.stiffness();
   for (Index row = 0; row < matrix.size(); ++row) {
     for (int c = 0; c < 3; ++c) {
@@ -324,7 +324,7 @@ TEST_P(LocalPasses, LeaveABodyAtRest) {
   }
 }
 
-/// z − u of the first element of a body whose vertices are all at one point.
+/// The body's vertices are all at one point.
 TEST_P(LocalPasses, UnfoldWhatIsSquashedToAPoint) {
   const LocalLaw law = test::law_of(GetParam());
   if (law.model != LocalModel::springs && law.model != LocalModel::strain) return;

@@ -193,7 +193,7 @@ TEST(Multigrid, UpdatesToWhatItWouldBeMadeOf) {
 TEST(Multigrid, TakesAnyOrderOfVertices) {
   Mesh mesh = make_ball({.size = 10});
   const int before = iterations(elastic_system(mesh, 0.1, 0.1));
-  // 7919 is prime
+  // 7919 is a prime, so each number v · 7919 mod n occurs once
   const Index n = mesh.vertex_count();
   std::vector<Point> points(n);
   for (Index v = 0; v < n; ++v) points[Offset{v} * 7919 % n] = mesh.points[v];
@@ -260,7 +260,8 @@ TEST(Multigrid, TakesTinyMeshes) {
 }
 
 TEST(Multigrid, TakesAggregatesWithoutWidth) {
-  // points on a line, as if joined by springs, and in a plane: no rotation about the line
+  // points on a line, as if joined by springs, and points in a plane. A rotation about the line moves none of
+  // its points
   for (const int dimension : {1, 2}) {
     const Index side = dimension == 1 ? 60 : 8;
     std::vector<Edge> edges;

@@ -33,7 +33,7 @@ void expect_consistent(const Obstacle& obstacle, double size, std::uint64_t seed
                           obstacle.distance(plus_scaled(x, -kStep, place->normal))) /
                          (2 * kStep);
     if (slope > 1.0 - 1e-3) ++steep;  // not where two nearest points are equally near
-    // found up to the reach, and always inside
+    // points outside are found up to the reach, points inside at any distance
     const double d = place->distance;
     EXPECT_TRUE(obstacle.nearest(x, x, std::max(d, 0.0) + 1e-9 * size));
     EXPECT_EQ(obstacle.nearest(x, x, std::abs(d) - 1e-9 * size).has_value(), d < 0.0);
@@ -117,7 +117,7 @@ TEST(Bowl, LeadsBackWhatWentThroughItsWall) {
            Case{{0, -0.98, 0}, {0, -1.005, 0}, {0, -0.99, 0}},  // past the middle of the wall
            Case{{0, -0.98, 0}, {0, -1.05, 0}, {0, -0.99, 0}},   // out of it
            Case{{0, -0.98, 0}, {0, -9.0, 0}, {0, -0.99, 0}},
-           Case{{0, -1.02, 0}, {0, -0.9, 0}, {0, -1.01, 0}},  // and the other way
+           Case{{0, -1.02, 0}, {0, -0.9, 0}, {0, -1.01, 0}},  // the same in the other direction
            Case{{-2, 0, 0}, {2, 0, 0}, {-1.01, 0, 0}},        // through both walls
            Case{{0, -2, 0}, {0, 2, 0}, {0, -1.01, 0}},        // through one and out of the opening
        }) {
@@ -225,7 +225,7 @@ TEST(ClosedSurface, LeadsBackWhatWentThroughIt) {
 TEST(ClosedSurface, TakesRoundingForNoPassage) {
   const test::Surface unit = test::cube();
   const auto box = closed_surface(unit.points, unit.triangles);
-  // over the edge at x = 1, which it cuts by 3e-10
+  // a path over the edge at x = 1, which it cuts by 3e-10
   const Point from{0.5, 1 + 2e-9, 0.5};
   EXPECT_FALSE(box->nearest({2.0, 1 - 5e-9, 0.5}, from, 0.0));
   EXPECT_TRUE(box->nearest({2.0, 1 - 5e-6, 0.5}, from, 0.0)) << "by 1e-6";

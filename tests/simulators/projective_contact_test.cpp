@@ -20,7 +20,7 @@ namespace {
 using test::projective_box;
 
 constexpr double kGravity = 9.81;
-constexpr double kSide = 0.2;  // of the falling boxes
+constexpr double kSide = 0.2;  // side of the falling boxes
 
 ProjectiveOptions with_floor(const Point& normal = {0, 1, 0}, double friction = 0.0) {
   ProjectiveOptions options;
@@ -97,7 +97,7 @@ TEST(ProjectiveContact, ABodyBouncesLowerAndLowerAndComesToRest) {
   }
   EXPECT_TRUE(left);
   const Balance rest = simulator.balance();
-  // without friction it keeps sliding
+  // without friction the box keeps sliding
   double rising = 0.0;
   const MotionState end = simulator.state();
   for (std::size_t v = 0; v < points.size(); ++v)
@@ -206,7 +206,7 @@ TEST(ProjectiveContact, TheEndsOfARingMeetAndDoNotPass) {
       largest = std::max(largest, index_size(inside));
       std::vector<char> is_inside(points.size(), 0);
       for (const Contact& contact : inside) {
-        // corners touch without being apart: 1 % of the ring's thickness
+        // touching corners may be inside by up to 1e-3, 1 % of the ring's thickness
         if (depth<double>(contact, positions) > 1e-3) is_inside[contact.vertices[0]] = 1;
       }
       for (std::size_t v = 0; v < points.size(); ++v) {

@@ -154,7 +154,7 @@ TEST(ProjectiveDynamics, UnfoldsFromOnePoint) {
   const AlignedVector<double> padded = padded_positions(positions);
   EXPECT_LT(elastic_energy(rest_shapes(body.simplices, points),
                            {MaterialModel::neo_hookean, Tangent::exact, body.law.lame, {}, {}}, padded),
-            1.0);  // of thousands where it is inside out
+            1.0);  // a body that is inside out has thousands
 }
 
 TEST(ProjectiveDynamics, StretchesSymmetrically) {
@@ -316,8 +316,8 @@ TEST(ProjectiveDynamics, ItsResidualIsNoLessThanWhatElementsLeave) {
     EXPECT_GE(residual, primal * (1 - 1e-12)) << iterations;
     equal += residual <= primal * (1 + 1e-12) ? 1 : 0;
   }
-  EXPECT_GT(equal, 0);   // one or the other is the larger one …
-  EXPECT_LT(equal, 10);  // … depending on the iteration
+  EXPECT_GT(equal, 0);   // the primal residual is the larger one in some cases …
+  EXPECT_LT(equal, 10);  // … but not in all
 }
 
 TEST(ProjectiveDynamics, PrescribedVerticesMoveAsTheyAreTold) {
@@ -325,7 +325,7 @@ TEST(ProjectiveDynamics, PrescribedVerticesMoveAsTheyAreTold) {
   ProjectiveOptions options;
   options.gravity = {0, -9.81, 0};
   options.prescribed.push_back({{{0, 1}}, {}});
-  // another from the third step on: the matrix is factored anew
+  // one more vertex is prescribed from the third step on: the matrix is factored anew
   options.prescribed.push_back({{{2}, 2 * options.time_step}, {1, 0, 0}});
   ProjectiveDynamics<double> simulator(points, body, options);
   run(simulator, 2);
@@ -370,7 +370,7 @@ TEST(ProjectiveDynamics, AMotionThatIsNotFiniteIsAnErrorAndChangesNothing) {
   }
   EXPECT_EQ(simulator.state().positions, state.positions);
   EXPECT_EQ(simulator.state().step, 1);
-  // its duals are finite, too
+  // the duals are finite, too
   state = simulator.state();
   state.velocities[3] = {};
   simulator.set_state(state);

@@ -12,7 +12,7 @@ namespace meshorder {
 namespace {
 
 TEST(RestSurface, OfTrianglesThatMeetThereTakesTheOneThatFacesMost) {
-  // a roof whose ridge is along z, the right side steeper, and a point above nearly over the right side
+  // a roof with its ridge along z, whose right side is steeper, and a point above the right side
   const std::vector<Point> points{{0, 0, 0}, {0, 0, 1}, {-1, -0.2, 0.5}, {1, -2, 0.5}};
   const Point x{0.3, 0.9, 0.5};
   for (const bool turned : {false, true}) {

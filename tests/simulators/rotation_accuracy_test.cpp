@@ -21,7 +21,7 @@ constexpr std::size_t kBatches = 8;
 #else
 constexpr std::size_t kBatches = 64;
 #endif
-constexpr std::size_t kMatrices = 16384;  // of each
+constexpr std::size_t kMatrices = 16384;  // of all kinds together
 
 /// The rotation closest to F = U diag(σ) Vᵀ by one-sided Jacobi (Hestenes 1958) in long double.
 struct Decomposition {

@@ -45,7 +45,7 @@ TEST(FindSupernodes, JoinColumnsForWhatThatSaves) {
   const Ldl ldl = factor_of(test::grid(30, 30));
   const Supernodes without_costs = find_supernodes(ldl, {.widest = 8, .panel = 0, .row = 0});
   const double entries = static_cast<double>(ldl.offsets.back());
-  EXPECT_EQ(total_cost(without_costs), entries);  // only where no zero is stored
+  EXPECT_EQ(total_cost(without_costs), entries);  // columns are joined only where no zero is stored
   EXPECT_LT(without_costs.count(), ldl.size());
   const PanelCosts costs;
   const Supernodes joined = find_supernodes(ldl, costs);

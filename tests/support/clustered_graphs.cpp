@@ -192,7 +192,7 @@ ClusteredGraph lollipop(Builder& b, Index n) {
   return b.graph("lollipop");
 }
 
-/// Hubs that are joined to all or some of the rest.
+/// Hubs that are joined to all or some of the other vertices.
 ClusteredGraph hubs(Builder& b, Index n) {
   const Index count = b.between(1, 5);
   b.add(n);

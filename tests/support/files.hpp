@@ -32,7 +32,7 @@ class TemporaryFolder {
 
 std::string content_of(const std::filesystem::path& path);
 
-/// The text with the first `old` replaced by `fresh`; EXPECTs that there is one.
+/// The text with the first `old` replaced by `fresh`; EXPECTs that the text contains `old`.
 std::string with(std::string text, std::string_view old, std::string_view fresh);
 
 /// The path of a file in the shared folder of real meshes; empty where that is absent (then GTEST_SKIP).
@@ -52,22 +52,22 @@ struct BrokenFile {
   std::string expected;
 };
 
-/// EXPECTs that reading each as a file called `name` gives an Error whose message contains `expected` and the
-/// file's name.
+/// EXPECTs that reading each content as a file called `name` gives an Error whose message contains `expected`
+/// and the file's name.
 void expect_broken(const std::string& name, const std::vector<BrokenFile>& files);
 
 /// Reads `content` cut at 400 to 800 places, or after each byte if it is shorter. EXPECTs an InputError, or
 /// the same points and cells as from the whole.
 void expect_truncation_is_noticed(const std::string& name, std::string_view content);
 
-/// Reads `path`, shuffles vertices and cells, writes it with the same name in another folder, reads that
-/// back, reorders by the inverse and EXPECTs the original mesh. Then writes and reads it again, and EXPECTs
-/// the same.
+/// Reads `path`, shuffles vertices and cells, writes the mesh with the same name in another folder, reads
+/// that file, reorders by the inverse and EXPECTs the original mesh. Then writes and reads the mesh again,
+/// and EXPECTs the same mesh.
 void expect_order_and_back(const std::filesystem::path& path);
 
-/// Reads `content`, shuffles vertices and cells, writes and reads that and EXPECTs the same mesh, except for
-/// the order of partial arrays' rows and of sets' members. Then restores the order and EXPECTs to write
-/// `content`.
+/// Reads `content`, shuffles vertices and cells, writes the mesh, reads it, and EXPECTs the same mesh, except
+/// for the order of partial arrays' rows and of sets' members. Then restores the order and EXPECTs that
+/// writing gives `content`.
 void expect_order_and_back_to(const std::string& name, std::string_view content);
 
 /// Writes `mesh` to a new file called `name`, reads it, and EXPECTs the same mesh.

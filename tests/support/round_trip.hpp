@@ -7,7 +7,7 @@
 
 namespace meshorder::test {
 
-/// The files of a mesh in memory, the first one by its name, and the notes of the writer.
+/// The files of a mesh in memory, first the file to which the others belong, and the notes of the writer.
 struct Written {
   std::vector<MemoryFile> files = {};
   Notes notes = {};

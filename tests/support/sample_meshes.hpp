@@ -14,20 +14,21 @@ namespace meshorder::test {
 /// coordinates reveal mix-ups.
 Mesh cells_of_type(Shape shape, int vertices_per_cell, Index copies);
 
-/// That many separate triangles and an edge of the first one, without data and sets.
+/// Separate triangles, as many as `triangles`, and an edge of the first one, without data and sets.
 Mesh triangles_and_line(Index triangles);
 
-/// A row of `n` unit cubes cut into six tetrahedra each, sharing vertices; attachments as above.
+/// A row of `n` unit cubes cut into six tetrahedra each, sharing vertices; data and sets as in
+/// `cells_of_type`.
 Mesh tetrahedral_bar(Index n);
 
 /// Tetrahedra, hexahedra, wedges, pyramids, triangles, quads, lines and vertices in one mesh, interleaved,
-/// linear and quadratic; attachments as above.
+/// linear and quadratic; data and sets as in `cells_of_type`.
 Mesh mixed_mesh();
 
 /// Types of cells, as (shape, vertices per cell).
 using CellTypes = std::vector<std::pair<Shape, int>>;
 
-/// The types that a format must support: all linear ones, all second-order ones, and both followed by `more`.
+/// The types that a format must support: all linear types; all second-order types; both, followed by `more`.
 CellTypes linear_types();
 CellTypes quadratic_types();
 CellTypes common_types(const CellTypes& more = {});
@@ -41,7 +42,8 @@ Permutation shuffled_cells(const Mesh& mesh, std::uint64_t seed);
 /// The mesh with the rows of partial arrays and the members of sets in ascending order.
 Mesh sorted_members(Mesh mesh);
 
-/// EXPECTs that two meshes are the same: points, cells, data, sets, ids, blocks (not residues).
+/// EXPECTs that two meshes are the same: points, cells, data, sets, ids and blocks, but not
+/// `format_metadata`.
 void expect_same(const Mesh& actual, const Mesh& expected);
 
 }  // namespace meshorder::test

@@ -67,7 +67,7 @@ inline CellTypes types_of_vtk() {
                        {Shape::pyramid, 19}});
 }
 
-/// The vertices of a cell of `mesh` as VTK lists those of its type `type`.
+/// The vertices of a cell of `mesh`, in VTK's order for cells of the type `type`.
 inline std::vector<Index> vertices_in_vtk(const Mesh& mesh, Index cell, int type) {
   std::vector<Index> vertices(mesh.cells[cell].begin(), mesh.cells[cell].end());
   if (type == VTK_WEDGE) {

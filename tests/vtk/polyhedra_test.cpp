@@ -79,7 +79,7 @@ vtkSmartPointer<vtkUnstructuredGrid> grid_of_polyhedra() {
   return grid;
 }
 
-using Faces = std::vector<std::vector<Point>>;  // each in turn, by its corners' coordinates
+using Faces = std::vector<std::vector<Point>>;  // each face by its corners' coordinates, in turn
 
 /// The faces of every polyhedron in VTK, by label; for other cells, their points as one face.
 std::map<int, Faces> faces_by_label(vtkUnstructuredGrid* grid) {
@@ -245,7 +245,7 @@ TEST(VtkPolyhedra, OfPiecesAreJoined) {
     grid->GetFaceStream(c, found);
     one->GetFaceStream(c % 4, expected);
     ASSERT_EQ(found->GetNumberOfIds(), expected->GetNumberOfIds());
-    vtkIdType next = 1;  // that is a number of corners
+    vtkIdType next = 1;  // where the next number of corners is
     for (vtkIdType k = 1; k < found->GetNumberOfIds(); ++k) {
       const bool is_count = k == next;
       if (is_count) next += 1 + expected->GetId(k);

@@ -202,7 +202,7 @@ TEST(VtkLegacy, KeepsAnArrayThatOnlyHasTheNameOfTheCellTypes) {
   };
   const Mesh mixed = mixed_mesh();
   expect_kept(mixed, std::vector<std::uint8_t>(mixed.cells.shapes.size(), 1));
-  // 64, a tetrahedron of higher order, fits the first cell
+  // type 64, a tetrahedron of higher order, fits the first cell
   const Mesh bar = tetrahedral_bar(1);
   std::vector<std::uint8_t> one_fits(bar.cells.shapes.size(), 0);
   one_fits.front() = 64;

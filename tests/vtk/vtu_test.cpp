@@ -315,7 +315,7 @@ TEST(Vtu, ValuesStandAfterCommentsAndInformationToo) {
   const TemporaryFolder folder;
   std::string text = with(kSmallVtu, "NaN -inf", "3 4");
   const Mesh plain = read_mesh(folder.file("a.vtu", text));
-  // in every array: its values come after both
+  // a comment and information in every array, before its values
   for (std::size_t at = text.find("<DataArray"); at != std::string::npos;
        at = text.find("<DataArray", at + 1)) {
     const std::size_t end = text.find('>', at) + 1;

@@ -59,7 +59,8 @@ BoxTree::BoxTree(std::span<const Box> boxes) : things_(boxes.size()) {
   std::vector<Point> centers(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i)
     centers[i] = scaled(0.5, plus_scaled(boxes[i].lower, 1.0, boxes[i].upper));
-  // children come after their parents: one pass builds the nodes, one pass backwards their boxes
+  // children come after their parents: one pass builds the nodes; a second pass, from the end, builds the
+  // boxes
   nodes_.push_back({Box{}, 0, index_size(boxes)});
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const Node node = nodes_[n];

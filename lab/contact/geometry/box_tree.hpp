@@ -117,12 +117,12 @@ class BoxTree {
   std::vector<Index> things_;
 };
 
-/// Moves the `left` items with the smallest coordinates along the longest axis of all centres to the front;
-/// ties by number. O(n).
+/// Moves to the front the `left` items with the smallest coordinates along the longest axis of all centres.
+/// Among equal coordinates the lowest numbers come first. O(n).
 void halve(std::span<Index> things, Index left, std::span<const Point> centers);
 
-/// Orders items so that each run of `size` is compact, by repeated halving at multiples of `size`. O(n log
-/// n).
+/// Orders items so that each group of `size` items is compact, by repeated halving at multiples of `size`.
+/// O(n log n).
 void sort_into_runs(std::span<Index> things, Index size, std::span<const Point> centers);
 
 }  // namespace meshorder

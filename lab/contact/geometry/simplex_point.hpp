@@ -25,11 +25,13 @@ struct TrianglePoint {
 /// 5.1.5). Triangles may be degenerate.
 TrianglePoint nearest_on_triangle(const Point& x, const Point& a, const Point& b, const Point& c);
 
-/// Returns the barycentric coordinates of x in a tetrahedron, if x is strictly inside: if x is in the
-/// bounding box of the corners, and spans with each face a volume of more than a millionth of the whole plus
-/// a bound of rounding errors (1e-12 / 6 of the cube of the longest side of that box). A point that touches
-/// the surface is not inside. A tetrahedron that is flat, or not oriented like the unit tetrahedron (0, e₁,
-/// e₂, e₃), has no inside. If a number is NaN, x is not inside.
+/// Returns the barycentric coordinates of x in a tetrahedron, if x is strictly inside:
+/// - x is in the bounding box of the corners;
+/// - x and each face span a volume of more than a millionth of the tetrahedron's volume, plus a bound of
+///   rounding errors: 1e-12 / 6 of the cube of the longest side of that box.
+///
+/// A point that touches the surface is not inside. A tetrahedron that is flat, or not oriented like the unit
+/// tetrahedron (0, e₁, e₂, e₃), has no inside. If a number is NaN, x is not inside.
 std::optional<std::array<double, 4>> weights_inside(const Point& x, const std::array<Point, 4>& corners);
 
 }  // namespace meshorder

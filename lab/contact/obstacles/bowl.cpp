@@ -9,8 +9,9 @@
 namespace meshorder {
 namespace {
 
-/// The points within half the thickness of the bowl's middle: the part of a sphere about the centre at angles
-/// of at least `opening` from the axis. Private functions take points relative to the centre.
+/// The points within half the thickness of the bowl's middle. The middle is the part of a sphere at angles of
+/// at least `opening` from the axis, seen from the centre. Private functions take points relative to the
+/// centre.
 class Bowl : public Obstacle {
  public:
   Bowl(const Point& center, const Point& axis, double radius, double thickness, double opening)
@@ -70,7 +71,7 @@ class Bowl : public Obstacle {
     const std::optional<Point> crossing = first_crossing(a, p);
     if (!crossing) return std::nullopt;
     const double side = side_of(a);
-    // straight back if p is beyond the wall, else towards where it crossed
+    // straight back if p is beyond the wall, else towards the crossing
     const bool straight = side_of(p) != side && faces_middle(p) && dot(p, p) > 0.0;
     const Point& toward = straight ? p : *crossing;
     const Point normal = scaled(side / norm(toward), toward);

@@ -31,7 +31,7 @@ struct HalfEdge {
 };
 
 /// Returns the half-edges, sorted by their two ends. Throws InvalidArgument unless each has exactly one
-/// opposite.
+/// opposite half-edge.
 std::vector<HalfEdge> matched_half_edges(std::span<const Triangle> triangles) {
   const auto ends = [](const HalfEdge& half_edge) { return std::pair(half_edge.from, half_edge.to); };
   std::vector<HalfEdge> half_edges;
@@ -109,7 +109,7 @@ class ClosedSurface : public Obstacle {
 
  private:
   struct Crossing {
-    double part = 0.0;  // of the way
+    double part = 0.0;  // share of the way from a to b
     int triangle = -1;
     bool in = false;
   };
@@ -190,7 +190,7 @@ class ClosedSurface : public Obstacle {
     return {best.at, scaled(sign / length, way), sign * length};
   }
 
-  /// Returns the crossings of the segment from a to b, from its beginning.
+  /// Returns the crossings of the segment from a to b, the nearest to a first.
   [[nodiscard]] std::vector<Crossing> crossings(const Point& a, const Point& b) const {
     std::vector<Crossing> result;
     const Point way = minus(b, a);
@@ -198,7 +198,7 @@ class ClosedSurface : public Obstacle {
       const std::array<Point, 3> corner{minus(points_[triangles_[t][0]], a),
                                         minus(points_[triangles_[t][1]], a),
                                         minus(points_[triangles_[t][2]], a)};
-      std::array<double, 3> around{};  // volumes; their signs: on which side of each edge the line passes
+      std::array<double, 3> around{};  // volumes, whose signs say on which side of each edge the line passes
       for (int k = 0; k < 3; ++k) around[k] = dot(way, cross(corner[k], corner[(k + 1) % 3]));
       const bool in = around[0] <= 0.0 && around[1] <= 0.0 && around[2] <= 0.0;
       const bool out = around[0] >= 0.0 && around[1] >= 0.0 && around[2] >= 0.0;

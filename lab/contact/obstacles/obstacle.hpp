@@ -23,9 +23,10 @@ struct SurfacePoint {
 /// thread-safe.
 class Obstacle : public Polymorphic {
  public:
-  /// Returns the nearest point of the surface if it is within `reach` (m) of `x` or x is inside. The vertex
-  /// was at `from`, outside, when the step began. If it has passed through a thin wall since, the returned
-  /// point is on the side of the wall that the vertex came from, and `distance` is negative.
+  /// Returns the nearest point of the surface if it is within `reach` (m) of the vertex at `x`, or if x is
+  /// inside. The vertex was at `from`, outside, when the step began. If it has passed through a thin wall
+  /// since, the returned point is on the side of the wall that the vertex came from, and `distance` is
+  /// negative.
   [[nodiscard]] virtual std::optional<SurfacePoint> nearest(const Point& x, const Point& from,
                                                             double reach) const = 0;
 
@@ -36,8 +37,9 @@ class Obstacle : public Polymorphic {
 /// Returns the half-space below a plane: normal · (x − point) < 0.
 std::unique_ptr<Obstacle> half_space(const Point& point, const Point& normal);
 std::unique_ptr<Obstacle> sphere(const Point& center, double radius);
-/// Returns a spherical shell of a thickness about `radius`, cut open around +axis by a cone of the half angle
-/// `opening` (radians, 0 … π), with a rounded rim. The axis need not have length 1.
+/// Returns a spherical shell of the given thickness, whose middle surface has the radius `radius`. A cone
+/// around +axis with the half angle `opening` (radians, 0 … π) cuts the shell open; the rim is rounded. The
+/// axis need not have length 1.
 std::unique_ptr<Obstacle> bowl(const Point& center, const Point& axis, double radius, double thickness,
                                double opening);
 /// Returns the solid that a closed surface encloses, by signed distance to its triangles; `triangles` turn

@@ -49,8 +49,9 @@ class Sphere : public Obstacle {
   [[nodiscard]] double distance(const Point& x) const override { return norm(minus(x, center_)) - radius_; }
 
  private:
-  /// Returns the direction from the centre to where the segment from `a` to `b` enters; none if it misses the
-  /// sphere. `a` and `b` are relative to the centre and on opposite sides of it.
+  /// Returns the direction from the centre to the point where the segment from `a` to `b` enters the sphere;
+  /// nothing if the segment misses the sphere. `a` and `b` are relative to the centre and on opposite sides
+  /// of the centre.
   [[nodiscard]] std::optional<Point> way_in(const Point& a, const Point& b) const {
     const Point step = minus(b, a);
     const double length = norm(step);

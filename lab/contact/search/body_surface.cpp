@@ -11,8 +11,8 @@
 namespace meshorder {
 namespace {
 
-/// Face k is opposite to corner k, and counterclockwise seen from outside of a tetrahedron whose corners 1,
-/// 2, 3 are counterclockwise seen from outside, that is, of positive volume.
+/// Face k is opposite to corner k. In a tetrahedron of positive volume, the corners of each face are
+/// counterclockwise seen from outside.
 constexpr std::array<std::array<int, 3>, 4> kFaces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 void check(const Simplices& simplices, std::size_t points) {

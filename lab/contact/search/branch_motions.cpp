@@ -49,7 +49,7 @@ struct Padded {
       result.parts[i] = hn::MulAdd(hn::Set(RowTag(), factor), other.parts[i], parts[i]);
     return result;
   }
-  /// Takes the smaller or larger numbers, ignoring NaN.
+  /// Lower or raise each number to that of `other` if that is smaller or larger; NaN changes nothing.
   HWY_INLINE void lower_to(const Padded& other) {
     MESHORDER_UNROLL
     for (Index i = 0; i < kParts; ++i)
@@ -68,7 +68,8 @@ struct Padded {
   }
 };
 
-/// Fits an affine map to the corners' motion by least squares; sets the ends of the box around them, padded.
+/// Fits an affine map to the corners' motion by least squares. Sets the ends of the box around the corners,
+/// padded.
 void fit_motion(std::span<const Corner> corners, const Shape& shape, const double* positions, Motion& motion,
                 double* lower_end, double* upper_end) {
   const double infinity = std::numeric_limits<double>::infinity();
@@ -201,7 +202,7 @@ void BranchMotions::update(Index branch, std::span<const double> positions, Tetr
   const Matrix columns = linear_part(motion);
   motion.inverse_norm = norm_bound(inverse(columns));
   // so far the constant is the image of the centre
-  constexpr double kRoundedCorners = 1e-6;  // to floats
+  constexpr double kRoundedCorners = 1e-6;  // corners are rounded to floats
   constexpr double kRoundedPositions = 1e-13;
   const Shape& shape = shapes_[branch];
   motion.deviation += kRoundedCorners * frobenius(columns) * shape.radius;

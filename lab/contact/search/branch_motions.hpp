@@ -17,8 +17,9 @@ class BranchMotions {
   struct Motion {
     alignas(64) std::array<std::array<double, 4>, 3> columns{};  ///< the fourth of each is 0
     std::array<double, 4> constant{};
-    double deviation = 0.0;     ///< including rounding errors
-    double inverse_norm = 0.0;  ///< at least the norm of the inverse matrix; not finite where there is none
+    double deviation = 0.0;  ///< including rounding errors
+    /// At least the norm of the inverse matrix; not finite if there is no inverse.
+    double inverse_norm = 0.0;
   };
 
   BranchMotions(const TetrahedronLeaves& tetrahedra, std::span<const Point> rest);

@@ -15,8 +15,9 @@ namespace {
 using Doubles = hn::CappedTag<double, kBatch>;
 constexpr Index kDoubles = static_cast<Index>(MaxLanes(Doubles()));
 
-/// Returns the points that may be inside: those whose clearance is at most the sum of two distances, mapped
-/// back to rest: the point's distance from the affine motion, and the deviation of the branch's corners.
+/// Returns the points that may be inside: points whose clearance is at most the sum of two distances, both
+/// mapped back to the rest shape. One is the distance of the point from its image under the affine motion,
+/// the other the deviation of the branch's corners.
 std::uint64_t points_in_doubt(const PointCluster& cluster, const double* rest, const float* clearances,
                               const BranchMotions::Motion& motion) {
   const Doubles d;

@@ -33,7 +33,7 @@ class Clearances {
  private:
   struct Cluster {
     std::vector<Index> branches;      ///< near by, ascending
-    AlignedVector<float> clearances;  ///< kMaxPoints for each of these
+    AlignedVector<float> clearances;  ///< kMaxPoints for each of these branches
     alignas(
         64) std::array<std::array<double, PointCluster::kMaxPoints>, 3> rest{};  ///< x, y, z of each point
   };

@@ -12,9 +12,9 @@ namespace meshorder {
 /// A linearised constraint of a vertex against an obstacle or the body itself: normal · Σ weights[k]
 /// x[vertices[k]] ≥ offset.
 ///
-/// Against an obstacle one vertex has the weight 1 and the rest are absent. Against the body itself the first
-/// vertex has the weight 1; the others are corners of a triangle of the body's surface, with the negated
-/// barycentric weights of a point of it, so that all weights add up to 0.
+/// Against an obstacle one vertex has the weight 1 and the other vertices are absent. Against the body itself
+/// the first vertex has the weight 1. The others are corners of a triangle of the body's surface; their
+/// weights are the negated barycentric weights of a point of that triangle, so that all weights add up to 0.
 struct Contact {
   static constexpr Index kAbsent = -1;
 

@@ -61,7 +61,7 @@ void visit_within_reach(const Obstacle& obstacle, double reach, std::span<const 
 struct ContactFinder::State {
   ContactOptions options;
   Index vertex_count = 0;
-  std::vector<Index> surface;  ///< its vertices, in clusters
+  std::vector<Index> surface;  ///< vertices of the surface, in clusters
   std::optional<SelfContact> itself;
   /// Vertices of the surface that are searched together.
   struct Cluster {

@@ -20,20 +20,20 @@ struct ContactOptions {
   std::vector<With> obstacles;
   bool with_itself = false;
   double friction_with_itself = 0.0;
-  /// Vertices outside an obstacle but within this distance (m) of it are contacts too, with a gap, so that a
-  /// solver can keep them outside.
+  /// Vertices outside an obstacle but within this distance (m) of it make contacts, too. These contacts have
+  /// a gap; a solver can keep the vertices outside.
   double reach = 0.0;
 };
 
 /// The depth of a body in obstacles and in itself.
 struct Penetration {
-  double into_obstacles = 0.0;  ///< the deepest surface vertex, m
-  double into_itself = 0.0;     ///< the deepest surface vertex, measured in the rest shape, m
+  double into_obstacles = 0.0;  ///< depth of the deepest surface vertex, m
+  double into_itself = 0.0;     ///< depth of the deepest surface vertex, measured in the rest shape, m
   Index vertices_in_itself = 0;
 };
 
-/// Finds where a body of tetrahedra touches obstacles and itself. Same result on every run, for any number of
-/// threads, independent of earlier calls.
+/// Finds where a body of tetrahedra touches obstacles and itself. The result is the same on every run, for
+/// any number of threads, and after any earlier calls.
 class ContactFinder {
  public:
   /// Takes the body at rest at `points`. Throws InvalidArgument for simplices that are no tetrahedra.
@@ -45,9 +45,10 @@ class ContactFinder {
   ContactFinder& operator=(const ContactFinder&) = delete;
 
   /// Finds the contacts of the surface's vertices at `positions`; the vertices were at `from` when the step
-  /// began. Both have kPaddedStride numbers for each vertex (see padded_positions). Sorted by first vertex
-  /// and then obstacle, the body itself last. A vertex inside a tetrahedron of other vertices has a place in
-  /// the rest shape; it is in contact with the surface point nearest to that place.
+  /// began. Both have kPaddedStride numbers for each vertex (see padded_positions). The contacts are sorted
+  /// by first vertex and then obstacle, the body itself last. A vertex inside a tetrahedron of other vertices
+  /// is mapped by this tetrahedron to the rest shape; it is in contact with the surface point nearest to its
+  /// image.
   void find(std::span<const double> positions, std::span<const double> from, std::vector<Contact>& contacts);
 
   [[nodiscard]] Penetration penetration(std::span<const double> positions);

@@ -51,7 +51,7 @@ bool ContactSet::update(std::span<const double> positions, std::span<const doubl
   const bool violates = std::any_of(found_.begin(), found_.end(), [&](const Contact& contact) {
     return depth(contact, positions) > tolerance;
   });
-  // keeps contacts of the body with itself that push, if no new one was found for their vertex
+  // keeps contacts of the body with itself that push, if no new contact was found for their vertex
   std::vector<Contact> kept;
   for (std::size_t i = 0; i < std::min(earlier_.size(), forces.size()); ++i) {
     if (!earlier_[i].is_with_itself() || !(forces[i] > 0.0) ||

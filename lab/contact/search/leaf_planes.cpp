@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-/// Computes normal = (b − a) × (c − a); a, b, c are counterclockwise seen from its side.
+/// Computes normal = (b − a) × (c − a); a, b, c are counterclockwise seen from the side that it points to.
 template <class Value>
 HWY_INLINE void plane_through(const Value (&a)[3], const Value (&b)[3], const Value (&c)[3],
                               Value (&normal)[3]) {

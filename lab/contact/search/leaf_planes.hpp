@@ -19,8 +19,8 @@ struct LeafHit {
 /// Sets the planes of a leaf. Its box must be up to date.
 void update_planes(TetrahedronLeaves& tetrahedra, Index leaf, std::span<const double> positions);
 /// Lowers the clearances of the task's points; `clearances` has one number for each point of the cluster. A
-/// point's clearance is its smallest distance from the tetrahedra of the leaf without that corner. The
-/// distance from a tetrahedron is the largest one outside its planes, negative inside.
+/// point's clearance is its smallest distance from those tetrahedra of the leaf that do not have it as a
+/// corner. The distance from a tetrahedron is the largest signed distance from its planes, negative inside.
 void lower_clearances(const TetrahedronLeaves& tetrahedra, const PointCluster& cluster, const LeafTask& task,
                       std::span<const double> positions, std::span<float> clearances);
 /// Appends the task's points that are inside all planes of some tetrahedron of which they are no corner.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Index kPlacesAtOnce = 64;  // vertices in a task of finding nearest surface points
 
-/// Makes the contact of a vertex with a place of the surface. Returns false if the triangle has no area.
+/// Makes the contact of a vertex with a point of the surface. Returns false if the triangle has no area.
 bool make_contact(Index vertex, const std::array<Index, 3>& triangle, const std::array<double, 3>& weights,
                   double friction, std::span<const double> positions, Contact& contact) {
   const std::optional<Point> normal = triangle_normal(positions, triangle[0], triangle[1], triangle[2]);
@@ -43,7 +43,7 @@ RestSurface::Place SelfContact::way_out(const VertexInside& inside, Index left_o
   const std::array<Index, 4> corners = search_.corners(inside.tetrahedron);
   Point place{};
   for (int k = 0; k < 4; ++k) place = plus_scaled(place, inside.weights[k], rest_[corners[k]]);
-  // upper bound: the distance of a corner on the surface, since it has a triangle without the vertex
+  // upper bound: the distance of a corner on the surface, since this corner has a triangle without the vertex
   double within = std::numeric_limits<double>::infinity();
   for (const Index corner : corners) {
     if (on_surface_[corner]) within = std::min(within, kAboveRounding * norm(minus(place, rest_[corner])));

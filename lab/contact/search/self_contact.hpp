@@ -12,14 +12,14 @@
 namespace meshorder {
 
 /// Contact of a body's surface with the body itself (McAdams et al. 2011; Overby et al. 2017). A vertex of
-/// the surface that is inside a tetrahedron has a place in the rest shape. The vertex must leave through the
-/// point of the surface that is nearest to that place.
+/// the surface that is inside a tetrahedron is mapped by this tetrahedron to a point of the rest shape. The
+/// vertex must leave through the point of the surface that is nearest to that point.
 class SelfContact {
  public:
   SelfContact(const Simplices& simplices, std::span<const Point> points, const BodySurface& surface);
 
   /// Appends a contact for each vertex of the surface inside a tetrahedron of other vertices, by ascending
-  /// vertex. Of several tetrahedra, uses the one where the vertex is deepest, then the first.
+  /// vertex. Of several tetrahedra, uses the first of those in which the vertex is deepest.
   ///
   /// The way out is through the triangle of the surface that is nearest in the rest shape, among triangles
   /// without the vertex: a contact with its own triangle would have no effect. The contact's normal is that

@@ -15,7 +15,7 @@
 
 namespace meshorder {
 
-/// Tetrahedra and boxes are tested sixteen at a time, the floats of an AVX-512 register.
+/// Tetrahedra and boxes are tested sixteen at a time: an AVX-512 register has as many floats.
 inline constexpr Index kLeaf = 16;
 /// Leaves in a branch, at most kLeaf: fewer leaves make its motion closer to affine, but there are more
 /// branches.
@@ -32,7 +32,7 @@ struct PointCluster {
   static constexpr Index kMaxPoints = 64;
 
   std::uint64_t points = 0;                  ///< the bits of all points
-  std::array<Index, kMaxPoints> vertices{};  ///< the last one repeats up to the end
+  std::array<Index, kMaxPoints> vertices{};  ///< the last vertex repeats up to the end
   alignas(64) std::array<std::array<double, kMaxPoints>, 3> positions{};   ///< x, y, z of each
   alignas(64) std::array<std::array<float, kMaxPoints>, 3> coordinates{};  ///< the same, rounded
   std::array<float, 3> lower{}, upper{};  ///< their box; upper < lower without points
@@ -50,7 +50,7 @@ struct TetrahedronLeaves {
   /// Corner k of lane l of leaf i at 16 · (4i + k) + l. Lanes after the last tetrahedron repeat it.
   AlignedVector<Index> corners;
   AlignedVector<Index> numbers;  ///< the caller's numbers of the tetrahedra; −1 after the last
-  /// End e (the three lower ones, then the upper ones) of the box of leaf l of branch b at 16 · (6b + e) + l.
+  /// End e (the three lower ends, then the upper ends) of the box of leaf l of branch b at 16 · (6b + e) + l.
   AlignedVector<float> leaf_boxes;
   AlignedVector<float> branch_boxes;           ///< the same of branches
   std::vector<std::array<double, 3>> centers;  ///< of leaves; their planes are relative to these

@@ -121,7 +121,7 @@ struct TetrahedronSearch::State {
   BranchMotions motions;
   Clearances clearances;
   std::vector<Search> searches;  ///< one for each cluster
-  std::vector<Index> places;     ///< of the tetrahedra by their numbers; −1 for those that are flat
+  std::vector<Index> places;     ///< of each tetrahedron in the leaves, by its number; −1 if it is flat
   std::vector<std::atomic<bool>> wanted_branches;
   std::vector<std::atomic<bool>> wanted_leaves;
 

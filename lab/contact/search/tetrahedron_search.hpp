@@ -18,8 +18,8 @@ struct VertexInside {
 };
 
 /// Finds the vertices that are inside tetrahedra, in any motion of the body, exactly as a test of every
-/// vertex against every tetrahedron would. The same bits for any number of threads, independent of earlier
-/// calls.
+/// vertex against every tetrahedron would. The result has the same bits for any number of threads and after
+/// any earlier calls.
 class TetrahedronSearch {
  public:
   /// Searches for `vertices`, ascending. Tetrahedra that have a negative volume at `points`, where the body

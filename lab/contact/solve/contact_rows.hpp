@@ -12,18 +12,18 @@ namespace meshorder {
 /// its normal, normal · Σ w x, then two coordinates along the surface for each contact with friction. Cᵀ maps
 /// forces of contacts to forces on vertices.
 struct ContactRows {
-  std::vector<Index> vertices;                 ///< of all contacts, ascending
-  std::vector<std::array<Index, 4>> places;    ///< of each contact's vertices in `vertices`; −1: absent
+  std::vector<Index> vertices;               ///< of all contacts, ascending
+  std::vector<std::array<Index, 4>> places;  ///< where each contact's vertices are in `vertices`; −1: absent
   std::vector<std::array<double, 4>> weights;  ///< of each contact; 0 where absent
   std::vector<Point> directions;               ///< of each row
-  std::vector<Index> frictional;               ///< contacts with friction: number k has rows `row_of(k)`, + 1
+  std::vector<Index> frictional;  ///< contacts with friction; the k-th has row_of(k) and the next row
 
   [[nodiscard]] Index contacts() const noexcept { return static_cast<Index>(places.size()); }
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(directions.size()); }
   [[nodiscard]] Index row_of(Index k) const noexcept { return contacts() + 2 * k; }
 };
 
-/// Throws InvalidArgument for a contact without a vertex or with one that is not among 0 … n−1, and for
+/// Throws InvalidArgument for a contact without a vertex, for a vertex that is not among 0 … n−1, and for
 /// numbers that are not finite.
 void check_contacts(std::span<const Contact> contacts, Index n);
 
@@ -34,11 +34,11 @@ void check_vectors(Index n, std::size_t b, std::size_t from, std::size_t x);
 /// Returns the rows of `contacts`, which must pass check_contacts. O(contacts · log contacts).
 ContactRows contact_rows(std::span<const Contact> contacts);
 
-/// Computes result = C x, of positions with kPaddedStride numbers for each of the n vertices.
+/// Computes result = C x, where x has kPaddedStride numbers for each of the n vertices.
 template <class Real>
 void multiply(const ContactRows& rows, std::span<const Real> x, std::span<double> result);
 
-/// Computes result = C x, of 3 numbers for each of rows.vertices.
+/// Computes result = C x, where x has 3 numbers for each of rows.vertices.
 void multiply_touched(const ContactRows& rows, std::span<const double> x, std::span<double> result);
 
 /// Computes result = Cᵀ forces, 3 numbers for each of rows.vertices.

@@ -14,14 +14,15 @@
 namespace meshorder {
 namespace {
 
-// part of the tolerance: small enough not to affect the result
+// softness as a share of the tolerance: small enough not to affect the result
 constexpr double kSoftness = 0.01;
 // rounds of tangential bounds without progress before the last one
 constexpr int kMaxFailures = 3;
-// part of the multiplications reserved for the last round; earlier rounds take half of the rest
+// an eighth of the multiplications is reserved for the last round; each earlier round takes half of those
+// left
 constexpr int kPartOfLast = 8;
 
-/// S of the contacts of one call.
+/// The operator S = C A⁻¹Cᵀ of the contacts of one call.
 template <class Real>
 class ContactOperator final : public ForceOperator {
  public:

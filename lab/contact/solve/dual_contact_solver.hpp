@@ -12,7 +12,7 @@
 namespace meshorder {
 
 struct ContactSolverOptions {
-  double tolerance = 1e-3;   ///< > 0, relative, of the residual; see DualContactSolver
+  double tolerance = 1e-3;   ///< bound of the relative residual, > 0; see DualContactSolver
   int max_iterations = 200;  ///< of one call: multiplications by A⁻¹ at contacts
 };
 
@@ -24,22 +24,22 @@ struct ContactSolveReport {
   Index pushing = 0;       ///< contacts with a force
 };
 
-/// Solves the global step with contacts: minimises ½xᵀA x − bᵀx over normal · Σ w x ≥ offset of every
+/// Solves the global step with contacts: minimises ½xᵀA x − bᵀx subject to normal · Σ w x ≥ offset for every
 /// contact. Contacts push and never pull. With friction the force along the surface is at most the
-/// coefficient times the force across it, and opposes the motion since `from`.
+/// coefficient times the force across the surface, and opposes the motion since `from`.
 ///
 /// Solves the dual problem: the contact forces λ minimise ½λᵀSλ − gᵀλ with S = C A⁻¹Cᵀ and g the depths of
 /// the contacts without forces; then x = A⁻¹(b + Cᵀλ). ("Uzawa" in scenarios means "dual".) A
 /// multiplication by S takes one solve with the part of the factor that contacts reach. minimise_forces needs
-/// few of them, since forces start from the last call's and the preconditioner is the part of A at the
-/// contacts' vertices (the lumped one of FETI: Farhat, Roux 1991). A call takes two more solves with the
-/// whole factor.
+/// few multiplications, since forces start from those of the last call and the preconditioner is the part of
+/// A at the contacts' vertices (the lumped preconditioner of FETI: Farhat, Roux 1991). A call takes two more
+/// solves with the whole factor.
 ///
 /// `tolerance` bounds the norm of the projected gradient relative to that of the depths g > 0: about the
 /// error of the contacts' positions relative to the depth without forces. Where contacts contradict or repeat
 /// each other, each gives way by tolerance / 100 of the distance by which its force moves its own vertex.
-/// Then repeated contacts share the force; contradicting ones end between each other, with `converged` false
-/// and the remaining depth in `violation`.
+/// Then repeated contacts share the force. For contradicting contacts, the solution lies between them,
+/// `converged` is false, and `violation` is the remaining depth.
 ///
 /// With friction the bounds of tangential forces follow from the last round's normal forces (Tresca's fixed
 /// point; Haslinger 1983), until the forces meet `tolerance` with their own bounds. If the rounds do not

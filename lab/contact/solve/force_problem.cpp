@@ -11,11 +11,11 @@ namespace {
 
 // relative squared radius from which a force counts as on its disc's rim
 constexpr double kOnRim = 1.0 - 1e-9;
-// part of the residual to which a face is solved, since the face changes afterwards
+// share of the residual to which a face is solved, since the face changes afterwards
 constexpr double kFaceTolerance = 0.1;
 // steps allowed without a new minimum of the energy
 constexpr int kPatience = 10;
-// part of the decrease predicted by the gradient that a careful step must reach (Armijo)
+// share of the decrease predicted by the gradient that a careful step must reach (Armijo)
 constexpr double kEnoughFall = 1e-4;
 constexpr double kMinWay = 1e-9;
 
@@ -31,7 +31,7 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-/// Replaces a force by the nearest one in a disc.
+/// Replaces a force by the nearest force in a disc.
 void shorten(Pair& force, double radius) {
   const double length = std::hypot(force[0], force[1]);
   if (length <= radius) return;
@@ -40,7 +40,7 @@ void shorten(Pair& force, double radius) {
 
 bool on_rim(const Pair& force, double radius) { return dot(force, force) >= kOnRim * radius * radius; }
 
-/// Calls `normal(row)` for the rows of normal forces and `disc(row, radius)` for the first of each disc.
+/// Calls `normal(row)` for the rows of normal forces and `disc(row, radius)` for the first row of each disc.
 template <class Normal, class Disc>
 void for_each_force(const ForceBounds& bounds, Normal normal, Disc disc) {
   for (Index k = 0; k < bounds.normals; ++k) normal(k);
@@ -106,7 +106,7 @@ class Minimiser {
     energy_ = 0.0;
   }
 
-  /// Returns whether the forces at 0 that would grow gain more than the positive forces.
+  /// Returns whether the forces that are 0 and would grow promise a larger gain than the positive forces.
   [[nodiscard]] bool new_ones_gain_most() const {
     double pushing = 0.0;
     double wanting = 0.0;
@@ -259,7 +259,7 @@ class Minimiser {
   std::vector<double> step_, step_product_;  ///< S step
   std::vector<double> trial_, r_, z_, direction_, product_;
   double energy_ =
-      0.0;  ///< relative to the best one: an absolute sum would lose the last decreases to rounding
+      0.0;  ///< relative to the lowest so far: an absolute sum would lose the last decreases to rounding
   std::vector<double> best_, best_gradient_;
   ForceSolveReport report_;
 };

@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// Bounds of contact forces: first one number for each contact, its force along the normal, at least 0; then
-/// two for each contact with friction, its force along the surface, in a disc about 0.
+/// Bounds of contact forces λ. First, λ has one number for each contact: the force along the normal, at least
+/// 0. Then λ has two numbers for each contact with friction: the force along the surface, in a disc about 0.
 struct ForceBounds {
   Index normals = 0;
   std::vector<double> radii;  ///< of the discs, each at least 0
@@ -31,7 +31,7 @@ class ForceOperator : public Polymorphic {
 struct ForceSolveOptions {
   double tolerance = 0.0;       ///< of the projected gradient's norm, in units of S λ
   int max_multiplications = 0;  ///< by S
-  /// A positive scale of each row of S, such as about its diagonal.
+  /// A positive scale of each row of S, such as an estimate of its diagonal entry.
   std::span<const double> scale;
   /// Adds this part of `scale` to the diagonal of S, so that the solution is unique even if S is singular.
   double softness = 0.0;
@@ -44,19 +44,20 @@ struct ForceSolveReport {
 
 /// Minimises ½λᵀSλ − gᵀλ within the bounds. Replaces λ (`forces`, feasible) and `gradient`, which is g − S λ.
 ///
-/// Each step selects the positive forces, and the forces at 0 that would grow if these gain more than the
-/// positive ones. It solves for the selected forces by conjugate gradients without bounds, to a tenth of the
-/// residual, and projects the result onto the bounds. This is a primal–dual active set (Hintermüller, Ito,
-/// Kunisch 2003) with the proportioning of Dostál and Schöberl (2005). The energy may increase temporarily.
-/// After some steps without a new minimum, the next one starts from the minimum and is halved until the
-/// energy decreases enough (a projected Newton step: Bertsekas 1982), so that the energy converges for any S.
-/// A force on the rim of its disc moves along the rim. If it does not converge within the multiplications or
-/// a number is not finite, λ is the best so far. Serial; O(size) besides S.
+/// Each step selects the positive forces. It also selects the forces that are 0 and would grow, if they
+/// promise a larger gain than the positive forces. It solves for the selected forces by conjugate gradients
+/// without bounds, to a tenth of the residual, and projects the result onto the bounds. This is a primal–dual
+/// active set (Hintermüller, Ito, Kunisch 2003) with the proportioning of Dostál and Schöberl (2005). The
+/// energy may increase temporarily. After some steps without a new minimum, the next step starts from the
+/// minimum and is halved until the energy decreases enough (a projected Newton step: Bertsekas 1982), so that
+/// the energy converges for any S. A force on the rim of its disc moves along the rim. If the method does not
+/// converge within `max_multiplications`, or if a number is not finite, λ is the best result so far. Runs on
+/// one thread; takes O(size) besides S.
 ForceSolveReport minimise_forces(ForceOperator& matrix, const ForceBounds& bounds,
                                  const ForceSolveOptions& options, std::span<double> forces,
                                  std::span<double> gradient);
 
-/// Replaces the forces by the nearest ones within the bounds.
+/// Replaces the forces by the nearest forces within the bounds.
 void project(const ForceBounds& bounds, std::span<double> forces);
 
 /// Returns the norm of the projected gradient, in units of S λ; 0 only at the minimum. For a normal force

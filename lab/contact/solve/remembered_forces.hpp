@@ -15,14 +15,15 @@ struct ContactForce {
 };
 
 /// Forces of the contacts of one call, as a first guess for contacts of the next call with the same first
-/// vertex and obstacle. Contacts may come in any order; the last one counts of several for the same two.
+/// vertex and obstacle. Contacts may come in any order; of several with the same vertex and obstacle, the
+/// last one counts.
 class RememberedForces {
  public:
   void remember(std::span<const Contact> contacts, std::span<const ContactForce> forces);
   void forget() { entries_.clear(); }
 
-  /// Returns the force of the contact with the same vertex and obstacle, 0 if there was none. O(log
-  /// contacts).
+  /// Returns the force of the contact with the same vertex and obstacle; 0 if there was no such contact.
+  /// O(log contacts).
   [[nodiscard]] ContactForce of(const Contact& contact) const;
 
   [[nodiscard]] std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
@@ -33,7 +34,7 @@ class RememberedForces {
     std::int32_t with = 0;
     ContactForce force;
   };
-  std::vector<Entry> entries_;  ///< by vertex and obstacle
+  std::vector<Entry> entries_;  ///< sorted by vertex and obstacle
 };
 
 }  // namespace meshorder

@@ -61,7 +61,7 @@ class RowSweeps {
     const auto run_some = [&](Index begin, Index end) {
       for (Index i = begin; i < end; ++i) work(backwards ? end - 1 - (i - begin) : i);
     };
-    // with one chunk a thread would spend most of its time on start-up
+    // with only one chunk, a thread would spend most of its time on start-up
     const Index parts = std::clamp<Index>(chunks / 2, 1, tbb::this_task_arena::max_concurrency());
     if (parts == 1) return run_some(0, chunks);
     const auto bound = [&](Index part) { return static_cast<Index>(Offset{chunks} * part / parts); };
@@ -119,7 +119,7 @@ struct Vectors {
   explicit Vectors(std::size_t entries) : r(entries), z(entries), p(entries), q(entries) {}
 };
 
-/// Returns the first vertex with an entry that is not finite, −1 if there is none.
+/// Returns the first vertex with an entry that is not finite; −1 if all entries are finite.
 Index first_not_finite(std::span<const double> vector) {
   const auto found =
       std::find_if(vector.begin(), vector.end(), [](double entry) { return !std::isfinite(entry); });
@@ -235,7 +235,7 @@ class ConjugateGradients {
     for (const auto* vector : {&v_.p, &v_.q, &v_.r, &v_.z}) {
       if (vertex < 0) vertex = first_not_finite(*vector);
     }
-    // only sums overflowed
+    // all entries are finite: only sums overflowed
     if (vertex < 0) vertex = largest_vertex(v_.r);
     return {SolveStatus::not_finite, iterations_, residual(), vertex};
   }

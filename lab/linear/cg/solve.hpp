@@ -39,7 +39,8 @@ struct SolveReport {
   SolveStatus status = SolveStatus::converged;
   int iterations = 0;
   double residual = 0.0;  ///< ‖b − A x‖ / ‖b − A x₀‖, by the recurrence
-  /// The vertex with the largest residual (not finite: the first such vertex); −1 where it converged.
+  /// The vertex with the largest residual, or the first vertex with a number that is not finite; −1 if the
+  /// solve converged.
   Index vertex = -1;
 };
 
@@ -47,12 +48,12 @@ struct SolveReport {
 /// vector is empty. O(n).
 Index largest_vertex(std::span<const double> vector);
 
-/// Solves A x = b by preconditioned conjugate gradients (Hestenes, Stiefel 1952), A symmetric and positive
-/// definite, x the start and the result; 3 doubles for each vertex. The preconditioner must have been updated
-/// with the matrix. In all cases x is the last valid iterate: on negative curvature the one before that
-/// search direction. The same bits for any number of threads. O(blocks) an iteration; allocates 4 times the
-/// size of b. Numbers whose squares are too small for a double count as 0. Throws InvalidArgument when sizes
-/// differ or an option is negative.
+/// Solves A x = b by preconditioned conjugate gradients (Hestenes, Stiefel 1952). A must be symmetric and
+/// positive definite. x is the start and becomes the result; vectors have 3 doubles for each vertex. The
+/// preconditioner must have been updated with the matrix. In all cases x is the last valid iterate: on
+/// negative curvature, the iterate before that search direction. The result has the same bits for any number
+/// of threads. An iteration takes O(blocks) time; allocates 4 times the size of b. Numbers whose squares are
+/// too small for a double count as 0. Throws InvalidArgument when sizes differ or an option is negative.
 ///
 /// `Matrix` is BlockCsrOf or HalfBlockCsrOf, of double or float; the two round differently. In float an
 /// iteration reads about half as many bytes and solves the system of the rounded matrix, whose solution

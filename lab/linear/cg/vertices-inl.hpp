@@ -97,7 +97,7 @@ struct Vertices {
     for (int i = 0; i < One::kParts; ++i) result.part[i] = hn::Zero(Tag());
     return result;
   }
-  /// Returns the same vertex in all places.
+  /// Returns a register that holds the same vertex kCount times.
   static HWY_INLINE Vertices all(const One& vertex) {
     Vertices result;
     MESHORDER_UNROLL

@@ -22,7 +22,7 @@ struct FactorReach {
 /// coordinates of all vertices at once. The factor has a fill-reducing order of its own (nested dissection);
 /// vectors are in the order of the matrix. `Real` is the precision of the factor and of vectors, double or
 /// float; the factor is computed in double. Solves run on all threads, with the same bits for any number of
-/// them; threads may share a factor.
+/// threads. Threads may share a factor.
 template <class Real>
 class CholeskyFactor {
  public:
@@ -32,9 +32,9 @@ class CholeskyFactor {
   /// or singular to rounding. For meshes O(n^3/2) operations in the plane and O(n²) in space.
   explicit CholeskyFactor(const SparseMatrix& matrix);
 
-  /// Computes x = A⁻¹ b, kPaddedStride numbers for each vertex (see padded_positions), of which the last is 0
-  /// in both. b and x may be the same array, but not overlap otherwise. Throws InvalidArgument for other
-  /// sizes. O(entries).
+  /// Computes x = A⁻¹ b. Both vectors have kPaddedStride numbers for each vertex (see padded_positions), the
+  /// last of which is 0. b and x may be the same array, but must not overlap otherwise. Throws
+  /// InvalidArgument for other sizes. O(entries).
   void solve(std::span<const Real> b, std::span<Real> x) const;
 
   /// Returns the part of the factor needed for right-hand sides that are 0 except at these vertices, if
@@ -42,9 +42,9 @@ class CholeskyFactor {
   /// a vertex that does not exist. O(panels reached, times the logarithm of their number).
   [[nodiscard]] Reach reach_of(std::span<const Index> vertices) const;
 
-  /// Computes the same solution at the vertices given to reach_of; b must be 0 at all others. b and x have
-  /// their full size, but only the numbers of these vertices are read and written. b and x may be the same
-  /// array. O(reach.entries).
+  /// Computes the same solution at the vertices given to reach_of; b must be 0 at all other vertices. b and x
+  /// have their full size, but only the numbers of these vertices are read and written. b and x may be the
+  /// same array. O(reach.entries).
   void solve(const Reach& reach, std::span<const Real> b, std::span<Real> x) const;
 
   [[nodiscard]] Index size() const noexcept;

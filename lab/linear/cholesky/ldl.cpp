@@ -101,7 +101,7 @@ Ldl factor_ldl(const SparseMatrix& matrix) {
   if (matrix.offsets.back() > std::numeric_limits<int>::max()) {
     throw InvalidArgument("CHOLMOD counts the entries of a matrix with 32 bits; this one has more");
   }
-  // the upper half by rows is the lower one by columns
+  // the upper half by rows is the lower half by columns
   std::vector<int> offsets(matrix.offsets.begin(), matrix.offsets.end());
   cholmod_sparse view{};
   view.nrow = view.ncol = offsets.size() - 1;

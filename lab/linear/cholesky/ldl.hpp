@@ -7,7 +7,7 @@
 
 namespace meshorder {
 
-/// A square sparse matrix of numbers in compressed rows: both halves where it is symmetric. The columns of a
+/// A square sparse matrix of numbers in compressed rows; of a symmetric matrix both halves. The columns of a
 /// row are ascending and include the diagonal.
 struct SparseMatrix {
   std::vector<Offset> offsets{0};  ///< n + 1
@@ -28,10 +28,10 @@ struct Ldl {
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
 };
 
-/// Factors a symmetric positive definite matrix, of which it reads the upper half, in an order that keeps L
-/// sparse: nested dissection (George 1973), by METIS and CHOLMOD (Chen, Davis, Hager, Rajamanickam 2008). The
-/// same on every run. Throws InvalidArgument, naming the row, if a pivot is not positive or within rounding
-/// errors of 0. For meshes O(n log n) entries in the plane and O(n^4/3) in space.
+/// Factors a symmetric positive definite matrix, whose upper half it reads, in an order that keeps L sparse:
+/// nested dissection (George 1973), by METIS and CHOLMOD (Chen, Davis, Hager, Rajamanickam 2008). The factor
+/// is the same on every run. Throws InvalidArgument, naming the row, if a pivot is negative, or 0 up to
+/// rounding errors. For meshes, L has O(n log n) entries in the plane and O(n^4/3) in space.
 Ldl factor_ldl(const SparseMatrix& matrix);
 
 }  // namespace meshorder

@@ -10,7 +10,7 @@
 namespace meshorder {
 namespace {
 
-/// Smallest cost of a task: this many entries, and at least this part of the whole factor.
+/// Smallest cost of a task: this many entries, and at least this share of the whole factor.
 constexpr double kMinCost = 40'000;
 constexpr double kMinPart = 1.0 / 32;
 
@@ -50,7 +50,7 @@ class Builder {
   std::vector<Index> place_of_;  ///< of some columns: row in the panel, or slot in the task
   PanelFactor<Real> factor_;
   Offset rows_ = 0, values_ = 0;  ///< in all panels so far
-  Index filled_ = 0;              ///< panels
+  Index filled_ = 0;              ///< number of panels filled so far
   std::vector<Index> above_;      ///< the column that each slot is for
 
   void begin_task(const SolveTasks& tasks, Index task) {

@@ -18,7 +18,7 @@ struct PanelTask {
   Index first_panel, end_panel;
   Index first_slot, end_slot;   ///< places in the vector of the solve, after all columns
   std::vector<Index> children;  ///< with smaller numbers
-  double cost;                  ///< of the task and all below it, see PanelCosts
+  double cost;                  ///< of the task and all tasks below it, see PanelCosts
 };
 
 /// L D Lᵀ in panels (see PanelView) in the order in which a solve takes them. Vectors of a solve have a place

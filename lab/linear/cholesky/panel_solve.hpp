@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// Scratch memory of one solve; concurrent solves need one each.
+/// Scratch memory of one solve; concurrent solves need a workspace each.
 template <class Real>
 struct PanelWorkspace {
   explicit PanelWorkspace(const PanelFactor<Real>& factor);

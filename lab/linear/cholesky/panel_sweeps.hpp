@@ -13,15 +13,18 @@ struct Panel {
   Index column;     ///< the first
   Index width;      ///< columns
   Index row_count;  ///< below the columns
-  Index parent;     ///< the panel with the first of these rows, −1 without rows
+  Index parent;     ///< the panel with the column of the first such row; −1 without rows
   Offset rows;      ///< where the numbers of the rows begin
   Offset values;    ///< where the entries begin
 };
 
-/// Panels of a factor L D Lᵀ. The values of each panel are the entries left of the diagonal of its own
-/// columns, row by row; 1/D of its columns; and the rows below, in groups of kGroup rows and one group of the
-/// rest, each column by column. 16 more bytes must follow the last. Vectors have kPaddedStride numbers for
-/// each column and row.
+/// Panels of a factor L D Lᵀ. The values of a panel are, in this order:
+/// - the entries of L in the triangle at the panel's columns, without the diagonal, row by row;
+/// - 1/D of these columns;
+/// - the entries of the rows below, in groups of kGroup rows and a last group of the remaining rows;
+///   each group is stored column by column.
+///
+/// 16 more bytes must follow the last value. Vectors have kPaddedStride numbers for each column and row.
 template <class Real>
 struct PanelView {
   const Panel* panels;
@@ -29,7 +32,7 @@ struct PanelView {
   const Real* values;
 };
 
-/// A choice of panels: those listed, or consecutive ones from `first` on if `list` is null.
+/// A choice of panels: those in `list`, or consecutive panels from `first` on if `list` is null.
 struct PanelRange {
   const Index* list;
   Index first;
@@ -38,7 +41,8 @@ struct PanelRange {
   [[nodiscard]] Index operator[](Index i) const noexcept { return list == nullptr ? first + i : list[i]; }
 };
 
-/// x ← D⁻¹ L⁻¹ x at the columns of these panels; subtracts their contributions at their rows. O(entries).
+/// x ← D⁻¹ L⁻¹ x at the columns of these panels; subtracts their contributions from x at the rows below.
+/// O(entries).
 void sweep_forwards(const PanelView<double>& view, const PanelRange& range, double* x);
 void sweep_forwards(const PanelView<float>& view, const PanelRange& range, float* x);
 

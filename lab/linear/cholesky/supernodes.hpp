@@ -30,7 +30,7 @@ struct Supernodes {
 /// column.
 constexpr Index panel_count(Index columns, Index widest) { return (columns + widest - 1) / widest; }
 
-/// Joins each column with those of its children in the elimination tree where that makes the solve cheaper.
+/// Joins each column with those of its children in the elimination tree that make the solve cheaper that way.
 /// O(columns log columns).
 Supernodes find_supernodes(const Ldl& ldl, const PanelCosts& costs = {});
 
@@ -47,7 +47,7 @@ struct SolveTasks {
 };
 
 /// Cuts the forest wherever two or more branches are worth a task, that is, cost at least `min_cost` each;
-/// smaller branches are bundled. Does not depend on the number of threads. O(supernodes).
+/// smaller branches are bundled. The tasks do not depend on the number of threads. O(supernodes).
 SolveTasks make_solve_tasks(const Supernodes& supernodes, double min_cost);
 
 }  // namespace meshorder

@@ -16,7 +16,8 @@ using Block = Eigen::Matrix<double, R, C, Eigen::RowMajor>;
 template <int R, int C>
 using FloatBlock = Eigen::Matrix<float, R, C, Eigen::RowMajor>;
 
-/// Calls `work(begin, end)` for shares of the rows, few enough that each may allocate as much as the matrix.
+/// Calls `work(begin, end)` for shares of the rows. The shares are so few that each may allocate as much
+/// memory as the matrix has.
 template <class Work>
 void for_each_share(Index rows, Work work) {
   constexpr Index kShares = 16;
@@ -30,7 +31,7 @@ class ColumnSet {
  public:
   explicit ColumnSet(Index columns) : place_(columns, -1) {}
 
-  /// Returns the place of the column in the sequence of columns met; appends it if it is new.
+  /// Returns the position of the column in the sequence of columns met; appends the column if it is new.
   Index place(Index column) {
     if (place_[column] < 0) {
       place_[column] = index_size(columns_);
@@ -71,7 +72,7 @@ class PatternParts {
   std::vector<std::vector<Index>> rows_;
 };
 
-/// Replaces pivots of 0 by the largest pivot, or by 1.
+/// Replaces pivots of 0 by the largest pivot, or by 1 if all are 0.
 void fill_pivots(double* block) {
   double largest = 0;
   for (int i = 0; i < kRigidModes; ++i) largest = std::max(largest, block[i * (kRigidModes + 1)]);
@@ -138,7 +139,7 @@ void galerkin_product(const BlockView<R>& fine, const Prolongation<R>& p, const 
   // the lower triangle
   for_each_share(coarse.rows(), [&](Index begin, Index end) {
     ColumnSet through(fine.rows());
-    std::vector<double> halves;  // of Pᵀ A in row a, 6×R each
+    std::vector<double> halves;  // blocks of row a of Pᵀ A, 6×R each
     std::vector<Offset> place(coarse.rows());
     for (Index a = begin; a < end; ++a) {
       for (Offset m = transposed.offsets[a]; m < transposed.offsets[a + 1]; ++m) {
@@ -171,7 +172,7 @@ void galerkin_product(const BlockView<R>& fine, const Prolongation<R>& p, const 
       halves.clear();
     }
   });
-  // and the upper
+  // the upper triangle
   for_each_share(coarse.rows(), [&](Index begin, Index end) {
     for (Index a = begin; a < end; ++a) {
       for (Offset k = coarse.offsets[a]; k < coarse.offsets[a + 1]; ++k) {

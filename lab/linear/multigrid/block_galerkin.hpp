@@ -7,8 +7,8 @@
 
 namespace meshorder {
 
-/// Where the blocks of each column of a prolongation are: those of column a are blocks `blocks[k]`, in the
-/// rows `rows[k]`, offsets[a] ≤ k < offsets[a + 1], rows ascending.
+/// The blocks of each column of a prolongation: for offsets[a] ≤ k < offsets[a + 1], column a has block
+/// `blocks[k]` in row `rows[k]`. The rows of a column are ascending.
 struct ColumnBlocks {
   std::vector<Offset> offsets{0};
   std::vector<Index> rows;
@@ -25,9 +25,10 @@ template <int R>
 CoarseMatrix galerkin_pattern(const BlockView<R>& fine, const Prolongation<R>& p,
                               const ColumnBlocks& transposed);
 
-/// Computes Pᵀ A P into the pattern of `coarse`, for symmetric A, in double. Unknowns that P leaves out
-/// (columns of zeros) get the largest entry of their block's diagonal, or 1, on the diagonal: the product is
-/// then definite if A is. O(multiplications), on all threads, with the same bits for any number of threads.
+/// Computes Pᵀ A P into the pattern of `coarse`, for symmetric A, in double. Unknowns that P leaves out have
+/// columns of zeros. Their diagonal entries become the largest diagonal entry of their block, or 1, so that
+/// the product is definite if A is. O(multiplications), on all threads, with the same bits for any number of
+/// threads.
 template <int R>
 void galerkin_product(const BlockView<R>& fine, const Prolongation<R>& p, const ColumnBlocks& transposed,
                       CoarseMatrix& coarse);

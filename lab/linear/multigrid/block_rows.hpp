@@ -9,7 +9,8 @@
 
 namespace meshorder {
 
-/// Rigid motions in space: three translations and three rotations, the unknowns of a node of a coarse level.
+/// Number of rigid motions in space: three translations and three rotations. They are the unknowns of a node
+/// of a coarse level.
 inline constexpr int kRigidModes = 6;
 
 /// A sparse matrix of R×C blocks in compressed rows, each block row by row.
@@ -50,7 +51,7 @@ struct BlockView {
   std::span<const Index> number;
 
   [[nodiscard]] Index rows() const noexcept { return static_cast<Index>(order.size()); }
-  /// Calls `take(column, block)` for the blocks of row i, in the order in which they are held.
+  /// Calls `take(column, block)` for the blocks of row i, in the order in which they are stored.
   template <class Take>
   void for_each_in_row(Index i, Take take) const {
     const Index row = order[i];

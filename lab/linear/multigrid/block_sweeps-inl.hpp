@@ -44,7 +44,7 @@ struct Quad {
   }
   /// Returns c − a b.
   static HWY_INLINE Quad subtract_product(Quad a, Quad b, Quad c) { return mul_add(a * set(-1), b, c); }
-  /// Returns the sum of the lanes of each of the four.
+  /// Returns four sums: lane i is the sum of the lanes of four[i].
   static HWY_INLINE Quad sums(const Quad* four) {
     Quad result;
     for (int i = 0; i < 4; ++i) {

@@ -165,7 +165,7 @@ RowChunks sweep_chunks(const Laplacian& graph, Index min_rows) {
 template <int R>
 Eigen::Matrix<double, R, R> positive_inverse(const Eigen::Matrix<double, R, R>& block) {
   using Block = Eigen::Matrix<double, R, R>;
-  constexpr double kMin = 1e-9;  // of the largest eigenvalue
+  constexpr double kMin = 1e-9;  // smallest eigenvalue, as a share of the largest
   const Eigen::LLT<Block> factor(block);
   if (factor.info() == Eigen::Success) {
     const auto pivots = factor.matrixLLT().diagonal();

@@ -15,12 +15,13 @@ namespace meshorder {
 template <int R>
 inline constexpr Index kNodeStride = R == 3 ? 4 : 8;
 
-/// Gauss–Seidel by blocks on a symmetric matrix A = L + D + Lᵀ of R×R blocks, of which only L, in float, and
-/// the inverses of D are kept: one half of A serves both triangles, since the blocks that couple a row to
-/// earlier rows also give those rows their part of A x.
+/// Gauss–Seidel by blocks on a symmetric matrix A = L + D + Lᵀ of R×R blocks. Only L, in float, and the
+/// inverses of D are kept. L serves both triangles, since the blocks that couple a row to earlier rows also
+/// give those rows their part of A x.
 ///
-/// Rows are processed in chunks, those of one colour at the same time (see RowChunks); every chunk touches
-/// only adjacent ones. L is the part to the left of D in that order. The same bits for any number of threads.
+/// Rows are processed in chunks. Chunks of one colour are processed at the same time (see RowChunks); every
+/// chunk touches only adjacent chunks. L is the part to the left of D in that order. Results have the same
+/// bits for any number of threads.
 template <int R>
 class BlockSweeps {
  public:
@@ -31,7 +32,8 @@ class BlockSweeps {
   /// Takes the pattern of A; the values follow by `update`. Chunks have at least `min_rows` rows.
   explicit BlockSweeps(const BlockView<R>& pattern, Index min_rows = kMinRows);
 
-  /// Takes the values, on all threads. Diagonal blocks that are not positive definite are made so.
+  /// Takes the values, on all threads. Diagonal blocks that are not positive definite are made positive
+  /// definite.
   void update(const BlockView<R>& matrix);
 
   /// Scratch memory for contributions of rows to earlier rows: kNodeStride floats a node each.

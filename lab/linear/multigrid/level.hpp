@@ -16,7 +16,7 @@ struct MultigridLevel {
   Prolongation<R> tentative;     ///< before smoothing; empty where the prolongation is plain
   double smoothing = 0;          ///< ω of the smoothed prolongation
   ColumnBlocks transposed;
-  CoarseMatrix coarse;  ///< the next level's operator: its pattern, its values only during an update
+  CoarseMatrix coarse;  ///< the next level's operator; has values only during an update
 
   [[nodiscard]] bool is_coarsest() const noexcept { return prolongation.columns_count == 0; }
   [[nodiscard]] std::size_t bytes() const;

@@ -33,9 +33,9 @@ CsrGraph graph_of(const BlockCsr& pattern) {
   return graph;
 }
 
-/// Returns the inverse of a symmetric matrix, with eigenvalues made positive where they are not.
+/// Returns the inverse of a symmetric matrix; eigenvalues that are not positive are made positive.
 Eigen::MatrixXf dense_inverse(const CoarseMatrix& matrix) {
-  constexpr double kMin = 1e-12;  // of the largest eigenvalue
+  constexpr double kMin = 1e-12;  // smallest eigenvalue, as a share of the largest
   const Eigen::Index n = Eigen::Index{kRigidModes} * matrix.rows();
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
   for (Index i = 0; i < matrix.rows(); ++i) {
@@ -165,7 +165,7 @@ class Multigrid final : public Preconditioner {
       coarse_vectors_.emplace_back(last->rows());
       coarse_.push_back(make_level(view(*last), Coarsening::smoothed, modes));
       MultigridLevel<kRigidModes>& level = coarse_.back();
-      // growth of the vector moves the levels
+      // the vector has grown, which may have moved the levels
       last = coarse_.size() > 1 ? &coarse_[coarse_.size() - 2].coarse : &finest_.coarse;
       update_level(view(*last), level);
       last->values = std::vector<double>();
@@ -222,7 +222,7 @@ class Multigrid final : public Preconditioner {
         Eigen::Map<const Nodes>(solution.data(), kRigidModes, nodes);
   }
 
-  std::vector<Point> points_;  ///< until the levels are made
+  std::vector<Point> points_;  ///< kept until the levels are made
   std::vector<Index> order_;   ///< the vertex of each row of the finest level; `number_` is the inverse
   std::vector<Index> number_;
   std::vector<Index> identity_;

@@ -12,12 +12,12 @@ namespace meshorder {
 ///
 /// Vertices are gathered in aggregates by the strength of their blocks; each aggregate is a node of the next
 /// level with six unknowns, its rigid motions, and so on to a level that is solved exactly. The prolongation
-/// from the first coarse level is plain, so that the finest operator keeps its sparsity; those below are
-/// smoothed, so that iterations hardly grow with the mesh. Coarse operators are Galerkin products. A cycle
-/// sweeps Gauss–Seidel over the blocks forwards, corrects from the next level (once from the first coarse
-/// level, twice from those below it: a W-cycle) and sweeps backwards. Matrices are kept as halves in float;
-/// coarse operators are computed in double. The vertices are numbered breadth first inside, whatever their
-/// order outside.
+/// from the first coarse level is plain, so that the finest operator keeps its sparsity. The prolongations
+/// from coarser levels are smoothed, so that iterations hardly grow with the mesh. Coarse operators are
+/// Galerkin products. A cycle sweeps Gauss–Seidel over the blocks forwards, corrects from the next level
+/// (once from the first coarse level, twice from coarser levels: a W-cycle) and sweeps backwards. Matrices
+/// are kept as halves in float; coarse operators are computed in double. Internally the vertices are numbered
+/// breadth first, whatever their order in the matrix.
 ///
 /// The first `update` makes the aggregates from the matrix's values; later updates only recompute values, and
 /// take a third to a half of the time. A matrix that changes slowly does not need an update each time: with
@@ -25,10 +25,10 @@ namespace meshorder {
 /// stepping, update when iterations have grown by a third since the last update. Vertices without neighbours,
 /// such as fixed vertices, stay on the finest level. A vertex may lose its neighbours after the first update.
 ///
-/// Memory: 0.6 to 0.9 times the matrix. O(blocks) for set-up, update and cycle, on all threads except for the
-/// aggregates. `apply` uses scratch memory of the object and must not be called by two threads at a time.
-/// Measured against Jacobi in docs/evidence/benchmarks.md. Throws InvalidArgument unless there is a point for
-/// each row.
+/// The memory is 0.6 to 0.9 times that of the matrix. Set-up, update and cycle each take O(blocks) time, on
+/// all threads except for the aggregates. `apply` uses scratch memory of the object and must not be called by
+/// two threads at a time. Measured against Jacobi in docs/evidence/benchmarks.md. Throws InvalidArgument
+/// unless there is a point for each row.
 std::unique_ptr<Preconditioner> make_multigrid(const BlockCsr& pattern, std::span<const Point> points);
 
 }  // namespace meshorder

@@ -13,11 +13,11 @@ namespace {
 using Modes = Eigen::Matrix<double, Eigen::Dynamic, kRigidModes>;
 using Square = Eigen::Matrix<double, kRigidModes, kRigidModes, Eigen::RowMajor>;
 
-/// Makes the columns orthonormal, in their order, and returns the upper triangle that takes the new ones to
-/// the old. Columns that depend on those before them become 0.
+/// Makes the columns orthonormal, in their order. Returns the upper triangular matrix that maps the new
+/// columns to the old ones. Columns that depend on earlier columns become 0.
 Square orthonormalise(Modes& columns) {
   constexpr int kTranslations = 3;
-  // of the widest rotation: an aggregate thinner than this is a line
+  // relative to the widest rotation: an aggregate thinner than this is a line
   constexpr double kMin = 1e-4;
   Square upper = Square::Zero();
   const auto project_out = [&](int from, int j) {

@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// Vertices or nodes by aggregate: those of a are `members[starts[a]] … members[starts[a + 1] − 1]`,
-/// ascending.
+/// Vertices or nodes by aggregate: those of aggregate a are `members[starts[a]] … members[starts[a + 1] −
+/// 1]`, ascending.
 struct Aggregates {
   std::vector<Index> starts{0};
   std::vector<Index> members;
@@ -32,9 +32,9 @@ struct RigidProlongation {
 
 /// Returns the prolongation in which a fine node depends only on its own aggregate. The columns of an
 /// aggregate are the modes restricted to it and orthonormalised (Vaněk, Mandel, Brezina 1996). A mode that
-/// depends on earlier ones there (rotations of a single vertex, the rotation of a line about itself) gets a
-/// column of zeros. `modes` holds R×6 numbers for each of `fine_count` nodes; nodes in no aggregate get empty
-/// rows. O(fine nodes).
+/// depends on earlier modes of the aggregate (rotations of a single vertex, the rotation of a line about
+/// itself) gets a column of zeros. `modes` holds R×6 numbers for each of `fine_count` nodes; nodes in no
+/// aggregate get empty rows. O(fine nodes).
 template <int R>
 RigidProlongation<R> rigid_prolongation(const Aggregates& aggregates, Index fine_count,
                                         std::span<const double> modes);

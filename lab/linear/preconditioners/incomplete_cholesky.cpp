@@ -17,7 +17,7 @@
 namespace meshorder {
 namespace {
 
-/// Subtracts b · blockᵀ from a, all of nine entries row by row.
+/// Subtracts b · blockᵀ from a. All three are 3 × 3 matrices, stored row by row.
 template <class Value>
 void subtract_product(double* a, const double* b, const Value* block) {
   for (int i = 0; i < 3; ++i) {
@@ -37,7 +37,7 @@ bool is_large_enough(const double* pivot, const double* diagonal) {
   return true;
 }
 
-/// Returns for each vertex whether it connects its chunk to an earlier one.
+/// Returns for each vertex whether it connects its chunk to an earlier chunk.
 std::vector<bool> joining_vertices(const BlockCsr& pattern, const std::vector<Index>& bounds) {
   std::vector<bool> joins(static_cast<std::size_t>(pattern.size()), false);
   for (Index chunk = 0; chunk + 1 < index_size(bounds); ++chunk) {
@@ -54,8 +54,8 @@ std::vector<bool> joining_vertices(const BlockCsr& pattern, const std::vector<In
 
 IncompleteCholesky::IncompleteCholesky(const BlockCsr& pattern) : offsets_{0} {
   const Index n = pattern.size();
-  // enough rows for a thread's task; few chunks, so that few vertices join them; a power of two of chunks,
-  // which usual numbers of threads share evenly
+  // chunks have enough rows for a thread's task; they are few, so that few vertices join them; their number
+  // is a power of two, which usual numbers of threads share evenly
   constexpr Index kRows = 8'000, kMaxChunks = 16;
   const auto count = static_cast<std::uint32_t>(std::clamp<Index>(n / kRows, 1, kMaxChunks));
   const std::vector<Index> chunks =
@@ -101,7 +101,7 @@ void IncompleteCholesky::update(const BlockCsr& matrix) {
     throw InvalidArgument("preconditioner: made for " + std::to_string(size()) +
                           " vertices, the matrix has " + std::to_string(matrix.size()));
   }
-  // elastic solids need about an eighth
+  // elastic solids need a shift of about an eighth
   constexpr double kFirst = 1.0 / 64.0, kFactor = std::numbers::sqrt2, kMax = 64.0;
   shift_ = 0.0;
   while (!factor(matrix, shift_)) {
@@ -122,7 +122,7 @@ bool IncompleteCholesky::factor(const BlockCsr& matrix, double shift) {
 void IncompleteCholesky::factor_rows(const BlockCsr& matrix, double shift, Index begin, Index end,
                                      std::atomic<bool>& definite) {
   if (begin == end) return;
-  // for each vertex the place of the row's block in its column; −1 for none
+  // for each vertex, the position of the row's block in that vertex's column; −1 if there is no such block
   std::vector<Index> places(vertices_.size(), -1);
   // L D of the row
   std::vector<double> row;

@@ -9,14 +9,15 @@
 
 namespace meshorder {
 
-/// A ≈ L D Lᵀ by 3×3 blocks in the pattern of A (Meijerink, van der Vorst 1977), L unit lower triangular and
-/// in float, which is accurate enough for an incomplete factor. If a pivot is not positive definite, the
+/// A ≈ L D Lᵀ by 3×3 blocks in the pattern of A (Meijerink, van der Vorst 1977). L is unit lower triangular
+/// and in float, which is accurate enough for an incomplete factor. If a pivot is not positive definite, the
 /// diagonal blocks are enlarged and the factorisation restarts (Manteuffel 1980). Measured against Jacobi in
 /// docs/evidence/benchmarks.md.
 ///
-/// Vertices are eliminated in their order, except that those coupled to an earlier chunk of rows come last.
-/// The inner vertices of the chunks are then factored and solved on threads. The chunks depend on the pattern
-/// alone. In a local order few vertices join chunks; in a scrambled one most do, and threads gain nothing.
+/// Vertices are eliminated in their order, except that vertices coupled to an earlier chunk of rows come
+/// last. The inner vertices of the chunks are then factored and solved on threads. The chunks depend on the
+/// pattern alone. In a local order few vertices join chunks; in a scrambled order most do, and threads gain
+/// nothing.
 class IncompleteCholesky final : public Preconditioner {
  public:
   /// Takes and copies the pattern of the matrices. Throws InvalidArgument when a row lacks its diagonal.

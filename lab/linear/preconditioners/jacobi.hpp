@@ -18,8 +18,7 @@ class LocalPreconditioner : public Preconditioner {
 
  protected:
   explicit LocalPreconditioner(Index vertices) : vertices_(vertices) {}
-  /// Throws InvalidArgument unless the matrix has as many block rows as the one the preconditioner was made
-  /// for.
+  /// Throws InvalidArgument unless the matrix has `vertices()` block rows.
   void check_size(const BlockCsr& matrix) const;
   [[nodiscard]] Index vertices() const noexcept { return vertices_; }
 

@@ -13,8 +13,8 @@
 
 namespace meshorder {
 
-/// Approximates the inverse of a symmetric positive definite matrix of 3×3 blocks. Symmetric and positive
-/// definite itself; the same bits for any number of threads.
+/// Approximates the inverse of a symmetric positive definite matrix of 3×3 blocks. The approximation is
+/// symmetric and positive definite, too. Results have the same bits for any number of threads.
 class Preconditioner : public Polymorphic {
  public:
   /// Takes the values of a matrix with the preconditioner's pattern. Call it before `apply`, and again after
@@ -44,9 +44,9 @@ struct EnumNames<PreconditionerKind> {
                                     std::pair{PreconditionerKind::multigrid, "multigrid"}};
 };
 
-/// Returns a preconditioner for matrices of this pattern, the vertices at rest at `points` (from which
-/// multigrid computes its rigid-body modes). Throws InvalidArgument if the numbers of points and rows differ;
-/// it or `update` throws if a row lacks its diagonal.
+/// Returns a preconditioner for matrices of this pattern. `points` are the positions of the vertices at rest,
+/// from which multigrid computes its rigid-body modes. Throws InvalidArgument if the numbers of points and
+/// rows differ. If a row lacks its diagonal, this function or `update` throws InvalidArgument.
 std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const BlockCsr& pattern,
                                                     std::span<const Point> points);
 

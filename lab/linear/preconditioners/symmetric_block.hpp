@@ -16,7 +16,7 @@ inline SymmetricBlock upper_triangle(const double* block) {
   return {block[0], block[1], block[2], block[4], block[5], block[8]};
 }
 
-/// Returns the inverse of a positive definite block; none if the block is not positive definite or is
+/// Returns the inverse of a positive definite block; nothing if the block is not positive definite or is
 /// singular to rounding.
 std::optional<SymmetricBlock> inverse_of_definite(const SymmetricBlock& block);
 

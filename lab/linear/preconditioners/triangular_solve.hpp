@@ -5,14 +5,14 @@
 
 namespace meshorder {
 
-/// L D Lᵀ in 3×3 blocks, L unit lower triangular with its rows in an order of its own: row i is that of the
-/// vertex `vertices[i]` and has left of its diagonal the blocks `offsets[i] … offsets[i + 1] − 1`, whose
-/// columns are vertices too.
+/// L D Lᵀ in 3×3 blocks. L is unit lower triangular, with its rows in an order of its own: row i is that of
+/// the vertex `vertices[i]`. To the left of its diagonal, row i has the blocks `offsets[i] … offsets[i + 1] −
+/// 1`; `columns` lists the vertices of their columns.
 struct BlockFactor {
   const Index* vertices;
   const Offset* offsets;
   const Index* columns;
-  const float* values;     ///< 9 for each block, row by row; one more must follow the last
+  const float* values;     ///< 9 for each block, row by row; one more number must follow
   const double* inverses;  ///< of D's blocks, 6 for each vertex: 00 01 02 11 12 22
 };
 

@@ -11,7 +11,7 @@
 
 namespace meshorder {
 
-/// A study that is compared with another one.
+/// A study that is compared with another study.
 struct ComparedStudy {
   std::string file;  ///< its results.json, for errors and tables
   StudyResults results;
@@ -37,7 +37,7 @@ struct SavingDifference {
 /// Medicine 27). Empty if a study has no interval.
 std::optional<SavingDifference> difference_of(const Speedup& a, const Speedup& b);
 
-/// An order in a scenario that both studies have run, and its reference.
+/// An order in a scenario. Both studies have run the scenario in this order and in the reference.
 struct ComparedOrder {
   std::string scenario;
   std::string ordering;

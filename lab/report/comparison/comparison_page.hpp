@@ -18,8 +18,7 @@ struct WrittenComparison {
 };
 
 /// Writes a page for the browser, and beside it the tables as Markdown and as CSV, with the page's name and
-/// .md and .csv. Throws Error if the studies cannot be compared or a file cannot be
-/// written.
+/// the extensions .md and .csv. Throws Error if the studies cannot be compared or a file cannot be written.
 WrittenComparison write_comparison(const ComparedStudy& a, const ComparedStudy& b, const FilePath& page);
 
 }  // namespace meshorder

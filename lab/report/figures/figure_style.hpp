@@ -10,8 +10,8 @@
 namespace meshorder {
 
 /// How an order is drawn in all figures of a study: orders differ in shape, dashes and pattern as well as in
-/// colour. Colours of Okabe and Ito (2008, Color Universal Design), distinguishable with every kind of colour
-/// vision.
+/// colour. The colours are those of Okabe and Ito (2008, Color Universal Design), which can be told apart
+/// with every kind of colour vision.
 struct OrderStyle {
   std::string_view colour;
   int filled = 0;  ///< gnuplot's point types

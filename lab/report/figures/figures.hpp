@@ -22,16 +22,16 @@ bool can_draw_figures();
 
 /// Draws all figures for which the results hold data: speedups with intervals, next to the paper's; log–log
 /// span histograms of each mesh (the paper's Figure 10); simulated misses; time by phase; predicted and
-/// measured kernels. Readable without colour vision and at 360 pixels. Throws Error, which names the package,
-/// if gnuplot is not installed or fails.
+/// measured kernels. The figures are readable without colour vision, and at a width of 360 pixels. Throws
+/// Error, which names the package, if gnuplot is not installed or fails.
 std::vector<Figure> figures_of(const StudyResults& results);
 
-// The figures of each section of the page; none without data.
+// The figures of each section of the page; empty without data.
 
 std::vector<Figure> speedup_figures(const StudyResults& results);
-/// The paper's Figure 10, one for each mesh.
+/// The paper's Figure 10 for each mesh.
 std::vector<Figure> span_figures(const StudyResults& results);
-/// One for each mesh.
+/// One figure for each mesh.
 std::vector<Figure> cache_figures(const StudyResults& results);
 std::vector<Figure> phase_figures(const StudyResults& results);
 std::vector<Figure> prediction_figures(const StudyResults& results);

@@ -31,7 +31,7 @@ std::string printable(std::string_view text) {
 }
 
 constexpr std::ptrdiff_t kLongest = 24;   ///< characters of a text beside an axis
-constexpr std::ptrdiff_t kTicBytes = 49;  ///< that gnuplot keeps of a tic's label
+constexpr std::ptrdiff_t kTicBytes = 49;  ///< bytes that gnuplot keeps of a tic's label
 
 /// Returns UTF-8 text of at most so many characters and bytes, with "…" in place of what is cut off.
 std::string shortened(std::string_view text, std::ptrdiff_t characters, std::ptrdiff_t bytes) {

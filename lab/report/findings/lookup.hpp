@@ -22,7 +22,7 @@ auto find_order(const Record& record, std::string_view ordering) -> decltype(rec
   return &*found;
 }
 
-/// Returns a mesh of the study, nullptr if there is none of that name.
+/// Returns a mesh of the study; nullptr if no mesh has that name.
 inline const MeshRecord* find_mesh(const StudyResults& results, std::string_view name) {
   const auto found = std::find_if(results.meshes.begin(), results.meshes.end(),
                                   [name](const MeshRecord& mesh) { return mesh.name == name; });

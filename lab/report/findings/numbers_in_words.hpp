@@ -8,8 +8,8 @@
 
 namespace meshorder {
 
-/// Returns a number with that many significant digits: with 4, "0.04321", "12.35", "1,846"; integers with all
-/// digits.
+/// Returns a number with that many significant digits: with 4, "0.04321", "12.35", "1,846". The part before
+/// the point always has all its digits.
 std::string with_digits(double number, int digits);
 
 /// Returns a number with as many decimals as `with_digits(whole, digits)` has: "0.50" for a part of "12.35".

@@ -19,7 +19,7 @@ struct PaperSaving {
 };
 
 /// Numbers in the caption of a scenario's figure. The numbers of the paper's Tables 1 to 4 are not in the
-/// text that this project has; nothing is known of VF scrambled.
+/// text that this project has. The captions give no numbers for VF scrambled.
 struct PaperScenario {
   std::string_view name;
   std::string_view mesh;
@@ -32,15 +32,15 @@ inline constexpr Index kPaperSteps = 240;
 
 std::span<const PaperScenario> paper_scenarios();
 
-/// Returns a scenario of the paper, nullptr if there is none of that name.
+/// Returns a scenario of the paper; nullptr if no scenario has that name.
 const PaperScenario* find_paper_scenario(std::string_view name);
 
 /// Returns what an order saves in a scenario, if the paper gives it.
 std::optional<PaperSaving> paper_saving(std::string_view scenario, std::string_view ordering);
 
 /// Returns the *derived* seconds of the scenario's steps in an order. For the scrambled order this is the sum
-/// of the seconds saved divided by the sum of the percentages, to within half a per cent since these are
-/// rounded. For another order, its saved seconds are subtracted.
+/// of the seconds saved divided by the sum of the percentages. It is accurate to half a per cent, since the
+/// percentages are rounded. For another order, its saved seconds are subtracted.
 std::optional<double> paper_seconds(std::string_view scenario, std::string_view ordering);
 
 }  // namespace meshorder

@@ -11,8 +11,8 @@ namespace meshorder {
 /// meshes and orders that have both. An error is |predicted / measured − 1|.
 struct PredictionError {
   int speedups = 0;           ///< number of errors; 0: the other numbers mean nothing
-  double median = 0;          ///< the middle error; of an even number the mean of the two
-  double of_nine_tenths = 0;  ///< the smallest that nine tenths of the errors do not exceed
+  double median = 0;          ///< the middle error, or the mean of the two middle errors
+  double of_nine_tenths = 0;  ///< the smallest number that nine tenths of the errors do not exceed
   double largest = 0;
   int pairs = 0;             ///< of orders of a mesh whose measured times differ by more than 10 %
   int pairs_told_right = 0;  ///< pairs whose faster order was predicted

@@ -7,9 +7,9 @@
 
 namespace meshorder {
 
-/// Returns as HTML how much faster each mesh is in the order that `meshorder order` makes: a number where one
-/// is certain, the verdict, and for each kernel two bars, its time as the mesh is and in that order. Empty
-/// for a study with scenarios; leaves out meshes that have neither a verdict nor times.
+/// Returns as HTML how much faster each mesh is in the order that `meshorder order` makes: a number if it is
+/// certain; the verdict; and for each kernel two bars, its times in the mesh's own order and in that order.
+/// Empty for a study with scenarios. Leaves out meshes that have neither a verdict nor times.
 std::string headlines_of(const StudyResults& results);
 
 }  // namespace meshorder

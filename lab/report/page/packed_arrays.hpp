@@ -17,9 +17,9 @@
 
 namespace meshorder {
 
-/// The arrays of a page, packed as viewer/README.md describes: little endian, compressed by zlib, as base64,
-/// each in a script element; equal arrays share one. `add…` returns the array's description for the page's
-/// manifest.
+/// The arrays of a page, packed as viewer/README.md describes: little endian, compressed by zlib, as base64.
+/// Each array is in a script element; equal arrays share an element. `add…` returns the array's description
+/// for the page's manifest.
 class PackedArrays {
  public:
   /// Adds non-negative integers in the smallest type that holds them. Throws InvalidArgument if their number

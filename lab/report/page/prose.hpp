@@ -6,7 +6,7 @@
 
 namespace meshorder {
 
-// Sentences of a report, in which text in `backticks` is code and all else is plain: names in it are no
+// Sentences of a report. Text in `backticks` is code; all other text is plain, so that no name in it acts as
 // markup.
 
 /// Returns text as HTML, with a no-break space before per cent signs.

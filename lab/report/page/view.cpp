@@ -13,7 +13,8 @@ namespace meshorder {
 namespace {
 
 constexpr float kAnyError = std::numeric_limits<float>::max();
-/// If keeping the topology leaves more than this many times the triangles asked for, the topology may change.
+/// The topology may change if keeping it would leave more than this many times the requested number of
+/// triangles.
 constexpr std::size_t kTooMany = 2;
 
 /// Returns coordinates for the simplifier, relative to the box, so that floats do not lose digits to offsets.
@@ -29,7 +30,7 @@ std::vector<float> coordinates(const Mesh& mesh, const std::vector<Index>& verti
   return result;
 }
 
-/// Returns fewer triangles over the same vertices, all of them corners of `corners`.
+/// Returns fewer triangles; their corners are among those in `corners`.
 std::vector<unsigned> simplified(const std::vector<unsigned>& corners, const std::vector<float>& places,
                                  std::size_t most_corners) {
   std::vector<unsigned> result(corners.size());

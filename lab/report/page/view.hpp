@@ -18,7 +18,7 @@ struct SurfaceView {
 /// Returns the mesh's `boundary_triangles`, simplified to about `most_triangles` if there are more (Garland
 /// and Heckbert 1997, Surface simplification using quadric error metrics; by meshoptimizer). All vertices are
 /// vertices of the mesh. Keeps the topology unless that would leave more than twice as many triangles. The
-/// same on every run. Throws Error for a mesh without volume cells and surface. O(n log n).
+/// result is the same on every run. Throws Error for a mesh without volume cells and surface. O(n log n).
 SurfaceView surface_view(const Mesh& mesh, Index most_triangles);
 
 }  // namespace meshorder

@@ -9,7 +9,7 @@
 namespace meshorder {
 
 /// Returns the savings of the orders: a row for each scenario and a column for each order, with the paper's
-/// figures where it has any.
+/// numbers if it gives any.
 Table summary_table(const StudyResults& results);
 
 /// Returns "+11.9 (+10.2 … +13.5), saves" as a cell.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kHead = "Scenario and order";
 
-/// Returns a cell rounded to the accuracy of a number that is derived from rounded ones.
+/// Returns a cell rounded to the accuracy of a number that is derived from rounded numbers.
 TableCell derived_cell(const std::optional<double>& seconds) {
   if (!seconds) return unknown_cell();
   const double unit = *seconds < 1000 ? 1 : 10;
@@ -24,7 +24,7 @@ TableCell derived_cell(const std::optional<double>& seconds) {
           seconds, false};
 }
 
-/// Returns seconds that are a part of `whole`, with as many decimals.
+/// Returns seconds that are a part of `whole`, with as many decimals as `whole`.
 TableCell part_cell(double seconds, double whole) {
   return {with_digits_of(seconds, whole, 4), seconds, false};
 }

@@ -12,7 +12,8 @@
 namespace meshorder {
 namespace {
 
-/// Returns whether one of the scenarios was run in an order that is not the reference, and in the reference.
+/// Returns whether an order is not the reference, and some scenario was run both in this order and in the
+/// reference.
 bool is_compared(const StudyResults& results, const std::string& ordering) {
   return ordering != results.reference &&
          std::any_of(results.scenarios.begin(), results.scenarios.end(), [&](const ScenarioRecord& scenario) {

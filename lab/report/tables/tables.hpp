@@ -13,7 +13,7 @@ namespace meshorder {
 enum class Certainty {
   unsaid,  ///< the cell shows something else
   saves,   ///< the interval lies above 0
-  open,    ///< the interval contains 0, or there is none: no clear difference
+  open,    ///< the interval contains 0, or there is no interval: no clear difference
   costs    ///< the interval lies below 0
 };
 
@@ -38,7 +38,7 @@ struct Table {
 /// Returns the paper's tables, with its numbers next to ours, and further tables. Their ids:
 /// - summary: what the orders save, a row for each scenario and a column for each order
 /// - table-1: edge spans, by mesh and order
-/// - table-2: seconds, by scenario and order, as the following
+/// - table-2: seconds, by scenario and order, as in the following tables
 /// - table-3: seconds saved over the reference
 /// - table-4: speedups in per cent with their intervals
 /// - break-even: what an order costs and the step at which it pays off
@@ -47,7 +47,7 @@ struct Table {
 /// - misses-1, misses-2, …: simulated misses, one table for each cache hierarchy
 /// - prediction-error: how far predicted speedups of the kernels are from measured ones, by kernel
 /// - kernels: predicted and measured speedups of the kernels, by mesh, kernel and order
-/// - machine, protocol: the machine, and how it was measured
+/// - machine, protocol: the machine, and how the study measured
 /// Tables for which the results hold no data are omitted. A cell's value is a number of the results or
 /// derived from them; its text is rounded.
 std::vector<Table> tables_of(const StudyResults& results);

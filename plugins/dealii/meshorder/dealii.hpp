@@ -23,7 +23,7 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// Orders the degrees of freedom by the graph of those that share a cell.
+/// Orders the degrees of freedom by their graph: those that share a cell are neighbours.
 ///
 /// @param dof_handler  with distributed degrees of freedom, all on this process
 /// @param method       name of a vertex method; methods by coordinates use the support points, if the
@@ -32,7 +32,7 @@ inline namespace v0_3 {
 /// @param constraints  as for `make_sparsity_pattern`; a hanging node couples the nodes that it depends on
 /// @param options      see `OrderOptions`
 /// @return `permutation.old_to_new()` is what `DoFHandler::renumber_dofs` takes
-/// @throws as `order_vertices`; dealii::ExcMessage where degrees of freedom are on several processes
+/// @throws as `order_vertices`; dealii::ExcMessage if degrees of freedom are on several processes
 template <int dim, int spacedim>
 Order order_dofs(const dealii::DoFHandler<dim, spacedim>& dof_handler, std::string_view method = "auto",
                  const dealii::AffineConstraints<double>& constraints = dealii::AffineConstraints<double>(),

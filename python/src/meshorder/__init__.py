@@ -18,7 +18,7 @@ A mesh with its data and sets; `advise` predicts what a new order gains, before 
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from . import _interpreter  # noqa: F401  # before anything loads the extension module
+from . import _interpreter  # noqa: F401  # must come before all that load the extension module
 from ._core import build_info
 from ._core import version as __version__
 from ._errors import Error, InputError, InternalError, InvalidArgument, Stopped, TooLarge, Unavailable

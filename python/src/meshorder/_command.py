@@ -32,7 +32,7 @@ _MESH_PLACE = {"order": 0, "apply": 1, "info": 0, "compare": 0}
 #: options without a value; all others have one
 _FLAGS = {"--json", "--quiet", "-q", "--inverse", "--measure", "--predict", "--strict", "--timings", "--all-threads", "--trust",
           "--details", "--gpu"}
-#: those that may come with --gpu
+#: the options that may come with --gpu
 _WITH_GPU = {"--gpu", "--methods", "--threads", "--json", "--quiet", "-q"}
 _BAD_INPUT = 2
 
@@ -74,7 +74,7 @@ def _run_as_is(arguments: list[str]) -> int:
 
 @dataclass
 class _Word:
-    """An argument, or the part of one after "=", that names a file, as in --output=FILE.
+    """The name of a file on the command line: an argument, or the part of an argument after "=", as in --output=FILE.
 
     Attributes:
         path: the name of the file.
@@ -140,7 +140,7 @@ class _Words:
                 place += 1
                 values[option] = _Word(arguments[place], place)
             else:
-                flags.add(word)  # without its value
+                flags.add(word)  # its value is missing
             place += 1
         subcommand = arguments[plain[0]] if plain else ""
         mesh = _MESH_PLACE.get(subcommand, len(arguments)) + 1
@@ -189,7 +189,7 @@ class _Maps:
     """Files of maps. They are put in place when their mesh has been written.
 
     Attributes:
-        prefix: of their final names.
+        prefix: prefix of their final names.
         scratch: prefix of their temporary names.
     """
 
@@ -331,7 +331,7 @@ def _reorder_map_of_cells(prefix: str, order: NDArray[np.int64]) -> None:
 
     Args:
         prefix: the value of --maps.
-        order: the place in the reordered mesh of each cell of the file.
+        order: for each cell of the file, its place in the reordered mesh.
     """
     file = f"{prefix}.cells.new_to_old.npy"
     written = np.load(file)
@@ -355,7 +355,7 @@ def _run_in_other_names(arguments: list[str], names: dict[str, str], words: _Wor
     """Runs the command and replaces the names of temporary files in its output by those of the user's files.
 
     Args:
-        arguments: of the command.
+        arguments: arguments of the command.
         names: for each temporary file the user's file.
         words: the files and options of the command line.
 

@@ -31,7 +31,7 @@ class Standard:
         return self._functions.take(values, self._beside(values, new_to_old), axis=axis)
 
     def renumbered(self, numbers: Any, old_to_new: NDArray[np.int32]) -> Any:
-        """Returns the new number of each old one in an array; raises InvalidArgument for numbers out of range."""
+        """Returns an array with the new number for each old number; raises InvalidArgument for numbers out of range."""
         functions = self._functions
         try:
             bits = functions.iinfo(numbers.dtype).bits
@@ -46,7 +46,7 @@ class Standard:
 
     def _beside(self, values: Any, numbers: NDArray[np.int32]) -> Any:
         """Returns numbers on the device of an array."""
-        device: Any = getattr(values, "device", None)  # none while JAX traces
+        device: Any = getattr(values, "device", None)  # None while JAX traces
         if hasattr(device, "__enter__"):  # a device of CuPy, which has to be made current
             with device:
                 return self._functions.asarray(numbers)
@@ -66,7 +66,7 @@ class Warp:
         return view.contiguous()
 
     def renumbered(self, numbers: Any, old_to_new: NDArray[np.int32]) -> Any:
-        """Returns the new number of each old one in an array, through the host; raises as `Standard` does."""
+        """Returns an array with the new number for each old number, made on the host; raises as `Standard` does."""
         import warp
 
         old = numbers.numpy()

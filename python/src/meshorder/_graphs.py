@@ -224,7 +224,7 @@ def graph_arrays(graph: Any, mirror: bool = False) -> tuple[NDArray[Any], NDArra
         mirror: True: each directed edge of an edge_index counts in both directions.
 
     Returns:
-        The two arrays, and for each entry the place of its weight among those given: an array of places, or all in order.
+        The two arrays, and for each entry the index of its weight among the given weights: an array, or a slice of all.
 
     Raises:
         InvalidArgument: none of these forms, a matrix that is not square, arrays that do not hold integers.
@@ -243,7 +243,7 @@ def graph_arrays(graph: Any, mirror: bool = False) -> tuple[NDArray[Any], NDArra
         return compressed(ends, int(ends.max(initial=-1)) + 1, mirror)
     if isinstance(graph, (tuple, list)) and len(graph) == 2:
         return integers(graph[0], "indptr"), integers(graph[1], "indices"), slice(None)
-    from .hosts import find_host  # which imports this module
+    from .hosts import find_host  # here, because hosts imports this module
 
     host = find_host(graph)
     found = None if host is None else host.graph(mirror)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ._permutation import Permutation
 
 _BAR = "rgba(76,139,205,.42)"
-_MOST_LINES = 8  # to which a long list is cut
+_MOST_LINES = 8  # a longer list is cut to this number
 
 
 def _cell(html: str, style: str = "") -> str:
@@ -47,7 +47,7 @@ def _lines(lines: Iterable[str]) -> str:
 
 
 def _some(lines: Sequence[str]) -> list[str]:
-    """Returns the lines; of many, only the first ones and the number of the others."""
+    """Returns the lines. Of a long list it returns the first lines and the number of the others."""
     if len(lines) <= _MOST_LINES:
         return list(lines)
     return [*lines[: _MOST_LINES - 1], f"and {len(lines) - _MOST_LINES + 1:,} more"]

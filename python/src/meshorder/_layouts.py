@@ -16,7 +16,7 @@ from ._options import whole
 
 
 _LAYOUTS = ("packed", "apart", "padded", "patches", "gathered")
-_CACHE_BYTES = 50 * 2**20  # of an H100
+_CACHE_BYTES = 50 * 2**20  # last cache of an H100
 
 
 class Patches(NamedTuple):

@@ -24,7 +24,7 @@ from ._permutation import Permutation
 SHAPES: tuple[str, ...] = _core.shapes
 _SHAPE_OF = {name: name for name in SHAPES} | {"tetra": "tetrahedron", "hexa": "hexahedron", "prism": "wedge"}
 _ORDERS = range(1, 11)
-#: the numbers of vertices that a name without a number can mean: those of complete cells, and usual others
+#: for each shape, the numbers of vertices that its name alone can mean: those of complete cells, and other usual ones
 _WIDTHS = {
     "line": {p + 1 for p in _ORDERS},
     "triangle": {(p + 1) * (p + 2) // 2 for p in _ORDERS} | {7},

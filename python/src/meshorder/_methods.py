@@ -16,7 +16,7 @@ from ._errors import InvalidArgument
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
-# before the interpreter ends, calls in other threads must end and Python functions be released
+# before the interpreter ends, calls in other threads must end, and Python functions must be released
 atexit.register(_core.end)
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_core.forget_calls)

@@ -202,7 +202,7 @@ def _handle_of(given: Any) -> Any:
 
 
 def _pairs(methods: Any) -> list[tuple[str, str]]:
-    """Returns the methods as pairs of those for vertices and elements."""
+    """Returns the methods as pairs: the method for the vertices, and the method for the elements."""
     listed = [methods] if isinstance(methods, str) else methods or []
     return [(method, "auto") if isinstance(method, str) else tuple(method) for method in listed]
 

@@ -49,7 +49,7 @@ def png(shares: NDArray[Any]) -> bytes:
     rows[:, 1:] = np.rint(255 * shares)
     ramp = np.linspace(0, 1, 256)[:, np.newaxis]
     palette = np.rint(_PAPER + ramp * (_INK - _PAPER)).astype(np.uint8)
-    header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)  # 8 bits, by palette
+    header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)  # 8 bits per pixel: a place in the palette
     pixels = zlib.compress(rows.tobytes(), 9)
     parts = [(b"IHDR", header), (b"PLTE", palette.tobytes()), (b"IDAT", pixels), (b"IEND", b"")]
     return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(*part) for part in parts)

@@ -417,7 +417,7 @@ def try_orders(
     candidates, left_out = _first_runs(mesh, methods, runner, budget, options)
     trials = _PairedTrials(len(candidates) - 1)
     for number, candidate in enumerate(candidates):
-        candidate.times.clear()  # without the first runs
+        candidate.times.clear()  # the first runs do not count
         if candidate.fault:
             trials.exclude(number)
     if len(candidates) > 1 and not trials.left:

@@ -35,10 +35,10 @@ struct DeckCard {
 struct Deck {
   std::vector<DeckCard> sections;
   IdMap nodes;                  ///< numbers in the order of the file
-  IdMap elements;               ///< likewise, of the elements that are cells
+  IdMap elements;               ///< numbers of the elements that are cells, in the same way
   std::vector<EntitySet> sets;  ///< of the deck; members are positions in the file
-  /// Further text of some lines, from the comma on, by position in the file: of nodes, after the coordinates;
-  /// of elements, after the last node that the type has.
+  /// Ends of some lines, from a comma on, by position in the file. For a node: the text after the
+  /// coordinates. For an element: the text after the last node that its type needs.
   std::map<Index, std::string> more_of_nodes;
   std::map<Index, std::string> more_of_elements;
   std::string line_end = "\n";

@@ -249,15 +249,15 @@ constexpr std::array<std::string_view, 115> kPlain{
     // clang-format on
 };
 
-/// Returns the fields of a card that names nodes because of one of its parameters; none for other cards.
+/// Returns the fields of a card that names nodes because of one of its parameters; nullopt for other cards.
 std::optional<std::string_view> fields_with_parameter(const Card& card) {
   if (card.keyword == "CLEARANCE" && card.has("TABULAR")) return "n";
   if (card.keyword == "EQUATION" && card.has("REMOVE")) return "n";
-  if (card.keyword == "STATIC" && card.has("RIKS")) return "-----n";  // its displacement may end the step
+  if (card.keyword == "STATIC" && card.has("RIKS")) return "-----n";  // node that may end the step
   return {};
 }
 
-/// Returns the fields of a card whose TYPE or DEFINITION decides them; none for other cards.
+/// Returns the fields of a card whose TYPE or DEFINITION decides them; nullopt for other cards.
 std::optional<std::string_view> fields_by_parameters(const Card& card) {
   const std::string type = compact(card.value("TYPE"));
   if (card.keyword == "SURFACE") {
@@ -310,7 +310,7 @@ class ReferenceFinder {
     if (!is_mpc && card_.keyword != "EQUATION") return false;
     int names = 0;
     for_lines(keyword_lines(lines_).size(), [&](std::string_view line) {
-      if (is_mpc) (void)next_field(line);  // its type
+      if (is_mpc) (void)next_field(line);  // the type of the constraint
       while (!line.empty()) {
         const std::string_view field = next_field(line);
         const char first = field.empty() ? '0' : field.front();
@@ -326,7 +326,8 @@ class ReferenceFinder {
     if (pairs_sets()) return {};
     const std::size_t begin = keyword_lines(lines_).size();
     add_parameters(lines_.substr(0, begin));
-    if (card_.keyword == "SECTIONPRINT" && has_numbers_in_front(begin)) return {};  // points of its axes
+    // the numbers below *SECTION PRINT may be nodes on its axes
+    if (card_.keyword == "SECTIONPRINT" && has_numbers_in_front(begin)) return {};
     if (card_.keyword == "EQUATION" && !card_.has("REMOVE")) {
       if (has_other_file(card_)) return {};
       for_lines(begin, [this](std::string_view line) { add_terms(line); });
@@ -412,7 +413,7 @@ class ReferenceFinder {
   const Card& card_;
   std::string_view lines_;
   std::vector<Reference> found_;
-  std::int64_t terms_left_ = 0;  // of the present equation
+  std::int64_t terms_left_ = 0;  // terms of the present equation still to be read
   int in_term_ = 0;              // number of fields read of the present term
 };
 

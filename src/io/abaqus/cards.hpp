@@ -56,7 +56,7 @@ std::string capitals(std::string_view text);
 /// A number of a node or element in the lines of a card.
 struct Reference {
   Association association;
-  std::size_t begin;  ///< of its digits
+  std::size_t begin;  ///< byte of its first digit
   std::size_t length;
   std::int64_t number;
 };
@@ -64,7 +64,7 @@ struct Reference {
 /// Returns whether the lines or numbers of a card are in another file.
 bool has_other_file(const Card& card);
 
-/// Returns the places where a card names nodes and elements by number; none if the card is not known.
+/// Returns the places where a card names nodes and elements by number; nullopt if the card is not known.
 /// `lines`: the lines of the card, from the keyword on.
 std::optional<std::vector<Reference>> references(const Card& card, std::string_view lines);
 
@@ -75,7 +75,7 @@ struct NamedSet {
 };
 
 /// Returns the sets of nodes or elements that the lines of a load, a boundary condition or a surface name.
-/// Other cards may name something else: none for them.
+/// Returns no sets for other cards, which may name other things.
 std::vector<NamedSet> named_sets(const Card& card, std::string_view lines);
 
 /// Returns "; did you mean *CLOAD?" for a keyword that is spelt almost like a known one; else "".
@@ -85,9 +85,9 @@ std::string suggested_keyword(const Card& card);
 /// numbers: first with first, and so on. New numbers would pair other nodes.
 bool pairs_sets(const Card& card, std::string_view lines);
 
-/// Returns whether the effect of a card depends on the order of node and element numbers, even if it names
-/// none. Such cards read data of an earlier analysis or define cyclic symmetry: for sides with different
-/// meshes, CalculiX 2.20 interpolates in triangles that depend on the numbers.
+/// Returns whether the effect of a card depends on the order of node and element numbers, even if the card
+/// names no node or element. Such cards read data of an earlier analysis or define cyclic symmetry: for sides
+/// with different meshes, CalculiX 2.20 interpolates in triangles that depend on the numbers.
 bool depends_on_numbers(const Card& card);
 
 /// Returns all positive whole numbers in the lines of a card that are the value of a parameter, or the whole

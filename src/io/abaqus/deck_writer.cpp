@@ -163,7 +163,8 @@ class DeckWriter {
     return false;
   }
 
-  /// Writes the sets that `write_nodes` left out so far: after the last *NODE or before a card that uses one.
+  /// Writes the sets that `write_nodes` left out so far: after the last *NODE or before a card that uses one
+  /// of these sets.
   void write_sets_of_cards() {
     for (const auto& [set, section] : sets_of_cards_) {
       std::vector<std::int64_t> members;

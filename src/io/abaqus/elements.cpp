@@ -78,7 +78,7 @@ std::optional<ElementKind> with_nodes(const Kinds& kinds, int nodes) {
 }
 
 /// Returns the number of nodes of a beam whose name has these digits. The last digit is the order of
-/// interpolation: 1 and 3 (cubic) have two nodes, 2 has three.
+/// interpolation: beams of order 1 and 3 (cubic) have two nodes, beams of order 2 have three.
 int nodes_of_beam(int digits) { return digits % 10 == 2 ? 3 : 2; }
 
 std::optional<ElementKind> kind_in_family(Family family, int digits) {
@@ -97,7 +97,7 @@ std::optional<ElementKind> kind_in_family(Family family, int digits) {
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-/// Returns the digits at the front as a number; none if the text does not begin with a digit.
+/// Returns the digits at the front as a number; nullopt if the text does not begin with a digit.
 std::optional<int> leading_number(std::string_view rest) {
   int number = 0;
   const auto [end, code] = std::from_chars(rest.data(), rest.data() + rest.size(), number);

@@ -18,7 +18,7 @@ struct ElementKind {
   bool operator==(const ElementKind&) const = default;
 };
 
-/// Returns the kind of an element type such as "C3D8R", given in capitals; none if the type is not known.
+/// Returns the kind of an element type such as "C3D8R", given in capitals; nullopt if the type is not known.
 std::optional<ElementKind> kind_of(std::string_view type);
 
 /// Returns the element type for cells of a mesh of another format; an empty text if there is none. `flat`:

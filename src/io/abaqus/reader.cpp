@@ -212,7 +212,7 @@ class DeckReader {
   }
 
   /// Gives the next line of the present card but does not take it; follows *INCLUDE. Returns false at the
-  /// next other keyword.
+  /// next keyword other than *INCLUDE.
   bool peek_in_card(std::string_view& line) {
     while (lines_.peek(line)) {
       if (!is_keyword(line)) return true;
@@ -372,8 +372,8 @@ class DeckReader {
     end_data(std::move(comments));
   }
 
-  /// Reads elements on all threads, up to the first that does not fit on one line or names an unknown node.
-  /// Returns whether it read any.
+  /// Reads elements on all threads, up to the first element that does not fit on one line or names an unknown
+  /// node. Returns whether it read any element.
   bool read_regular_elements(ElementKind kind) {
     const auto nodes = static_cast<std::size_t>(kind.nodes);
     const Index most = nodes < kNumbersOnLine ? lines_.lines_to_take() : 0;
@@ -412,8 +412,9 @@ class DeckReader {
     std::array<Index, kMostNodes> cell{};
     const Offset first = mesh_.cells.offsets.back();
     const std::int64_t first_line = lines_.at().line();
-    std::size_t on_first_line = 0;  // nodes
-    bool may_have_more = true;      // false: the last line lacks a comma; this may be the next element
+    std::size_t on_first_line = 0;  // nodes on the first line
+    // false: the line before lacks a comma at its end, so this line may be another element
+    bool may_have_more = true;
     for (std::size_t given = 0;;) {
       const bool goes_on = line.ends_with(',');
       while (!line.empty()) {
@@ -644,7 +645,7 @@ class DeckReader {
   std::unordered_set<std::int64_t> other_elements_;  // numbers of elements that are not cells
   std::vector<std::string> other_types_;             // the first of their types, for a message
   std::vector<std::string> types_;
-  std::int64_t line_ = 0;  // of the last keyword
+  std::int64_t line_ = 0;  // line of the last keyword
   int parts_ = 0;
   int instances_ = 0;
   bool in_assembly_ = false;  // in *ASSEMBLY but not in *INSTANCE

@@ -45,7 +45,8 @@ class SetReader::Repeats {
 
  private:
   Index turn_ = 0;
-  std::vector<Index> last_turn_;  ///< of each item, the last call of `drop` that saw it, from 1
+  /// For each item, the number (from 1) of the last call of `drop` that saw it.
+  std::vector<Index> last_turn_;
 };
 
 std::size_t SetReader::set_named(Association association, std::string_view name) {

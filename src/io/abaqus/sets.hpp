@@ -20,7 +20,8 @@ namespace meshorder::abaqus {
 /// Returns "node set" or "element set".
 std::string_view name_of_sets(Association association);
 
-/// Returns "… one number that the deck does not have, the first is 7": `which` ends in "names".
+/// Returns a note such as "*BOUNDARY names one number that the deck does not have, the first is 7". `which`
+/// is the beginning of the note, up to "names".
 std::string note_of_missing(std::string_view which, const std::vector<std::int64_t>& numbers);
 
 /// Reads the node and element sets of a deck: collects the additions of all cards, then finds the members.
@@ -69,7 +70,7 @@ class SetReader {
     std::string nodes_of;  ///< name of an element set whose nodes are added
   };
   class Repeats;
-  using Key = std::tuple<Association, bool, std::string>;  ///< bool: whether of the assembly
+  using Key = std::tuple<Association, bool, std::string>;  ///< bool: whether the set belongs to the assembly
 
   std::size_t set_named(Association association, std::string_view name);
   [[nodiscard]] const EntitySet* find(Association association, const Addition& from,

@@ -20,7 +20,7 @@ namespace {
 /// Pieces that become one array.
 using Group = std::vector<Piece*>;
 
-/// Returns whether the pieces have values of one type, and no vertex or cell has two.
+/// Returns whether the pieces have values of one type, and no vertex or cell has two values.
 bool fit_together(const Group& group, std::size_t total) {
   std::vector<bool> taken(total);
   for (const Piece* const piece : group) {

@@ -138,7 +138,7 @@ class AttachmentReader {
     return list;
   }
 
-  /// Makes a list the contents of a node. Returns the index of the list.
+  /// Stores a list as the contents of a node. Returns the index of the list.
   int bind_list(Node& node, PointList list) {
     const auto place = static_cast<int>(metadata_.lists.size());
     reading_.bind(node, {.role = Field::Role::list, .place = place, .association = list.association});
@@ -168,7 +168,8 @@ class AttachmentReader {
     }
   }
 
-  /// Reads the child of a node that lists vertices or elements. Returns the index of the list, −1 if none.
+  /// Reads the child of a node that lists vertices or elements. Returns the index of the list, −1 if the node
+  /// has none.
   int read_own_list(Node& node, Association association, const std::string& path) {
     int place = -1;
     for (Node& child : node.children) {
@@ -397,8 +398,9 @@ class AttachmentReader {
     }
   }
 
-  /// Returns the number to add to the parents of polygons to get element numbers: 0, or if they count the
-  /// polyhedra from 1, the first number of the section of polyhedra less 1.
+  /// Returns the number to add to the parents of polygons to get element numbers: 0 if the parents are
+  /// element numbers; if they count the polyhedra from 1, the first number of the section of polyhedra, less
+  /// 1.
   [[nodiscard]] std::int64_t shift_of_parents(std::span<const std::int64_t> numbers,
                                               const std::string& path) {
     const auto wrong = std::find_if(numbers.begin(), numbers.end(), [&](std::int64_t number) {

@@ -12,9 +12,10 @@
 // vertices or cells, and "NAME step K" if the file assigns its solution to one of several times. Arrays at
 // cell centres belong to the cells of the base's dimension. All other nodes are kept as they are.
 //
-// Polyhedra become tetrahedra, pyramids, wedges or hexahedra if their faces form one, else cells of the shape
-// polyhedron. A polygon becomes a cell if it is a face of fewer than two polyhedra, or if a condition or a
-// solution lists it. The other polygons lie between two cells and follow the order of these cells.
+// Polyhedra become tetrahedra, pyramids, wedges or hexahedra if their faces form such a cell, else cells of
+// the shape polyhedron. A polygon becomes a cell if it is a face of fewer than two polyhedra, or if a
+// condition or a solution lists it. The other polygons lie between two cells and follow the order of these
+// cells.
 
 #include "io/cgns/tree.hpp"
 #include "io/format.hpp"
@@ -44,7 +45,7 @@ struct ElementType {
   int nodes;
 };
 
-/// Returns the type of that number, null for an unknown one and for mixed elements, polygons and polyhedra.
+/// Returns the type of that number; null for unknown types, mixed elements, polygons and polyhedra.
 const ElementType* element_type(std::int64_t number);
 /// Returns the type of cells of this shape, null if there is none.
 const ElementType* element_type_of(Shape shape, int nodes);
@@ -56,7 +57,7 @@ std::span<const int> file_order(Shape shape, int nodes);
 /// A zone.
 struct Zone {
   std::string name;
-  std::string number_type = "I4";  ///< type of the node with its size
+  std::string number_type = "I4";  ///< type of the numbers in the node that holds the zone's size
   std::int64_t cell_count = 0;     ///< number of cells as given in the file, not checked
 };
 
@@ -75,9 +76,9 @@ struct Section {
 
 /// The polygons and polyhedra of all zones, section by section. Stays the same when the mesh is reordered.
 struct Polyhedra {
-  std::vector<Offset> corner_starts{0};  ///< of each polygon in `corners`, and their end
+  std::vector<Offset> corner_starts{0};  ///< where each polygon begins in `corners`; then the size of that
   std::vector<Index> corners;            ///< of polygons: vertices by their places in the file
-  std::vector<Offset> face_starts{0};    ///< of each polyhedron in `faces`, and their end
+  std::vector<Offset> face_starts{0};    ///< where each polyhedron begins in `faces`; then the size of that
   /// Faces of polyhedra: ±(1 + place of the polygon), negative if its normal points into the polyhedron.
   std::vector<Index> faces;
 
@@ -112,12 +113,12 @@ struct PointList {
   bool orders_data = false;   ///< other nodes may have values for the members, in the same order
 };
 
-/// The parents of a section's elements: the cells on both sides of each.
+/// The parents of a section's elements: the cells on both sides of each element.
 struct Parents {
   int section = 0;
   std::size_t columns = 2;              ///< values of an element: 2, or 4 with the numbers of faces
   std::vector<Index> rows = {};         ///< the cell of each row; in a section of polygons, the polygon
-  std::vector<Index> cells = {};        ///< the two columns of parents, one after the other; −1: none
+  std::vector<Index> cells = {};        ///< the two columns of parents, one after the other; −1: no parent
   std::vector<std::int64_t> rest = {};  ///< the values of the other columns, column by column
   bool of_polygons = false;
   bool from_one = false;  ///< parents are counted from 1, not by the element numbers of their section
@@ -144,8 +145,8 @@ struct Field {
   bool has_left = false;   ///< of values: the array is gone, or no longer fits its fields
   Index component = 0;     ///< of the array
   Association association = Association::vertices;
-  int section = -1;  ///< section whose cells have the values, in their order; −1: see `list`
-  int list = -1;     ///< list whose members have the values, in their order; −1: all of the zone
+  int section = -1;  ///< section whose cells have the values, in their order; −1: `list` decides
+  int list = -1;     ///< list whose members have the values, in their order; −1: the whole zone
 };
 
 /// The nodes of a file, without the values that the mesh holds, and the fields that these values belong to.
@@ -161,8 +162,8 @@ struct CgnsMetadata final : FormatMetadata {
   std::vector<Index> zone_of_vertex;  ///< empty for one zone
   std::vector<Index> section_of_cell;
   std::shared_ptr<const Polyhedra> polyhedra;  ///< null if there are none
-  std::vector<Index> cell_of_polygon;          ///< −1: none
-  std::vector<Index> cell_of_polyhedron;       ///< −1: left out
+  std::vector<Index> cell_of_polygon;          ///< −1: the polygon is not a cell
+  std::vector<Index> cell_of_polyhedron;       ///< −1: the polyhedron was left out
   std::vector<Index> vertex_places;            ///< position of each vertex of the file; empty: unchanged
   std::vector<std::string> lost;               ///< see `contents`
 
@@ -181,14 +182,15 @@ struct CgnsMetadata final : FormatMetadata {
                                                             std::span<const Index> cells) const override;
 };
 
-/// Name of the node with the label of a section's cells, and name of the array with the zone of each cell.
+/// `kSectionLabel`: name of the node that holds the label of a section's cells. `kZone`: name of the array
+/// that holds the zone of each cell.
 inline constexpr std::string_view kSectionLabel = "label";
 inline constexpr std::string_view kZone = "zone";
 /// Returns the name of the section that `layout_of` makes for cells of a type and label. Readers make no set
 /// of a section with this name.
 std::string name_of_label(const ElementType& type, std::int64_t label);
-/// Name of a section's node with values of its cells. For cells of lower dimensions: solutions only hold
-/// values of cells of the base's dimension.
+/// Name of the node that holds values of a section's cells. Used for cells of lower dimensions: solutions
+/// only hold values of cells of the base's dimension.
 inline constexpr std::string_view kSectionValues = "CellValues";
 
 /// Returns the metadata of a mesh that was read from CGNS, null for other meshes.

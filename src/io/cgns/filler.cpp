@@ -296,7 +296,7 @@ bool can_hold(std::string_view type, const Values& values) {
 }
 
 /// Returns the type in which values are written: the type in the file if it can hold all values, else a wider
-/// one.
+/// type.
 std::string written_type(const std::string& of_file, const Values& values) {
   if (can_hold(of_file, values)) return of_file;
   return !of_file.starts_with('R') && can_hold("I8", values) ? "I8" : "R8";

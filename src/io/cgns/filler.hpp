@@ -34,7 +34,8 @@ class Filler {
   template <class Number>
   static void put(Node& node, std::string type, std::vector<std::int64_t> dimensions,
                   const std::vector<Number>& numbers);
-  /// Puts whole numbers: I8 if `type` has 64 bits or a number does not fit 32, else I4.
+  /// Puts whole numbers into a node, as I8 if `type` has 64 bits or a number does not fit 32 bits, else as
+  /// I4.
   static void put_whole(Node& node, const std::string& type, std::vector<std::int64_t> dimensions,
                         const std::vector<std::int64_t>& numbers);
 
@@ -62,7 +63,8 @@ class Filler {
   const CgnsMetadata& metadata_;
   PolyhedraOrder polyhedra_;
   std::vector<std::vector<Index>> vertices_of_zone_;
-  std::vector<Index> number_of_vertex_;  ///< in its zone, from 1; empty for one zone
+  /// Numbers of the vertices in their zones, from 1; empty if there is only one zone.
+  std::vector<Index> number_of_vertex_;
   std::vector<std::vector<Index>> cells_of_section_;
   std::vector<Index> rank_of_cell_;
   std::vector<std::int64_t> first_numbers_;

@@ -58,7 +58,8 @@ class NodeNames {
 
 // ---- a file for a mesh of another format
 
-/// Returns, for the first cell of each run, the name of the smallest set that has all cells of the run.
+/// `starts`: the first cells of runs of consecutive cells. Returns, by the first cell of a run, the name of
+/// the smallest set that contains the run; leaves out runs that no set contains.
 std::map<Index, std::string> names_of_runs(const Mesh& mesh, const std::vector<Index>& starts) {
   std::map<Index, std::string> names;
   std::map<Index, std::size_t> sizes;

@@ -71,7 +71,7 @@ PolyhedraOrder::PolyhedraOrder(const CgnsMetadata& metadata)
   if (ranks_.empty()) return;
   const Polyhedra& polyhedra = *metadata.polyhedra;
   polyhedron_of_cell_.resize(metadata.section_of_cell.size(), -1);
-  // the cells on both sides of each polygon, the lower one first
+  // the cells on both sides of each polygon, the lower cell first
   std::vector<std::pair<Index, Index>> sides(ranks_.size(), {-1, -1});
   bool are_moved = false;
   Index before = -1;

@@ -18,8 +18,8 @@ bool polyhedra_fit(const Mesh& mesh, const CgnsMetadata& metadata);
 ///
 /// Polygons that are cells have the order of their cells. The others lie between two cells: if the polyhedra
 /// kept their order, these polygons keep theirs, else they are sorted by the lower, then by the higher cell.
-/// Each place in a section keeps its kind: a polygon that is a cell, or one between two cells. Polygons are
-/// left out if they are not cells and have no cell on either side.
+/// The kind of polygon at each place in a section does not change: a polygon that is a cell, or a polygon
+/// between two cells. Polygons are left out if they are not cells and have no cell on either side.
 class PolyhedraOrder {
  public:
   /// `metadata` must outlive this object and fit its mesh, see `polyhedra_fit`. O(polygons · log polygons).

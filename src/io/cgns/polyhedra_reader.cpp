@@ -11,7 +11,8 @@
 #include <type_traits>
 
 // Reads sections of polygons (NGON_n) and polyhedra (NFACE_n). Since version 3.4 of CGNS, ElementStartOffset
-// gives the first member of each element; in older files, the number of members precedes them.
+// gives the first member of each element; in older files, the number of an element's members precedes the
+// members.
 
 namespace meshorder::cgns {
 namespace {
@@ -315,7 +316,8 @@ void PolyhedraReader::append_polyhedra(const FoundSection& found) {
   turn_by_volumes(first, found.path, contradictions, vote.sign_of_volumes());
 }
 
-/// Turns cells from `first` on inside out: cells of volume < 0 if signs contradict, else all if `sign` < 0.
+/// Turns cells from `first` on inside out. If the signs of faces contradict each other, turns the cells with
+/// negative volumes; otherwise turns all cells if `sign` < 0.
 void PolyhedraReader::turn_by_volumes(Index first, const std::string& path, Index contradictions, int sign) {
   Mesh& mesh = reading_.mesh;
   if (contradictions > 0) {

@@ -82,7 +82,7 @@ std::vector<NumberRanges> listed_elements(const Reading& reading);
 /// Reads the polygons and polyhedra of a zone. Throws InputError if they are damaged.
 class PolyhedraReader {
  public:
-  /// `sections`: those of the zone, ascending by their numbers.
+  /// `sections`: the sections of the zone, ascending by their numbers.
   PolyhedraReader(Reading& reading, const ZonePlaces& zone, std::vector<FoundSection>& sections)
       : reading_(reading), zone_(zone), sections_(sections) {}
 
@@ -111,7 +111,8 @@ class PolyhedraReader {
   std::vector<FoundSection>& sections_;
   Index first_polygon_ = 0;
   Index first_polyhedron_ = 0;
-  std::vector<std::uint8_t> uses_ = {};  ///< number of polyhedra with the polygon as a face; 0 if listed
+  /// For each polygon, the number of polyhedra that have it as a face; 0 if the polygon is listed.
+  std::vector<std::uint8_t> uses_ = {};
 };
 
 /// Reads all nodes of the zones that refer to vertices or cells: solutions, boundary conditions and others.

@@ -2,7 +2,7 @@
 #pragma once
 
 // The nodes of a CGNS file, read and written by CGIO, the low-level interface of the CGNS library
-// (https://cgns.github.io/CGNS_docs_current/cgio/). It is the same for files of HDF5 and of ADF.
+// (https://cgns.github.io/CGNS_docs_current/cgio/). CGIO is the same for files of HDF5 and of ADF.
 
 #include "base/input_file.hpp"
 #include "io/stream/file_path.hpp"

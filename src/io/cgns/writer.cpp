@@ -217,7 +217,7 @@ class Pruner {
     });
   }
 
-  /// Returns the name of the condition or connectivity that a region names; empty if none.
+  /// Returns the name of the condition or connectivity that a region refers to; empty if there is none.
   static std::string named_part(const Node& region) {
     for (const std::string_view name : {"BCRegionName", "GridConnectivityRegionName"}) {
       if (const Node* const part = region.child(name)) return part->text();

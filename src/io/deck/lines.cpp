@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostFiles = 10000;
 constexpr std::size_t kMostNested = 16;
-constexpr std::size_t kLineBytes = 64;  // assumed for each line when estimating how many follow
+constexpr std::size_t kLineBytes = 64;  // assumed length of a line, to estimate how many lines follow
 
 bool is_space(char c) { return c == ' ' || c == '\t'; }
 
@@ -76,7 +76,7 @@ Index DeckLines::take_regular(Index most,
   constexpr std::size_t kPartBytes = std::size_t{1} << 20;
   OpenFile& file = files_.back();
   const auto read = [&](Scanner& at, Index k) {
-    // lines end in LF or CR LF here: no text in which a line ends in CR alone is read on all threads
+    // lines end in LF or CR LF here: a text with lines that end in CR alone is read on one thread
     const std::string_view rest = at.all().substr(static_cast<std::size_t>(at.byte()));
     std::string_view line = rest.substr(0, rest.find('\n'));
     if (line.ends_with('\r')) line.remove_suffix(1);

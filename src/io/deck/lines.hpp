@@ -22,14 +22,14 @@ class DeckLines {
   /// Gives the next line, without its end and the blanks around it, but does not take it. Returns false at
   /// the end of the deck. The line is valid until the next call.
   bool peek(std::string_view& line);
-  /// Takes the next line and returns it with its end; only the last line of the deck may have none. Valid
+  /// Takes the next line and returns it with its end; only the last line of the deck may lack an end. Valid
   /// until the next call.
   std::string_view take();
   /// Estimates how many of the next lines of the present file `take_regular` may take, at most 262,144.
   /// Returns 0 if few lines precede the next `*`, or if one of the last lines was irregular. Amortised O(1)
   /// for each line.
   Index lines_to_take();
-  /// Takes the next nonblank lines of the present file on all threads, up to the first irregular one. The
+  /// Takes the next nonblank lines of the present file on all threads, up to the first irregular line. The
   /// caller then reads on line by line.
   ///
   /// @param most   as `lines_to_take` returned, > 0

@@ -16,12 +16,12 @@ namespace meshorder {
 ///
 /// @tparam Deck  contents of the file, in its own order. Two members are used: `contents` lists what other
 ///               formats lose; `unknown` lists the parts that may name nodes or elements by number but are
-///               not understood. If there are any of these, all numbers must stay.
+///               not understood. If `unknown` is not empty, all numbers must stay.
 template <class Deck>
 struct DeckMetadata final : FormatMetadata {
   std::shared_ptr<const Deck> deck;
   std::vector<Index> vertex_of;  ///< vertex of each node of the file; empty if both have the same order
-  std::vector<Index> cell_of;    ///< cell of each element of the file; empty likewise
+  std::vector<Index> cell_of;    ///< cell of each element of the file; empty if both have the same order
   bool whole = true;             ///< false once vertices or cells are left out: the deck no longer fits
 
   [[nodiscard]] std::vector<std::string> contents() const override { return deck->contents; }

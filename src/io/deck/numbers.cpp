@@ -25,7 +25,8 @@ bool can_be_numbers(std::span<const std::int64_t> ids, std::int64_t largest, std
   if (ids.empty()) return false;
   const auto [least, greatest] = std::minmax_element(ids.begin(), ids.end());
   if (*least < smallest || *greatest > largest) return false;
-  constexpr std::uint64_t kDense = 8;  // numbers of the range for each id
+  // ids are dense if their range has at most this many numbers for each id
+  constexpr std::uint64_t kDense = 8;
   const std::uint64_t range = static_cast<std::uint64_t>(*greatest) - static_cast<std::uint64_t>(*least);
   if (range / kDense >= ids.size()) {
     std::vector<std::int64_t> sorted(ids.begin(), ids.end());
@@ -44,7 +45,7 @@ bool can_be_numbers(std::span<const std::int64_t> ids, std::int64_t largest, std
 std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step) {
   std::vector<Index> found;
   if (to < from) return found;
-  // without signs: differences of far numbers exceed the signed range
+  // unsigned arithmetic: the difference of distant numbers may exceed the signed range
   const auto distance = [from](std::int64_t number) {
     return static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(from);
   };

@@ -18,11 +18,12 @@
 
 namespace meshorder {
 
-/// Replaces each place p by moves[p]; empty `moves`: all stay. Returns whether every item still has a place.
+/// Replaces each place p by moves[p]; an empty `moves` changes nothing. Returns whether every item still has
+/// a place.
 bool move_places(std::vector<Index>& places, std::span<const Index> moves);
 
 /// Returns whether ids are valid numbers of nodes or elements: from `smallest` to `largest`, each only once.
-/// False if there are no ids. O(n), O(n log n) if they are far apart.
+/// False if there are no ids. O(n) time; O(n log n) if the ids are far apart.
 bool can_be_numbers(std::span<const std::int64_t> ids, std::int64_t largest, std::int64_t smallest = 1);
 
 /// The number of each vertex or cell in a new file: its id if all ids can be numbers, else `first` plus its
@@ -40,8 +41,9 @@ class NewNumbers {
   std::int64_t first_;
 };
 
-/// Returns the positions in the file of the items numbered from, from + step, … ≤ to, ascending by number.
-/// `step` is at least 1. O(numbers) if they are fewer than the items, else O(items log items).
+/// Returns the positions in the file of the items whose numbers are `from`, `from` + `step`, … ≤ `to`,
+/// ascending by number. `step` is at least 1. O(numbers) time if there are fewer numbers than items, else
+/// O(items · log items).
 std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step);
 
 /// Maps the nodes or elements of a file to their positions and numbers in a mesh.
@@ -56,7 +58,8 @@ class FileNumbers {
   [[nodiscard]] std::int64_t at(Index place) const {
     return ids_.empty() ? place + std::int64_t{1} : ids_[place];
   }
-  /// Returns the present number of the item that the file gave `number`; `number` itself if there is none.
+  /// Returns the present number of the item that the file gave `number`; `number` itself if the file has no
+  /// such item.
   [[nodiscard]] std::int64_t now(std::int64_t number) const {
     const Index k = of_file_.find(number);
     return k < 0 ? number : at(place(k));
@@ -75,7 +78,8 @@ class FileNumbers {
   const std::vector<std::int64_t>& ids_;
 };
 
-/// Finds the sets of a mesh by name; if several have one name, the first. The sets must outlive this object.
+/// Finds the sets of a mesh by name; if several sets have the same name, finds the first. The sets must
+/// outlive this object.
 class SetsByName {
  public:
   explicit SetsByName(const std::vector<EntitySet>& sets) {
@@ -106,14 +110,15 @@ void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t larg
                     std::int64_t smallest = 1);
 
 /// Returns whether all nodes and elements keep the numbers of their deck. If not, throws InputError
-/// - if new numbers are not valid, that is, repeat or lie outside 1 (or the least in the file) … `largest`
-///   (or the greatest in the file);
+/// - if new numbers are not valid: they repeat, or lie outside the range from 1 (or the least number in the
+///   file, if it is less) to `largest` (or the greatest number in the file, if it is greater);
 /// - if there are `unknown` cards: they may name items by number, so no number can change.
 /// Time as `can_be_numbers`.
 bool keep_numbers(const FileNumbers& nodes, const FileNumbers& elements, std::int64_t largest,
                   const std::vector<std::string>& unknown, const FilePath& path);
 
-/// Notes that all numbers stay because of `unknown` cards, which may name nodes or elements; nothing if none.
+/// Notes that all numbers stay because of `unknown` cards, which may name nodes or elements. Notes nothing if
+/// there are no such cards.
 void note_kept_numbers(const std::vector<std::string>& unknown, Notes& notes);
 
 }  // namespace meshorder

@@ -48,7 +48,7 @@ void plan_blocks(Writing& writing, bool is_own) {
   for (BlockPlan& plan : found) {
     if (plan.id >= 0 || plan.record != nullptr) continue;
     plan.id = ids.empty() ? 1 : std::max<std::int64_t>(1, *ids.rbegin() + 1);
-    if (!std::in_range<std::int32_t>(plan.id)) {  // files of 32 bits hold no larger one
+    if (!std::in_range<std::int32_t>(plan.id)) {  // files with 32-bit ids hold no larger id
       for (plan.id = 1; ids.contains(plan.id);) ++plan.id;
     }
     ids.insert(plan.id);

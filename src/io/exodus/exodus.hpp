@@ -6,11 +6,16 @@
 // Format: Schoof, Yarberry, "EXODUS II: A Finite Element Data Model" (Sandia, SAND92-2137), and the names of
 // dimensions and variables in exodusII_int.h of SEACAS, https://sandialabs.github.io/seacas-docs/.
 //
-// Element blocks become blocks of cells; their ids become labels (`kLabel`) and their names sets of cells.
-// Node sets become sets of vertices, element sets sets of cells. A side set NAME becomes the array "side set
-// NAME" on its elements: bit s − 1 of a value is set if side s belongs to the set. Distribution factors are
-// arrays "… factors", attributes arrays "attribute NAME", named maps arrays "map NAME". A variable becomes
-// an array NAME, "NAME step K" if there are several steps; on a set, for example, "NAME on node set SET".
+// - Element blocks become blocks of cells; their ids become labels (`kLabel`), and their names become sets
+//   of cells.
+// - Node sets become sets of vertices, and element sets become sets of cells.
+// - A side set NAME becomes the array "side set NAME" on its elements: bit s − 1 of a value is set if side s
+//   belongs to the set.
+// - Distribution factors become arrays "… factors".
+// - Attributes become arrays "attribute NAME".
+// - Named maps become arrays "map NAME".
+// - A variable becomes an array NAME, or arrays "NAME step K" if there are several steps. A variable on a set
+//   becomes, for example, "NAME on node set SET".
 
 #include "io/cell_division.hpp"
 #include "io/exodus/netcdf.hpp"
@@ -66,7 +71,7 @@ int nodes_of_side(Shape shape, int nodes, int side, int faces);
 struct Series {
   std::string name;
   NcType type = kDouble;
-  std::vector<std::string> arrays = {};  ///< arrays of the mesh, one for each step; empty if without values
+  std::vector<std::string> arrays = {};  ///< arrays of the mesh, one for each step; empty without values
   // for element variables an entry for each block; for others one entry
   std::vector<bool> present = {};   ///< whether the table of variables in the file says that there are values
   std::vector<bool> declared = {};  ///< whether the file has a variable for values, even if it has no steps
@@ -128,7 +133,7 @@ struct MapRecord {
 struct SetKind {
   std::string_view word;         ///< in names of arrays and in messages
   std::string_view count;        ///< dimension
-  std::string_view prefix;       ///< of ids, names and status
+  std::string_view prefix;       ///< begins the names of the variables of ids, names and status
   std::string_view members;      ///< variable
   std::string_view size;         ///< dimension
   std::string_view factor_size;  ///< dimension
@@ -163,7 +168,7 @@ struct ExodusMetadata final : FormatMetadata {
   NcType coordinate_type = kDouble;
   bool packs_coordinates = false;  ///< all coordinates are in one variable, "coord"
   bool packs_nodal = false;        ///< all nodal variables are in one variable, "vals_nod_var"
-  bool has_node_numbers = false;   ///< the file has node_num_map, even if it is 1, 2, …
+  bool has_node_numbers = false;   ///< the file has node_num_map, even if its numbers are 1, 2, …
   bool has_element_numbers = false;
   /// Name of the file if it is a piece of a decomposed mesh, whose communication maps have been left out;
   /// else empty.
@@ -229,7 +234,7 @@ class SideNodes {
   /// @param metadata  gives the types of blocks; `mesh` must outlive this object. O(cells)
   SideNodes(const Mesh& mesh, const ExodusMetadata& metadata);
 
-  /// Returns the number of nodes of side `side`, counted from 1; 0 if there is none. O(log blocks).
+  /// Returns the number of nodes of side `side`, counted from 1; 0 if there is no such side. O(log blocks).
   [[nodiscard]] int count(Index cell, int side) const;
 
  private:
@@ -239,7 +244,7 @@ class SideNodes {
 };
 
 /// Returns the places of cells block by block, cells of the highest dimension first; `blocks` receives the
-/// first cell of each.
+/// first cell of each block.
 Permutation places(const Mesh& mesh, std::vector<Index>& blocks);
 
 }  // namespace meshorder::exodus

@@ -114,7 +114,7 @@ class HeaderReader {
   }
 
   /// Returns the number of bytes of a variable, or of one of its records if it has records. Throws InputError
-  /// if the file has fewer.
+  /// if the file has fewer bytes.
   std::uint64_t bytes_of(const std::string& name, const std::vector<std::uint64_t>& places,
                          std::uint64_t width) {
     std::uint64_t bytes = width;
@@ -122,7 +122,7 @@ class HeaderReader {
       if (places[i] >= lengths_.size())
         fail(name + " has a dimension that is not there", "the file may be damaged");
       const std::uint64_t length = lengths_[places[i]];
-      if (i == 0 && length == 0) continue;  // the dimension of records
+      if (i == 0 && length == 0) continue;  // this dimension counts the records
       if (length > size_ / std::max<std::uint64_t>(1, bytes)) {
         fail(fmt::format("{} has more values than the file has bytes", name), "the file may be cut short");
       }
@@ -152,7 +152,7 @@ class HeaderReader {
       for (std::uint64_t k = 0; k < rank; ++k) places.push_back(count());
       skip_attributes();
       const std::uint64_t width = width_of_type();
-      (void)count();  // the stored size, which large variables exceed
+      (void)count();  // skips the stored size: it is too small for large variables
       part.begin = integer(wide_offsets_ ? 8 : 4);
       part.bytes = bytes_of(part.name, places, width);
       part.in_records = !places.empty() && lengths_[places.front()] == 0;

@@ -185,7 +185,7 @@ void NcInput::check_chunks(const Variable& variable) const {
   std::vector<std::size_t> lengths(variable.dimensions.size());
   if (nc_inq_var_chunking(id_, variable.id, &storage, lengths.data()) != NC_NOERR || storage != NC_CHUNKED)
     return;
-  // twice: as it is stored, and as it is read
+  // memory for two copies: the stored bytes and the values read
   std::uint64_t size = 2 * std::max<std::size_t>(1, size_of(variable.type));
   for (const std::size_t length : lengths) size = bytes_for(size, length);
   const std::string fault = refused_for_a_while(size, "a chunk of " + variable.name);
@@ -302,7 +302,7 @@ std::vector<std::int64_t> NcInput::integers(const Variable& variable, const std:
                                             const std::vector<std::size_t>& counts) const {
   if (!is_whole(variable.type)) fail(variable.name + " has no whole numbers", std::string(kDamaged));
   static_assert(sizeof(long long) == sizeof(std::int64_t));
-  (void)size(variable);  // throws if it claims too much
+  (void)size(variable);  // throws if the file is too small for its values
   std::vector<long long> values(claimed(variable.name, product(counts), 2 * sizeof(long long)));
   if (values.empty()) return {};
   check(nc_get_vara_longlong(id_, variable.id, starts.data(), counts.data(), values.data()), variable.name);
@@ -319,7 +319,7 @@ std::vector<double> NcInput::reals(const Variable& variable, const std::vector<s
   if (size_of(variable.type) == 0 || variable.type == kChar) {
     fail(variable.name + " has no numbers", std::string(kDamaged));
   }
-  (void)size(variable);  // throws if it claims too much
+  (void)size(variable);  // throws if the file is too small for its values
   std::vector<double> values(claimed(variable.name, product(counts), sizeof(double)));
   if (values.empty()) return values;
   check(nc_get_vara_double(id_, variable.id, starts.data(), counts.data(), values.data()), variable.name);
@@ -353,7 +353,7 @@ std::vector<std::string> NcInput::texts(const Variable& variable) const {
 
 Values NcInput::values(const Variable& variable, const std::vector<std::size_t>& starts,
                        const std::vector<std::size_t>& counts) const {
-  (void)size(variable);  // throws if it claims too much
+  (void)size(variable);  // throws if the file is too small for its values
   return values_of_type(alternative_of(variable.type), [&](auto& numbers) {
     using Number = typename std::decay_t<decltype(numbers)>::value_type;
     if constexpr (std::is_arithmetic_v<Number>) {
@@ -407,7 +407,7 @@ int creation_mode(int kind) {
 NcOutput::NcOutput(const FilePath& path, const Storage& storage)
     : name_(path.string()), out_(path), is_in_memory_(path.store() != nullptr), storage_(storage) {
   if (is_in_memory_) {
-    // initial size 0: the file would not become smaller than an initial size
+    // initial size 0: a file never becomes smaller than its initial size
     check(nc_create_mem(kNameInMemory, NC_CLOBBER | creation_mode(storage.kind), 0, &id_), "");
     // fill mode stays on: the library does not write the bytes between variables, so they would be arbitrary
   } else {

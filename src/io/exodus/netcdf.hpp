@@ -102,7 +102,7 @@ class NcInput {
   [[nodiscard]] const std::vector<Variable>& variables() const noexcept { return variables_; }
   /// Returns the variable of that name, or null.
   [[nodiscard]] const Variable* find(const std::string& name) const;
-  /// Returns the length of a dimension, 0 if there is none.
+  /// Returns the length of a dimension, 0 if there is no such dimension.
   [[nodiscard]] std::size_t length(const std::string& name) const;
   /// Returns the length of a dimension that counts items of the file. Throws InputError if it exceeds the
   /// file's size in bytes.
@@ -177,7 +177,7 @@ class NcSink {
   void list(const std::vector<Number>& values) const {
     part({0}, {values.size()}, values);
   }
-  /// Write a part: along each dimension `counts` values from `starts` on.
+  /// Writes a part of the values: along each dimension `counts` values from `starts` on.
   void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
             const std::vector<double>& values) const;
   void part(const std::vector<std::size_t>& starts, const std::vector<std::size_t>& counts,
@@ -200,7 +200,7 @@ class NcSink {
 /// A file that already exists. The caller puts it in place once it is written.
 struct UnfinishedFile {
   std::filesystem::path path;
-  std::string name;  ///< in messages
+  std::string name;  ///< name for messages
 };
 
 /// Writes a file: first the caller declares all dimensions and variables, then `finish` writes the values.
@@ -238,7 +238,7 @@ class NcOutput {
   friend class NcSink;
   Library library_;
   std::string name_;
-  std::optional<OutputFile> out_;  ///< none: the caller puts the file in place
+  std::optional<OutputFile> out_;  ///< empty if the caller puts the file in place
   bool is_in_memory_;
   Storage storage_;
   int id_ = -1;

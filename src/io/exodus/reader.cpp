@@ -181,7 +181,7 @@ void read_points(Reading& reading) {
   }
 }
 
-/// Appends the elements of a block that are in the range to the mesh.
+/// Appends to the mesh the elements of a block that are in the range.
 void read_elements(Reading& reading, const Variable& connect, std::size_t b) {
   const NcInput& file = reading.file;
   const BlockRecord& block = reading.metadata->blocks[b];
@@ -228,7 +228,7 @@ void read_cells(Reading& reading) {
   std::size_t entries = 0;
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     if (blocks[b].nodes == 0) continue;
-    (void)file.size(*file.find(fmt::format("connect{}", b + 1)));  // throws if it claims too much
+    (void)file.size(*file.find(fmt::format("connect{}", b + 1)));  // throws if the file is too small
     entries +=
         static_cast<std::size_t>(reading.own_of_block(b).size()) * static_cast<std::size_t>(blocks[b].nodes);
   }
@@ -413,7 +413,7 @@ void read_data_of_blocks(Reading& reading) {
   label_cells(reading);
   name_blocks(reading);
   for (auto& [name, column] : attributes) {
-    if (column.rows == 0) continue;  // only blocks without elements have it
+    if (column.rows == 0) continue;  // only blocks without elements have the attribute
     const bool is_partial = column.rows != reading.elements;
     if (!is_partial) column.array.indices.clear();
     reading.add_array(std::move(column.array), {is_partial});
@@ -440,7 +440,8 @@ void read_nodal_attributes(Reading& reading) {
   }
 }
 
-/// Returns the numbers of nodes or elements; none if the file has none. Of a whole mesh, drops 1, 2, …
+/// Returns the numbers of nodes or elements; empty if the file has none, or if a whole mesh is read and the
+/// numbers are 1, 2, …
 std::vector<std::int64_t> read_numbers(Reading& reading, const std::string& name, Association of,
                                        bool& is_there) {
   const Variable* const variable = reading.take(name);
@@ -500,7 +501,8 @@ void read_maps(Reading& reading) {
   read_named_maps(reading, "elem", "em", Association::cells, metadata.element_maps);
 }
 
-/// Returns whether a dimension counts nodes or elements. Its variables then depend on their order.
+/// Returns whether a dimension counts nodes or elements. If so, its variables depend on the order of the
+/// nodes or elements.
 bool is_of_nodes_or_elements(const Reading& reading, const Dimension& dimension) {
   constexpr std::array<std::string_view, 6> kWhole{"num_nodes", "num_elem", "num_edge",
                                                    "num_face",  "num_node", "num_elements"};

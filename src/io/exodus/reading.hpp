@@ -15,7 +15,7 @@ namespace meshorder::exodus {
 
 /// A file that is being read, completely or in part, and the results so far.
 struct Reading {
-  /// @param wanted  the ranges to read; null: all. Must outlive this object
+  /// @param wanted  the ranges to read; null: the whole mesh. Must outlive this object
   Reading(const FilePath& path, const MeshRanges* wanted, Notes& warnings)
       : file(path), ranges_wanted(wanted), metadata(std::make_shared<ExodusMetadata>()), notes(warnings) {}
 
@@ -28,7 +28,7 @@ struct Reading {
 
   /// Adds an array, under a name that no other array has, and returns that name.
   std::string add_array(DataArray array, MeshPart::ArrayRows rows = {});
-  /// Adds a set in the same way.
+  /// Adds a set, under a name that no other set has, and returns that name.
   std::string add_set(EntitySet set, MeshPart::SetRows rows = {});
 
   [[nodiscard]] bool is_whole() const noexcept { return ranges_wanted == nullptr; }
@@ -46,7 +46,7 @@ struct Reading {
   }
   /// Returns the block of a cell of the whole mesh. O(log blocks).
   [[nodiscard]] const BlockRecord& block_of(Index cell) const;
-  /// Returns the largest number of values of a list to read at a time; unlimited if all are wanted.
+  /// Returns the largest number of values of a list to read at a time; unlimited if the whole mesh is read.
   [[nodiscard]] std::size_t values_at_once() const noexcept {
     return is_whole() ? std::numeric_limits<std::size_t>::max() : std::size_t{1} << 18;
   }
@@ -81,7 +81,7 @@ std::vector<std::string> read_properties(Reading& reading, const std::string& pr
   }
 }
 
-/// Returns the ids of blocks, sets or maps; 1, 2, … if the file has none or gives one twice.
+/// Returns the ids of blocks, sets or maps; 1, 2, … if the file has no ids or gives an id twice.
 std::vector<std::int64_t> read_ids(Reading& reading, const std::string& variable, std::size_t objects);
 
 /// Return the start and the number of values of a range, for reading a variable of one dimension.

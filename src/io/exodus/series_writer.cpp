@@ -156,7 +156,8 @@ std::vector<Index> rows_in_blocks(const Writing& writing, const DataArray& array
     firsts.push_back(block.cells.first);
   }
   for (const Index cell : array.indices) {
-    // an empty block has the same first cell as the next block, so the last of these has the cell
+    // an empty block has the same first cell as the next block, so the last block with that first cell has
+    // the cell
     const auto next = std::upper_bound(firsts.begin(), firsts.end(), cell);
     ++rows[static_cast<std::size_t>(next - firsts.begin()) - 1];
   }
@@ -169,7 +170,8 @@ struct Presence {
   bool declared = false;
 };
 
-/// Returns how a variable appears in each block. A block that never had values keeps its entry of the file.
+/// Returns how a variable appears in each block. A block that never had values appears as it does in the
+/// file.
 std::vector<Presence> presence(Writing& writing, const SeriesPlan& series) {
   std::vector<Presence> result(writing.blocks.size());
   for (std::size_t b = 0; b < result.size(); ++b) {

@@ -89,7 +89,8 @@ int bit_count(std::int32_t mask) {
   return count;
 }
 
-/// Returns one row for each cell: the values of its sides, ascending by side, each side filled up to `width`.
+/// Returns one row for each cell: the values of its sides, ascending by side, the values of each side padded
+/// to `width`.
 template <class Number>
 std::vector<Number> packed(const Sides& sides, const std::vector<Number>& values,
                            const std::vector<int>& counts, int width) {
@@ -182,7 +183,7 @@ class SetReader {
     const NcInput& file = reading_.file;
     const std::vector<std::size_t> shape = file.shape(variable);
     if (shape.size() != 1) file.fail(variable.name + " is not a list", "the file may be damaged");
-    // twice: for the list and for the set
+    // counted twice: for the list and for the set
     const std::size_t count = file.claimed(variable.name, file.size(variable), 2 * sizeof(Index));
     std::vector<std::int32_t> numbers;
     for (std::size_t first = 0; first < count; first += numbers.size()) {
@@ -422,7 +423,7 @@ class SetReader {
   }
 
   /// Adds an array of the factors of a side set. The file has a factor for each node of a side, or the same
-  /// number for each side; other lists are left out with a note.
+  /// number of factors for each side; other lists are left out with a note.
   void add_factors(SetRecord& set, std::size_t size, const SideEntries& own, const Sides& sides,
                    const Variable& variable) {
     const std::size_t values = reading_.file.size(variable);
@@ -538,14 +539,14 @@ void read_nodal(Reading& reading) {
 /// A variable of elements, and the blocks that have values of it.
 struct ElementVariable {
   std::string name;
-  std::vector<const Variable*> of_block;  ///< null for blocks without
+  std::vector<const Variable*> of_block;  ///< null for blocks without values
   Index rows = 0;                         ///< elements with values, in the whole mesh
   bool is_of_one_type = true;             ///< whether all blocks with elements have the same type
   std::vector<Index> indices;             ///< cells with values in the range that is read
 };
 
 /// Returns the values of an element variable at a step; as real numbers if blocks have different types.
-/// `keeps_digits` becomes false if real numbers cannot hold them exactly.
+/// `keeps_digits` becomes false if real numbers cannot hold the values exactly.
 Values values_at(const Reading& reading, const ElementVariable& variable, NcType type, std::size_t step,
                  bool& keeps_digits) {
   std::optional<Values> result;

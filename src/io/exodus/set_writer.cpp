@@ -184,8 +184,8 @@ class FamilyPlanner {
   std::optional<SideNodes> nodes_;  ///< made when the first side set with factors is added
 };
 
-/// Returns the values of an array for the members of a set: counts[i] for member i, or one if `counts` is
-/// empty. Members without a row get `missing`.
+/// Returns the values of an array for the members of a set: counts[i] values for member i, or one value if
+/// `counts` is empty. Members without a row get `missing`.
 template <class Number>
 std::vector<Number> values_of_members(const SetPlan& plan, const DataArray& array, int width,
                                       const std::vector<int>& counts, Number missing) {
@@ -290,7 +290,7 @@ class FamilyWriter {
                        [](const DataArray* array) { return array != nullptr; });
   }
 
-  /// Returns whether the table of variables marks values for a set: the set has some, or the table of the
+  /// Returns whether the table of variables marks values for a set: the set has values, or the table of the
   /// file that the mesh came from marked values that did not exist.
   static bool is_in_table(const SetPlan& plan, std::size_t v) {
     if (has_values(plan, v)) return true;

@@ -49,9 +49,10 @@ constexpr std::array kWrittenTypes{
     WrittenType{Shape::hexahedron, 20, "HEX20"},    WrittenType{Shape::hexahedron, 27, "HEX27"},
 };
 
-// file: nodes on the edges between the two triangles precede those on the edges of the upper triangle
+// order in the file: nodes on the edges between the two triangles precede those on the edges of the upper
+// triangle
 constexpr std::array kWedge{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17};
-// likewise; then the centre, then the nodes on the faces bottom, top, left, right, front and back
+// the same for edges; then the centre, then the nodes on the faces (bottom, top, left, right, front, back)
 constexpr std::array kHexahedron{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
                                  18, 19, 12, 13, 14, 15, 23, 24, 25, 26, 21, 22, 20};
 

@@ -272,7 +272,7 @@ void write_nodal_attributes(Writing& writing, const Columns& columns) {
   });
 }
 
-/// Returns a table of names with longer rows, of `length` bytes.
+/// Returns a table of names whose rows are lengthened to `length` bytes.
 PlainVariable with_name_length(PlainVariable table, std::size_t length) {
   const std::size_t old = table.dimensions.back().length;
   if (table.type != kChar || old == 0 || length < old) return table;

@@ -30,7 +30,7 @@ struct Writing {
 
   /// Returns the array of that name and adds it to `placed`; null if it does not exist or cannot be written.
   const DataArray* take(std::string_view name, Association association);
-  /// Does the same for an array of one component; null for others.
+  /// As `take`, for an array of one component; null for other arrays.
   const DataArray* take_column(std::string_view name, Association association);
 
   /// Declares a variable; adds the attributes that it had in the file that the mesh came from.
@@ -39,7 +39,8 @@ struct Writing {
   /// Declares a table of names, with rows of the metadata's `name_length`.
   void write_names(const std::string& variable, const std::string& count,
                    const std::vector<std::string>& names);
-  /// Declares a variable of whole numbers: of 32 bits if all fit and `type` is not kInt64, else of 64.
+  /// Declares a variable of whole numbers: with 32 bits if all numbers fit and `type` is not kInt64, else
+  /// with 64 bits.
   void write_integers(const std::string& variable, const std::string& dimension,
                       std::vector<std::int64_t> values, const std::vector<Attribute>& attributes = {},
                       NcType type = kInt);
@@ -121,8 +122,8 @@ inline std::vector<std::string> names_of(const Columns& columns) {
   return names;
 }
 
-/// Returns one component of an array for `count` vertices or cells from `first` on; `missing` if one has no
-/// row. `table`: see `rows_by_item`.
+/// Returns one component of an array for `count` vertices or cells from `first` on; `missing` for each one
+/// without a row. `table`: see `rows_by_item`.
 template <class Number>
 std::vector<Number> column(const DataArray& array, Index component, const std::vector<Index>& table,
                            Index first, Index count, Number missing) {
@@ -162,7 +163,7 @@ struct SetPlan {
   std::vector<std::int32_t> sides = {};    ///< side sets: the side of each member, from 1
   std::vector<Index> ranks = {};           ///< place of each side among the sides of its element in the set
   const DataArray* factors = nullptr;
-  std::vector<int> factor_counts = {};  ///< side sets: factors of each side; empty if each member has one
+  std::vector<int> factor_counts = {};  ///< side sets: number of factors of each side; empty if all are 1
   int factor_width = 1;                 ///< side sets: components of the array for one side
   std::vector<std::vector<const DataArray*>> variables =
       {};  ///< by variable and step, as the record has them
@@ -179,14 +180,15 @@ void write_sets(Writing& writing, const std::vector<std::vector<SetPlan>>& plans
 struct SeriesPlan {
   std::string name;
   NcType type = kDouble;
-  std::vector<const DataArray*> arrays = {};  ///< for each step; null if there is none
+  std::vector<const DataArray*> arrays = {};  ///< for each step; null if the step has no array
   Index component = 0;
   std::vector<bool> present = {};   ///< as in Series
   std::vector<bool> declared = {};  ///< as in Series
 };
 
 /// Returns the variables of nodes or elements: the variables of the file that the mesh came from, then one
-/// for each component of the arrays that have no other place. Notes arrays that no variable can hold.
+/// variable for each component of the arrays that have no other place. Notes arrays that no variable can
+/// hold.
 std::vector<SeriesPlan> plan_series(Writing& writing, Association association);
 
 void write_nodal(Writing& writing, const std::vector<SeriesPlan>& series);

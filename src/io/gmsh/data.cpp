@@ -79,11 +79,11 @@ int nodes_of_entry(const Mesh& mesh, Index c, PerElement per, int fixed) {
 /// The entries of a section in the order of the file; entry i has nodes[i] × components values.
 struct Entries {
   std::vector<Index> rows;  ///< vertex or cell of each entry
-  std::vector<int> nodes;   ///< empty: each entry has one
+  std::vector<int> nodes;   ///< empty: each entry has one node
   std::vector<double> values;
 };
 
-/// Finds the rule for the number of nodes of an entry and stores it in `view`; fails if none fits.
+/// Finds the rule for the number of nodes of an entry and stores it in `view`; fails if no rule fits.
 void find_rule(const ReadContext& reading, const Entries& entries, View& view) {
   if (entries.nodes.empty()) return;
   for (const PerElement per : {PerElement::each_node, PerElement::each_corner, PerElement::fixed}) {
@@ -133,7 +133,7 @@ Entries read_entries(ReadContext& reading, const View& view) {
   return entries;
 }
 
-/// Returns the values of the entries as rows of one width, padded with 0; `width` receives it.
+/// Returns the values of the entries as rows of one width, padded with 0; `width` receives their width.
 std::vector<double> even_rows(const ReadContext& reading, Entries& entries, const View& view, Index& width) {
   const int components = view.integers[1];
   int most = 1;
@@ -176,7 +176,8 @@ void restore_labels(DataArray& array) {
   }
 }
 
-/// Returns the smallest number of components that Gmsh allows and that is at least `components`; else 0.
+/// Returns the smallest number of components, at least `components`, that Gmsh allows; 0 if it allows no such
+/// number.
 Index gmsh_components(Index components) {
   for (const Index known : {1, 3, 9}) {
     if (components <= known) return known;
@@ -244,7 +245,7 @@ void read_view(ReadContext& reading, std::string_view section) {
   expect_end(reading, section);
   reading.metadata.sections.push_back({SectionKind::view, view.section, "", reading.metadata.views.size()});
   reading.view_arrays.push_back(reading.mesh.data.size());
-  if (entries.rows.empty()) {  // an array without rows would mean all
+  if (entries.rows.empty()) {  // an array without indices would have values everywhere
     view.array.reset();
   } else {
     array.indices = std::move(entries.rows);

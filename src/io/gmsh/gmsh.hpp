@@ -42,8 +42,8 @@ struct ElementType {
 /// Returns the type with that number, or nullptr if it has no fixed number of nodes or no Shape.
 const ElementType* find_type(int number);
 
-/// Returns the type of cells of that shape with `nodes` vertices, or nullptr. If Gmsh has two (the complete
-/// and the serendipity quad of 16 nodes), the complete one.
+/// Returns the type of cells of that shape with `nodes` vertices, or nullptr. If Gmsh has two such types (the
+/// complete and the serendipity quad of 16 nodes), returns the complete one.
 const ElementType* find_type(Shape shape, int nodes);
 
 /// Returns Gmsh's order of nodes: order[k] is the position in Gmsh's list of the k-th node in VTK's order.
@@ -54,10 +54,10 @@ std::span<const int> vtk_order(Shape shape, int nodes);
 
 inline constexpr std::string_view kCellEntity = "gmsh:geometrical";    ///< tag of each cell's entity
 inline constexpr std::string_view kCellDimension = "gmsh:entity_dim";  ///< if not the cell's dimension
-inline constexpr std::string_view kCellType = "gmsh:type";  ///< if shape and count do not determine it
+inline constexpr std::string_view kCellType = "gmsh:type";  ///< if shape and node count do not determine it
 inline constexpr std::string_view kCellPartitions = "gmsh:partitions";  ///< 2.2: tags from the third on
 inline constexpr std::string_view kCellTagCount = "gmsh:tag_count";     ///< 2.2: if it differs among cells
-inline constexpr std::string_view kCellGhosts = "gmsh:ghosts";    ///< owner, number of ghosts, ghosts, 0 …
+inline constexpr std::string_view kCellGhosts = "gmsh:ghosts";    ///< owner, number of ghosts, ghosts, zeros
 inline constexpr std::string_view kNodeEntity = "gmsh:dim_tags";  ///< dimension and tag of a node's entity
 inline constexpr std::string_view kNodeParameters = "gmsh:parametric";  ///< 1 if given, else 0; u, v, w
 
@@ -70,7 +70,7 @@ enum class PerElement : std::uint8_t { one, each_node, each_corner, fixed };
 struct View {
   std::string section;
   Association association = Association::vertices;
-  std::optional<std::string> array;    ///< name of the array in the mesh; none: the view has no values
+  std::optional<std::string> array;    ///< name of the array in the mesh; nullopt: the view has no values
   Index width = 1;                     ///< components of that array
   std::vector<std::string> strings;    ///< verbatim, quotes included
   std::vector<double> reals;           ///< the time first
@@ -199,7 +199,8 @@ void keep_parameters(Mesh& mesh, std::vector<double> values);
 /// Fails if `rows` contains a row twice; `section` is for the message. O(rows · log rows).
 void check_distinct(const NumberReader& source, std::vector<Index> rows, std::string_view section);
 
-/// Read a section; `section` is its name without the $: Nodes, ParametricNodes or Elements; NOD, NOE or ELM.
+/// Read a section; `section` is its name without the $: Nodes, ParametricNodes or Elements; in version 1 NOD,
+/// NOE or ELM.
 void read_nodes_2(ReadContext& reading, std::string_view section);
 void read_elements_2(ReadContext& reading, std::string_view section);
 void read_entities_4(ReadContext& reading, bool partitioned);
@@ -214,7 +215,8 @@ void name_views(ReadContext& reading);
 /// Returns the named physical groups that have cells, as sets of cells.
 std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metadata);
 
-/// Returns the first physical group of each cell's entity, 0 for none; empty if no cell has one.
+/// Returns the first physical group of each cell's entity, 0 for cells without a group; empty if no cell has
+/// a group.
 std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshMetadata& metadata);
 
 // ---- writing
@@ -316,7 +318,7 @@ const std::vector<double>* parameters_of(const Mesh& mesh);
 /// sets of cells and the entities that it may have kept from an earlier conversion.
 void classify(GmshMetadata& layout, WriteContext& output, Notes& notes);
 
-/// Adds a view for an array that has none yet; returns false, with a note, if Gmsh has no place for it.
+/// Adds a view for an array that has no view yet; returns false, with a note, if Gmsh has no place for it.
 bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes);
 
 /// Adapts the views of arrays that were replaced to the components of the new arrays. A view that has no

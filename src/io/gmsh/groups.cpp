@@ -87,7 +87,7 @@ struct Groups {
   std::vector<Index> of_cell;
 };
 
-/// Returns the labels if they are valid numbers of physical groups; else none, with a note.
+/// Returns the labels if they are valid numbers of physical groups; else returns no labels and adds a note.
 std::vector<std::int32_t> labels_for_groups(const Mesh& mesh, Notes& notes) {
   const DataArray* array = find_array(mesh, kLabel, Association::cells);
   std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Association::cells);
@@ -122,7 +122,7 @@ Groups groups_by_label(const Mesh& mesh, const std::vector<std::int32_t>& labels
   return result;
 }
 
-/// Splits each group: its cells in the set become a new group with `physical`; the others stay.
+/// Splits each group: its cells that are in the set become a new group with `physical`; its other cells stay.
 void split_by_set(Groups& groups, const EntitySet& set, std::int32_t physical) {
   std::map<Index, Index> inside;  // new group of each group's cells in the set
   std::set<Index> parts;          // the new groups
@@ -140,7 +140,8 @@ void split_by_set(Groups& groups, const EntitySet& set, std::int32_t physical) {
   }
 }
 
-/// Gives each group with cells a tag: the first one that wants a tag gets it, the others get new ones.
+/// Gives each group with cells a tag: the first group that wants a tag gets it, the other groups get new
+/// tags.
 void assign_tags(const Mesh& mesh, Groups& groups) {
   std::array<std::int32_t, 4> last{};
   for (const Group& group : groups.groups) {
@@ -161,8 +162,8 @@ void assign_tags(const Mesh& mesh, Groups& groups) {
   }
 }
 
-/// Returns the entity of each node: from the array kNodeEntity if it is valid, adding new ones to `entities`;
-/// else the first entity of the highest dimension.
+/// Returns the entity of each node: its entity in the array kNodeEntity if that array is valid, else the
+/// first entity of the highest dimension. Adds new entities to `entities`.
 std::vector<std::int32_t> entities_of_nodes(const Mesh& mesh, std::map<Entity, Group>& entities,
                                             WriteContext& output) {
   std::vector<std::int32_t> kept = integers_of(mesh, kNodeEntity, Association::vertices);
@@ -216,9 +217,10 @@ std::string names_text(const std::vector<PhysicalName>& names) {
 /// Number of cells by dimension and label.
 using LabelCounts = std::map<std::pair<std::int32_t, std::int32_t>, Index>;
 
-/// Finds the labels that are the numbers of sets. In a mesh that came from Gmsh, the label of a cell is its
-/// first physical group, and each named group is a set. If a group is the first group of all its cells, its
-/// set has exactly the cells with its label. Sets of other groups also have cells with labels of such groups.
+/// Finds the labels that are the numbers of sets. In a mesh that came from Gmsh, the label of a cell is the
+/// number of its first physical group, and each named group is a set. If a group is the first group of all
+/// its cells, its set has exactly the cells whose label is the group's number. The set of any other group
+/// also has cells with labels of other groups.
 class NumbersOfSets {
  public:
   NumbersOfSets(const Mesh& mesh, const std::vector<std::int32_t>& labels)
@@ -239,7 +241,7 @@ class NumbersOfSets {
   [[nodiscard]] std::int32_t operator[](std::size_t set) const { return number_[set]; }
 
  private:
-  /// Gives set s its number if it finds one. `only`: all cells of the set must have that label.
+  /// Gives set s its number if it finds a number. `only`: all cells of the set must have that label.
   void claim(std::size_t s, bool only) {
     if (number_[s] != 0) return;
     for (const auto& [key, count] : inside_[s]) {
@@ -262,7 +264,7 @@ class NumbersOfSets {
 
   std::vector<std::int32_t> number_;
   LabelCounts all_;
-  std::vector<LabelCounts> inside_;  ///< of each set
+  std::vector<LabelCounts> inside_;  ///< for each set, its cells by dimension and label
   std::set<std::pair<std::int32_t, std::int32_t>> taken_;
 };
 

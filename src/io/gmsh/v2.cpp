@@ -13,7 +13,7 @@
 namespace meshorder::gmsh {
 namespace {
 
-/// The tags of all elements, which may have different numbers of them.
+/// The tags of all elements. Elements may have different numbers of tags.
 struct Tags {
   std::vector<Offset> offsets{0};
   std::vector<std::int32_t> values;
@@ -31,8 +31,8 @@ struct Element {
   Index tag_count;
 };
 
-/// Returns whether tags follow the partitions: these are numbers of elements, the parents and domains of cut
-/// elements.
+/// Returns whether tags follow the partitions: such tags are numbers of elements, the parents and domains of
+/// cut elements.
 bool has_element_tags(double version, std::span<const std::int32_t> tags) {
   return tags.size() >
          (version < 2.15 || tags.size() < 4 ? 3 : 3 + static_cast<std::size_t>(std::max(0, tags[2])));
@@ -117,7 +117,7 @@ Index read_alike(ReadContext& reading, const Element& last, Index most, Tags& ta
 /// failure, it waits for more elements to be read one by one. Mixed elements then cost little.
 class Alikes {
  public:
-  /// Reads the next elements by `read_alike`, or none.
+  /// Reads the next elements by `read_alike`, or reads no elements.
   Index read(ReadContext& reading, const Element& last, Index left, Tags& tags,
              std::vector<std::int64_t>& ids) {
     if (pause_ > 0) {
@@ -268,7 +268,7 @@ void read_elements_2(ReadContext& reading, std::string_view section) {
   ids.reserve(count);
   types.reserve(count);
   while (index_size(ids) < count) {
-    // text gives type and number of tags for each element, binary for a run of elements
+    // text files give the type and number of tags of each element, binary files once for a run of elements
     Index run = 1;
     Element element{};
     if (!source.binary) element.id = source.int32("the number of an element");

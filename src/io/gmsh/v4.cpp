@@ -163,7 +163,7 @@ Head read_head(ReadContext& reading, std::string_view what, std::int64_t text_by
               "the counts must agree");
 }
 
-/// Returns the smallest and largest number; both are 0 if there are none.
+/// Returns the smallest and largest number; both are 0 if there are no numbers.
 std::pair<std::int64_t, std::int64_t> range_of(const std::vector<std::int64_t>& ids, Index count) {
   if (count == 0) return {0, 0};
   if (ids.empty()) return {1, count};
@@ -315,8 +315,8 @@ void read_elements_4(ReadContext& reading) {
   reading.elements = number_ids(source, ids, "element");
   if (!reading.elements.runs_from(1)) mesh.cell_ids = std::move(ids);
 
-  // if a kind has several blocks, as in a converted mesh, do not bind cells to blocks: their order matters
-  // more
+  // if a kind has several blocks, as in a converted mesh, do not bind cells to blocks: the order of the cells
+  // matters more
   if (!repeated && starts.size() > 1) mesh.cell_blocks = std::move(starts);
   bool own = true;
   for (Index c = 0; c < mesh.cell_count(); ++c) own = own && dimensions[c] == dimension(mesh.cells.shapes[c]);

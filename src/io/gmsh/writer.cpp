@@ -21,7 +21,8 @@ namespace {
 
 bool holds(const Mesh& /*mesh*/, Shape shape, int nodes) { return find_type(shape, nodes) != nullptr; }
 
-/// Returns the type of each cell; the array kCellType decides between types of the same shape and count.
+/// Returns the type of each cell; the array kCellType decides between types of the same shape and number of
+/// nodes.
 std::vector<const ElementType*> types_of_cells(const Mesh& mesh) {
   const std::vector<std::int32_t> numbers = integers_of(mesh, kCellType, Association::cells);
   std::vector<const ElementType*> types;
@@ -40,7 +41,8 @@ std::vector<const ElementType*> types_of_cells(const Mesh& mesh) {
   return types;
 }
 
-/// Returns ids if they are valid in Gmsh (at least `smallest`, distinct); else none, with a note.
+/// Returns ids if they are valid in Gmsh (at least `smallest`, distinct); else returns no ids and adds a
+/// note.
 std::vector<std::int64_t> usable_ids(const std::vector<std::int64_t>& ids, std::string_view what,
                                      std::int64_t smallest, Notes& notes) {
   if (ids.empty() || can_be_numbers(ids, std::numeric_limits<std::int64_t>::max(), smallest)) return ids;

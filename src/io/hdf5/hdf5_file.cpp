@@ -153,7 +153,7 @@ std::vector<std::pair<std::string, std::uint64_t>> File::datasets() const {
   const Session session;
   std::vector<std::pair<std::string, std::uint64_t>> result;
   // The library visits an object once if the object's count of links is right. Without this check, it would
-  // visit a damaged group that contains itself for ever.
+  // never finish a damaged group that contains itself.
   std::set<haddr_t> groups;
   Visitor<H5O_info_t> visitor([&](hid_t file, const char* name, const H5O_info_t& object) {
     if (object.type == H5O_TYPE_GROUP && !groups.insert(object.addr).second)

@@ -55,41 +55,42 @@ class File {
   /// dataset that claims more values than its bytes can hold.
   [[nodiscard]] DatasetInfo info(const std::string& path) const;
   /// Returns the number type of a dataset, as an alternative of Values, even if its values are missing;
-  /// nothing if there is no dataset of plain numbers.
+  /// nullopt if there is no dataset of plain numbers.
   [[nodiscard]] std::optional<std::size_t> number_type(const std::string& path) const;
   /// Returns the values of a dataset that `info` accepts, row by row, in its own number type.
   [[nodiscard]] Values read(const std::string& path) const;
   /// Returns whole numbers as indices. A number out of range becomes the nearest 32-bit limit, which is not
   /// an index.
   [[nodiscard]] std::vector<Index> read_indices(const std::string& path) const;
-  /// Returns the byte offset in the file of the values of a dataset that `info` accepts; 0 if it has no
-  /// values; nothing unless the values are contiguous and in this machine's byte order.
+  /// Returns the byte offset in the file of the values of a dataset that `info` accepts; 0 if the dataset has
+  /// no values. Returns nullopt unless the values are contiguous and in this machine's byte order.
   [[nodiscard]] std::optional<std::uint64_t> place_of_values(const std::string& path) const;
-  /// Returns the paths of all datasets with at least one dimension, and the length of their first.
+  /// Returns the paths of all datasets with at least one dimension, and the length of each dataset's first
+  /// dimension.
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> datasets() const;
 
   /// Returns whether there is a group or a dataset of that path.
   [[nodiscard]] bool has(const std::string& path) const;
-  /// Returns the names in a group, ascending; none if there is no such group.
+  /// Returns the names in a group, ascending; empty if there is no such group.
   [[nodiscard]] std::vector<std::string> names(const std::string& group) const;
   /// Returns the texts of a dataset. Its rows are texts of any length, or arrays of at most 1,024 characters.
   /// Removes blanks and zero bytes from the ends of arrays.
   [[nodiscard]] std::vector<std::string> read_texts(const std::string& path) const;
   /// Returns whether there is a dataset that `read_texts` understands.
   [[nodiscard]] bool has_texts(const std::string& path) const;
-  /// Returns a whole number or a text that belongs to a group or a dataset; nothing if the attribute does not
+  /// Returns a whole number or a text that belongs to a group or a dataset; nullopt if the attribute does not
   /// exist or is of another kind.
   [[nodiscard]] std::optional<std::int64_t> integer_attribute(const std::string& path,
                                                               const std::string& name) const;
-  /// Returns all whole numbers of an attribute, at most 64; none if there is no such attribute.
+  /// Returns all whole numbers of an attribute, at most 64; empty if there is no such attribute.
   [[nodiscard]] std::vector<std::int64_t> integers_attribute(const std::string& path,
                                                              const std::string& name) const;
   [[nodiscard]] std::optional<std::string> text_attribute(const std::string& path,
                                                           const std::string& name) const;
 
-  /// Writes numbers to a dataset. One that exists keeps its number type, attributes, chunks and compression;
-  /// it also keeps its shape if the number of values is the same. A new one gets the type and the shape that
-  /// are given.
+  /// Writes numbers to a dataset. A dataset that exists keeps its number type, attributes, chunks and
+  /// compression; it also keeps its shape if the number of values is the same. A new dataset gets the given
+  /// type and shape.
   void write(const std::string& path, const Values& values, const std::vector<std::uint64_t>& shape);
   void write(const std::string& path, std::span<const Index> values, const std::vector<std::uint64_t>& shape);
   /// Writes texts to a dataset, as rows of `width` characters, cut or padded at their ends. A dataset
@@ -101,14 +102,15 @@ class File {
   /// Makes a dataset of numbers, whose type is an alternative of Values. Allocates room in the file without
   /// writing values.
   void make_room(const std::string& path, std::size_t alternative, const std::vector<std::uint64_t>& shape);
-  /// Allocates room in the file for the values of a dataset that has none yet. Writes only the first value,
-  /// as zero.
+  /// Allocates room in the file for the values of a dataset that has no room yet. Writes only the first
+  /// value, as zero.
   void give_room(const std::string& path);
   /// Order of the links in a group that `make_group` makes: by creation or by name. `make_group` makes a
   /// group, and its parents, unless the group exists.
   enum class LinkOrder : std::uint8_t { made, names };
   void make_group(const std::string& path, LinkOrder order = LinkOrder::made);
-  /// Sets an attribute of a group or a dataset. A single whole number keeps the number type of the old one.
+  /// Sets an attribute of a group or a dataset. A single whole number keeps the number type of the old
+  /// attribute.
   void set_attribute(const std::string& path, const std::string& name, std::int64_t value);
   void set_attribute(const std::string& path, const std::string& name, double value);
   void set_attribute(const std::string& path, const std::string& name, const std::string& value);
@@ -129,7 +131,7 @@ class File {
   void close();
 
  private:
-  /// Returns an unused path beside this one.
+  /// Returns an unused path beside this path.
   [[nodiscard]] std::string free_path(const std::string& path) const;
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
   [[nodiscard]] Handle open_dataset(const std::string& path) const;
@@ -151,7 +153,7 @@ class File {
   std::string name_;
 };
 
-/// Returns the path with one slash before each part and none at its end.
+/// Returns the path with one slash before each part and no slash at its end.
 std::string normal_path(std::string_view path);
 
 /// Writes an HDF5 file: opens `bytes` as a file (in memory for a path in a store, else beside the path),

@@ -35,17 +35,17 @@ void forget_times(const Handle& creation);
 /// library's sorting trusts the size that a damaged group claims.
 std::vector<std::string> names_in(hid_t group, H5_index_t index = H5_INDEX_NAME);
 
-/// Copies all attributes to another object, except references. Returns false if one is damaged; then none is
-/// copied, because iterating over damaged attributes crashes the library.
+/// Copies all attributes to another object, except references. Returns false if an attribute is damaged; it
+/// then copies nothing, because iterating over damaged attributes crashes the library.
 bool copy_attributes(hid_t from, hid_t to);
 
-/// Makes a dataset with the type, attributes, chunks and filters of another one, but with the shape `space`
-/// and without values.
+/// Makes a dataset with the type, attributes, chunks and filters of another dataset, but with the shape
+/// `space` and without values.
 Handle empty_copy(hid_t dataset, hid_t target, const char* name, hid_t space);
 
-/// Copies everything in a file to an empty one, except the values of the datasets at these paths: see
-/// File::without_values. Returns the path of a group whose attributes could not be copied; an empty text
-/// if there is none.
+/// Copies everything in a file to an empty file, except the values of the datasets at these paths: see
+/// File::without_values. Returns the path of a group whose attributes could not be copied; an empty text if
+/// there is none.
 std::string copy_without_values(hid_t file, hid_t copy, const std::set<std::string>& paths);
 
 }  // namespace meshorder::hdf5

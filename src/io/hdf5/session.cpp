@@ -17,7 +17,7 @@ struct Faults {
   int sessions = 0;
   bool any = false;
   bool memory = false;
-  std::array<char, 64> words{};  ///< the system's message for a failed read or write; empty if none failed
+  std::array<char, 64> words{};  ///< the system's message for a failed read or write, if there was one
   std::array<char, 64> cause{};  ///< the library's message for the first call that failed
 };
 
@@ -42,7 +42,7 @@ void keep(std::string_view text, std::array<char, Size>& into) {
   std::copy_n(text.begin(), std::min(text.size(), Size - 1), into.begin());
 }
 
-/// Records one error of the library's stack. `first` points to whether no call has failed before.
+/// Records one error of the library's stack. `first` points to a bool: whether no call has failed before.
 herr_t note_cause(unsigned /*depth*/, const H5E_error2_t* error, void* first) {
   const std::string_view cause = error->desc != nullptr ? error->desc : "";
   if (cause.starts_with("memory allocation failed")) faults.memory = true;
@@ -78,7 +78,7 @@ Session::~Session() {
   --faults.sessions;
 }
 
-// NOLINTBEGIN(readability-convert-member-functions-to-static): without a session they mean nothing
+// NOLINTBEGIN(readability-convert-member-functions-to-static): without a session these functions mean nothing
 void Session::watch() const { H5Eset_auto2(H5E_DEFAULT, note_failure, nullptr); }
 
 void Session::require_no_fault(const std::string& file) const {
@@ -87,7 +87,7 @@ void Session::require_no_fault(const std::string& file) const {
                      std::string("HDF5 could not read or write all of it (") + faults.words.data() + ")",
                      "is the disk full, or does it fail?");
   }
-  // parts of the library ignore a failed malloc; a later failure then gives another cause or none
+  // parts of the library ignore a failed malloc; a later failure then gives another cause or no cause
   if (faults.memory || errno == ENOMEM)
     throw InputError(file, "HDF5 had no memory for a part of it", "the file may be damaged");
 }

@@ -18,7 +18,8 @@
 namespace meshorder::hdf5 {
 namespace {
 
-/// Returns the name of a filter of the dataset that this library lacks; an empty text if it has all.
+/// Returns the name of a filter of the dataset that this library lacks; an empty text if the library has all
+/// of them.
 std::string lacking_filter(hid_t creation) {
   const int filters = H5Pget_nfilters(creation);
   for (int i = 0; i < filters; ++i) {
@@ -104,7 +105,7 @@ DatasetInfo File::info(const std::string& path) const {
          "decompress it (h5repack -f NONE)");
   }
   if (H5Pget_layout(creation.id()) == H5D_CHUNKED) {
-    // twice: the stored bytes and the decoded ones
+    // memory for two copies: the stored bytes and the decoded bytes
     const std::string fault =
         refused_for_a_while(2 * bytes_of_chunk(creation.id(), type.id()), "a chunk of it");
     if (!fault.empty()) fail(path, "cannot be read: " + fault, kClaimRemedy);

@@ -18,10 +18,12 @@ struct RowPoints {
   int dimension = 3;          ///< numbers in each row of the file, 2 or 3
 };
 
-/// Reads the points of `rows` rows: a NumPy array of numbers, rows × 2 or rows × 3; a dense `array` of Matrix
-/// Market; or text with two or three numbers in a line, separated by blanks or commas, and comments from `#`
-/// or `%` on. Throws InputError, with the line or byte, for other files, another number of rows, numbers that
-/// are not finite, and points that are all the same.
+/// Reads the points of `rows` rows. The file may be
+/// - a NumPy array of numbers, rows × 2 or rows × 3;
+/// - a dense `array` of Matrix Market;
+/// - text with two or three numbers in a line, separated by blanks or commas; comments begin at `#` or `%`.
+/// Throws InputError, with the line or byte, for other files, another number of rows, numbers that are not
+/// finite, and points that are all the same.
 RowPoints read_points(const FilePath& path, Index rows);
 
 }  // namespace meshorder
@@ -42,7 +44,7 @@ void claim_vertices(Index count);
 /// Returns the array of that name if it holds numbers for every vertex or cell; null otherwise.
 const DataArray* dense_array(const Mesh& mesh, std::string_view name, Association association);
 
-/// Returns whether an array holds whole numbers of at most 64 bits with a sign.
+/// Returns whether an array holds whole numbers that fit 64 bits with a sign.
 bool is_whole(const DataArray& array);
 
 /// Returns the value at position `at` of an array of numbers.

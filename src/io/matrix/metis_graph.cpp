@@ -194,12 +194,12 @@ class GraphReader {
   bool has_edge_weights_ = false;
   bool has_weights_ = false;
   bool has_sizes_ = false;
-  std::vector<std::int64_t> lines_;  // of each vertex, in the file
+  std::vector<std::int64_t> lines_;  // number of each vertex's line in the file
   std::int64_t line_of_header_ = 1;
   std::vector<std::int64_t> sizes_;
   std::vector<std::int64_t> vertex_weights_;
   std::vector<Offset> offsets_{0};
-  std::vector<Neighbour> neighbours_;  // of all vertices, ascending for each
+  std::vector<Neighbour> neighbours_;  // neighbours of all vertices; those of each vertex ascend
 };
 
 Mesh read_graph(const FilePath& path, Notes& /*notes*/) { return GraphReader(path).read(); }

@@ -45,7 +45,7 @@ class PointReader {
   }
 
  private:
-  /// Fails unless the file has as many rows as the matrix, of two or three numbers.
+  /// Fails unless the file has as many rows as the matrix, and two or three numbers in each row.
   void take_shape(std::int64_t rows, std::int64_t columns) {
     if (columns != 2 && columns != 3) in_.fail(fmt::format("a row has {} numbers", columns), kRowRemedy);
     if (rows != rows_) fail_of_rows(fmt::format("has {} rows of coordinates", rows));

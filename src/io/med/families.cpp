@@ -35,7 +35,7 @@ std::vector<std::int64_t> numbers_in(const Mesh& mesh, const std::string& name, 
   return numbers;
 }
 
-/// Returns the families of a file: −1, −2, … before 1, 2, …; leaves out 0 and repeated numbers.
+/// Returns the families of a file in the order −1, −2, …, 1, 2, … Leaves out family 0 and repeated numbers.
 std::vector<Family> families_in(const Reading& reading, const std::string& root) {
   std::vector<Family> families;
   std::unordered_set<std::int64_t> numbers;
@@ -96,7 +96,7 @@ void read_families_of(Reading& reading, Association association) {
   }
 }
 
-/// Numbers the combinations of a family and groups that vertices or cells belong to.
+/// Gives a number to each combination of a family and groups that vertices or cells belong to.
 class Combinations {
  public:
   /// Starts with the family of each item, and no groups.
@@ -145,7 +145,7 @@ class Combinations {
   /// groups.
   struct Combination {
     std::int64_t family;
-    std::size_t without_last;  ///< the combination before the last group; kNone for a family alone
+    std::size_t without_last;  ///< the combination without its last group; kNone if it has no groups
     std::size_t last_group;
   };
 
@@ -204,7 +204,7 @@ class FamilyWriter {
     if (!any && writing_.layout.is_made) add_labels(combinations);
   }
 
-  /// Makes groups of labels in a mesh that has no sets.
+  /// Makes groups from the labels of a mesh that has no sets.
   void add_labels(Combinations& combinations) {
     const Labels labels = labels_of(writing_.mesh, association_);
     std::map<std::int64_t, std::vector<Index>> members;
@@ -232,8 +232,8 @@ class FamilyWriter {
     return result;
   }
 
-  /// Returns the number of a family with these groups: the number of `wanted` if the file's family has the
-  /// same groups, else the number of another family of the file or of a new one.
+  /// Returns the number of a family with the groups of `wanted`: the number of `wanted` if the file's family
+  /// of that number has the same groups, else the number of another family of the file, or of a new family.
   std::int64_t number_for(const Family& wanted) {
     std::vector<std::string> groups = wanted.groups;
     std::sort(groups.begin(), groups.end());

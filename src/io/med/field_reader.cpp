@@ -12,8 +12,8 @@
 #include <variant>
 
 // Reads fields: at each step, their values at nodes, in cells, at the nodes of cells and at Gauss points. A
-// dataset has the values of the first component for all items, each with its points one after another, then
-// the values of the next component.
+// dataset has the values of the first component, then those of the next component, and so on. The values of a
+// component go item by item, and those of an item point by point.
 
 namespace meshorder::med {
 namespace {
@@ -27,7 +27,7 @@ struct FieldInfo {
   std::vector<std::string> steps;  ///< names of groups, in the order of their numbers
 };
 
-/// Splits a text into `count` names of 16 characters; returns none if all are blank.
+/// Splits a text into `count` names of 16 characters; returns no names if all are blank.
 std::vector<std::string> short_names(const std::string& text, std::size_t count) {
   std::vector<std::string> names;
   bool any = false;
@@ -231,7 +231,7 @@ class FieldReader {
   std::vector<Gathered> gathered_;
 };
 
-/// Returns a field; one without steps if it is not of this mesh.
+/// Returns a field; the field has no steps if it does not belong to this mesh.
 FieldInfo field_of(const Reading& reading, const std::string& name) {
   const hdf5::File& file = reading.file;
   FieldInfo field{.name = name, .path = "/CHA/" + name, .component_names = {}, .steps = {}};

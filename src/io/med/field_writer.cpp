@@ -51,8 +51,8 @@ class Profiles {
     }
   }
 
-  /// Returns the name of a profile with these places: the wanted one unless another profile has it. Writes
-  /// the profile if it is new.
+  /// Returns the name of a profile with these places: the wanted name unless another profile has that name.
+  /// Writes the profile if it is new.
   std::string name_for(const std::string& wanted, const std::vector<Index>& places) {
     const std::string clean = clean_name(wanted);
     std::string name = clean;
@@ -92,10 +92,10 @@ class Profiles {
 /// An array that becomes one step of a new field.
 struct Step {
   const DataArray* array;
-  int number;  ///< from 1; 0 for a field of one step
+  int number;  ///< number of the step, from 1; 0 for a field of one step
 };
 
-/// Splits "NAME step K" into NAME and K; returns nothing for other names.
+/// Splits "NAME step K" into NAME and K; returns nullopt for other names.
 std::optional<std::pair<std::string, int>> split_step(const std::string& name) {
   constexpr std::string_view kWord = " step ";
   const std::size_t at = name.rfind(kWord);
@@ -414,7 +414,7 @@ class FieldWriter {
 
   Writing& writing_;
   Profiles profiles_;
-  std::set<std::string> names_;  // of fields
+  std::set<std::string> names_;  // names of fields
   NameNumbers numbers_;
   const DataArray* last_array_ = nullptr;
   std::vector<Index> table_;  // rows of `last_array_` by item

@@ -7,9 +7,10 @@
 // attributes that its library writes. The node orders of cells are those of Gmsh's writer of MED.
 //
 // In a Mesh, the cells of a type are a block of cells. Groups are sets of vertices and of cells, and the
-// numbers of families an array `kLabel`. A field is an array of its name, "NAME step K" where it has several
-// steps; its values at the nodes of cells and at Gauss points are arrays "NAME at nodes of TE4" and "NAME at
-// Gauss points of TE4", whose rows have the components of all points, one point after another.
+// numbers of families are an array `kLabel`. A field becomes an array of the same name, or arrays "NAME step
+// K" if it has several steps. Its values at the nodes of cells and at Gauss points are arrays "NAME at nodes
+// of TE4" and "NAME at Gauss points of TE4", whose rows have the components of all points, one point after
+// another.
 
 #include "io/format.hpp"
 #include "io/hdf5/hdf5_file.hpp"
@@ -32,16 +33,16 @@ namespace meshorder::med {
 inline constexpr std::string_view kNoProfile = "MED_NO_PROFILE_INTERNAL";
 inline constexpr std::string_view kNames = "name";                   ///< array of the names of items
 inline constexpr std::string_view kGlobalNumbers = "global number";  ///< array of the numbers GLB
-/// Name of the array of the numbers of families in files that have a field of the name `kLabel`.
+/// Name of the array of family numbers if the file has a field named `kLabel`.
 inline constexpr std::string_view kFamilies = "family";
-inline constexpr std::size_t kLongestName = 64;  ///< characters of the name of a field, a profile or a family
-inline constexpr std::size_t kLongestGroup = 80;  ///< characters of the name of a group
-inline constexpr std::size_t kShortName = 16;     ///< characters of the name of a component, a node or a cell
+inline constexpr std::size_t kLongestName = 64;   ///< characters in the name of a field, profile or family
+inline constexpr std::size_t kLongestGroup = 80;  ///< characters in the name of a group
+inline constexpr std::size_t kShortName = 16;     ///< characters in the name of a component, node or cell
 
 // ---- types of cells
 
 struct GeometryType {
-  std::string_view name;  ///< of its group in the file
+  std::string_view name;  ///< name of its group in the file
   int number;             ///< attribute GEO
   Shape shape;
   int nodes;
@@ -53,7 +54,8 @@ std::span<const GeometryType> geometry_types();
 const GeometryType* geometry_type(std::string_view name);
 /// Returns the type of these cells, null if there is none.
 const GeometryType* geometry_type(Shape shape, int nodes);
-/// Returns for each node of a cell in the file its place in the Mesh's cell; empty if the orders are equal.
+/// Returns, for each node of a cell of the file, its place in the cell of a Mesh; empty if the orders are
+/// equal.
 std::span<const int> mesh_order(const GeometryType& type);
 
 // ---- contents of a file besides the mesh
@@ -68,8 +70,8 @@ struct Family {
 struct Piece {
   std::string field = {};
   std::string support = {};            ///< path of the group "/CHA/field/step/MAI.TE4"
-  std::string profile = {};            ///< name; kNoProfile without one
-  std::string array = {};              ///< its name in the mesh
+  std::string profile = {};            ///< name of the profile; kNoProfile if there is none
+  std::string array = {};              ///< name of the array in the mesh
   const GeometryType* type = nullptr;  ///< null: vertices
   bool at_nodes = false;               ///< the values are at the nodes of cells
   std::size_t components = 1;
@@ -96,7 +98,7 @@ struct Items {
 struct MedLayout final : FormatMetadata {
   std::shared_ptr<const std::string> file;  ///< bytes, without the values that depend on the mesh
   std::string mesh;                         ///< name
-  std::string step;                         ///< name of the group of its only step
+  std::string step;                         ///< name of the group of the mesh's only step
   bool is_made = false;                     ///< made by `new_layout`
   bool in_mesh_order = false;               ///< nodes of cells are in the order of a Mesh
   int axes = 3;                             ///< coordinates of a point
@@ -140,9 +142,10 @@ struct Reading {
   [[noreturn]] void fail(const std::string& path, const std::string& what, const std::string& remedy) const;
   /// Adds an array under a name that no other array has; returns that name.
   std::string add_array(DataArray array);
-  /// Returns the first cell of a type and the number of these cells; 0 and the number of vertices if null.
+  /// Returns the first cell of a type and the number of these cells; 0 and the number of vertices if `type`
+  /// is null.
   [[nodiscard]] std::pair<Index, Index> range(const GeometryType* type) const;
-  /// Marks a dataset as written by the writer.
+  /// Marks a dataset that the writer writes.
   void take(const std::string& path) { taken.insert(hdf5::normal_path(path)); }
 
   hdf5::File file;
@@ -174,7 +177,8 @@ struct Writing {
   const DataArray* take(std::string_view name, Association association);
   /// Writes numbers of `rows` items to a dataset and sets its attributes.
   void put(const std::string& path, const Values& values, std::size_t rows);
-  /// Writes whole numbers, as 32-bit ones unless the dataset has wider ones or they do not fit.
+  /// Writes whole numbers with 32 bits, or with 64 if the dataset already has wider numbers or 32 are too
+  /// few.
   void put_integers(const std::string& path, const std::vector<std::int64_t>& values, std::size_t rows);
 };
 

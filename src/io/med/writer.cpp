@@ -21,7 +21,7 @@
 namespace meshorder::med {
 namespace {
 
-/// Group of the only step of a mesh that does not change.
+/// Name of the group of the only step, in a mesh that does not change over time.
 constexpr std::string_view kStep = "-0000000000000000001-0000000000000000001";
 constexpr std::size_t kInt32Alternative = 6;
 constexpr std::size_t kInt64Alternative = 8;
@@ -100,7 +100,7 @@ std::vector<Index> node_columns(const Writing& writing, const GeometryType& type
   return columns;
 }
 
-/// Returns the numbers or texts of an array for some vertices or cells; nothing if an item has none.
+/// Returns the numbers or texts of an array for some vertices or cells; nullopt if an item has no row.
 template <class Result, class Array>
 std::optional<std::vector<Result>> rows_for(const Array& values, const std::vector<Index>& row_of,
                                             const std::vector<Index>& items) {

@@ -47,9 +47,9 @@ inline constexpr std::array kCellKinds{
 inline constexpr std::size_t kLinearKinds = 7;
 
 /// The target of positions in a list or table: vertices, or the cells of one section.
-using Target = std::optional<Shape>;  // none: vertices
+using Target = std::optional<Shape>;  // nullopt: vertices
 
-/// A section that lists positions. It is read as a set of its name.
+/// A section that lists positions. It is read as a set of the same name.
 struct ListKind {
   std::string_view keyword;
   Target target;
@@ -68,7 +68,8 @@ inline constexpr std::array kListKinds{
 };
 
 /// A table: each line has a position and numbers. The numbers are kept: they refer to normals, tangents or a
-/// geometry in another file. A table is read as an array of its name on the positions that occur.
+/// geometry in another file. A table is read as an array of the same name, with values at the positions that
+/// the table has.
 inline constexpr std::array kTableKinds{
     ListKind{"NormalAtVertices", {}},
     ListKind{"TangentAtVertices", {}},
@@ -99,8 +100,8 @@ inline constexpr std::array kTableKinds{
     ListKind{"VertexOnSupportHexahedron", {}},
 };
 
-/// A section whose lines have positions in some columns. Each column has a letter: v for a vertex, e, t, q, k
-/// for a cell in Edges, Triangles, Quadrilaterals, Tetrahedra; '.' for a number that is kept.
+/// A section whose lines have positions in some columns. Each column has a letter: v for a vertex; e, t, q or
+/// k for a cell in Edges, Triangles, Quadrilaterals or Tetrahedra; '.' for a number that is kept.
 struct RowKind {
   std::string_view keyword;
   std::string_view columns;
@@ -121,12 +122,12 @@ inline constexpr std::array kRowKinds{
     RowKind{"PeriodicEdges", "ee"},
     RowKind{"PeriodicTriangles", "tt"},
     RowKind{"PeriodicQuadrilaterals", "qq"},
-    RowKind{"TangentAtEdgeVertices", "e.."},  // a cell, which of its vertices, a tangent or normal
+    RowKind{"TangentAtEdgeVertices", "e.."},  // a cell, the place of a vertex in it, a tangent or normal
     RowKind{"NormalAtTriangleVertices", "t.."},
     RowKind{"NormalAtQuadrilateralVertices", "q.."},
 };
 
-/// A section of BAMG's mesh sizes at all vertices, without a count. It is read as an array of its name.
+/// A section of BAMG's mesh sizes at all vertices, without a count. It is read as an array of the same name.
 struct SizeKind {
   std::string_view keyword;
   Index components;
@@ -163,7 +164,7 @@ struct MeditMetadata final : FormatMetadata {
                                                             std::span<const Index> cells) const override;
 };
 
-/// Returns the target of a column of a RowKind; the column must have a letter.
+/// Returns the target of a column of a RowKind whose letter is v, e, t, q or k.
 Target target_of(char column);
 
 /// Returns the kind of a cell type, or the number of kinds if there is none.
@@ -172,12 +173,13 @@ std::size_t kind_of(Shape shape, int nodes);
 /// Returns the kind that a section "…Ordering" describes, or the number of kinds if there is none.
 std::size_t kind_of_ordering(std::string_view keyword);
 
-/// Returns the reference coordinates of a second-order cell's nodes, in VTK's order, in halves of an edge;
-/// barycentric in triangles, tetrahedra and prisms, as sections "…Ordering" give them.
+/// Returns the reference coordinates of a second-order cell's nodes, in VTK's order. The unit is half an
+/// edge. In triangles, tetrahedra and prisms, the coordinates are barycentric, as in sections "…Ordering".
 std::vector<std::vector<int>> reference_nodes(Shape shape);
 
-/// Returns the kind of cells that positions of a target refer to: linear, else second order; the number of
-/// kinds if the mesh has neither. `counts`: number of cells of each kind.
+/// Returns the kind of cells that positions of a target refer to: linear cells if the mesh has any, else
+/// cells of second order; the number of kinds if the mesh has neither. `counts`: number of cells of each
+/// kind.
 std::size_t counted_kind(Shape target, std::span<const Index> counts);
 
 /// Adds the note "FILE `what`" for each file of solutions (.sol, .solb) beside the mesh.

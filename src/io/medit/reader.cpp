@@ -135,7 +135,8 @@ class Reader {
     return true;
   }
 
-  /// Returns whether a section may come before the dimension, because it does not depend on it.
+  /// Returns whether a section may come before the dimension, because the section does not depend on the
+  /// dimension.
   static bool comes_before_dimension(std::string_view keyword) {
     const std::size_t kind = find_kind(kPlainKinds, keyword);
     return kind < kPlainKinds.size() && kPlainKinds[kind].words_per_dimension == 0;
@@ -302,8 +303,8 @@ class Reader {
 
   // ---- sections that refer to vertices or cells
 
-  /// Skips a section that is read later. Each row has `words` words; if 0, the number of words of the first
-  /// line.
+  /// Skips a section that is read later. Each row has `words` words; if `words` is 0, each row has as many
+  /// words as the first line.
   void skip_rows(std::vector<Pending>& pending, std::size_t kind, int words) {
     pending.push_back({kind, in_.byte()});
     const Index count = in_.count(what_count(), 2 * std::max(words, 1));
@@ -518,7 +519,7 @@ class Reader {
   Notes& notes_;
   Mesh mesh_;
   std::shared_ptr<MeditMetadata> metadata_ = std::make_shared<MeditMetadata>();
-  std::int64_t begin_ = 0;  // of the section
+  std::int64_t begin_ = 0;  // first byte of the section
   std::string last_keyword_;
   std::unordered_set<std::string> kinds_seen_;
   bool has_dimension_ = false;

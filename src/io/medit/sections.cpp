@@ -7,7 +7,8 @@
 namespace meshorder::medit {
 namespace {
 
-/// A reference cell: the coordinates of its corners, and the pairs of corners with a node halfway.
+/// A reference cell: the coordinates of its corners, and the pairs of corners that have a node halfway
+/// between them.
 struct Reference {
   std::vector<std::vector<int>> corners;
   std::vector<std::array<int, 2>> middles;

@@ -22,11 +22,11 @@ struct SectionOrder {
   std::array<std::vector<Index>, kCellKinds.size()> cells;
   std::array<Index, kCellKinds.size()> counts{};
   std::vector<std::size_t> kinds;
-  std::vector<Index> place;  ///< of each cell in its section
+  std::vector<Index> place;  ///< position of each cell in its section
 };
 
-/// Orders sections by their first cells; if types are interleaved, from volumes to edges as
-/// group_cells_by_type does.
+/// Orders sections by their first cells. If types are interleaved, orders the sections from volumes to edges,
+/// as group_cells_by_type does.
 SectionOrder layout_of(const Mesh& mesh) {
   SectionOrder layout;
   layout.place.reserve(mesh.cell_count());
@@ -62,7 +62,8 @@ struct WriteContext {
   Labels cell_labels;
 };
 
-/// Returns the version to write: 4 if a reference needs 64 bits, else the version of the file, or 2.
+/// Returns the version to write: 4 if a reference needs 64 bits, else the version of the file that the mesh
+/// came from; 2 if there is none.
 std::int64_t version(const WriteContext& from) {
   const std::int64_t wanted = from.own ? from.own->version : 2;
   return fit_32_bits(from.vertex_labels.values) && fit_32_bits(from.cell_labels.values) ? wanted : 4;
@@ -110,8 +111,8 @@ void write_ordering(OutputFile& out, std::size_t kind) {
 
 // ---- sections that refer to vertices or cells
 
-/// Returns the position of a vertex or cell among the items that a section refers to; −1 if it is not one of
-/// them.
+/// Returns the position of a vertex or cell among the items that a section refers to; −1 if it is not such an
+/// item.
 Index position_in(const WriteContext& from, const Target& target, Index item) {
   if (!target) return item;
   const std::size_t kind = counted_kind(*target, from.layout.counts);
@@ -178,7 +179,8 @@ void write_section_rows(OutputFile& out, const WriteContext& from, const MeditMe
   }
 }
 
-/// Writes an array on all vertices as the section of its name; returns false if there is no such section.
+/// Writes an array on all vertices as the section of the same name; returns false if there is no such
+/// section.
 bool write_sizes(OutputFile& out, const DataArray& array) {
   const bool known = std::any_of(kSizeKinds.begin(), kSizeKinds.end(), [&](const SizeKind& kind) {
     return kind.keyword == array.name && kind.components == array.components;
@@ -194,7 +196,7 @@ bool write_sizes(OutputFile& out, const DataArray& array) {
   return true;
 }
 
-/// Writes an array as the table of its name, if the mesh came from this format.
+/// Writes an array as the table of the same name, if the mesh came from this format.
 void write_array(OutputFile& out, const WriteContext& from, const DataArray& array, Notes& notes) {
   const ListKind* kind = nullptr;
   const bool numbers = !are_texts(array.values);

@@ -48,7 +48,7 @@ std::string_view trimmed_blanks(std::string_view text) {
   return text;
 }
 
-/// Returns the first field of a line: of 8 columns, or before the first comma.
+/// Returns the first field of a line: the text before the first comma, or 8 columns if there is no comma.
 std::string_view first_field(std::string_view line) {
   const std::size_t comma = line.find(',');
   return trimmed_blanks(line.substr(0, comma == std::string_view::npos ? kNameWidth : comma));
@@ -148,7 +148,7 @@ class Splitter {
 
   std::string_view card_;
   CardFields& result_;
-  std::string_view next_name_;  // that the next line should have
+  std::string_view next_name_;  // name that the next line should have
 };
 
 }  // namespace
@@ -245,7 +245,7 @@ bool append_edited(std::string& out, std::string_view card, const CardFields& fi
     out.append(card.substr(done, field.begin - done));
     done = field.begin + field.length;
     if (field.width == 0) {
-      // the blanks around it stay
+      // the blanks around the old number stay
       const auto before =
           static_cast<std::size_t>(field.text.empty() ? 0 : field.text.data() - (card.data() + field.begin));
       out.append(card.substr(field.begin, before)).append(text);
@@ -259,7 +259,7 @@ bool append_edited(std::string& out, std::string_view card, const CardFields& fi
     if (!at_left) out.append(blanks, ' ');
     out.append(text);
     if (at_left && field.length == field.width) out.append(blanks, ' ');
-    // no blanks after a number at the left of its field if the line ends within that field
+    // no blanks are written after a number at the left of its field if the line ends within that field
   }
   out.append(card.substr(done));
   return true;

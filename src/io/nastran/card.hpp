@@ -46,13 +46,13 @@ class Cards {
 
 /// A field of a card.
 struct Field {
-  std::size_t begin = 0;   ///< in the card
+  std::size_t begin = 0;   ///< first byte in the card
   std::size_t length = 0;  ///< bytes of the field that are on the line
   std::size_t width = 0;   ///< 8 or 16 columns; 0 between commas
   std::string_view text;   ///< without blanks around it
 };
 
-/// The fields of a card. Field 0 is the name. Then each line has 8 fields, or 4 if they are large. The
+/// The fields of a card. Field 0 is the name. Then each line has 8 fields, or 4 if its fields are large. The
 /// numbering of fields goes on from line to line.
 struct CardFields {
   std::vector<Field> fields;
@@ -72,14 +72,15 @@ void split_card(std::string_view card, CardFields& result);
 /// Returns the name of a card in capitals, without the asterisk of large fields.
 std::string name_of(const CardFields& card);
 
-/// Returns a field as an integer; none if it is not one.
+/// Returns a field as an integer; nullopt if the field is not an integer.
 std::optional<std::int64_t> integer_of(std::string_view field);
 
-/// Returns the number of a node, element or property in a field, above 0; 0 if the field holds none.
+/// Returns the number of a node, element or property in a field, above 0; 0 if the field holds no such
+/// number.
 std::int64_t number_of(std::string_view field);
 
-/// Returns a field as a real number, which may lack the letter of its exponent (1.5-3 is 0.0015); none if it
-/// is not a finite number.
+/// Returns a field as a real number, which may lack the letter of its exponent (1.5-3 is 0.0015); nullopt if
+/// the field is not a finite number.
 std::optional<double> real_of(std::string_view field);
 
 /// A number to be written into a field; 0 leaves the field blank.
@@ -88,7 +89,7 @@ struct Edit {
   std::int64_t number = 0;
 };
 
-/// Appends a card with new numbers in the fields of `edits` (ascending), in the columns of the old ones.
+/// Appends a card with new numbers in the fields of `edits` (ascending), in the columns of the old numbers.
 /// Returns false if a number does not fit its field.
 bool append_edited(std::string& out, std::string_view card, const CardFields& fields,
                    const std::vector<Edit>& edits);

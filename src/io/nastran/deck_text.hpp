@@ -22,7 +22,7 @@ class DeckText {
   /// Returns all lines, each with a line end. The caller may move the text out.
   [[nodiscard]] std::string& text() { return text_; }
   [[nodiscard]] const std::string& text() const { return text_; }
-  /// Returns the lines between BEGIN BULK and ENDDATA; all up to ENDDATA if there is no BEGIN BULK.
+  /// Returns the lines between BEGIN BULK and ENDDATA; all lines up to ENDDATA if there is no BEGIN BULK.
   [[nodiscard]] Piece bulk() const { return bulk_; }
   /// Returns false for a file with BEGIN BULK, but without ENDDATA.
   [[nodiscard]] bool has_end() const { return section_ == DeckSection::end || bulk_.begin == 0; }
@@ -32,14 +32,14 @@ class DeckText {
 
   /// Throws InputError at the line of that byte of the text.
   [[noreturn]] void fail(std::size_t byte, const std::string& what, const std::string& remedy) const;
-  /// Returns the file and line of that byte. O(bytes since the byte of the last call), or O(bytes of the
-  /// file) if that byte came later.
+  /// Returns the file and line of that byte. O(bytes since the byte of the last call) time; O(bytes of the
+  /// file) if the last call had a later byte.
   [[nodiscard]] Location location(std::size_t byte) const;
 
  private:
   /// Consecutive lines of one file.
   struct Origin {
-    std::size_t begin;  // in the text
+    std::size_t begin;  // first byte in the text
     std::string file;
     std::int64_t line;
   };
@@ -62,7 +62,7 @@ class DeckText {
     std::int64_t line = 0;
   };
   mutable Counted counted_;
-  const Scanner* file_ = nullptr;  // of the last line
+  const Scanner* file_ = nullptr;  // file of the last line
 };
 
 }  // namespace meshorder::nastran

@@ -36,8 +36,8 @@ constexpr std::size_t kOrientation = 5;
 constexpr std::size_t kWarpingA = 17;
 constexpr std::size_t kWarpingB = 18;
 
-/// Returns the type of a card by its name in capitals; null if it holds no cells. Valid for the life of the
-/// program.
+/// Returns the type of a card by its name in capitals; null if the card's elements are not cells. Valid for
+/// the life of the program.
 const ElementType* element_type(std::string_view name);
 
 /// Returns whether elements of a type may have exactly the first `nodes` of their nodes.

@@ -37,8 +37,9 @@ struct Deck {
   IdMap node_numbers;
   IdMap element_numbers;
   std::vector<Point> points;        ///< of the nodes, in the basic system
-  bool has_default_system = false;  ///< GRDSET gives a system to nodes that name none
-  /// Properties for elements that name none, by the name of their card: from BAROR and BEAMOR.
+  bool has_default_system = false;  ///< GRDSET gives a system to nodes that name no system
+  /// Properties that BAROR and BEAMOR give to elements that name no property, by the name of the elements'
+  /// card.
   std::map<std::string_view, std::int64_t> default_properties;
   std::vector<std::int64_t> other_points;    ///< numbers of points that are not nodes, ascending
   std::vector<std::int64_t> other_elements;  ///< numbers of elements that are not cells, ascending
@@ -54,8 +55,8 @@ struct Deck {
 /// A deck, and where its nodes and elements are in the mesh.
 using BulkMetadata = DeckMetadata<Deck>;
 
-/// Returns the deck that a mesh can be written into; null if the mesh came from elsewhere or no longer fits.
-/// Valid as long as the mesh. O(cells).
+/// Returns the deck that a mesh can be written into; null if the mesh came from elsewhere or no longer fits
+/// its deck. Valid as long as the mesh. O(cells).
 const BulkMetadata* own_deck(const Mesh& mesh);
 
 /// The words before the name of a set, in the comment above its SET3.

@@ -78,7 +78,7 @@ class DeckReader {
     }
   }
 
-  /// Returns the number of a node, element or property in a field; throws if the field holds none.
+  /// Returns the number of a node, element or property in a field; throws if the field holds no such number.
   [[nodiscard]] std::int64_t number(std::size_t field, std::string_view what) const {
     const std::int64_t result = number_of(fields_.text(field));
     if (result == 0 || result > kMaxIndex) fail_at_number(field, what);
@@ -172,7 +172,8 @@ class DeckReader {
     return type.corners;
   }
 
-  /// Begins a block of cells after any other card; elements do not move to other blocks.
+  /// Begins a block of cells at the first element and after each card of another kind: elements stay in their
+  /// blocks.
   void begin_block() {
     const bool first = deck_->elements.empty();
     if (first || other_since_) mesh_.cell_blocks.push_back(mesh_.cell_count());
@@ -235,7 +236,7 @@ class DeckReader {
   }
 
   void add_points(const NumberRange& range) {
-    constexpr std::int64_t kMost = 10'000'000;  // of one range
+    constexpr std::int64_t kMost = 10'000'000;  // numbers in one range
     if (range.to - range.from > kMost) fail("a range of more than ten million points", "correct it");
     const std::int64_t count = std::max<std::int64_t>((range.to - range.from) / range.step + 1, 0);
     claim_memory(static_cast<std::uint64_t>(count) * sizeof(std::int64_t), "a range of points");
@@ -303,7 +304,7 @@ class DeckReader {
     }
   }
 
-  /// Converts the coordinates of nodes from their own systems to the basic one.
+  /// Converts the coordinates of nodes from their own systems to the basic system.
   void place_nodes() {
     if (!has_systems_) return;
     std::replace(system_of_.begin(), system_of_.end(), kDefault, default_system_);
@@ -420,7 +421,7 @@ class DeckReader {
       if (names_grid_point(line)) add(shown(word.substr(0, word.find('('))), byte);
       const bool goes_on = in_set;
       const bool is_set = word.size() == 3 && same_but_for_case(word, "SET");
-      if (is_set) (void)next_word(rest, " \t=");  // its number
+      if (is_set) (void)next_word(rest, " \t=");  // the number of the set
       in_set = (is_set || in_set) && trimmed(line).ends_with(',');
       if (!is_set && !goes_on && !is_curve) continue;
       if (is_curve || names_items(goes_on && !is_set ? line : rest)) {
@@ -478,7 +479,7 @@ class DeckReader {
   static constexpr std::int64_t kDefault = -1;  // of a node that names no system
   static constexpr std::int64_t kBlank = -1;    // of an element that names no property
   std::int64_t default_system_ = 0;
-  std::vector<std::int64_t> system_of_;  // each node
+  std::vector<std::int64_t> system_of_;  // system of each node
   bool has_systems_ = false;             // whether any is not the basic one
   std::vector<MissingNode> missing_;
   std::vector<std::int64_t> labels_;

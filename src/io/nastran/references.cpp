@@ -16,7 +16,7 @@ namespace {
 
 /// One letter for each field after the name: a node (n), a node if the next field is blank (G), an element
 /// (e), the number of an element that is not a cell (x), other (-). Letters in parentheses repeat to the end
-/// of the card. N, E and S begin a list of nodes, elements and points that are not nodes. From a "." on all
+/// of the card. N, E and S begin a list of nodes, elements and points that are not nodes. From a "." on, all
 /// fields must be blank: some programs give a second element there.
 struct CardPattern {
   std::string_view name;
@@ -225,7 +225,7 @@ class Finder {
   }
 
  private:
-  /// Returns whether the card has nothing from a field on.
+  /// Returns whether all fields of the card from this one on are blank.
   [[nodiscard]] bool ends_at(std::size_t field) const {
     while (field < card_.fields.size() && card_.text(field).empty()) ++field;
     return field >= card_.fields.size();

@@ -24,8 +24,8 @@ struct Reference {
 /// The nodes and elements that a card names.
 struct References {
   std::vector<Reference> fields = {};  ///< ascending
-  /// The fields from here to the end of the card are a list of numbers, and of ranges "1 THRU 9" or
-  /// "1 THRU 9 BY 2"; 0 if there is none.
+  /// First field of a list, 0 if the card has no list. The list extends to the end of the card. It has
+  /// numbers, and ranges such as "1 THRU 9" or "1 THRU 9 BY 2".
   std::size_t list = 0;
   Association of_list = Association::vertices;
   bool is_range = false;  ///< whether the list has a range
@@ -34,17 +34,17 @@ struct References {
   bool defines_element = false;  ///< field 1 has its number
 };
 
-/// Returns the references of a card of that name (in capitals); none if the card or its form is not known.
+/// Returns the references of a card of that name (in capitals); nullopt if the card or its form is not known.
 std::optional<References> references(std::string_view name, const CardFields& card);
 
-/// A range of numbers from, from + step, … ≤ to; one number if from = to.
+/// The numbers `from`, `from` + `step`, … ≤ `to`; a single number if `from` = `to`.
 struct NumberRange {
   std::int64_t from;
   std::int64_t to;
   std::int64_t step;
 };
 
-/// Returns the numbers and ranges of the list of a card; none if the list holds anything else.
+/// Returns the numbers and ranges of the list of a card; nullopt if the list holds anything else.
 std::optional<std::vector<NumberRange>> ranges_of(const CardFields& card, std::size_t list);
 
 /// Returns the numbers in `others` (ascending) that the list of a card names. `found` receives the positions

@@ -27,8 +27,8 @@ class CoordinateSystems {
   /// that are not numbers, and for a system that was given before.
   void add(std::string_view name, const CardFields& fields, std::size_t byte);
 
-  /// Converts a point from a system to the basic one. Throws InputError for a system that is missing, has no
-  /// axes or refers to itself.
+  /// Converts a point from a system to the basic system. Throws InputError for a system that is missing, has
+  /// no axes or refers to itself.
   ///
   /// @param byte  of the card that names the system
   [[nodiscard]] Point in_basic(std::int64_t system, const Point& point, std::size_t byte,
@@ -43,12 +43,12 @@ class CoordinateSystems {
   struct System {
     Kind kind = Kind::rectangular;
     bool by_nodes = false;
-    std::int64_t reference = 0;           // system of the points
-    std::array<Point, 3> points{};        // the origin, one on the z-axis, one in the plane of x and z
+    std::int64_t reference = 0;     // system of the points
+    std::array<Point, 3> points{};  // the origin, a point on the z-axis, a point in the plane of x and z
     std::array<std::int64_t, 3> nodes{};  // instead of the points
     std::size_t byte = 0;
     bool has_frame = false;
-    bool is_open = false;  // its frame is being found
+    bool is_open = false;  // the search for its frame has not ended
     Frame frame{};
   };
 

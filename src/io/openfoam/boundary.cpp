@@ -58,7 +58,7 @@ class BoundaryReader {
     file_.fail(fmt::format("expected a list of patches, found '{}'", first), kRemedy);
   }
 
-  /// Returns the next patch, none at the end of the list.
+  /// Returns the next patch, nullopt at the end of the list.
   std::optional<Patch> read_patch() {
     Patch patch{.name = word()};
     if (patch.name == ")") return std::nullopt;
@@ -75,7 +75,7 @@ class BoundaryReader {
     return patch;
   }
 
-  /// Returns the next word as a number, none if it is not one.
+  /// Returns the next word as a number, nullopt if the word is not a number.
   std::optional<std::int64_t> number() {
     const std::string text = word();
     std::int64_t value = 0;

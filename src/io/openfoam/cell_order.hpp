@@ -18,7 +18,7 @@ inline constexpr std::string_view kCellOrder = "cellOrder";
 void write_cell_order(const Permutation& cells, OutputFile& file);
 
 /// The entries of renumberMeshDict that take the order from `kCellOrder`. OpenFOAM 1912 refuses a dictionary
-/// without the first.
+/// without the first entry.
 inline constexpr std::array<std::string_view, 3> kDictionaryEntries{
     "writeMaps false;", "method manual;", "manualCoeffs { dataFile \"cellOrder\"; }"};
 

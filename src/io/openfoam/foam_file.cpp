@@ -287,7 +287,7 @@ void FoamFile::read_labels(std::vector<Index>& labels, std::string_view what, st
     expect('}', list);
     return;
   }
-  if (count == 0 && !at('(')) return;  // in a binary file, an empty list is its size alone
+  if (count == 0 && !at('(')) return;  // in a binary file, an empty list has nothing after its size
   expect('(', list);
   labels.reserve(static_cast<std::size_t>(count));
   for (std::int64_t k = 0; k < count; ++k) {

@@ -17,8 +17,8 @@
 namespace meshorder::openfoam {
 
 /// A file of OpenFOAM, read from front to back: a header `FoamFile { … }`, then lists of numbers, as text or
-/// as binary numbers between parentheses. Comments are C++'s. Errors name the line of a text file, the byte
-/// of a binary one.
+/// as binary numbers between parentheses. Comments are C++'s. Errors name the line in a text file, the byte
+/// in a binary file.
 ///
 /// A list is "3(0 1 2)", in text also "3{7}" for three times 7. Sizes are checked before memory is allocated
 /// for them.
@@ -48,7 +48,7 @@ class FoamFile {
   ///
   /// @param what   names a label in an error
   /// @param least  the smallest label that is accepted
-  /// @param end    one more than the largest; none: the number of labels in the list
+  /// @param end    one more than the largest label; if empty, the number of labels in the list
   void read_labels(std::vector<Index>& labels, std::string_view what, std::int64_t least,
                    std::optional<std::int64_t> end);
 
@@ -82,7 +82,7 @@ class FoamFile {
   std::errc take_number(T& value);
   /// Throws an InputError if the list that follows is text in a file whose header says `format binary`.
   void refuse_text() const;
-  /// Throws an InputError at the next word, which is not such a number.
+  /// Throws an InputError at the next word, which is not a number as `needed` describes it.
   [[noreturn]] void fail_number(std::string_view what, std::string_view needed);
   std::int64_t integer(std::string_view what);
   double finite(std::string_view what);

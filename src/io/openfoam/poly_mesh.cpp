@@ -58,8 +58,8 @@ void require_files(const MeshFolder& folder) {
   }
 }
 
-/// Returns the number after a key in a header's note, such as "nPoints:882  nCells:400"; none if the key is
-/// missing.
+/// Returns the number after a key in a header's note, such as "nPoints:882  nCells:400"; nullopt if the key
+/// is missing.
 std::optional<std::int64_t> count_in(std::string_view note, std::string_view key) {
   std::size_t at = note.find(key);
   if (at == std::string_view::npos) return std::nullopt;
@@ -171,7 +171,7 @@ class CentreSums {
 
   const Sides& sides_;
   std::vector<Point> sums_;
-  std::vector<Index> counts_;  // of faces
+  std::vector<Index> counts_;  // number of faces of each cell
   std::size_t face_ = 0;
 };
 
@@ -204,7 +204,7 @@ class CentreReader {
     faces_.end_lists("faces");
   }
 
-  /// Reads the begin of each face in the list of points and the end of the last face, then that list.
+  /// Reads where each face begins in the list of points and where the last face ends, then reads that list.
   void read_compact() {
     std::vector<Index> begins;
     faces_.read_labels(begins, "face's begin", 0, kMaxIndex);

@@ -15,7 +15,7 @@ namespace meshorder::openfoam {
 /// The parts of a mesh that are needed to order its cells.
 struct PolyMesh {
   CsrGraph graph;              ///< joins cells that share an internal face
-  Index internal_faces = 0;    ///< at least the number of edges: two cells may share several
+  Index internal_faces = 0;    ///< at least the number of edges: two cells may share several faces
   std::vector<Point> centres;  ///< for each cell, the mean of its faces' centres; empty if not wanted
 };
 
@@ -23,12 +23,12 @@ struct PolyMesh {
 [[noreturn]] void refuse_missing(const std::filesystem::path& file);
 
 /// Reads the files `owner`, `neighbour` and `boundary` in the folder `polyMesh` of a case and, for the
-/// centres, `points` and `faces`: text or binary, each also as `.gz`. They must lie below the case's folder.
-/// Two cells may share several faces, and faces need not be sorted by their cells. Notes counts in the
-/// headers that differ from the files. Accepts a mesh without any cell.
+/// centres, `points` and `faces`. Each file may be text or binary, and may be compressed as `.gz`. All must
+/// lie below the case's folder. Two cells may share several faces, and faces need not be sorted by their
+/// cells. Notes counts in the headers that differ from the files. Accepts a mesh without any cell.
 ///
-/// @throws InputError if one of the five files is missing; if one is faulty, with its line, byte or face; if
-///         a cell has no face, the owner of an internal face does not have the lower number, or patches do
+/// @throws InputError if one of the five files is missing; if a file is faulty, with its line, byte or face;
+///         if a cell has no face, the owner of an internal face does not have the lower number, or patches do
 ///         not cover the faces of the boundary
 /// @note O(faces · log faces of a cell); about 30 bytes a face besides the files' own size.
 PolyMesh read_poly_mesh(const std::filesystem::path& of_case, const std::filesystem::path& folder,

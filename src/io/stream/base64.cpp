@@ -19,7 +19,7 @@ constexpr std::array<Pair, 4096> kPairs = [] {
 
 constexpr std::uint32_t kNone = 64;
 
-/// The value of a character; kNone for all others.
+/// The value of each character of base64; kNone for other characters.
 constexpr std::array<std::uint8_t, 256> kValues = [] {
   std::array<std::uint8_t, 256> values{};
   values.fill(kNone);

@@ -23,7 +23,8 @@ namespace meshorder {
 namespace fs = std::filesystem;
 namespace {
 
-/// Reads the first bytes of a file, a large one on all threads. Returns how many came before its end.
+/// Reads the first bytes of a file, a large one on all threads. Returns how many bytes it read; fewer than
+/// `into` holds if the file ends.
 std::size_t read_on_threads(InputFile& file, std::span<char> into) {
   constexpr Offset kAtOnce = Offset{16} << 20;
   if (std::ssize(into) <= kAtOnce) return file.read(into);

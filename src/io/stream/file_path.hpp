@@ -25,7 +25,7 @@ std::string read_to_end(std::istream& stream, const std::string& name);
 class FileStore : public Polymorphic {
  public:
   [[nodiscard]] virtual bool has(const std::filesystem::path& path) const = 0;
-  /// Returns the bytes of a file, none if it is not there.
+  /// Returns the bytes of a file, an empty text if the file is not there.
   [[nodiscard]] virtual std::string read(const std::filesystem::path& path) const = 0;
   /// Adds a file or replaces it.
   virtual void write(const std::filesystem::path& path, std::string bytes) = 0;
@@ -53,7 +53,7 @@ class FilePath {
   /// A file on disk below a folder that the user named; this program, or a file, gave the rest of the path.
   /// The file is read only if it lies below the folder after links are resolved (see `may_include`).
   static FilePath in(std::filesystem::path folder, std::filesystem::path path);
-  /// The same with the path's own folder; this program made the file's name.
+  /// As `in`, with the path's own folder, for a file whose name this program made.
   static FilePath derived(const std::filesystem::path& path) { return in(path.parent_path(), path); }
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
@@ -63,7 +63,7 @@ class FilePath {
   [[nodiscard]] FileStore* store() const noexcept { return store_; }
   /// Returns the set of outputs that the file belongs to, null if there is none.
   [[nodiscard]] OutputSet* set() const noexcept { return set_; }
-  /// Returns the folder that the user named if the rest of the path is derived; nothing if the user gave the
+  /// Returns the folder that the user named if the rest of the path is derived; nullopt if the user gave the
   /// whole path.
   [[nodiscard]] const std::optional<std::filesystem::path>& folder() const noexcept { return folder_; }
 
@@ -80,14 +80,14 @@ class FilePath {
   /// unreadable or an empty file, a file that changes meanwhile or exceeds the limit on memory, and a damaged
   /// gzip file; Unavailable for a gzip file in a build without zlib.
   [[nodiscard]] std::string read() const;
-  /// Returns its first bytes, at most `most`, not decompressed. Reads a pipe to its end. Throws
-  /// InputError for a folder, a device, an unreadable or an empty file.
+  /// Returns the first bytes of the file, at most `most`, without decompressing them. Reads a pipe to its
+  /// end. Throws InputError for a folder, a device, an unreadable or an empty file.
   [[nodiscard]] std::string read_first(std::size_t most) const;
 
   /// Returns the file of that name in the same folder.
   [[nodiscard]] FilePath beside(const std::filesystem::path& name) const;
-  /// Returns the companion with that extension, "mesh.ele" for "mesh.node"; this file if it has the extension
-  /// (in any case). "mesh.ele.gz" for "mesh.node.gz".
+  /// Returns the companion file with that extension: "mesh.ele" for "mesh.node", "mesh.ele.gz" for
+  /// "mesh.node.gz". Returns this file if it has the extension, in any case.
   [[nodiscard]] FilePath companion(std::string_view extension) const;
 
  private:

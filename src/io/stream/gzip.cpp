@@ -89,7 +89,7 @@ class Inflation {
       stream_.next_out = reinterpret_cast<Bytef*>(place.data());
       stream_.avail_out = static_cast<uInt>(place.size());
       const int status = inflate(&stream_, Z_NO_FLUSH);
-      // twice: most numbers take more memory in a mesh than in text
+      // counted twice: most numbers take more memory in a mesh than in text
       const std::size_t made = place.size() - stream_.avail_out;
       claim_memory(2 * made, "the decompressed file", {.file = file_});
       blocks.use(made);

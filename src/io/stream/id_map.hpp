@@ -63,7 +63,7 @@ class IdMap {
     return size_ == 0 || (ids_.empty() && first_ == base);
   }
 
-  /// Returns all ids; none if they are base, base + 1, …
+  /// Returns all ids; empty if they are base, base + 1, …
   [[nodiscard]] std::vector<std::int64_t> ids_unless_from(std::int64_t base) const {
     std::vector<std::int64_t> result;
     if (runs_from(base)) return result;
@@ -80,7 +80,7 @@ class IdMap {
 
   void keep(std::int64_t id, Index position) {
     ids_.push_back(id);
-    // a table of a few entries for each id so far; ids beyond it go into the map
+    // the table has a few entries for each id so far; ids outside of it go into the map
     const std::int64_t dense = 4 * std::int64_t{size_} + 1024;
     if (id < 0 || id >= dense || id >= kMaxIndex / 2) {
       sparse_.emplace(id, position);

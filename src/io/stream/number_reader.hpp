@@ -12,8 +12,8 @@
 
 namespace meshorder {
 
-/// Reads numbers that are text or binary, as the file's header says. Errors name the line of a text file and
-/// the byte of a binary one. `what` names the number in an error.
+/// Reads numbers that are text or binary, as the file's header says. Errors name the line in a text file and
+/// the byte in a binary file. `what` names the number in an error.
 struct NumberReader {
   explicit NumberReader(const FilePath& path) : scanner(path) {}
 
@@ -40,7 +40,7 @@ struct NumberReader {
   std::string_view word(std::string_view what);
   std::int64_t text_integer(std::string_view what);
   double text_real(std::string_view what);
-  /// Returns `text` as an integer; throws InputError if it is none.
+  /// Returns `text` as an integer; throws InputError if it is not one.
   [[nodiscard]] std::int64_t parsed(std::string_view text, std::string_view what) const;
   /// In a binary file, moves to the line after this one, where binary numbers begin.
   void begin_binary();

@@ -24,14 +24,14 @@ namespace {
 constexpr std::size_t kFlushAt = std::size_t{1} << 20;
 constexpr std::size_t kAtOnce = std::size_t{1} << 16;  // so many bytes or more are written without a copy
 constexpr mode_t kMode = 0666;                         // the umask or the folder's default ACL removes bits
-constexpr mode_t kPrivateMode = 0600;                  // until it gets the mode of the old file
+constexpr mode_t kPrivateMode = 0600;                  // until the new file gets the mode of the old file
 
 }  // namespace
 
 struct OutputFile::Stream {
   Text text;
   OutputPlace place;
-  std::optional<Scratch> scratch;  ///< none: the text is the whole file
+  std::optional<Scratch> scratch;  ///< empty if the text is the whole file
   Descriptor file;
 };
 

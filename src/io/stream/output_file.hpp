@@ -21,11 +21,11 @@ namespace meshorder {
 class Scratch;
 
 /// A file that appears complete or not at all. It is written in a scratch folder beside its target, and
-/// `commit` renames it into place; or in memory, and `commit` gives it to the target's store. Without a
-/// commit the target stays unchanged. The protocol is in output_set.hpp.
+/// `commit` renames it into place. A file of a store is written in memory, and `commit` gives it to the
+/// store. Without a commit the target stays unchanged. The protocol is in output_set.hpp.
 ///
 /// Symbolic links are followed as `FilePath` says. The new file gets the owner, the group, the mode and the
-/// extended attributes of the old one as far as the system allows; further hard links of the old file keep
+/// extended attributes of the old file as far as the system allows; further hard links of the old file keep
 /// the old content. For a target that cannot be replaced (a device, a pipe, /dev/stdout), the bytes are kept
 /// in memory and written at `commit`.
 class OutputFile {
@@ -87,8 +87,8 @@ class OutputFile {
   void flush();
   void check_written(int error) const;
 
-  // for the set
-  /// Writes a target that cannot be replaced, or one in a store.
+  // for OutputSet
+  /// Writes a target that cannot be replaced or that is in a store.
   void write_directly();
   /// Returns null for a target that is written directly.
   [[nodiscard]] const Scratch* scratch() const noexcept;

@@ -28,7 +28,7 @@ namespace {
 constexpr int kMostLinks = 40;
 constexpr mode_t kModeBits = 07777;
 
-/// Returns N for /dev/fd/N and /proc/self/fd/N, −1 for all else.
+/// Returns N for /dev/fd/N and /proc/self/fd/N, −1 for other paths.
 int own_descriptor(const fs::path& path) {
   const std::string text = path.string();
   for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
@@ -71,7 +71,7 @@ void refuse_links_in_derived(const FilePath& file) {
   }
 }
 
-/// Returns the path to which a link leads, relative to the same folder as `path`; nothing if it is no link.
+/// Returns the path to which a link leads, relative to the same folder as `path`; nullopt if it is no link.
 std::optional<fs::path> link_content(const fs::path& path) {
   std::error_code code;
   const fs::path content = fs::read_symlink(path, code);

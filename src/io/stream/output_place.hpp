@@ -22,13 +22,13 @@ std::filesystem::path folder_of(const std::filesystem::path& path);
 
 /// Returns where a path leads, with all symbolic links followed. Throws InputError for a folder, for links in
 /// a circle, for a name that the file system refuses, and for a link of another user in a folder open to all.
-/// If this program named the file or a part of its path, also for a link in that part and for a device or a
-/// pipe.
+/// If this program named the file or a part of its path, throws it also for a link in that part, a device or
+/// a pipe.
 OutputPlace output_place(const FilePath& file);
 
-/// Gives an open file the owner, the group, the mode and the extended attributes, ACLs among them, of the
-/// file that it is to replace, as far as the system allows. If the group cannot be kept, the file's new group
-/// gets no more access than all others have. Returns 0 or an `errno`.
+/// Gives an open file the owner, the group, the mode, the ACLs and the other extended attributes of the file
+/// that it is to replace, as far as the system allows. If the group cannot be kept, the file's new group gets
+/// no more access than all others have. Returns 0 or an `errno`.
 [[nodiscard]] int copy_attributes(const std::filesystem::path& from, const Descriptor& to);
 
 }  // namespace meshorder

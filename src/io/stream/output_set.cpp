@@ -91,7 +91,7 @@ void complete(const FinishedFile& file, const OutputPlace& place) {
   if (error != 0) throw_system_fault(file.target.string(), "cannot be written to the end", error);
 }
 
-/// Applies all moves. Throws InputError, with the old files put back, if one cannot be applied.
+/// Applies all moves. If a move cannot be applied, puts the old files back and throws InputError.
 void apply_all(std::vector<Move>& moves) {
   std::set<fs::path> folders;
   for (const Move& move : moves) folders.insert(folder_of(move.target()));

@@ -11,8 +11,8 @@
 
 namespace meshorder {
 
-/// Output files that belong together: the files written to a `FilePath` of this set. `commit` puts all in
-/// place.
+/// Output files that belong together: the files written to a `FilePath` of this set. `commit` puts all files
+/// in place.
 class OutputSet {
  public:
   OutputSet() = default;
@@ -29,9 +29,9 @@ class OutputSet {
   /// Makes `commit` remove a file of an earlier run, if it exists, that is not part of this set.
   void remove(FilePath path) { removals_.push_back(std::move(path)); }
 
-  /// Makes `commit` first remove an old file that readers need to read the others, for example a file that
-  /// names them. If the process is then killed, the set cannot be read, but it is not a mixed one. For
-  /// outputs without a mark (see `put_in_place`). Add the new version of that file last.
+  /// Makes `commit` first remove an old file without which readers cannot read the other files, for example a
+  /// file that names them. If the process is then killed, the set cannot be read, but it does not mix old and
+  /// new files. For outputs without a mark (see `put_in_place`). Add the new version of that file last.
   void remove_first(FilePath path) { removals_first_.push_back(std::move(path)); }
 
   /// Puts all files in place. Throws InputError as `put_in_place`.
@@ -65,11 +65,11 @@ struct FinishedFile {
 /// Until step 3 the old files are in place. An error in step 3 or 4 puts them back. A process that is killed
 /// in step 3 leaves some files new and others old, each complete. The readers of TetGen, XDMF and maps refuse
 /// such a mixture by a mark in each file; sets without marks name a file as `removed_first`. Nobody can hold
-/// up an output by holding a lock: after ten seconds the files are put in place without it.
+/// up an output by holding a lock: after ten seconds the files are put in place without the lock.
 ///
 /// @return notes on files with further hard links, which keep the old content
-/// @throws InputError if a file cannot be completed or replaced, two have one target, or a target is no
-///         longer beside its scratch folder; names the files that could not be put back
+/// @throws InputError if a file cannot be completed or replaced, two files have the same target, or a target
+///         is no longer beside its scratch folder; names the files that could not be put back
 std::vector<std::string> put_in_place(std::span<const FinishedFile> files,
                                       std::span<const FilePath> removed_first = {},
                                       std::span<const FilePath> removed = {});

@@ -15,11 +15,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLeastLimit = std::uint64_t{256} << 20;
-constexpr std::uint64_t kMultiple = 100;  // of the files' size
+constexpr std::uint64_t kMultiple = 100;  // multiple of the files' size
 
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of each thread
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): one for each thread
 thread_local ReadScope* current_reading = nullptr;
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): one for the process
 std::atomic<std::uint64_t> left_by_last = UINT64_MAX;
 
 std::vector<fs::path>& folders_of_process() {

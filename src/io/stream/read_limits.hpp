@@ -24,8 +24,8 @@ namespace meshorder {
 class ReadScope {
  public:
   /// @param file             the mesh, for messages; must outlive this object
-  /// @param memory           the limit on claims in bytes; none: as above
-  /// @param include_folders  folders besides its own that may hold the files that it names
+  /// @param memory           the limit on claims in bytes; if empty, as above
+  /// @param include_folders  more folders that may hold files that the mesh names, besides its own folder
   explicit ReadScope(const FilePath& file, std::optional<std::uint64_t> memory = {},
                      std::vector<std::filesystem::path> include_folders = {});
   ~ReadScope();
@@ -65,10 +65,11 @@ inline constexpr std::uint64_t kCopiesOfClaim = 4;
 /// limit, claims nothing and returns the fault, "WHAT would take 64 GiB …".
 [[nodiscard]] std::string refused_claim(std::uint64_t bytes, std::string_view what);
 
-/// The same for memory that a library needs only while it reads: counts once, and not for later claims.
+/// As `refused_claim`, for memory that a library needs only while it reads: the bytes count once, and later
+/// claims do not include them.
 [[nodiscard]] std::string refused_for_a_while(std::uint64_t bytes, std::string_view what);
 
-/// Returns the bytes of its limit that the last mesh read in this process did not claim.
+/// Returns how many bytes of its limit the last mesh read in this process left unclaimed.
 std::uint64_t left_by_last_reading();
 
 /// The advice in messages about a claim that is refused.

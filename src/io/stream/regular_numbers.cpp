@@ -16,12 +16,12 @@ namespace meshorder {
 namespace {
 
 constexpr std::size_t kMostParts = 64;
-constexpr std::size_t kNumberBytes = 24;  // bytes of text examined first for each number left
+constexpr std::size_t kNumberBytes = 24;  // for each number left, bytes of text to examine first
 
 bool is_separator(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
-/// Returns how many words begin in a text that follows a separator. Handles eight bytes at a time: the
-/// highest bit of each, in `of_words`, says whether it is above the space.
+/// Returns how many words begin in a text that follows a separator. Handles eight bytes at a time: in
+/// `of_words`, the highest bit of each byte says whether the byte is above the space.
 std::size_t words_in(std::string_view text) {
   constexpr std::uint64_t kOnes = 0x0101010101010101U;
   constexpr std::uint64_t kHighest = kOnes * 0x80U;
@@ -46,7 +46,7 @@ std::size_t words_in(std::string_view text) {
   return words;
 }
 
-/// Reads a number at `at` if all of its word is one; returns its end, or null.
+/// Reads a number at `at` if the whole word is a number; returns its end, or null.
 template <class Number>
 const char* read_number(const char* at, const char* end, Number& value) {
   if constexpr (std::is_integral_v<Number>) {
@@ -76,7 +76,7 @@ std::vector<std::string_view> divided_at_blanks(std::string_view text, std::size
   return parts;
 }
 
-/// Returns the number of each part's first word, and of all words.
+/// Returns the position of each part's first word among all words, then the number of words.
 std::vector<std::size_t> first_words(const std::vector<std::string_view>& parts) {
   std::vector<std::size_t> first(parts.size() + 1, 0);
   for_each_chunk(index_size(parts), 1,

@@ -13,7 +13,7 @@ namespace meshorder {
 namespace {
 
 constexpr std::size_t kPartsAtOnce = 64;
-constexpr std::size_t kRecordBytes = 64;  // bytes of text examined first for each record left
+constexpr std::size_t kRecordBytes = 64;  // for each record left, bytes of text to examine first
 
 /// Some whole lines of a text.
 struct TextPart {
@@ -48,8 +48,8 @@ void count_lines(std::string_view text, char comment, TextPart& part) {
   }
 }
 
-/// Divides the text from `begin` on into parts, up to the usual end of so many records. A file may have many
-/// short runs of records, and none of them may cost a pass over the rest of the text.
+/// Divides the text from `begin` on into parts, up to where that many records usually end. A file may have
+/// many short runs of records, and none of them may cost a pass over the rest of the text.
 std::vector<TextPart> divided(std::string_view text, std::size_t begin, std::size_t bytes,
                               std::size_t records) {
   std::vector<TextPart> parts;

@@ -15,8 +15,8 @@ namespace meshorder {
 
 /// How much of a text was read as numbers.
 struct RegularNumbers {
-  std::size_t count = 0;     ///< of the numbers
-  std::size_t bytes = 0;     ///< of the text, up to the end of the last number or of the blanks after it
+  std::size_t count = 0;     ///< numbers read
+  std::size_t bytes = 0;     ///< bytes up to the end of the last number or of the blanks after it
   std::int64_t lines = 0;    ///< line feeds in these bytes
   bool has_returns = false;  ///< these bytes may contain carriage returns, which also end lines
 };
@@ -46,7 +46,8 @@ RegularNumbers read_regular_numbers(std::string_view text, std::span<Number> val
     return {};
 }
 
-/// The same from a scanner without comments, which moves after the last number. Returns the count.
+/// As above, from a scanner without comments. Moves the scanner after the last number. Returns how many
+/// numbers it read.
 template <class Number>
 std::size_t read_regular_numbers(Scanner& in, std::span<Number> values) {
   const RegularNumbers read =
@@ -63,14 +64,15 @@ std::size_t read_regular_numbers(Scanner& in, std::span<Number> values) {
 std::size_t count_words(std::string_view text);
 
 /// Reads the next records of a text, each on a line of its own, on all threads, as far as they are regular.
-/// Returns how many it read; the scanner is then after the last one. The caller reads the others one by one:
-/// it reports their errors and accepts what is unusual but valid. So errors and results are those of a reader
-/// that reads all records one by one.
+/// Returns how many records it read; the scanner is then after the last of them. The caller reads the other
+/// records one by one: it reports their errors and accepts what is unusual but valid. So errors and results
+/// are those of a reader that reads all records one by one.
 ///
 /// The text is divided at line ends into parts. The number of lines with a word in each part gives the first
 /// record of the next.
 ///
-/// @param in     is after all text that precedes the first record, on its line or before
+/// @param in     is after all text that precedes the first record: on the record's line, or on a line before
+/// it
 /// @param count  the most records to read, ≥ 0
 /// @param read   `read(part, record)` takes the words of a record; returns false if the record is not
 ///              regular. It writes only data of the record, and may be called again for the same record. A

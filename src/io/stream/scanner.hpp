@@ -34,8 +34,8 @@ class Scanner {
   /// @param byte  0 … size of the text
   /// @param line  of that byte
   [[nodiscard]] Scanner at(std::int64_t byte, std::int64_t line) const;
-  /// Returns a scanner of all bytes of the file from the first one on. Three bytes that look like a byte
-  /// order mark, which a scanner skips, may be data of a binary file.
+  /// Returns a scanner of all bytes of the file from the first one on. A scanner skips three bytes that look
+  /// like a byte order mark, but in a binary file they may be data.
   [[nodiscard]] Scanner of_all_bytes() const;
   /// Moves to where another scanner of the same text is. O(1).
   void move_to(const Scanner& other);
@@ -74,11 +74,12 @@ class Scanner {
   std::string_view word(std::string_view what);
   /// Returns the next word without taking it; empty at the end of the file.
   std::string_view peek_word();
-  /// Takes the next word if all of it is a plain number in the range of T; otherwise returns false and leaves
-  /// the word. Reads each byte once; `word` and a parser read it twice.
+  /// Takes the next word if all of it is a plain number in the range of T; otherwise returns false and does
+  /// not take it. Reads each byte once; `word` and a parser read it twice.
   template <class T>
   bool take_number(T& value);
-  /// The same for a finite real number. Takes a number that is not finite as well, but returns false.
+  /// As `take_number`, for a finite real number. Takes a number that is not finite as well, but returns
+  /// false.
   bool take_finite(double& value) { return take_number(value) && std::isfinite(value); }
   /// Takes the next word as an integer of type T.
   template <class T>
@@ -112,8 +113,8 @@ class Scanner {
   void skip_blanks();
   void next_line();
   [[nodiscard]] bool at_break() const;
-  /// Skips spaces; returns whether a word follows at once. If not, one may still follow, for example after a
-  /// tab.
+  /// Skips spaces; returns whether a word follows at once. If not, a word may still follow, for example after
+  /// a tab.
   bool skip_spaces() {
     while (text_[position_] == ' ') ++position_;  // a zero byte ends the text
     return text_[position_] > ' ' && text_[position_] != comment_;
@@ -136,7 +137,7 @@ class Scanner {
 
   std::string file_;
   std::shared_ptr<const std::string> whole_;  ///< shared by scanners of one text
-  std::string_view text_;                     ///< of it; a zero byte follows
+  std::string_view text_;                     ///< part of the text; a zero byte follows it
   std::size_t position_ = 0;
   std::int64_t line_ = 1;
   char comment_;

@@ -46,7 +46,8 @@ std::atomic<std::size_t> locks_held = 0;
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing else
 std::array<std::atomic<char*>, 1024> unfinished{};
 
-/// Stores a path and returns its slot; −1 if none is free: then a later run removes the folder.
+/// Stores a path and returns its slot. Returns −1 if no slot is free; a later run of the program then removes
+/// the folder.
 int remember(const std::string& path) {
   auto* const text = new char[path.size() + 1];
   std::memcpy(text, path.c_str(), path.size() + 1);
@@ -86,7 +87,7 @@ bool is_scratch_name(std::string_view name) {
          name.substr(kPrefix.size(), kDigits).find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
-/// Makes `lock` in a folder and locks it. Returns false if a run that cleans up has taken the folder away.
+/// Makes `lock` in a folder and locks it. Returns false if a process that cleans up has removed the folder.
 bool lock_new(const fs::path& folder, Descriptor& lock) {
   lock = Descriptor(folder / kLock, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW, 0600);
   if (!lock.is_open()) return errno != ENOENT;
@@ -133,8 +134,8 @@ void remove_if_dead(const Descriptor& parent, const std::string& name, bool is_i
   } else if (errno != ENOENT) {
     return;
   }
-  // a folder without a lock belongs to a process that has just begun or died then; it is removed only if
-  // empty
+  // a folder without a lock belongs to a process that has just begun, or that died at that moment; it is
+  // removed only if it is empty
   ::unlinkat(parent.get(), name.c_str(), AT_REMOVEDIR);
 }
 
@@ -144,8 +145,8 @@ bool remove_own(const char* path) noexcept {
   return ::rmdir(path) == 0;
 }
 
-/// Removes the files that dead processes left in a scratch folder of this process, and then the folder.
-/// Without memory the folder stays.
+/// Removes the files that dead processes left in a scratch folder of this process, and then the folder. The
+/// folder stays if there is no memory.
 void remove_inner(const fs::path& path) noexcept {
   try {
     const Descriptor folder(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW);

@@ -46,9 +46,9 @@ void keep_scratches_in(const std::filesystem::path& place, const std::filesystem
 std::filesystem::path place_of_scratches(const std::filesystem::path& folder);
 
 /// Removes the scratch folders that dead processes of this user left in a folder; for commands that write
-/// there. Only the first call for a folder in a process does this. Removes only folders with such a name
-/// whose `lock` is free, and in them only `new`, `old` and `lock`; follows no links. Files that cannot be
-/// removed stay.
+/// there. Only the first call for a folder in a process does this. Removes only folders that have the name of
+/// a scratch folder and whose `lock` is free, and in them only `new`, `old` and `lock`; follows no links.
+/// Files that cannot be removed stay.
 void remove_dead_scratches(const std::filesystem::path& folder);
 
 /// Removes all scratch folders of this process. For a signal handler that ends the process: it calls only

@@ -13,13 +13,13 @@
 namespace meshorder {
 
 /// Writes rows of text, made on all threads, in their order; one of the threads writes while the others make
-/// the next ones. The same bytes on any number of threads.
+/// the next rows. The bytes do not depend on the number of threads.
 ///
 /// @param rows  `rows(text, begin, end)` appends rows begin … end−1
 /// @note Memory: 1 MB or so for each thread.
 void write_row_ranges(OutputFile& out, Index count, const std::function<void(Text&, Index, Index)>& rows);
 
-/// The same; `row(text, i)` appends row i.
+/// As `write_row_ranges`; `row(text, i)` appends row i.
 template <class Row>
 void write_rows(OutputFile& out, Index count, const Row& row) {
   write_row_ranges(out, count, [&row](Text& text, Index begin, Index end) {

@@ -145,14 +145,15 @@ class Su2Reader {
     if (!is_plain(keyword_)) notes_.push_back(keyword_ + "= is not known, and its line is kept as it is");
     metadata_->keywords.push_back("SU2's " + keyword_ + "=");
     keep_line();
-    // lines of a box's corners or control points; of a periodic marker's center, angles and translation
+    // keywords with lines after them: a box's corners or control points, or a periodic marker's centre,
+    // angles and translation
     const bool has_lines = keyword_.starts_with("FFD_") || keyword_.starts_with("PERIODIC_");
     while (has_lines && in_.bytes_left() > 0 && in_.peek_line().find('=') == std::string_view::npos) {
       keep_line();
     }
   }
 
-  /// Reads lines of a marker's name, a point and its place in the box.
+  /// Reads lines, each with a marker's name, a point and its place in the box.
   void read_surface_points() {
     if (!has_points_) in_.fail(keyword_ + "= comes before NPOIN=", "the points must come first");
     keep_lines();
@@ -419,13 +420,13 @@ class Su2Reader {
   Notes& notes_;
   Mesh mesh_;
   std::shared_ptr<Su2Metadata> metadata_ = std::make_shared<Su2Metadata>();
-  std::string keyword_;  // of the last line with one, in capitals
+  std::string keyword_;  // of the last line with a keyword, in capitals
   std::string value_;
-  std::string lines_;  // to be kept
+  std::string lines_;  // lines to be kept
   std::unordered_set<SectionKind> sections_seen_;
   std::unordered_set<std::string> names_seen_;
-  std::vector<std::int64_t> labels_;  // of the cells so far; empty if none has one
-  Index elements_ = 0;                // of the highest dimension
+  std::vector<std::int64_t> labels_;  // of the cells so far; empty if no cell has a label
+  Index elements_ = 0;                // number of elements of the highest dimension
   Index markers_said_ = -1;
   std::int64_t largest_node_ = -1;
   std::int64_t line_of_largest_ = 0;

@@ -64,17 +64,18 @@ struct Su2Metadata final : FormatMetadata {
   std::vector<FileSection> sections;    ///< in the order of the file
   std::vector<std::string> keywords;    ///< of the lines that are kept as they are
   bool counts_physical_points = false;  ///< NPOIN= gives a second number
-  bool numbers_elements = false;        ///< lines of elements end with a number, from 0; so do the next two
+  bool numbers_elements = false;  ///< lines of elements end with their number, from 0; the next two say the
+                                  ///< same for points and for elements of markers
   bool numbers_points = false;
   bool numbers_marker_elements = false;
-  bool wedges_face_inward = false;  ///< by their first triangle, as in Gmsh's files
+  bool wedges_face_inward = false;  ///< whether their first triangle faces inward, as in Gmsh's files
 
   [[nodiscard]] std::vector<std::string> contents() const override { return keywords; }
   [[nodiscard]] std::shared_ptr<const FormatMetadata> moved(std::span<const Index> vertices,
                                                             std::span<const Index> cells) const override;
 };
 
-/// Returns a marker's name as a label, 0 if it is none: "12" and "-3" are labels, "012" is not.
+/// Returns a marker's name as a label, 0 if it is not a label: "12" and "-3" are labels, "012" is not.
 std::int64_t label_of_name(std::string_view name);
 
 Mesh read(const FilePath& path, Notes& notes);

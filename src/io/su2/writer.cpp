@@ -43,7 +43,7 @@ struct Markers {
   }
 
   const Mesh& mesh;
-  int dimension;  ///< of the elements; markers have one less
+  int dimension;  ///< of the elements; boundary cells have one dimension less
   std::vector<Marker> markers;
   std::map<std::string, std::size_t, std::less<>> places;  ///< of markers, by name
   DistinctNames names;                                     ///< of the sets' markers
@@ -258,7 +258,7 @@ class Su2Writer {
     return found == markers_.places.end() ? std::nullopt : std::optional(found->second);
   }
 
-  /// Returns the number of the file's markers without cells whose names are labels.
+  /// Returns how many of the file's markers have a label as their name, but no cells.
   [[nodiscard]] std::size_t empty_labels() const {
     if (own_ == nullptr) return 0;
     return static_cast<std::size_t>(std::count_if(
@@ -290,7 +290,7 @@ class Su2Writer {
   const Su2Metadata* own_;  // nullptr if the mesh comes from another format
   int dimension_;
   OutputFile& out_;
-  std::vector<bool> written_;  // of markers
+  std::vector<bool> written_;  // whether each marker has been written
 };
 
 }  // namespace

@@ -15,9 +15,9 @@
 /// Declarations shared by the reader and the writer of OBJ files.
 namespace meshorder::obj {
 
-/// A statement that applies to the cells after it until the next statement of its kind, and the cell array
-/// that records the statement of each cell: 0 for none, else a number whose name is in the metadata.
-/// Smoothing groups are numbers.
+/// A kind of statement, which applies to the cells after it until the next statement of the kind, and the
+/// cell array that records the statement of each cell: 0 for no statement, else a number whose name is in the
+/// metadata. A smoothing group has the number that the file gives it.
 struct State {
   std::string_view keyword;
   std::string_view array;

@@ -120,7 +120,7 @@ class Reader {
   }
 
   void read_long_statement() {
-    // collected ahead of the scanner, which stays at the first line until all is read
+    // the lines are collected ahead of the scanner, which stays at the first line until all is read
     std::string joined;
     int lines = 0;
     for (std::string_view left = scanner_.all().substr(scanner_.byte()); !left.empty(); ++lines) {

@@ -30,7 +30,8 @@ bool obj_holds(const Mesh& /*mesh*/, Shape shape, int vertices) {
   return shape == Shape::poly_vertex || (dimension(shape) <= 2 && vertices == corners(shape, 0));
 }
 
-/// Returns the 32- or 64-bit integers of all cells; none for other arrays and if one exceeds 32 bits.
+/// Returns the 32- or 64-bit integers that an array gives to all cells; empty for other arrays, and if an
+/// integer exceeds 32 bits.
 std::vector<std::int32_t> cell_integers(const DataArray& array) {
   if (!array.is_dense() || array.components != 1) return {};
   if (const auto* same = std::get_if<std::vector<std::int32_t>>(&array.values)) return *same;
@@ -96,8 +97,8 @@ class ObjWriter {
     written_.insert(array);
   }
 
-  /// Finds the indices of corners if the file was OBJ; else the normals and texture coordinates of vertices,
-  /// which become lists as long as that of vertices.
+  /// Finds the indices of corners if the mesh came from OBJ. Otherwise finds the normals and texture
+  /// coordinates of vertices, which become lists as long as the list of vertices.
   void find_corner_data() {
     texture_.assign(mesh_.cells.shapes.size(), nullptr);
     normals_.assign(mesh_.cells.shapes.size(), nullptr);
@@ -174,7 +175,7 @@ class ObjWriter {
   }
 
   void write_vertices() {
-    // whole colours run to 255, colours of OBJ to 1
+    // colours in whole numbers go up to 255, colours of OBJ up to 1
     const double scale = colors_.integers ? 255 : 1;
     write_rows(out_, mesh_.vertex_count(), [&](Text& row, Index v) {
       const Point& p = mesh_.points[v];
@@ -306,7 +307,7 @@ class ObjWriter {
   std::vector<Index> weight_rows_;
   GatheredVector vertex_texture_;
   GatheredVector vertex_normals_;
-  std::vector<const std::int32_t*> texture_;  // of each cell's corners, or none
+  std::vector<const std::int32_t*> texture_;  // of each cell's corners; null if there are none
   std::vector<const std::int32_t*> normals_;
   std::array<std::vector<std::int32_t>, kStates.size()> states_;
   std::array<std::string, kStates.size()> current_;

@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Geomview's OFF, http://www.geomview.org/docs/html/OFF.html: [ST][C][N]OFF as text. A vertex may have a
-// normal, a colour and texture coordinates, a face a colour of 1 (an entry of a colour map), 3 or 4 numbers,
-// whole ones from 0 to 255 or real ones from 0 to 1.
+// normal, a colour and texture coordinates. A face may have a colour of 1 (an entry of a colour map), 3 or 4
+// numbers: whole numbers from 0 to 255, or real numbers from 0 to 1.
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
@@ -86,7 +86,8 @@ int words_on_line(std::string_view line) {
   return count;
 }
 
-/// Completes the layout from the first vertex's line: further numbers are a colour of 3 or 4, even without C.
+/// Completes the layout from the first vertex's line: further numbers are a colour of 3 or 4 numbers, even if
+/// the keyword has no C.
 void measure_vertices(Scanner& scanner, VertexColumns& layout) {
   if (scanner.at_end()) return;
   const int numbers = words_on_line(scanner.peek_line());
@@ -95,7 +96,7 @@ void measure_vertices(Scanner& scanner, VertexColumns& layout) {
   if (numbers == others + 3 || numbers == others + 4) {
     layout.color_width = numbers - others;
   } else if (numbers < 3 || numbers > others + 4) {
-    // the vertices are not one to a line; then a colour has four numbers, as in Geomview
+    // the vertices do not have a line each; then a colour has four numbers, as in Geomview
     layout.one_line_each = false;
     layout.color_width = layout.colors ? 4 : 0;
   } else {
@@ -174,7 +175,7 @@ struct ColorGroup {
 
 constexpr int kMostColors = 4;
 using ColorGroups =
-    std::array<ColorGroup, std::size_t{2} * (kMostColors + 1)>;  // at 2 · width + whether whole
+    std::array<ColorGroup, std::size_t{2} * (kMostColors + 1)>;  // index: 2 · width, + 1 for whole numbers
 
 void read_color(Scanner& scanner, Index face, ColorGroups& groups) {
   if (scanner.at_line_end()) return;
@@ -270,7 +271,7 @@ struct Content {
   GatheredVector colors;
   GatheredVector texture;
   GatheredVector face_colors;
-  /// Colours of some faces: the array and the row for each face, or none.
+  /// Colours of some faces: for each face the array and the row of its colour; null if it has no colour.
   std::vector<std::pair<const DataArray*, Index>> color_rows;
   std::vector<const DataArray*> written;
 };

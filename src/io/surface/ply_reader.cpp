@@ -126,7 +126,7 @@ void check_cells_element(const Scanner& scanner, const Element& element) {
   }
 }
 
-/// Returns whether the name looks like one for numbers of vertices or faces: "vertex1", "face_index".
+/// Returns whether the name sounds like that of numbers of vertices or faces: "vertex1", "face_index".
 bool sounds_like_index(const Property& property) {
   if (!is_integer(property.type.type)) return false;
   const std::string name = "_" + property.name;
@@ -135,8 +135,10 @@ bool sounds_like_index(const Property& property) {
 }
 
 /// Marks properties and elements as left out if they may depend on the order of vertices or faces in an
-/// unknown way: lists of whole numbers; for other elements also numbers named like an index, and elements
-/// with as many rows as vertices or cells.
+/// unknown way:
+/// - lists of whole numbers;
+/// - elements of other kinds that have such lists, or numbers named like an index;
+/// - elements of other kinds with as many rows as vertices or cells.
 ///
 /// @param known  the elements of vertices and cells, by their numbers of rows
 void leave_out_dependent(Element& element, const std::map<Index, std::string>& known) {
@@ -164,7 +166,7 @@ void leave_out_dependent(Element& element, const std::map<Index, std::string>& k
       fmt::format("it has as many rows as the element {}, to which they could belong", same->second);
 }
 
-/// Fails if a required property is missing, or two have one name.
+/// Fails if a required property is missing, or if two properties have the same name.
 void check_element(const Scanner& scanner, const Element& element) {
   std::set<std::string_view> names;
   for (const Property& property : element.properties) {
@@ -199,7 +201,8 @@ void leave_header(Scanner& scanner) {
   }
 }
 
-/// Keeps the role rows_of_faces only if the element follows the only element of faces, of as many rows.
+/// Keeps the role rows_of_faces only if the element follows the only element of faces and has as many rows as
+/// that.
 void check_rows_of_faces(PlyMetadata& header) {
   const Element* faces = nullptr;
   Element* rows = nullptr;
@@ -562,7 +565,8 @@ class Reader {
     }
   }
 
-  /// Joins the arrays of a property that all cells have, faces and edges, into one.
+  /// Joins the arrays of a property into one if all elements of cells, such as faces and edges, have the
+  /// property.
   void join_arrays_of_all_cells() {
     if (cell_elements_ < 2) return;
     for (std::size_t i = 0; i < mesh_.data.size(); ++i) {

@@ -264,7 +264,8 @@ class Columns {
     return array.components == 1 && rows_inside(array) == index_size(table_.items);
   }
 
-  /// Widens the types of a cell's vertices, if needed, to hold every vertex and every cell's length.
+  /// Widens, if needed, the types in the list of a cell's vertices, to hold every vertex and the length of
+  /// every list.
   [[nodiscard]] Column widened(Column column) const {
     if (table_.element.role == Role::vertices) return column;
     constexpr std::array<std::int64_t, 6> kLargest{127, 255, 32767, 65535, 2147483647, 4294967295};
@@ -290,7 +291,7 @@ class Columns {
       if (is_taken(std::string(component))) return;
     }
     TypeWord type = written_type(array.values);
-    // whole colours from 0 to 255 are usual as bytes
+    // colours in whole numbers from 0 to 255 are usually bytes
     const bool bytes = &vector == &kColor && gathered.integers &&
                        std::all_of(gathered.values.begin(), gathered.values.end(),
                                    [](double x) { return x >= 0 && x <= 255; });
@@ -338,7 +339,7 @@ class Columns {
   std::vector<bool> is_item_;
   std::multimap<std::string_view, const DataArray*> arrays_;  // of the mesh, by name
   std::set<const DataArray*> used_;
-  std::set<std::string> names_;  // of the columns
+  std::set<std::string> names_;  // names of the columns
 };
 
 // ---- writing

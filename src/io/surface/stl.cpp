@@ -47,7 +47,8 @@ struct StlMetadata : FormatMetadata {
 
 // ---- reading
 
-/// Numbers points by first appearance, equal ones alike: a hash table with open addressing.
+/// Gives points numbers by first appearance; equal points get the same number. A hash table with open
+/// addressing.
 class PointTable {
  public:
   explicit PointTable(std::vector<Point>& points) : points_(points), slots_(1024, -1) {}
@@ -88,7 +89,7 @@ class PointTable {
   std::vector<Index> slots_;
 };
 
-/// Returns the unit normal of a triangle, zero for a degenerate one.
+/// Returns the unit normal of a triangle, zero for a degenerate triangle.
 Point normal_of(const Point& a, const Point& b, const Point& c) {
   const Point u{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
   const Point v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
@@ -189,7 +190,7 @@ void expect_end(Scanner& scanner, const std::string& part) {
 void read_facet(Scanner& scanner, Builder& builder) {
   expect_word(scanner, "facet");
   Point normal{0, 0, 0};
-  const bool has_normal = !same_but_for_case(scanner.peek_word(), "outer");  // some programs write none
+  const bool has_normal = !same_but_for_case(scanner.peek_word(), "outer");  // some programs write no normal
   if (has_normal) expect_word(scanner, "normal");
   for (std::size_t k = 0; has_normal && k < normal.size(); ++k) {
     double& x = normal[k];

@@ -33,7 +33,7 @@ GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Association
   if (is_usable(whole) && whole->components >= vector.least && whole->components <= most) {
     return {whole->components, are_integers(whole->values), as_reals(whole->values), {whole}};
   }
-  // or an array for each, of one type
+  // or an array for each component, all of one type
   for (const std::string_view component : vector.components) {
     const DataArray* array = find_array(mesh, component, association);
     if (!is_usable(array) || array->components != 1) break;

@@ -10,12 +10,12 @@
 namespace meshorder {
 
 /// Normals, colours and texture coordinates: the arrays of a surface for which OFF, OBJ and PLY have fields.
-/// A mesh holds each as one array of several components ("normal") or, as PLY does, as arrays of one ("nx",
-/// "ny", "nz").
+/// A mesh holds each as one array of several components ("normal") or, as PLY does, as arrays of one
+/// component ("nx", "ny", "nz").
 struct SurfaceVector {
   std::string_view name;
   std::vector<std::string_view> components;
-  int least;  ///< required components; the others may be missing
+  int least;  ///< number of required components; the others may be missing
 };
 
 inline const SurfaceVector kNormal{"normal", {"nx", "ny", "nz"}, 3};

@@ -37,7 +37,7 @@ struct ReadContext {
   Mesh mesh = {};
   IdMap points = {};
   std::array<CellFile, 4> parts = {};
-  std::string mark = {};  ///< of the file of points
+  std::string mark = {};  ///< mark of the file of points
   std::shared_ptr<TetGenMetadata> metadata = std::make_shared<TetGenMetadata>();
   bool second_order = false;
 };
@@ -139,12 +139,13 @@ void add_number(Scanner& in, IdMap& numbering, std::string_view what) {
     in.fail(fmt::format("{} {} is given twice", what, number), "each must be unique");
 }
 
-/// Takes as many numbers as `values` has; returns false if one is missing or is not regular.
+/// Takes as many numbers as `values` has; returns false if a number is missing or is not regular.
 bool take_all(Scanner& in, std::span<double> values) {
   return std::ranges::all_of(values, [&](double& value) { return in.take_number(value); });
 }
 
-/// Reads records as `read_regular_records` does; a record is regular only if its number follows the last.
+/// Reads records as `read_regular_records` does; a record is regular only if its number follows that of the
+/// last record.
 template <class Read>
 Index read_numbered(Scanner& in, Index count, IdMap& numbering, const Read& read) {
   constexpr std::int64_t kFarthest = std::int64_t{1} << 40;
@@ -159,8 +160,8 @@ Index read_numbered(Scanner& in, Index count, IdMap& numbering, const Read& read
   return regular;
 }
 
-/// Removes the mark of a mesh's files from the comments at the end of one and returns it; returns an empty
-/// text if there is none.
+/// Removes the mark of a mesh's files from `comments`, the comments at the end of a file. Returns the mark;
+/// an empty text if there is none.
 std::string take_mark(std::string& comments) {
   const std::size_t at = comments.rfind(kMarkBefore);
   if (at == std::string::npos || (at > 0 && comments[at - 1] != '\n')) return {};
@@ -225,8 +226,8 @@ void read_points(Scanner& in, ReadContext& to) {
   }
   ends.note_columns_left_out(kNode, to.notes);
 
-  // As in TetGen, the first number decides whether numbers begin at 0 or at 1. If they are not consecutive,
-  // any 0 decides: the points that cells name then do not depend on the order of the points.
+  // As in TetGen, the first number decides whether numbers begin at 0 or at 1. If they are not consecutive, a
+  // 0 at any place decides: the points that cells name then do not depend on the order of the points.
   to.metadata->base = to.points.id(0) == 0 ? 0 : 1;
   mesh.vertex_ids = to.points.ids_unless_from(to.metadata->base);
   if (std::find(mesh.vertex_ids.begin(), mesh.vertex_ids.end(), 0) != mesh.vertex_ids.end())
@@ -371,7 +372,7 @@ void read_boundary(Scanner& in, File file, ReadContext& to) {
   read_cells(in, file, file == kFace ? Shape::triangle : Shape::line, nodes, marked, to);
 }
 
-/// Returns, for each second-order node of the tetrahedra, the ends of its edge, the lower first.
+/// Returns, for each second-order node of the tetrahedra, the ends of its edge, the lower vertex first.
 std::vector<std::array<Index, 2>> edges_of_nodes(const Mesh& mesh, Index tetrahedra) {
   constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
   std::vector<std::array<Index, 2>> result(mesh.points.size(), {-1, -1});
@@ -386,7 +387,7 @@ std::vector<std::array<Index, 2>> edges_of_nodes(const Mesh& mesh, Index tetrahe
   return result;
 }
 
-/// TetGen 1.5 writes the second-order nodes of faces by opposite edges with -f, else in VTK's order. The
+/// TetGen 1.5 with -f writes the second-order nodes of faces by opposite edges, otherwise in VTK's order. The
 /// faces were read as if in VTK's order. Finds the order by the edges of the tetrahedra, and corrects it.
 void settle_face_order(ReadContext& to) {
   const Index tetrahedra = to.parts[kEle].count;
@@ -417,7 +418,7 @@ void settle_face_order(ReadContext& to) {
 
 // ---- all files of cells together
 
-/// Sets the ids of cells if those of a file are not consecutive. Each file numbers its cells separately.
+/// Sets the ids of cells if the ids in a file are not consecutive. Each file numbers its cells separately.
 void set_cell_ids(ReadContext& to) {
   const int base = to.metadata->base;
   if (std::all_of(to.parts.begin(), to.parts.end(),

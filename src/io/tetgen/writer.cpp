@@ -103,7 +103,7 @@ CellsOfFiles layout_of(const Mesh& mesh, const TetGenMetadata& metadata, bool ow
   CellsOfFiles layout;
   layout.dimension = solid ? 3 : own ? mesh.dimension : 2;
   layout.nodes[kEle] = metadata.nodes_in_ele;
-  // triangles are the cells of a plane mesh and the boundary of a solid one
+  // triangles are the cells of a plane mesh, or the boundary of a solid mesh
   const bool in_ele =
       !solid && (layout.dimension == 2 || metadata.nodes_in_ele == 3 || metadata.nodes_in_ele == 6);
   for (Index c = 0; c < mesh.cell_count(); ++c) {
@@ -218,7 +218,7 @@ struct WriteContext {
   const Mesh& mesh;
   const TetGenMetadata& metadata;
   CellsOfFiles layout;
-  bool own_ids;     // the ids came from TetGen's files; others are not written
+  bool own_ids;     // the ids came from TetGen's files; other ids are not written
   bool vertex_ids;  // the ids of vertices are written
   Labels vertex_labels;
   Labels cell_labels;
@@ -282,7 +282,8 @@ void write_boundary(OutputFile& out, File file, const WriteContext& from, Notes&
   write_cells(out, file, from, {}, marked);
 }
 
-/// Returns a line with a checksum of the mesh, its order and its data; different meshes hardly ever share it.
+/// Returns a line with a checksum of the mesh, its order and its data; different meshes hardly ever have the
+/// same line.
 std::string mark_of(const WriteContext& from) {
   Checksum sum;
   Notes ignored;  // writing the files gives the same notes

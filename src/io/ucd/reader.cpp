@@ -205,8 +205,8 @@ class Reader {
     }
   }
 
-  /// Keeps the data of the model. If there are none, fails for further text: it could depend on the old
-  /// order.
+  /// Keeps the data of the model. If the model has no data, fails for further text: it could depend on the
+  /// old order.
   void keep_rest() {
     if (in_.at_end()) return;
     if (metadata_->model_values == 0) {

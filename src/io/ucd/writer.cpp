@@ -61,7 +61,7 @@ class Writer {
  private:
   struct Array {
     const DataArray* array;
-    std::string label;  ///< its line, with the unit
+    std::string label;  ///< the line of its label, with the unit
   };
 
   [[nodiscard]] const std::vector<Array>& arrays_of(Association association) const {
@@ -74,7 +74,8 @@ class Writer {
     return values;
   }
 
-  /// Finds the arrays that the file can hold, and their lines. Labels of cells are materials instead.
+  /// Finds the arrays that the file can hold, and their lines. Labels of cells are written as materials
+  /// instead.
   void collect_arrays() {
     DistinctNames of_nodes;
     DistinctNames of_cells;

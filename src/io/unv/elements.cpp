@@ -9,8 +9,8 @@
 namespace meshorder::unv {
 namespace {
 
-/// A range of types whose cells have one dimension; the number of nodes then gives the shape. The type alone
-/// does not: documents and programs disagree on linear and parabolic membranes (71 to 75).
+/// A range of types whose cells have the same dimension; the number of nodes then gives the shape. The type
+/// alone does not: documents and programs disagree on linear and parabolic membranes (71 to 75).
 struct Family {
   int first;
   int last;
@@ -58,7 +58,8 @@ constexpr std::array kKinds{
 constexpr std::array kLine3{0, 2, 1};
 constexpr std::array kTriangle6{0, 3, 1, 4, 2, 5};
 constexpr std::array kQuad8{0, 4, 1, 5, 2, 6, 3, 7};
-// volumes: nodes around the first face, middle nodes between it and the other nodes, the other nodes
+// volumes: the nodes around the first face, then the middle nodes of edges that leave it, then all other
+// nodes
 constexpr std::array kTetrahedron10{0, 4, 1, 5, 2, 6, 7, 8, 9, 3};
 constexpr std::array kWedge15{0, 6, 1, 7, 2, 8, 12, 13, 14, 3, 9, 4, 10, 5, 11};
 constexpr std::array kHexahedron20{0, 8, 1, 9, 2, 10, 3, 11, 16, 17, 18, 19, 4, 12, 5, 13, 6, 14, 7, 15};

@@ -17,8 +17,8 @@ struct ElementKind {
   bool operator==(const ElementKind&) const = default;
 };
 
-/// Returns the kind of cells for elements of a type ("FE descriptor id") with that many nodes; none if it is
-/// not known.
+/// Returns the kind of cells for elements of a type ("FE descriptor id") with that many nodes; nullopt if the
+/// type is not known.
 std::optional<ElementKind> kind_of(std::int64_t type, std::int64_t nodes);
 
 /// Returns the element type for cells of a mesh of another format; 0 if there is none.

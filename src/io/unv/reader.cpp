@@ -44,7 +44,7 @@ struct UnresolvedNode {
 /// The members of a group before all nodes and elements are known.
 struct Members {
   std::int64_t line = 0;
-  std::vector<Index> nodes;  ///< their numbers
+  std::vector<Index> nodes;  ///< numbers of the nodes
   std::vector<Index> elements;
 };
 
@@ -318,7 +318,8 @@ class UnvReader {
 
   // ---- groups
 
-  /// Reads groups; returns false if a member is in a part of an assembly: its last two numbers are not 0.
+  /// Reads groups. Returns false if a member belongs to a part of an assembly, that is, if its last two
+  /// numbers are not 0.
   bool read_groups() {
     const auto per_member = static_cast<std::size_t>(numbers_of_member(dataset_));
     const std::size_t groups_before = file_->groups.size();
@@ -394,7 +395,7 @@ class UnvReader {
     UniqueNames names;
     for (std::size_t g = 0; g < file_->groups.size(); ++g) {
       Group& group = file_->groups[g];
-      // one name for its nodes and its elements
+      // the group's sets of nodes and of elements get the same name
       group.set = names.take(Association::cells,
                              group.name.empty() ? fmt::format("group {}", group.fields[0]) : group.name);
       std::int64_t missing = 0;
@@ -517,7 +518,7 @@ class UnvReader {
     }
   }
 
-  /// Refuses nodes with coordinates in a system of the file that is not the global one.
+  /// Refuses nodes whose coordinates are in a system of the file other than the global system.
   void check_systems() {
     for (const Dataset& section : file_->sections) {
       if (section.part != DatasetKind::text || section.dataset != kSystems) continue;
@@ -535,7 +536,8 @@ class UnvReader {
     }
   }
 
-  /// Makes arrays of properties and of materials if they differ, or of one property other than 0 and 1.
+  /// Makes an array of properties and an array of materials, each if its values differ. Makes the array of
+  /// properties also if all properties are the same number, other than 0 and 1.
   void make_arrays_of_fields() {
     const auto make = [&](std::string_view name, std::int64_t ElementFields::*field) {
       const auto& all = file_->element_fields.different();
@@ -582,7 +584,7 @@ class UnvReader {
   std::vector<UnresolvedNode> unresolved_;
   std::set<std::int64_t> other_elements_;  // elements that are not cells
   std::set<std::string> other_types_;
-  std::vector<Members> members_;  // of the groups
+  std::vector<Members> members_;  // members of the groups
   std::vector<FoundResults> results_;
   std::vector<std::size_t> section_of_results_;
   std::set<std::string> kept_;  // names of datasets

@@ -168,7 +168,7 @@ std::vector<std::int64_t> local_systems(std::string_view text) {
 }
 
 double real_of(const Scanner& at, std::string_view word, std::string_view what) {
-  // in place for the usual length; longer words go to the general parser
+  // words of the usual length are parsed here; all other words go to the general parser
   std::array<char, 40> buffer{};
   if (word.size() < buffer.size()) {
     char* const end = std::transform(word.begin(), word.end(), buffer.begin(),

@@ -3,7 +3,8 @@
 
 // Declarations shared by the reader and the writer of I-deas universal files.
 //
-// Format: SDRC, I-deas Universal File Datasets. A file is a row of datasets, each between two lines of −1.
+// Format: SDRC, I-deas Universal File Datasets. A file is a sequence of datasets, each between two lines of
+// −1.
 
 #include "io/deck/metadata.hpp"
 #include "io/format.hpp"
@@ -30,7 +31,7 @@ inline constexpr int kGroups = 2477;
 inline constexpr int kResults = 2414;
 inline constexpr int kResultsAtNodes = 55;
 inline constexpr int kResultsAtElements = 56;
-inline constexpr int kSystems = 2420;  ///< of coordinates
+inline constexpr int kSystems = 2420;  ///< systems of coordinates
 
 // Codes of the kinds of members of groups.
 inline constexpr std::int64_t kNodeCode = 7;
@@ -84,7 +85,7 @@ class FieldTable {
   Index size_ = 0;
   Index last_ = 0;
   std::vector<Fields> different_;
-  std::vector<Index> of_;  // of each item; empty while all have the first
+  std::vector<Index> of_;  // combination of each item; empty while all items have the first
   std::map<Fields, Index> places_;
 };
 
@@ -92,7 +93,7 @@ class FieldTable {
 struct OtherElement {
   std::int64_t number;
   ElementFields fields;
-  std::vector<std::int64_t> nodes;  ///< their numbers
+  std::vector<std::int64_t> nodes;  ///< numbers of the nodes
 };
 
 /// A permanent group.
@@ -112,7 +113,7 @@ struct Results {
   Association association = Association::vertices;
   Index components = 1;
   std::int64_t components_in_file = 1;  ///< complex numbers count once
-  int digits = 5;                       ///< after the point
+  int digits = 5;                       ///< digits after the point
   bool integers = false;                ///< whether the values are whole numbers
 };
 

@@ -44,7 +44,8 @@ class Lines {
     line_.append(digits.data(), digits.size());
   }
 
-  /// Adds a number with that many digits after the point, or with 16 if it would not read back the same.
+  /// Adds a number with that many digits after the point, or with 16 if it would otherwise read back as
+  /// another number.
   void exact(double value, int digits, char exponent) {
     char* const end = rounded(value, digits);
     double read = 0;
@@ -54,7 +55,7 @@ class Lines {
         exponent);
   }
 
-  /// Adds a number with that many digits after the point; returns whether it reads back the same.
+  /// Adds a number with that many digits after the point; returns whether it reads back as the same number.
   bool real(double value, int digits) {
     char* const end = rounded(value, digits);
     double read = 0;
@@ -88,7 +89,8 @@ class Lines {
         .ptr;
   }
 
-  /// Adds the number in the buffer, right-aligned in `digits` + 8 columns, + 9 for 16 digits, or in more.
+  /// Adds the number in the buffer, right-aligned in `digits` + 8 columns (+ 9 for 16 digits), or in more
+  /// columns if it is longer.
   void add(char* end, int digits, char exponent) {
     const auto width = static_cast<std::size_t>(digits < kDigitsOfCoordinates ? digits + 8 : digits + 9);
     const auto size = static_cast<std::size_t>(end - buffer_.data());
@@ -205,7 +207,7 @@ class UnvWriter {
     ElementFields fields;
     if (own_ != nullptr) {
       fields = file_.element_fields[file_element_.empty() ? c : file_element_[c]];
-      if (fields.beam[0] != 0) fields.beam[0] = nodes_.now(fields.beam[0]);  // 0 is none
+      if (fields.beam[0] != 0) fields.beam[0] = nodes_.now(fields.beam[0]);  // 0: no node
     } else {
       fields.type = type_of({mesh_.cells.shapes[c], mesh_.cells.vertex_count(c)});
       fields.has_beam = is_beam(fields.type);
@@ -231,7 +233,7 @@ class UnvWriter {
       nodes = other.nodes;
       for (std::int64_t& node : nodes) node = nodes_.now(node);
       ElementFields fields = other.fields;
-      if (fields.beam[0] != 0) fields.beam[0] = nodes_.now(fields.beam[0]);  // 0 is none
+      if (fields.beam[0] != 0) fields.beam[0] = nodes_.now(fields.beam[0]);  // 0: no node
       write_element(section, other.number, fields, nodes);
     }
     lines_.delimiter();
@@ -265,7 +267,8 @@ class UnvWriter {
     }
   }
 
-  /// Returns the array of materials; an empty one unless it has one whole number for each cell.
+  /// Returns the materials of the cells; empty unless the mesh's array of materials has one whole number for
+  /// each cell.
   static std::vector<std::int64_t> materials_of(const Mesh& mesh) {
     const DataArray* const array = find_array(mesh, kMaterial, Association::cells);
     if (array == nullptr || array->components != 1 || !array->is_dense()) return {};
@@ -358,8 +361,8 @@ class UnvWriter {
     if (begun) lines_.delimiter();
   }
 
-  /// Returns the number of the dataset in which the file has its groups; without one, the number in Gmsh's
-  /// files.
+  /// Returns the number of the dataset in which the file has its groups; if the file has no groups, the
+  /// number that Gmsh's files have.
   [[nodiscard]] int dataset_of_groups() const {
     const auto own = std::find_if(file_.sections.begin(), file_.sections.end(),
                                   [](const Dataset& section) { return section.part == DatasetKind::groups; });
@@ -384,7 +387,7 @@ class UnvWriter {
     }
     written_arrays_.insert(array);
     // if values are no longer whole, the dataset gets a new header. It stays in place: the order of datasets
-    // numbers the steps of one name
+    // decides which step an array belongs to
     if (results.integers && !holds_integers(*array)) return write_result(*array, results.name, 1);
     lines_.text(section.text);
     const bool counts = results.association == Association::cells;
@@ -510,7 +513,7 @@ class UnvWriter {
   OutputFile out_;
   Lines lines_;
   std::vector<Index> file_node_;     // of each vertex; empty if they are in the file's order
-  std::vector<Index> file_element_;  // of each cell; likewise
+  std::vector<Index> file_element_;  // of each cell; empty if they are in the file's order
   std::set<const EntitySet*> written_;
   std::set<const DataArray*> written_arrays_;
 };

@@ -24,7 +24,7 @@ struct VegaSection {
   std::string comments;            ///< whole lines
   std::string title;               ///< name of a material; keyword's line of an unknown section
   std::vector<std::string> lines;  ///< of materials and unknown sections
-  std::size_t set = 0;             ///< its place in Mesh::sets
+  std::size_t set = 0;             ///< index of the set in Mesh::sets
   std::string region_set;
   std::string region_material;
 };
@@ -53,8 +53,8 @@ struct VegaMetadata : FormatMetadata {
   }
 };
 
-/// Returns for each cell the number, from 1, of the last region that contains it, 0 for none. Empty without
-/// regions.
+/// Returns, for each cell, the number (from 1) of the last region that contains it; 0 if no region does.
+/// Empty if there are no regions.
 std::vector<std::int32_t> region_numbers(const VegaMetadata& metadata, const Mesh& mesh);
 
 Mesh read(const FilePath& path, Notes& notes);

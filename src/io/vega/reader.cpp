@@ -125,7 +125,7 @@ class Reader {
     }
   }
 
-  /// "n width a b": the number of lines, of values in each, and up to two more numbers.
+  /// "n width a b": the number of lines, the number of values in each line, and up to two more numbers.
   struct Header {
     Index count = 0;
     std::array<std::int64_t, 2> columns{};
@@ -358,7 +358,7 @@ void Reader::label_by_region() {
 }  // namespace
 
 std::vector<std::int32_t> region_numbers(const VegaMetadata& metadata, const Mesh& mesh) {
-  // of regions of one set, the last counts
+  // if several regions have the same set, the last one counts
   std::map<std::string_view, std::int32_t> region_of_set;
   std::int32_t number = 0;
   for (const VegaSection& section : metadata.sections) {

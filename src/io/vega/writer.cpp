@@ -222,7 +222,7 @@ class VegaWriter {
     out_.write("\n");
   }
 
-  /// Returns the word of the file (TET or TETS) if it still fits, else the usual one.
+  /// Returns the word of the file (TET or TETS) if it still fits, else the usual word.
   [[nodiscard]] std::string word_of(int width) const {
     const std::string usual = width == 4 ? "TET" : "CUBIC";
     const bool fits = native_ && same_but_for_case(native_->element_word.substr(0, usual.size()), usual);
@@ -237,7 +237,7 @@ class VegaWriter {
   /// Returns the name that is written for the set `of_set`.
   [[nodiscard]] const std::string& written_name(const std::string& of_set) const {
     const auto found = names_.find(parts_.set(of_set, Association::cells));
-    return found == names_.end() ? of_set : found->second;  // no set: all elements
+    return found == names_.end() ? of_set : found->second;  // not the name of a set: all elements
   }
 
   /// Returns a name that a line of Vega can hold.

@@ -18,9 +18,9 @@ struct CellType {
   int number;
   std::string_view name;
   Shape shape;
-  int vertices;  // their number; if negative, at least −vertices
+  int vertices;  // number of vertices; if negative, there are at least −vertices
 
-  // positions whose vertices are swapped in a Mesh; {0, 0} is none
+  // positions whose vertices are swapped in a Mesh; {0, 0} swaps nothing
   std::array<std::pair<int, int>, 2> swapped{};
 };
 
@@ -198,7 +198,7 @@ bool take_cells(Mesh& mesh, FileCells& cells, const ErrorAt& error, Notes& notes
   bool plain = true;  // whether shapes and vertices determine all types
   const Index count = index_size(cells.types);
   mesh.cells.shapes.resize(count);
-  const CellType* usual_type = nullptr;  // of the last cell, if it needs no work: neighbours are mostly alike
+  const CellType* usual_type = nullptr;  // of the last cell, if it needs no work: most cells are alike
   Offset usual_vertices = 0;
   for (Index c = 0; c < count; ++c) {
     const CellType* type = known[cells.types[c]];

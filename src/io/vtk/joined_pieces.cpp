@@ -88,7 +88,7 @@ class PieceJoiner {
     if (!says_more) erase(association, std::string(kGhostType));
   }
 
-  /// Returns the numbers of an array with one integer for each row; none if there is no such array.
+  /// Returns the numbers of an array with one integer for each row; empty if there is no such array.
   [[nodiscard]] std::vector<std::int64_t> integers(Association association, std::string_view name) const {
     const DataArray* const array = find(association, name);
     if (array == nullptr || array->components != 1) return {};
@@ -205,7 +205,7 @@ class PieceJoiner {
     }
   }
 
-  /// Keeps only these rows in all arrays of points or in all of cells.
+  /// Keeps only these rows in all arrays on points, or in all arrays on cells.
   void take_rows(Association association, const RowsKept& rows) {
     for (DataArray& array : pieces_.arrays) {
       if (array.association != association) continue;
@@ -226,7 +226,7 @@ class PieceJoiner {
   const Pieces& pieces_;
   const ErrorAt& error_;
   Notes& notes_;
-  std::vector<Index> new_points_;  // of all points; −1: left out
+  std::vector<Index> new_points_;  // new position of each point; −1: left out
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ namespace {
 /// A number type and its name in files.
 struct TypeName {
   std::string_view name;
-  std::size_t alternative;  // of Values
+  std::size_t alternative;  // as an alternative of Values
   bool is_kept = true;      // whether the array is written under this name again
 };
 
@@ -130,7 +130,8 @@ Number LegacyInput::number(const std::string& what) {
   }
 }
 
-/// Reads numbers of text up to an irregular one; returns how many, 0 if one is not finite but must be.
+/// Reads numbers of a text up to the first irregular number. Returns how many it read; 0 if a number is not
+/// finite but must be.
 template <class Number>
 std::size_t LegacyInput::regular_numbers(std::span<Number> values) {
   if constexpr (std::is_floating_point_v<Number>) {

@@ -535,12 +535,12 @@ class LegacyReader {
 
   LegacyInput in_;
   Mesh mesh_;
-  UniqueNames names_;  // of arrays
+  UniqueNames names_;  // names of arrays
   std::shared_ptr<VtkMetadata> metadata_ = std::make_shared<VtkMetadata>();
   LegacyLayout layout_;
   int version_ = 0;
   bool has_points_ = false;
-  std::array<FileCells, 4> sections_;  // an unstructured grid has the first alone
+  std::array<FileCells, 4> sections_;  // an unstructured grid has only the first
   std::int64_t cells_line_ = 0;
   std::int64_t types_line_ = 0;
   std::optional<InputError> vertex_fault_;

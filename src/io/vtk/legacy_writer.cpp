@@ -58,7 +58,8 @@ int polydata_section(std::uint8_t type) {
   }
 }
 
-/// Returns whether the cells are in the order of POLYDATA's sections and of the types that these imply.
+/// Returns whether the cells are in the order of POLYDATA's sections and have the types that the sections
+/// imply.
 bool fits_polydata(const Cells& cells, const std::vector<std::uint8_t>& types) {
   int last = 0;
   for (Index c = 0; c < cells.size(); ++c) {
@@ -180,7 +181,8 @@ class LegacyWriter {
 
   // ---- arrays
 
-  /// Returns the number type of an array: its type in the file if that can hold the values.
+  /// Returns the number type of an array: its type in the file if that type can hold the values, else the
+  /// usual type.
   [[nodiscard]] std::string type_of(const DataArray& array, std::optional<Association> association) const {
     const ArrayFacts* facts = find_facts(from_.metadata, association, array.name);
     std::string usual(kLegacyTypeNames[array.values.index()]);
@@ -336,7 +338,7 @@ class LegacyWriter {
     }
   }
 
-  /// Writes arrays with a role by its keyword, runs of others as a FIELD.
+  /// Writes each array that has a role under the role's keyword, and the arrays between them as a FIELD.
   void write_arrays(const std::vector<const DataArray*>& arrays, Association association) {
     for (std::size_t i = 0; i < arrays.size();) {
       if (write_attribute(*arrays[i])) {
@@ -399,7 +401,7 @@ class LegacyWriter {
   WriteContext from_;
   LegacyLayout layout_;
   OutputFile out_;
-  std::map<std::pair<Association, std::string_view>, const ArrayRole*> roles_;  // by their arrays
+  std::map<std::pair<Association, std::string_view>, const ArrayRole*> roles_;  // roles by their arrays
   bool offsets_ = false;  // cells by their offsets, as from version 5 on
 };
 

@@ -23,7 +23,8 @@ namespace {
 
 constexpr std::string_view kSetPrefix = "set:";
 
-/// Returns the members of a set from an array of marks or ranks; nothing if the array is neither.
+/// Returns the members of a set from an array of marks or ranks; nullopt if the array has neither marks nor
+/// ranks.
 template <class Number>
 std::optional<std::vector<Index>> members_of(const std::vector<Number>& marks) {
   Index count = 0;
@@ -72,7 +73,7 @@ class Names {
   }
 
  private:
-  /// Names in XML cannot have control characters; in legacy files they are encoded.
+  /// Returns a name as the file can hold it: XML allows no control characters, and legacy files encode them.
   [[nodiscard]] std::string held_there(std::string name) const {
     if (place_ == NamePlace::xml) return xml_text(name);
     if (place_ == NamePlace::legacy) return name == "NULL_ARRAY" ? name + '_' : name;  // readers skip it

@@ -20,7 +20,7 @@ struct Polyhedra {
   bool are_by_face = false;  ///< whether the .vtu file lists faces apart from cells, as VTK does since 9.4
 
   [[nodiscard]] bool empty() const { return starts.empty(); }
-  /// Returns the numbers of a cell; none if it is not a polyhedron.
+  /// Returns the numbers of a cell; empty if it is not a polyhedron.
   [[nodiscard]] std::span<const Index> operator[](Index cell) const {
     const auto c = static_cast<std::size_t>(cell);
     return {numbers.data() + starts[c], numbers.data() + starts[c + 1]};

@@ -35,7 +35,7 @@ inline constexpr std::array<std::string_view, std::variant_size_v<Values>> kLega
     "double", "float",        "char",         "unsigned_char", "short", "unsigned_short",
     "int",    "unsigned_int", "vtktypeint64", "vtktypeuint64", "string"};
 
-/// Converts integers to the type Target; returns none if the values are not integers.
+/// Converts integers to the type Target; returns an empty vector if the values are not integers.
 template <class Target>
 std::vector<Target> integers_of(const Values& values) {
   return std::visit(
@@ -102,7 +102,7 @@ inline constexpr std::string_view kPoints = "POINTS";
 inline constexpr std::array<std::string_view, 4> kCompressors{
     "", "vtkZLibDataCompressor", "vtkLZ4DataCompressor", "vtkLZMADataCompressor"};
 
-/// An array and its role. If a legacy file has several of one role, the first counts.
+/// An array and its role. If a legacy file has several arrays of one role, the first counts.
 struct ArrayRole {
   Role role;
   Association association;
@@ -112,7 +112,7 @@ struct ArrayRole {
 
 /// Properties of an array that DataArray does not hold.
 struct ArrayFacts {
-  std::optional<Association> association;  ///< none: an array of the whole mesh
+  std::optional<Association> association;  ///< nullopt: an array of the whole mesh
   std::string array;
   std::string type;             ///< a number type that Values cannot express: "vtkIdType", "long"
   std::string information;      ///< legacy: the lines of its INFORMATION
@@ -175,14 +175,16 @@ struct FileCells {
 using ErrorAt = std::function<InputError(const std::string&, const std::string&)>;
 
 /// Gives `mesh` these cells, with their vertices in the order of a Mesh. Pixels and voxels become quads and
-/// hexahedra (noted); type numbers that shape and vertices do not determine are kept as the array kCellTypes.
-/// Throws `error` for types without a Shape, for cells with a wrong number of vertices and for polyhedra
-/// without faces on their vertices. Moves the contents of `cells` out, except the polyhedra; the types become
+/// hexahedra, which is noted. Type numbers that shape and vertices do not determine are kept as the array
+/// kCellTypes. Moves the contents of `cells` out, except the polyhedra; the types move to the array
 /// kCellTypes or stay. O(vertex entries).
 ///
-/// The first triangle of a linear wedge faces outward up to VTK 9.6 and inward since. Files do not say
-/// which; the volumes of their cells decide. Returns whether the file's wedges face inward, as those of a
-/// Mesh do.
+/// The first triangle of a linear wedge faces outward up to VTK 9.6 and inward since then. Files do not say
+/// which; the volumes of their cells decide.
+///
+/// @return whether the first triangles of the file's wedges face inward, as in a Mesh
+/// @throws `error` for types without a Shape, for cells with a wrong number of vertices, and for polyhedra
+///         without faces on their vertices
 bool take_cells(Mesh& mesh, FileCells& cells, const ErrorAt& error, Notes& notes);
 
 /// Returns whether the mesh was read from one of VTK's formats.
@@ -199,8 +201,8 @@ bool has_polyhedra(const Mesh& mesh);
 /// Returns VTK's type number of every cell. `holds` must be true for all cells.
 std::vector<std::uint8_t> cell_types(const Mesh& mesh);
 
-/// Returns the first polyhedron among the cells that has no faces, or a face with a corner that is not one of
-/// its vertices; −1 if there is none. O(vertex entries + numbers of the faces).
+/// Returns the first polyhedron that has no faces, or that has a face with a corner that is not a vertex of
+/// the polyhedron; −1 if there is none. O(vertex entries + numbers of the faces).
 Index first_unfit_polyhedron(const Cells& cells, const std::vector<std::uint8_t>& types,
                              const Polyhedra& polyhedra, Index vertex_count);
 
@@ -231,8 +233,8 @@ Mesh read_vtu(const FilePath& path, Notes& notes);
 
 // ---- writing
 
-/// Returns membership as an array: 1 for each member if they ascend, else their ranks from 1, which keep
-/// their order. `count` is the number of all vertices or cells.
+/// Returns the membership in a set as an array: 1 for each member if the members ascend, else the rank of
+/// each member (from 1), which keeps their order. `count` is the number of all vertices or cells.
 Values marks_of(const EntitySet& set, Index count);
 
 /// Returns an array with a row for each of `count` vertices or cells; rows that it lacked are NaN or 0.
@@ -248,14 +250,15 @@ std::string name_in_hdf5(std::string name);
 /// The input of the writers, made from a mesh. Borrows the mesh and the notes.
 ///
 /// VTK's formats hold full arrays only: partial arrays are filled up, sets become arrays "set:NAME" and ids
-/// arrays "vertex_id" and "cell_id"; all of it noted. O(size of the arrays that are made).
+/// become arrays "vertex_id" and "cell_id". The notes report all of this. O(size of the arrays that are
+/// made).
 struct WriteContext {
   /// `written`: a mesh whose cells VTK's formats hold. Throws InvalidArgument if the faces of polyhedra in
   /// the metadata are not on their vertices, because the mesh was changed.
   WriteContext(const Mesh& written, Notes& warnings, NamePlace names);
 
-  /// Returns the cells in VTK's order of vertices; of VTK before version 9 if `old_hexahedra`. The result
-  /// belongs to the mesh or to this object.
+  /// Returns the cells in VTK's order of vertices; in the order of VTK before version 9 if `old_hexahedra`.
+  /// The result belongs to the mesh or to this object.
   const Cells& cells(bool old_hexahedra = false);
   /// Returns the cells as above, but with the faces of polyhedra instead of their vertices, as legacy files
   /// have them. The result belongs to the mesh or to this object.
@@ -291,15 +294,16 @@ struct Pieces {
   std::vector<ArrayRole>& roles;
 };
 
-/// Makes one mesh of its pieces, in place. Leaves out cells that `vtkGhostType` marks as another piece's,
-/// points that it marks and that no remaining cell uses, and `vtkGhostType` itself if it marks nothing else.
-/// Sorts points and cells by their global ids, which are in the array of that role or of VTK's name for it. A
-/// point of several pieces becomes one, with the values of the piece that owns it. Leaves out ids that are 0,
-/// 1, 2 …
+/// Makes one mesh of its pieces, in place:
+/// - Leaves out the cells that `vtkGhostType` marks as cells of another piece, and the points that it marks
+///   and that no remaining cell uses. Leaves out `vtkGhostType` itself if it marks nothing else.
+/// - Sorts points and cells by their global ids. These are in the array of that role, or of the name that VTK
+///   gives to it. Leaves out ids that are 0, 1, 2 …
+/// - Makes one point of a point of several pieces, with the values of the piece that owns it. A point without
+///   an id on the border of pieces stays once for each piece; a note says so.
 ///
-/// Points without ids on the borders of pieces stay once for each piece, which is noted. Throws `error` for
-/// ids below 0, for points with one id but different coordinates, and for two cells with one id. O(points +
-/// cells, times their logarithms).
+/// Throws `error` for ids below 0, for points with one id but different coordinates, and for two cells with
+/// one id. O(n log n) for n points and cells.
 void join_pieces(const Pieces& pieces, const ErrorAt& error, Notes& notes);
 
 void write_vtu(const Mesh& mesh, const FilePath& path, Notes& notes);

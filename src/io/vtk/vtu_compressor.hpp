@@ -28,7 +28,7 @@ class VtuCompressor {
   static std::string_view library(VtuEncoding::Compressor kind);
   static std::string_view option(VtuEncoding::Compressor kind);
 
-  /// Returns an upper bound on the ratio of the uncompressed size to the compressed one.
+  /// Returns an upper bound on the ratio of the uncompressed size to the compressed size.
   static std::uint64_t greatest_ratio(VtuEncoding::Compressor kind);
 
   [[nodiscard]] std::string compress(std::span<const char> bytes) const;

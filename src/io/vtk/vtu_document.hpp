@@ -82,7 +82,7 @@ class VtuDocument {
   /// Returns the `count` values of an array in its number type. Throws Error if there are more or fewer;
   /// allocates no more than the size of the file allows.
   [[nodiscard]] Values values(const VtuElement& array, std::int64_t count) const;
-  /// Returns the number of values that an array of numbers has. O(its text, or its bytes in base64).
+  /// Returns the number of values that an array of numbers has. O(length of its text or base64).
   [[nodiscard]] std::int64_t value_count(const VtuElement& array) const;
   /// Returns how that array is stored.
   [[nodiscard]] VtuEncoding::Mode mode(const VtuElement& array) const;

@@ -92,7 +92,7 @@ class VtuReader {
       read_grid(file, *piece);
     }
     if (!any) throw list.error(grid, "the file lists no pieces", "it may be cut short");
-    // a note of several pieces appears once
+    // a note that several pieces cause appears once
     Notes of_pieces(notes_.begin() + static_cast<std::ptrdiff_t>(notes_before), notes_.end());
     notes_.resize(notes_before);
     for (std::string& note : of_pieces) {
@@ -223,7 +223,8 @@ class VtuReader {
     read_polyhedra(*cells, count, first_point);
   }
 
-  /// Appends the ends of `count` things to `ends`, counted from its last entry; returns the array's last end.
+  /// Reads the ends of `count` things, counted from 0, and appends them to `ends`, counted from its last
+  /// entry. Returns the last end as the array has it.
   Offset append_ends(const VtuElement& array, std::int64_t count, const char* thing,
                      std::vector<Offset>& ends) {
     const Offset first = ends.back();
@@ -519,11 +520,11 @@ class VtuReader {
   int version_ = 0;                            ///< of the first file that is not empty, times ten
   std::map<std::string, std::size_t> fields_;  ///< places of the fields, by name
   bool is_first_ = true;                       ///< whether the file that is being read is the first
-  int pieces_ = 0;                             ///< that are not empty
+  int pieces_ = 0;                             ///< number of pieces that are not empty
   Mesh mesh_;
   std::shared_ptr<VtkMetadata> metadata_ = std::make_shared<VtkMetadata>();
   std::vector<DataArray> arrays_;
-  std::map<std::pair<Association, std::string>, std::size_t> places_;  // of arrays
+  std::map<std::pair<Association, std::string>, std::size_t> places_;  // places of arrays
   FileCells cells_;
   const VtuElement* types_ = nullptr;
 };

@@ -124,8 +124,8 @@ VtuDocument::Stored VtuDocument::locate(const VtuElement& array) const {
   return stored;
 }
 
-/// Locates compressed blocks. Words of the header give the number of blocks, the size of each block and of
-/// the last, and the compressed size of each; the blocks follow.
+/// Locates compressed blocks. Words of the header give the number of blocks, the size of each block, the size
+/// of the last block, and the compressed size of each; the blocks follow.
 void VtuDocument::locate_blocks(const VtuElement& array, std::string_view data, bool coded,
                                 Stored& stored) const {
   const auto early = [&] { return error(array, "the array's bytes end early", "the file may be cut short"); };

@@ -292,8 +292,8 @@ class VtuWriter {
     return blocks;
   }
 
-  /// Returns the header of compressed blocks: their number, the size of a full block, the size of a shorter
-  /// last one or 0, and the compressed size of each.
+  /// Returns the header of compressed blocks: the number of blocks, the size of a full block, the size of the
+  /// last block if it is shorter (else 0), and the compressed size of each block.
   [[nodiscard]] std::string block_header(const Array& array, const std::vector<std::string>& blocks) const {
     std::vector<std::uint64_t> values{blocks.size(), VtuCompressor::kBlock,
                                       byte_count(array) % VtuCompressor::kBlock};
@@ -372,7 +372,7 @@ class VtuWriter {
   }
 
   void write_header() {
-    // 2.3 and later have polyhedra by face, 2.1 and later VTK 9's order of nodes, 1.0 and later wide headers
+    // first version with polyhedra by face: 2.3; with VTK 9's order of nodes: 2.1; with wide headers: 1.0
     const bool order = std::any_of(from_.types.begin(), from_.types.end(), is_higher_order_hexahedron);
     out_.print(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"{}\" byte_order=\"{}\" "

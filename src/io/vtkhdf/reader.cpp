@@ -87,7 +87,7 @@ class VtkHdfReader {
     if (!place) return false;
     part.type = static_cast<std::uint8_t>(file_.info(path).alternative);
     part.at = static_cast<std::int64_t>(*place);
-    if (part.role == FilePart::Role::offsets) {  // without the first, they are the ends of cells
+    if (part.role == FilePart::Role::offsets) {  // without the first offset, they are the ends of cells
       --part.rows;
       part.at += part.row_size();
     }
@@ -226,7 +226,7 @@ class VtkHdfReader {
   }
 
   /// Reserves `all` entries in `target`, then calls `take(partition, i, number)` for every number of a
-  /// dataset of integers, which has `count(partition)` of them for each partition.
+  /// dataset of integers, which has `count(partition)` numbers for each partition.
   template <class Target, class Count, class Take>
   void for_integers(const std::string& path, std::int64_t all, std::vector<Target>& target,
                     const Count& count, const Take& take) const {
@@ -339,7 +339,7 @@ class VtkHdfReader {
     }
   }
 
-  /// Reads an array of a group; returns nothing, with a note, if it holds neither numbers nor texts.
+  /// Reads an array of a group; returns nullopt, with a note, if it holds neither numbers nor texts.
   std::optional<DataArray> read_array(const std::string& group, const std::string& name) {
     const std::string path = path_in(group, name);
     DataArray array;

@@ -35,7 +35,7 @@ inline std::string data_group(Association association) {
 struct Partition {
   std::int64_t points = 0;
   std::int64_t cells = 0;
-  std::int64_t entries = 0;  ///< of the connectivity
+  std::int64_t entries = 0;  ///< length of the connectivity
 };
 
 /// A file of one partition as a list of parts: first the arrays of points and of cells, then the mesh. The
@@ -45,7 +45,7 @@ struct RawGrid {
   vtk::VtkMetadata metadata;  ///< fields and roles
 };
 
-/// Finds the bytes of the values in a file on disk. Returns nothing if only libhdf5 can read the file, or if
+/// Finds the bytes of the values in a file on disk. Returns nullopt if only libhdf5 can read the file, or if
 /// `read` would note something. This is so for several partitions, chunks or another byte order, texts on
 /// points or cells, and contents that the format does not define. O(datasets + size of the fields).
 ///

@@ -22,7 +22,7 @@
 #include <variant>
 #include <vector>
 
-// Writes files of one partition, and files of several without their values.
+// Writes files of one partition, and files of several partitions without their values.
 
 namespace meshorder::vtkhdf {
 namespace {
@@ -51,7 +51,7 @@ void write_field(hdf5::File& file, const DataArray& field, const std::string& pa
     file.set_attribute(path, std::string(kComponents), std::int64_t{field.components});
 }
 
-/// Writes all fields, each under a name that no other has.
+/// Writes all fields, each under a name that no other field has.
 void write_fields(hdf5::File& file, const std::vector<DataArray>& fields, Notes& notes) {
   std::set<std::string> taken;
   NameNumbers numbers;
@@ -117,7 +117,7 @@ class VtkHdfWriter {
     }
   }
 
-  /// Writes an array. VTK reads rows of one number from one dimension only.
+  /// Writes an array. VTK reads rows of one number only from datasets of one dimension.
   void put_rows(const std::string& path, const DataArray& array) {
     std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(row_count(array))};
     if (array.components != 1) shape.push_back(static_cast<std::uint64_t>(array.components));
@@ -139,8 +139,8 @@ class VtkHdfWriter {
 /// Names of the datasets of a mesh, in the order of FilePart::Role.
 constexpr std::array<std::string_view, 4> kDatasets{"Points", "Types", "Offsets", "Connectivity"};
 
-/// Returns the path of an array on points or cells, under a name that no other has. `held` maps the names
-/// that are taken to their arrays.
+/// Returns the path of an array on points or cells, under a name that no other array has. `held` maps the
+/// names that are taken to their arrays.
 std::string place_array(Association association, const std::string& array,
                         std::map<std::pair<Association, std::string>, std::string>& held,
                         std::map<Association, NameNumbers>& numbers, Notes& notes) {

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-// Reads Attributes and Sets. Those of several Grids may become one array.
+// Reads Attributes and Sets. The Attributes or Sets of several Grids may become one array.
 
 namespace meshorder::xdmf {
 void ArrayReader::add_moved_points(const GridElement& grid, std::vector<Field>& fields,

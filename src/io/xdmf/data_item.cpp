@@ -67,7 +67,7 @@ class ElementText {
 
  private:
   std::string_view first_;
-  std::string joined_;  // of several pieces
+  std::string joined_;  // the pieces joined, if there are several
 };
 
 /// Reads the number at the beginning of a text, up to a blank or the end; returns where it ends, or null if
@@ -238,7 +238,8 @@ const hdf5::File& DataReader::file(pugi::xml_node item, const std::string& name)
   if (known != files_.end()) return known->second;
   hdf5::File opened = hdf5::File::open(path_of(item, name));
   const std::string mark = opened.text_attribute("/", kMark).value_or("");
-  // the .xdmf file is put in place first: among files of two runs it is the newer file, which has a mark
+  // the .xdmf file is put in place first: if the files are from two runs, this is the newer file, and it has
+  // a mark
   if (!document_.mark().empty() && mark != document_.mark()) {
     throw NotTogether(document_.error(
         item, fmt::format("'{}' was not written together with this file: their marks differ", name),
@@ -319,7 +320,7 @@ Values DataReader::read_text(const DataPlace& place, pugi::xml_node item) const 
   });
 }
 
-/// Throws InputError unless the values of a plain binary file have the checksum that the XML gives, if any.
+/// Throws InputError if the XML gives a checksum and the values of a plain binary file have another checksum.
 template <class Number>
 void DataReader::check_sum(const DataPlace& place, pugi::xml_node item,
                            const std::vector<Number>& numbers) const {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr unsigned kParse = pugi::parse_full | pugi::parse_ws_pcdata;
 constexpr int kMostReferences = 16;
-constexpr std::size_t kMostVisits = 100'000'000;  // of elements, by all XPaths together
+constexpr std::size_t kMostVisits = 100'000'000;  // visits of elements, by all XPaths together
 constexpr std::size_t kLongestPath = 1000;
 
 class TextWriter : public pugi::xml_writer {
@@ -228,7 +228,7 @@ std::vector<pugi::xml_node> Document::children(pugi::xml_node grid) const {
 }
 
 std::string Document::take_values_out(std::vector<std::size_t> items) {
-  // inner elements, which have the higher numbers, before the elements around them
+  // from higher to lower numbers: inner elements come before the elements around them
   std::sort(items.begin(), items.end(), std::greater());
   for (const std::size_t item : items) items_[item].remove_children();
   std::string text;

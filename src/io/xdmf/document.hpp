@@ -18,7 +18,7 @@ namespace meshorder::xdmf {
 
 /// Name of the mark of an .xdmf file and its HDF5 files that were written together: a processing instruction
 /// in the root element, and an attribute of the root of each HDF5 file. All have the same 16 digits; the
-/// reader refuses files with different ones.
+/// reader refuses files with different digits.
 inline constexpr const char* kMark = "meshorder";
 /// A plain binary file has no room for a mark. The DataItem that names it has a checksum of the values
 /// instead, as an attribute of this name.
@@ -39,7 +39,7 @@ class Document {
   /// Makes an InputError at the line of an element.
   [[nodiscard]] InputError error(pugi::xml_node at, const std::string& what, const std::string& remedy) const;
 
-  /// Returns the mark that the file shares with its HDF5 files, empty without one; see `kMark`.
+  /// Returns the mark that the file shares with its HDF5 files, empty if it has no mark; see `kMark`.
   [[nodiscard]] std::string_view mark() const { return root().find_child(is_mark).value(); }
 
   /// Returns the element that `element` refers to by Reference="…", or `element` itself.
@@ -65,17 +65,17 @@ class Document {
   std::vector<pugi::xml_node> items_;
   std::unordered_map<std::size_t, std::size_t>
       numbers_;  // of DataItems and Grids, by pugixml's hash of a node
-  mutable std::map<std::string, std::vector<pugi::xml_node>, std::less<>> selected_;  // by path
+  mutable std::map<std::string, std::vector<pugi::xml_node>, std::less<>> selected_;  // results, by path
 };
 
 /// Returns all elements of a name in the order of the file.
 std::vector<pugi::xml_node> elements_named(const pugi::xml_document& xml, std::string_view name);
 
-/// Parses XML that `Document::take_values_out` made. Throws std::bad_alloc without memory.
+/// Parses XML that `Document::take_values_out` made. Throws std::bad_alloc if there is no memory.
 void parse(pugi::xml_document& xml, const std::string& text);
 
-/// Sets the text of an element, or adds or sets an attribute. Both throw std::bad_alloc without memory, and
-/// for a null element: memory was lacking when it should have been added.
+/// Sets the text of an element, or adds or sets an attribute. Both throw std::bad_alloc if there is no
+/// memory. They also throw it for a null element: there was no memory to add the element.
 void set_text(pugi::xml_node element, const std::string& text);
 void set_attribute(pugi::xml_node element, const char* name, const std::string& value);
 
@@ -87,14 +87,17 @@ using TakeText = std::function<void(std::string_view part)>;
 void print(const pugi::xml_document& xml, std::string_view prolog, const TakeText& take);
 void print_indented(const pugi::xml_document& xml, const TakeText& take);
 
-/// Returns the value of the attribute `name` or, without it, of `other_name`; empty without both.
+/// Returns the value of the attribute `name` or, if it is missing, of `other_name`; empty if both are
+/// missing.
 std::string attribute(pugi::xml_node element, const char* name, const char* other_name = "");
 
 /// Returns an XML text without the declarations of its DOCTYPE, with each `&NAME;` replaced by the entity
 /// that was declared under that name. Lines keep their numbers. Returns a text that declares no entities as
-/// it is. Opens no file. Throws InputError, which names `file`, for references to external, undeclared and
-/// circular entities, for parameter entities, for attributes with defaults, and for entities that add more
-/// than 16 MiB. O(length of the result).
+/// it is. Opens no file. O(length of the result).
+///
+/// @param file  name for messages
+/// @throws InputError for references to external, undeclared and circular entities, for parameter entities,
+///         for attributes with defaults, and for entities that add more than 16 MiB
 std::string with_entities_expanded(std::string text, const std::string& file);
 
 }  // namespace meshorder::xdmf

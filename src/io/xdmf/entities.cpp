@@ -38,7 +38,7 @@ std::size_t end_of(std::string_view text, std::string_view what, std::size_t fro
   return at == std::string_view::npos ? at : at + what.size();
 }
 
-/// Returns the end of a name, or `from` without one.
+/// Returns the end of the name that begins at `from`; `from` if there is no name.
 std::size_t end_of_name(std::string_view text, std::size_t from) {
   const auto is_part = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -87,7 +87,7 @@ class Expansion {
     fail(at, "the DOCTYPE is malformed", "take it out, as only declarations of entities in it are read");
   }
 
-  /// Returns where the declarations in the DOCTYPE begin, after the [; npos without any.
+  /// Returns where the declarations in the DOCTYPE begin, after the [; npos if there are none.
   [[nodiscard]] std::size_t begin_of_subset() const {
     constexpr std::size_t kNone = std::string_view::npos;
     std::size_t at = text_.find('<');
@@ -192,8 +192,8 @@ class Expansion {
     }
   }
 
-  /// Returns markup with its entities replaced. At depth 0 `text` is that of the file from byte `origin` on;
-  /// else it is that of an entity, whose errors are reported at byte `origin`.
+  /// Returns markup with its entities replaced. At depth 0, `text` is the file from byte `origin` on.
+  /// Otherwise it is the text of an entity, whose errors are reported at byte `origin`.
   std::string expanded(std::string_view text, std::size_t origin, int depth) {
     std::string result;
     std::size_t at = 0;
@@ -203,7 +203,7 @@ class Expansion {
       at = end;
     };
     const auto place = [&] { return depth == 0 ? origin + at : origin; };
-    char quote = '\0';  // of the attribute's value
+    char quote = '\0';  // quote that began the attribute's value
     bool in_tag = false;
     while (at < text.size()) {
       const char* const stops = quote != '\0' ? (quote == '"' ? "&\"" : "&'") : in_tag ? "\"'>" : "&<";

@@ -216,7 +216,7 @@ void Writer::remove_gone() {
     remove(field->place.item, field->place.named_by);
     for (const DataPlace::Repeat& repeat : field->place.repeats) remove(repeat.item, repeat.named_by);
   }
-  std::erase_if(elements, [&](pugi::xml_node element) {  // is removed with an element around it
+  std::erase_if(elements, [&](pugi::xml_node element) {  // this element is removed with the element around it
     while ((element = element.parent()) && !elements.contains(element)) {
     }
     return static_cast<bool>(element);

@@ -21,7 +21,7 @@ struct RawGrid {
   std::shared_ptr<const SplitFile> files;
 };
 
-/// Finds the bytes of the values in a file on disk. Returns nothing if only `read` understands the file, or
+/// Finds the bytes of the values in a file on disk. Returns nullopt if only `read` understands the file, or
 /// if `read` would note something. This is so for several meshes, parts or HDF5 files, sets, values in XML,
 /// chunks or another byte order, cells of several types, and cells whose nodes a Mesh orders differently.
 /// O(size of the XML + datasets).

@@ -72,7 +72,7 @@ namespace {
 
 constexpr int kDeepestGrid = 8;
 
-/// Adds the uniform Grids within a Grid. Throws InputError for structured and spatial ones.
+/// Adds the uniform Grids within a Grid. Throws InputError for structured Grids and for spatial collections.
 void collect(const Document& document, pugi::xml_node grid, int depth, int& series,
              std::vector<GridElement>& grids) {
   const std::string type = attribute(grid, "GridType", "Type");
@@ -156,7 +156,7 @@ class XdmfReader {
  private:
   // ---- values that are not read
 
-  /// Adds the datasets of a Grid. Returns false if they cannot be read by their bytes.
+  /// Adds the datasets of a Grid. Returns false if their bytes cannot be read directly.
   bool find_grid(const GridElement& grid) {
     pugi::xml_node topology;
     pugi::xml_node geometry;
@@ -208,16 +208,16 @@ class XdmfReader {
       return false;
     }
     const pugi::xml_node item = reading_.item_of(element);
-    if (same_but_for_case(center, "Grid"))  // is kept as it is
+    if (same_but_for_case(center, "Grid"))  // a value of the whole Grid is kept as it is
       return reading_.data.place_of(item).format != DataPlace::Format::binary;
     const bool on_vertices = same_but_for_case(center, "Node");
     if (!on_vertices && !same_but_for_case(center, "Cell")) return false;
     return find_values(item, Field::Role::data, on_vertices ? Association::vertices : Association::cells, 0);
   }
 
-  /// Adds the dataset of a DataItem as rows of `components` numbers; 0: as many as fit the points or cells.
-  /// The first call must be for the points, the second for the topology; other Grids must name the same
-  /// datasets. Returns false if the dataset cannot be read by its bytes.
+  /// Adds the dataset of a DataItem as rows of `components` numbers; if 0, as many components as the number
+  /// of points or cells gives. The first call must be for the points, the second for the topology; other
+  /// Grids must name the same datasets. Returns false if the bytes of the dataset cannot be read directly.
   bool find_values(pugi::xml_node item, Field::Role role, Association association, Index components) {
     constexpr std::size_t kLastReal = 1;
     constexpr std::size_t kInt32 = 6;

@@ -22,7 +22,7 @@ namespace meshorder::xdmf {
 /// A uniform Grid and its place in a series of time steps.
 struct GridElement {
   pugi::xml_node element;
-  int series = -1;  ///< number of its temporal collection; −1: none
+  int series = -1;  ///< number of its temporal collection; −1: not in such a collection
   int step = 0;
 };
 
@@ -48,7 +48,7 @@ struct Reading {
 
  private:
   struct KnownSet {
-    std::size_t place;    // in the mesh
+    std::size_t place;    // index in the mesh
     bool is_grid;         // whether it has all cells of a Grid
     std::set<int> parts;  // parts that have members in it
   };
@@ -80,14 +80,14 @@ class TopologyReader {
 
   [[nodiscard]] pugi::xml_node item_of_topology(pugi::xml_node topology) const;
   Piece piece_of(pugi::xml_node topology, pugi::xml_node item, const DataPlace& place, int base);
-  /// Returns the number of cells that a Topology announces, −1 if it does not.
+  /// Returns the number of cells that a Topology announces, −1 if it announces none.
   [[nodiscard]] std::int64_t claimed_cells(pugi::xml_node topology) const;
   /// Appends the cells of a mixed Topology; `counted`: cells of Polyvertex have a count of points, too.
-  /// Returns false for a fault, at `fault_at_`.
+  /// Returns false if the data are faulty, and sets `fault_at_` to the place of the fault.
   bool read_mixed(const std::vector<Index>& numbers, std::int64_t claimed, bool counted,
                   vtk::FileCells& cells);
   void check_vertices(pugi::xml_node item, vtk::FileCells& cells, int base) const;
-  /// Returns the cells read before that equal the cells of a piece; none if the piece has a new cell.
+  /// Returns the cells read before that equal the cells of a piece; nullopt if the piece has a new cell.
   [[nodiscard]] std::optional<std::vector<Index>> known_cells(const Piece& piece) const;
   /// Adds the cells of a piece as a part, or finds the part that has them; returns its number.
   int part_of(const GridElement& grid, pugi::xml_node topology, Piece piece);
@@ -139,7 +139,7 @@ class ArrayReader {
   void name_pending();
   /// Adds an array, or appends its rows to the array of that name if they fit; returns the array's name.
   std::string add(DataArray array, int part);
-  /// Appends rows if their type fits and their cells have none yet; else returns false.
+  /// Appends rows if their type fits and their cells have no rows yet; else returns false.
   bool append_rows(GrowingArray& growing, DataArray& array, const std::vector<Index>& rows) const;
 
   Reading& reading_;
@@ -148,7 +148,7 @@ class ArrayReader {
   std::map<std::pair<Association, std::string>, std::size_t> place_of_array_;
   std::vector<Pending> pending_;
   std::vector<bool> labelled_;  ///< whether each cell has a label
-  /// Places in `pending_`, by key; none for arrays without values.
+  /// Places in `pending_`, by key; nullopt for arrays without values.
   std::map<std::string, std::optional<std::size_t>> known_arrays_;
   std::map<std::string, std::size_t> known_sets_;  ///< places of fields in the layout, by key
 };

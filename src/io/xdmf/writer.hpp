@@ -81,7 +81,7 @@ class Writer {
   [[nodiscard]] std::vector<pugi::xml_node> items_at(const DataPlace& place) const;
   /// Writes values to a place in their own number type, in rows of `components` values.
   void put(const DataPlace& place, const Values& values, std::size_t components);
-  /// Writes indices to a place in its number type, unless that is too narrow.
+  /// Writes indices to a place in its number type, unless that type is too narrow.
   void put_indices(const DataPlace& place, std::span<const Index> indices, std::size_t components);
   /// Writes the name of a dataset to the XML of a made layout; `rename_files` replaces the file in it.
   void name_dataset(const DataPlace& place);
@@ -103,7 +103,7 @@ class Writer {
   void announce_cells(pugi::xml_node topology, std::uint64_t cells) const;
   /// Returns whether the cell is a linear wedge whose first triangle faces outward in the file.
   [[nodiscard]] bool is_turned(Index c) const;
-  /// Returns the type of all these cells, null if they have several.
+  /// Returns the type of these cells, null if they have several types.
   [[nodiscard]] const TopologyType* common_type(const std::vector<Index>& rows) const;
   /// Returns the entries of a Topology.
   [[nodiscard]] std::vector<Index> numbers_of(const std::vector<Index>& rows, bool mixed, int base) const;
@@ -115,13 +115,13 @@ class Writer {
   void remove_gone();
   /// Returns the row of each cell in a part, −1 for cells of other parts.
   [[nodiscard]] std::vector<Index> places_in(const std::vector<Index>& rows) const;
-  /// Returns the values of an array for all vertices or for the cells of a part; none if the array already
+  /// Returns the values of an array for all vertices or for the cells of a part; nullopt if the array already
   /// has exactly these values. Notes rows that the array lacks.
   std::optional<Values> values_of(const DataArray& array, Association association, int part);
   void note_filled_once(const DataArray& array);
 
   // what the layout has no place for: attribute_writer.cpp
-  /// Returns the array of marks of the set that "set:NAME" names; none if there is no such set.
+  /// Returns the array of marks of the set that "set:NAME" names; nullopt if there is no such set.
   [[nodiscard]] std::optional<DataArray> marks_named(const std::string& name, Association association) const;
   [[nodiscard]] DataArray marks_of(const EntitySet& set) const;
   void add_others();
@@ -134,7 +134,7 @@ class Writer {
   [[nodiscard]] bool has_rows(const DataArray& array, const std::vector<Index>& cells) const;
   void add_attribute(int part, const DataArray& array, const std::string& name, const Values& values);
   static std::string unused_dataset(Hdf5Output& output, int part, const std::string& name);
-  /// Returns the Grid of a part, or the first one of a series.
+  /// Returns the Grid of a part, or the first Grid of a series.
   [[nodiscard]] pugi::xml_node grid_of(int part) const;
 
   const Mesh& mesh_;
@@ -150,14 +150,14 @@ class Writer {
   std::vector<pugi::xml_node> grids_;
   std::map<std::string, Hdf5Output> files_;  // by their names in the old XML
   std::map<std::string, std::vector<std::uint64_t>>
-      shapes_;  // that have changed, by the new name of a dataset
+      shapes_;  // shapes that have changed, by the new name of a dataset
   std::vector<OutputFile> binaries_;
   std::set<const Field*> gone_;
-  std::set<std::pair<Association, std::string>> names_;  // of arrays
+  std::set<std::pair<Association, std::string>> names_;  // names of arrays
   std::map<Association, NameNumbers> numbers_;
 };
 
-/// Sets `other` if the element has it but not `name`; else sets or adds `name`.
+/// Sets the attribute `other` if the element has `other` but not `name`; otherwise sets or adds `name`.
 void set_either(pugi::xml_node element, const char* name, const char* other, const std::string& value);
 
 /// Returns the AttributeType of values with that many components.

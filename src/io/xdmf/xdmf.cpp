@@ -15,7 +15,7 @@
 namespace meshorder::xdmf {
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  const hdf5::Session session;  // for the whole function: failures in it count at its end
+  const hdf5::Session session;  // the outermost session: it records the failures of the whole function
   if (const auto* const own = dynamic_cast<const XdmfLayout*>(mesh.format_metadata.get())) {
     std::vector<std::vector<Index>> rows = cells_of_parts(mesh, *own);
     if (!rows.front().empty()) return Writer(mesh, *own, std::move(rows), path, notes).write();

@@ -54,10 +54,11 @@ bool holds(const Mesh& mesh, Shape shape, int vertices);
 
 /// The cells of one Topology.
 struct TopologyPart {
-  std::string name;           ///< of its Grid
-  std::string set;            ///< set of its cells, in the order of the file; empty for the first part, and
-                              ///< for a Grid that `layout_of` added
-  int below = 0;              ///< of such a Grid: highest dimension of cells minus that of its cells
+  std::string name;  ///< name of its Grid
+  std::string set;   ///< set of its cells, in the order of the file; empty for the first part, and
+                     ///< for a Grid that `layout_of` added
+  int below = 0;  ///< of a Grid that `layout_of` added: highest dimension of the mesh's cells minus that of
+                  ///< the Grid's cells
   bool has_own_cells = true;  ///< false: all its cells are cells of earlier parts
   bool is_ascending = true;   ///< whether its cells are in the order of the mesh
   std::size_t grid = 0;       ///< number of its Grid; see `Document::number`
@@ -70,8 +71,8 @@ struct Field {
   DataPlace place;
   int part = 0;  ///< number of the part, for cells
   Association association = Association::vertices;
-  std::string name = {};  ///< of the array or the set
-  int axis = -1;          ///< of points whose coordinates are separate arrays; −1: none
+  std::string name = {};  ///< name of the array or the set
+  int axis = -1;          ///< of points whose coordinates are separate arrays; −1: the points are one array
   int base = 0;           ///< number of the first point in a topology
 };
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _LARGEST_ERROR = 1e-4
 _LEAST_GAIN = 1.02
-_RANK = 3  # from both ends of 15 sorted values: these bound their median with a probability of 96 %
+_RANK = 3  # index from both ends of 15 sorted values: the two values bound the median with a probability of 96 %
 
 
 class Speedup(NamedTuple):
@@ -67,10 +67,10 @@ class GpuOrder:
         name: "original", or the order's name: "rcm" for "rcm/lexmax", "hilbert/original", "rcm+corners".
         vertices: method of the vertices; never "auto".
         elements: method of the elements; never "auto".
-        by_auto: whether ``auto`` chose them for a GPU.
+        by_auto: whether ``auto`` chose both methods for a GPU.
         sorts_corners: whether the corners of tetrahedra were sorted by `sort_corners`.
         seconds: time to make the order, on the host.
-        times: of each kernel.
+        times: the time of each kernel.
         speedup: geometric means over all kernels of the ratio, and of both ends of its interval.
     """
 
@@ -127,7 +127,7 @@ class GpuComparison:
         return first + (f"\nLayouts in that order, against packed: {layouts}." if layouts else "")
 
     def _gains(self, order: GpuOrder) -> dict[str, tuple[float, float]]:
-        """Returns for each group of kernels the least and the largest speedup."""
+        """Returns the least and the largest speedup in each group of kernels."""
         gains: dict[str, tuple[float, float]] = {}
         for kernel, (group, _) in self.kernels.items():
             ratio = order.times[kernel].speedup.ratio

@@ -20,8 +20,8 @@ BLOCK = 256
 
 _ROUNDS = 15
 _BATCH_MILLISECONDS = 2.0
-_MOST_LAUNCHES = 400  # of a batch; all of them wait in the device's queue
-_CYCLES_TO_LAUNCH = 20_000  # of the device's clock, while this process makes a launch
+_MOST_LAUNCHES = 400  # launches of a batch; all of them wait in the device's queue
+_CYCLES_TO_LAUNCH = 20_000  # cycles of the device's clock while this process makes a launch
 
 
 class Launch(NamedTuple):
@@ -105,7 +105,7 @@ class Device:
             Milliseconds of one run, for each of 15 rounds and each run.
         """
         ready = [self._ready(run) for run in runs]
-        once = [self._batch(run, 1) for run in ready for _ in range(2)][1::2]  # the first ones warm up
+        once = [self._batch(run, 1) for run in ready for _ in range(2)][1::2]  # the first batch of each run warms up
         most = max(1, _MOST_LAUNCHES // max(map(len, runs)))
         repeats = int(np.clip(_BATCH_MILLISECONDS / max(float(np.median(once)), 1e-4), 1, most))
         times = np.empty((_ROUNDS, len(runs)))

@@ -19,7 +19,7 @@ class Expected(NamedTuple):
 
     Attributes:
         values: n × k numbers, for vertices in their old order.
-        scale: n numbers ≥ 0: a bound on the sum of the terms of a vertex, each without cancellation.
+        scale: n numbers ≥ 0: for each vertex, the sum of bounds on the sizes of its terms.
     """
 
     values: Double
@@ -32,7 +32,7 @@ class Expected(NamedTuple):
 
 
 def _summed(vertices: NDArray[Any], terms: Double, n: int) -> Double:
-    """Returns the sum at each vertex of the rows of terms that belong to it."""
+    """Returns for each vertex the sum of its rows of terms."""
     columns = [np.bincount(vertices, weights=column, minlength=n) for column in terms.reshape(len(terms), -1).T]
     return np.stack(columns, axis=1)
 
@@ -43,7 +43,7 @@ def factor(n: int) -> Single:
 
 
 def matrix(offsets: NDArray[Any], neighbours: Rows) -> tuple[Rows, Rows, Single]:
-    """Returns offsets, columns and values of L + 1, with the Laplacian L of a graph whose neighbours ascend."""
+    """Returns offsets, columns and values of L + I, where L is the Laplacian of a graph whose neighbours ascend."""
     degrees = np.diff(offsets)
     n = len(degrees)
     rows = np.repeat(np.arange(n, dtype=np.int32), degrees)
@@ -55,7 +55,7 @@ def matrix(offsets: NDArray[Any], neighbours: Rows) -> tuple[Rows, Rows, Single]
 
 
 def _pulls(points: Double, ends: Rows, rest: NDArray[Any]) -> tuple[Double, Double]:
-    """Returns the force of each spring on its first end, and a bound of it."""
+    """Returns the force of each spring on its first end, and a bound on the size of that force."""
     along = points[ends[:, 1]] - points[ends[:, 0]]
     now = np.linalg.norm(along, axis=1)
     stretched = np.where(now > 0, 1 - rest / np.where(now > 0, now, 1), 0)
@@ -98,7 +98,7 @@ class Results:
         stress += np.trace(displaced, axis1=1, axis2=2)[:, np.newaxis, np.newaxis] * np.eye(3)
         of_corners = -rest.volume[:, np.newaxis, np.newaxis] * np.einsum("eij,ekj->eki", stress, rest.of)
         of_corners = np.concatenate([-of_corners.sum(axis=1, keepdims=True), of_corners], axis=1)
-        # bounds of the forces, by norms
+        # bounds on the forces, from norms
         steepness = np.linalg.norm(rest.of, axis=2)
         stretch = 1 + np.einsum("ek,ek->e", np.linalg.norm(edges, axis=2), steepness)
         bounds = (rest.volume * stretch)[:, np.newaxis] * steepness
@@ -119,12 +119,12 @@ class Results:
 
 
 def distances(order: Ordered, starts: NDArray[np.int32], ends: Rows) -> Expected:
-    """Returns the points after each colour of springs in turn has been moved to its rest length.
+    """Returns the points after all springs have been moved to their rest lengths, one colour after another.
 
     Args:
         order: the order.
         starts: the springs of colour c are ``starts[c]`` to below ``starts[c + 1]``.
-        ends: of the springs, colour after colour.
+        ends: both ends of each spring, colour after colour.
     """
     points = order.now.astype(np.float64)
     rest = lengths(order.rest, ends[:, 0], ends[:, 1])

@@ -1,14 +1,15 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Kernels of simulations in single precision, as programs for graphics processors have them. Stiffnesses and
-// masses are 1. CuPy has NVRTC compile them; the tests compile them with python/tests/emulator.hpp, which
-// runs them on a CPU.
+// Kernels of simulations in single precision, as in programs for graphics processors. Stiffnesses and masses
+// are 1. CuPy has NVRTC compile them; the tests compile them with python/tests/emulator.hpp, which runs them
+// on a CPU.
 //
 // n counts rows, elements or springs, one thread each. `corners` are the four vertices of each tetrahedron.
-// `rest` has ten runs of n numbers: the gradients of corners 1, 2 and 3 by coordinate, then the volume.
-// `ends` and `lengths` are the two vertices and the rest length of each spring.
+// `rest` has ten arrays of n numbers, one after another: three coordinates of the gradient of corner 1, of
+// corner 2 and of corner 3, then the volume. `ends` and `lengths` are the two vertices and the rest length of
+// each spring.
 
-#ifndef VECTOR_ADDITIONS  // of four numbers at once: from compute capability 9.0 and CUDA 12.1 on
+#ifndef VECTOR_ADDITIONS  // of four numbers at once: since compute capability 9.0 and CUDA 12.1
 #define VECTOR_ADDITIONS (__CUDA_ARCH__ >= 900 && 100 * __CUDACC_VER_MAJOR__ + __CUDACC_VER_MINOR__ >= 1201)
 #endif
 
@@ -142,7 +143,7 @@ extern "C" __global__ void product_rows(int n, const int* __restrict__ offsets,
   y[row] = sum;
 }
 
-// The same, eight lanes of a warp for each row.
+// The same product, with eight lanes of a warp for each row.
 extern "C" __global__ void product_lanes(int n, const int* __restrict__ offsets,
                                          const int* __restrict__ columns, const float* __restrict__ values,
                                          const float* __restrict__ x, float* y) {
@@ -185,7 +186,7 @@ extern "C" __global__ void forces_padded(int n, const int4* __restrict__ corners
 }
 
 // One block for each patch, one thread for each element of the patch. The points of the patch and the sums of
-// their forces are in shared memory, 24 bytes for each vertex of the patch.
+// the forces on them are in shared memory, 24 bytes for each vertex of the patch.
 extern "C" __global__ void forces_patches(int n, const int* __restrict__ offsets,
                                           const int* __restrict__ vertices, const ushort4* __restrict__ local,
                                           const float* __restrict__ rest, const float* __restrict__ points,
@@ -218,8 +219,8 @@ extern "C" __global__ void corner_forces(int n, const int4* __restrict__ corners
   for (int k = 0; k < 4; ++k) forces[4ll * e + k] = make_float4(f.of[k].x, f.of[k].y, f.of[k].z, 0);
 }
 
-// … then their sum at each of n vertices, whose places in `forces` are `gathered[offsets[v]]` to below
-// `gathered[offsets[v + 1]]`.
+// … then the sum of the forces on each of n vertices. Their places in `forces` are `gathered[offsets[v]]` to
+// below `gathered[offsets[v + 1]]`.
 extern "C" __global__ void sum_corners(int n, const int* __restrict__ offsets,
                                        const int* __restrict__ gathered, const float4* __restrict__ forces,
                                        float* sums) {
@@ -250,7 +251,8 @@ extern "C" __global__ void springs_padded(int n, const int2* __restrict__ ends,
   if (s < n) add_spring(Padded<const float4>{points}, Padded<float4>{sums}, ends[s], lengths[s]);
 }
 
-// Without atomic additions: each of n vertices sums over its neighbours, `lengths` away from it at rest.
+// Without atomic additions: each of n vertices sums the forces of its springs. `lengths` are their rest
+// lengths, one for each neighbour.
 extern "C" __global__ void springs_gathered(int n, const int* __restrict__ offsets,
                                             const int* __restrict__ neighbours,
                                             const float* __restrict__ lengths,
@@ -266,7 +268,7 @@ extern "C" __global__ void springs_gathered(int n, const int* __restrict__ offse
   sums[3ll * v + 2] = sum.z;
 }
 
-// Moves both ends of the n springs of a colour, the first of which is `begin`, to their rest length: distance
+// Moves both ends of the n springs of a colour, from spring `begin` on, to the rest lengths: distance
 // constraints of extended position-based dynamics without compliance. The fourth number of a point is its
 // inverse mass.
 extern "C" __global__ void distances(int n, int begin, const int2* __restrict__ ends,

@@ -77,7 +77,7 @@ class Arrays:
 
     @property
     def stride(self) -> int:
-        """Distance of the runs of x, y and z: whole sectors of memory."""
+        """Distance, in numbers, from all x to all y and from all y to all z: whole sectors of memory."""
         return -(-self.n // 8) * 8
 
     def in_three_runs(self, rows: Single) -> Single:
@@ -92,7 +92,7 @@ class Arrays:
 
 
 def with_ones(rows: Single) -> Single:
-    """Returns n × 4 numbers, of which the last are 1."""
+    """Returns the rows with a fourth number, 1."""
     return np.concatenate([rows, np.ones((len(rows), 1), dtype=np.float32)], axis=1)
 
 

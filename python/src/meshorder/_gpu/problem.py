@@ -31,7 +31,7 @@ class Problem:
 
     Attributes:
         mesh: the mesh.
-        rest: n × 3, its points, moved and scaled so that its longest side is 1 and its centre at 0.
+        rest: n × 3: the mesh's points, moved and scaled so that their box has the longest side 1 and its centre at 0.
         now: n × 3, the points as a smooth deformation has moved them, by up to 0.02.
         offsets, neighbours: the graph of its vertices.
         springs: the edges of the graph, m × 2.
@@ -79,7 +79,7 @@ class Gradients(NamedTuple):
     volume: NDArray[np.float64]
 
     def runs(self) -> Single:
-        """Returns the ten runs of numbers that the kernels read."""
+        """Returns the ten arrays of numbers that the kernels read, as rows."""
         return np.concatenate([self.of.reshape(-1, 9).T, self.volume[np.newaxis]]).astype(np.float32)
 
 
@@ -101,7 +101,7 @@ class Ordered:
     Attributes:
         name: "original", or the order's name: "rcm" for "rcm/lexmax", "hilbert/original", "rcm+corners".
         methods: of the vertices and the elements; never "auto".
-        by_auto: whether `auto` chose them.
+        by_auto: whether `auto` chose the methods.
         sorts_corners: whether the corners of tetrahedra are sorted.
         seconds: time that the order took.
         vertices: the order of the vertices.
@@ -179,7 +179,7 @@ def ordered(problem: Problem, names: Sequence[str] | None, options: dict[str, An
 
     Args:
         problem: the problem.
-        names: of the orders; None: the usual ones, without those along curves if the mesh has no coordinates.
+        names: names of the orders; None: the usual orders, without orders along curves if the mesh has no coordinates.
         options: see `Options`.
     """
     if names is None:

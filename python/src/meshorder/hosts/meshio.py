@@ -19,8 +19,8 @@ from .._permutation import Permutation
 from .host import Host, moved_data, parts
 
 
-#: name under which meshio's reader of Gmsh 4.1 stores, among the sets of cells, the tags of the entities that bound each
-#: block, signed by their orientation
+#: the set of cells in which meshio's reader of Gmsh 4.1 stores the tags of the entities that bound each block. The sign
+#: of a tag is the entity's orientation
 _ENTITY_TAGS = "gmsh:bounding_entities"
 
 
@@ -140,7 +140,7 @@ class MeshioMesh(Host):
         }
 
     def _periodic(self, old_to_new: NDArray[Any]) -> Any:
-        """Returns Gmsh's periodic points with new numbers: [dimension, entities, transformation, pairs] an entity."""
+        """Returns for each periodic entity [dimension, entities, transformation, pairs of points], with new numbers."""
         if not self.given.gmsh_periodic:
             return self.given.gmsh_periodic
         return [

@@ -125,7 +125,7 @@ class PygGraph(Host):
         return dataclasses.replace(whole, permutation=Permutation(new_to_old=np.concatenate(places)))
 
     def _groups(self, given: Any) -> NDArray[Any] | None:
-        """Returns groups that keep the graphs of a batch apart, and within each the given groups."""
+        """Returns groups that keep the graphs of a batch apart, and keep the given groups apart within each graph."""
         batches = [store.get("batch") for store in self.given.node_stores]
         whole = bool(batches) and all(batch is not None for batch in batches)
         found = [np.concatenate([tensors.to_numpy(batch) for batch in batches])] if whole else []
@@ -150,7 +150,7 @@ class PygGraph(Host):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             for place, store in enumerate(self.given.stores):
-                if hasattr(store, "is_edge_attr"):  # not the store of a HeteroData as a whole
+                if hasattr(store, "is_edge_attr"):  # the store for the HeteroData as a whole lacks it
                     of = {"nodes": nodes.get(store._key), "edges": edges.get(store._key), "faces": cells[-1] if sizes else None}
                     ends = [nodes[key] for key in _ends(store)]
                     moved += [(place, key, self._value(store, key, value, ends, of, doubts)) for key, value in store.items()]
