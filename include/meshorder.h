@@ -6,7 +6,7 @@
  * @file
  * The C interface of meshorder (C99): orders graphs and meshes, computes Fiedler vectors, makes layouts for
  * graphics processors, adds a user's own methods. Its binary interface is stable: structures only grow at
- * their end, functions and numbers stay.
+ * their end; functions and the values of constants do not change.
  *
  * Every function returns MO_OK or the status of its failure, unless stated otherwise. After a failure
  * `mo_last_error` returns a sentence, and outputs are unspecified. Several threads may call all functions
@@ -90,7 +90,7 @@ typedef struct mo_options {
   int32_t base;         /**< first offset and first vertex number, of inputs and outputs; 0 (default) or 1 */
   int32_t check;        /**< MO_CHECK_...; default MO_CHECK_FULL */
   int32_t symmetrize;   /**< non-zero: take the pattern of A + A^T; default 0: refuse asymmetric input */
-  mo_in start;          /**< n numbers near the Fiedler vector, or none */
+  mo_in start;          /**< an estimate of the Fiedler vector: n numbers, or none */
   mo_in groups;         /**< group of each vertex, or none; groups stay together and ascend */
   /** Called now and then on the calling thread, with the stage in words and the fraction done, 0 ... 1, or -1
    * if unknown. A non-zero result stops the call. */
@@ -105,9 +105,9 @@ typedef struct mo_options {
 typedef struct mo_result {
   size_t struct_size;
   int32_t complete;   /**< 0: the time limit ended the call early */
-  int32_t components; /**< connected components where Fiedler vectors were computed, else 0 */
+  int32_t components; /**< number of connected components if Fiedler vectors were computed, else 0 */
   double seconds;     /**< wall-clock time */
-  double lambda2;     /**< of the largest component, where Fiedler vectors were computed; else 0 */
+  double lambda2;     /**< of the largest component, if Fiedler vectors were computed; else 0 */
   char method[32];    /**< the method that was used, null-terminated; cut if longer */
 } mo_result;
 
@@ -193,9 +193,9 @@ enum {
  *
  * @param options         options of its orders, or null; its arrays must be empty, and `progress` and `user`
  *                        must stay valid
- * @param slack           share, >= 0, by which the mean span of edges may exceed that of the last fresh order
- *                        before a new one is computed; for points alone, this many times log2 of their number
- *                        is added to that of the last fresh order; usual: 0.02
+ * @param slack           share, >= 0, by which the mean span of edges may exceed that of the last fresh
+ *                        order; beyond that, a new order is computed. For points without edges, the span may
+ *                        exceed that value by slack * log2(number of points). Usual: 0.02
  * @param budget_seconds  >= 0; no new order is computed if the last one took longer; infinity: no limit
  * @param reorderer       written; null after a failure
  */
@@ -225,7 +225,7 @@ MO_API mo_status mo_reorderer_update(mo_reorderer* reorderer, const mo_in* offse
                                      const mo_out* new_to_old, const mo_out* old_to_new, int32_t* repair);
 
 /** Reports the duration, >= 0, of the step after the last update. From the fifth report on, a new order is
- * computed once slower steps have lost more time than it costs. Optional. */
+ * computed once slower steps have lost more time than a new order costs. Optional. */
 MO_API mo_status mo_reorderer_observe(mo_reorderer* reorderer, double step_seconds);
 
 /**
@@ -270,7 +270,7 @@ typedef struct mo_patches {
   int64_t count;             /**< patches */
   int32_t size;              /**< cells of a patch; the last may have fewer */
   int32_t vertices_per_cell; /**< k */
-  const int32_t* cells;      /**< old number of each cell: those of patch p from place p * size on */
+  const int32_t* cells;      /**< old numbers of the cells; those of patch p begin at place p * size */
   const int64_t* offsets;    /**< count + 1: where the vertices of each patch begin */
   const int32_t* vertices;   /**< vertices of each patch, ascending */
   const uint16_t* local;     /**< corner a of cells[i] is vertex local[i * k + a] of its patch */
@@ -361,9 +361,9 @@ MO_API mo_status mo_sort_corners(const mo_in* cell_offsets, const mo_in* cell_ve
 /** Cost of a kernel on a graphics processor. Set `struct_size` to sizeof(mo_gpu_counts) before the call. */
 typedef struct mo_gpu_counts {
   size_t struct_size;
-  int64_t requests;   /**< additions, or loads and stores, each of a warp of 32 threads at once */
-  int64_t sectors;    /**< sectors of 32 bytes that these touch; t times if t threads add to one number */
-  int64_t floor;      /**< `sectors` if the numbers of each warp were all different and side by side */
+  int64_t requests;   /**< additions, or loads and stores; the 32 threads of a warp make one at once */
+  int64_t sectors;    /**< sectors of 32 bytes that they touch; t times if t threads add to one number */
+  int64_t floor;      /**< value of `sectors` if each warp's numbers were all different and side by side */
   int64_t dram_bytes; /**< bytes read from memory, if the cache is filled again and again */
   int64_t dram_floor; /**< `dram_bytes` if each number were read once */
 } mo_gpu_counts;
@@ -377,8 +377,8 @@ typedef struct mo_gpu_counts {
  * @param vtk_types      VTK's type of each cell, or null: all cells of one dimension
  * @param vertex_count   n
  * @param layout         "packed": three numbers of a vertex side by side; "apart": in three arrays; "padded":
- *                       four, added at once; "patches": `packed` by patches of 256 cells; "gathered": two
- *                       passes by gather lists
+ *                       four numbers of a vertex side by side, added at once; "patches": as "packed", in
+ *                       patches of 256 cells; "gathered": two passes by gather lists
  * @param cache_bytes    size of the last cache; 0: 50 MiB
  * @param options        or null
  * @param counts         written
@@ -431,7 +431,7 @@ typedef mo_status (*mo_register_fn)(const char* name, const char* description, i
  *
  * @param name          lower case letters, digits, '-' and '_'; not taken yet; copied
  * @param description   one line; copied
- * @param needs_points  non-zero: refuse to be called without coordinates
+ * @param needs_points  non-zero: a call without coordinates is refused
  * @param method        may be called by several threads at once
  * @param user          passed to `method`
  */

@@ -58,7 +58,7 @@ MO_API void mo_mpi_options_init(mo_mpi_options* options, size_t struct_size);
  * Orders the vertices of every rank among themselves: each stays with its owner. A rank's order begins near
  * the rank before it and ends near the rank after it, as far as possible.
  *
- * Elements may be on several ranks (ghost layers); each rank orders all of its own.
+ * An element may be on several ranks (ghost layers); each rank orders all elements that it has.
  *
  * @param communicator  Fortran handle of the ranks that share the mesh
  * @param mesh          of this rank
@@ -74,7 +74,7 @@ MO_API mo_status mo_mpi_order_ranks(int32_t communicator, const mo_mpi_mesh* mes
  * Cuts the mesh into parts, orders each, and numbers them one after another, so that touching parts are
  * near each other. The caller has to move vertices and elements to their new owners.
  *
- * Needs coordinates, and each element on one rank. Without MPI_THREAD_MULTIPLE
+ * Needs coordinates. Each element must be on exactly one rank. Without MPI_THREAD_MULTIPLE
  * "hilbert" replaces "ptscotch".
  *
  * @param communicator  Fortran handle of the ranks that share the mesh

@@ -40,7 +40,7 @@ struct ReordererOptions {
   /// points alone), and moves nothing if the present numbering is as good.
   std::string method = "auto";
   /// Share, ≥ 0, by which `Update::span_log2` may exceed that of the last fresh order before a new order is
-  /// computed. For points alone, `span_log2` may exceed it by `slack` · log₂ n.
+  /// computed. For points alone, `span_log2` may exceed that value by `slack` · log₂ n.
   double slack = 0.02;
   /// Seconds, ≥ 0: no new order is computed if the last one took longer.
   double budget_seconds = std::numeric_limits<double>::infinity();
@@ -66,13 +66,14 @@ struct Update {
 
 /// Keeps the order of a changing mesh, graph or set of particles up to date.
 ///
-/// Call `update` whenever connectivity or positions have changed, and move all arrays by its permutation.
-/// The arrays then have the last order, so this object does not store it. Most updates cost a pass over a
-/// sample, and nothing moves. A new order is computed when neighbours are too far apart, and now and then to
+/// Call `update` whenever connectivity or positions have changed, and move all arrays by its permutation. The
+/// arrays then have the last order, so this object does not store it. Most updates only read a sample of the
+/// rows, and move nothing. A new order is computed when neighbours are too far apart, and now and then to
 /// test whether it would be better: first after 10 updates, then half as often after each test that finds no
 /// better order.
 ///
-/// Elements: calling `order_elements` with `max` after every change of connectivity pays at once.
+/// For elements, call `order_elements` with the method `max` after every change of connectivity; this saves
+/// time from the first step on.
 ///
 /// @note One update at a time. Without `budget_seconds`, `Run::time_limit` and `observe`, equal calls give
 ///       equal orders on any number of threads. Memory: a few numbers; for Fiedler orders 8 n bytes
@@ -110,9 +111,9 @@ class MESHORDER_API Reorderer {
   /// @throws InvalidArgument also for other methods
   Update update(const PointsView& points, const IndexView& previous = {});
 
-  /// Reports the duration of the step after the last update. From the fifth report on, there is a new order
-  /// once slower steps have lost more time than it costs: √(2 cost / slope) steps after the last one.
-  /// Optional.
+  /// Reports the duration of the step after the last update. From the fifth report on, a new order is
+  /// computed once slower steps have lost more time than it costs: √(2 cost / slope) steps after the last new
+  /// order, where `slope` is the time that each step adds to the duration of a step. Optional.
   ///
   /// @param step_seconds  ≥ 0 and finite
   /// @throws InvalidArgument otherwise
@@ -121,7 +122,7 @@ class MESHORDER_API Reorderer {
   /// Returns the state, for a checkpoint; `restore` continues from it.
   [[nodiscard]] std::vector<std::byte> state() const;
 
-  /// Continues from a state of the same method. The other options are not part of it.
+  /// Continues from a state of the same method. The other options are not part of the state.
   ///
   /// @throws InvalidArgument for bytes that are not a whole state, or for another method; the object is then
   ///         unchanged

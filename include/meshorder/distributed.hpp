@@ -22,7 +22,7 @@ struct RankMesh {
   std::span<const std::int64_t> cell_offsets = {};  ///< elements + 1, ascending from 0; none: no elements
   /// Numbers of the elements' vertices, whichever rank owns these.
   std::span<const std::int64_t> cell_vertices = {};
-  std::span<const double> points = {};  ///< x y z of each own vertex, in the plane too; or none on all ranks
+  std::span<const double> points = {};  ///< x y z of each own vertex, also in 2D; or none on all ranks
 };
 
 /// Options of a call. All but `threads` must be the same on all ranks.
@@ -95,13 +95,13 @@ inline void throw_unless_ok(mo_status status) {
 /// the rank before it and ends near the rank after it, as far as possible. Every rank has to call it.
 ///
 /// @param communicator  of the ranks that share the mesh
-/// @param mesh          of this rank. Elements may be on several ranks (ghost layers); each rank orders all
-///                      of its own
+/// @param mesh          of this rank. An element may be on several ranks (ghost layers); each rank orders all
+///                      elements that it has
 /// @param options       the same on all ranks; `parts`, `partition` and `balance` are not used
 /// @throws Error on all ranks if one fails: for an unknown method, for options that differ between ranks, for
 ///         vertex numbers that do not exist, or for a geometric method without coordinates
-/// @note The same mesh on the same ranks gives the same order. Memory: O(sum of element sizes squared) for
-///       the graph, and that of the method.
+/// @note The same mesh on the same ranks gives the same order. Memory: O(Σ (vertices of an element)²) for the
+///       graph, plus the memory of the method.
 inline RankOrder order_ranks(MPI_Comm communicator, const RankMesh& mesh, const RankOptions& options = {}) {
   const mo_mpi_mesh given = detail::to_c(mesh);
   const mo_mpi_options wanted = detail::to_c(options);

@@ -131,7 +131,8 @@ template <class V, class F>
 /// @param edges     E: m × 2 old numbers in 0 … n − 1, a row for each edge
 /// @param vertices  order of the n vertices
 /// @param run       threads, progress
-/// @return permutation of the m edges: `move_rows` by it, then `renumber` by `vertices`
+/// @return permutation of the m edges: first move the edges by it (`move_rows`), then `renumber` their ends
+///         by `vertices`
 /// @throws InvalidArgument for another number of columns, and as `order_edges`
 template <class E>
 [[nodiscard]] Permutation order_edges(const Eigen::DenseBase<E>& edges, const Permutation& vertices,

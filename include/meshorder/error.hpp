@@ -60,7 +60,7 @@ struct Location {
 class MESHORDER_API InputError : public Error {
  public:
   /// @param location  where the fault is
-  /// @param what      the fault; may quote names from the file, whose line ends `what()` escapes
+  /// @param what      the fault; may quote names from the file: `what()` escapes the line ends in them
   /// @param remedy    what would be right; may be empty
   InputError(Location location, const std::string& what, const std::string& remedy);
 
@@ -75,8 +75,8 @@ class MESHORDER_API InputError : public Error {
   std::shared_ptr<const Location> location_;  // shared: copying an exception must not throw
 };
 
-/// Thrown if numbers do not fit: 2³¹ or more vertices, cells or degrees of freedom; 2³¹ or more entries for a
-/// METIS of 32 bits; a result that the caller's integer type cannot hold.
+/// Thrown if numbers do not fit: 2³¹ or more vertices, cells or degrees of freedom; 2³¹ or more entries if
+/// METIS has 32-bit integers; a result that the caller's integer type cannot hold.
 struct MESHORDER_API TooLarge : Error {
   explicit TooLarge(const std::string& message) : Error(Code::too_large, message) {}
 };

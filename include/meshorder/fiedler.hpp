@@ -25,8 +25,8 @@ struct FiedlerComponent {
 
 /// The Fiedler vectors of all connected components of a graph.
 struct Fiedler {
-  /// n entries. In each component ‖x‖₂ = 1 and Σ x = 0; an isolated vertex has 0. Sign: of the vertices with
-  /// at least half the largest magnitude, the one with the smallest number has a negative entry.
+  /// n entries. In each component ‖x‖₂ = 1 and Σ x = 0; an isolated vertex has 0. Its sign: among the entries
+  /// with at least half the largest magnitude, the first one is negative.
   std::vector<double> values;
   std::vector<FiedlerComponent> components;  ///< largest first, ties by their smallest vertex
   std::vector<Index> component_of;           ///< n entries: position in `components`

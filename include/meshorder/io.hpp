@@ -37,15 +37,15 @@ struct FormatInfo {
 /// Options of `read_mesh`.
 struct ReadOptions {
   std::string format = {};  ///< name of the format; empty: by the extension, or in memory by the first bytes
-  std::string name = {};    ///< of bytes and streams, for messages; its extension does not choose the format
-  /// For formats of several files in memory: returns the bytes of the file of that name, none if there is
-  /// no such file. An exception passes through.
+  std::string name = {};  ///< name of bytes or a stream in messages; its extension does not choose the format
+  /// For formats of several files in memory: returns the bytes of the file of that name; an empty string if
+  /// there is no such file. An exception passes through.
   std::function<std::string(std::string_view name)> companion = {};
   Notes* notes = nullptr;  ///< receives warnings; null: they are dropped
   Run run = {};            ///< `threads`; readers report no progress
   /// Limit in bytes on memory for data larger than its stored form: compressed or repeated values, sizes
-  /// without values, ranges of numbers. None: 256 MiB plus 100 times the size of its files, but at most
-  /// three quarters of the memory that this process may have.
+  /// without values, ranges of numbers. If not set: 256 MiB plus 100 times the size of the mesh's files, but
+  /// at most three quarters of the memory that this process may have.
   std::optional<std::uint64_t> memory_limit = {};
   /// Folders, besides the file's own, from which other files that it names may be read. Links are resolved
   /// first.
@@ -82,13 +82,13 @@ struct KeepOptions {
   Notes* notes = nullptr;  ///< receives what was left out, one line for each cell type; null: dropped
 };
 
-/// Removes cells from a mesh: first those of other dimensions than the wanted one, then those that the format
-/// cannot hold, unless one of these has the highest dimension (`write_mesh` refuses such a mesh). Call it
-/// before `reorder`: the order and its permutations then describe the file that `write_mesh`
-/// makes.
+/// Removes cells from a mesh: first the cells whose dimension is not the wanted one, then the cells that the
+/// format cannot hold. If one of the latter has the highest dimension, none of them is removed (`write_mesh`
+/// refuses such a mesh). Call it before `reorder`: the order and its permutations then describe the file that
+/// `write_mesh` makes.
 ///
-/// All vertices stay. Arrays, sets, ids and blocks follow the cells. Sets, and arrays on some cells, are
-/// removed if none of their cells is left; `notes` reports them.
+/// All vertices stay. Arrays, sets, ids and blocks follow the cells. A set, or an array on only some cells,
+/// is removed if none of its cells is left; `notes` reports that.
 ///
 /// @param mesh     changed in place
 /// @param options  see `KeepOptions`
@@ -114,8 +114,8 @@ struct WriteOptions {
 ///               ACLs are kept as far as the system allows. Other hard links keep the old content; `notes`
 ///               reports that. Devices and pipes are written directly
 /// @param notes  receives what the format cannot hold; null: dropped
-/// @return the places of the cells in the file, followed by those of cells that are left out; the
-///         identity after `reorder` for that format
+/// @return the permutation of the mesh's cells to their places in the file; cells that are left out come
+///         last. It is the identity after `reorder` for that format
 /// @throws InvalidArgument for a mesh that `check_mesh` refuses
 /// @throws InputError for an unknown extension, if the file cannot be written, and for cells of the highest
 ///         dimension that the format cannot hold (the message lists formats that can)
@@ -134,7 +134,7 @@ MESHORDER_API Permutation write_mesh(const Mesh& mesh, const std::filesystem::pa
 /// @param stream  receives the bytes of the file
 /// @param format  name of the format
 /// @param notes   receives what the format cannot hold; null: dropped
-/// @throws InvalidArgument also for an unknown format and one of several files
+/// @throws InvalidArgument also for an unknown format and for a format of several files
 /// @throws Error of `Code::io` if the stream fails
 MESHORDER_API Permutation write_mesh(const Mesh& mesh, std::ostream& stream, std::string_view format,
                                      Notes* notes = nullptr);

@@ -23,10 +23,10 @@ inline namespace v0_3 {
 /// shared memory, uses their local numbers, adds up its results there, and then adds the sums to the results
 /// in global memory.
 struct Patches {
-  int size = 0;                    ///< cells of each patch; the last may have fewer
-  int corners_per_cell = 0;        ///< k
-  std::vector<Index> cells = {};   ///< old number of each of the m cells: those of patch p from p · size on
-  std::vector<Offset> offsets{0};  ///< patches + 1: where the vertices of each patch begin
+  int size = 0;                      ///< cells of each patch; the last may have fewer
+  int corners_per_cell = 0;          ///< k
+  std::vector<Index> cells = {};     ///< old numbers of the m cells; those of patch p begin at p · size
+  std::vector<Offset> offsets{0};    ///< patches + 1: where the vertices of each patch begin
   std::vector<Index> vertices = {};  ///< the vertices of each patch, ascending
   /// m · k: corner a of `cells[i]` is vertex local[i · k + a] of its patch.
   std::vector<std::uint16_t> local = {};
@@ -55,7 +55,7 @@ struct Patches {
                                             const Run& run = {});
 
 /// The cells at each vertex. Instead of adding to vertices, a first pass stores the contribution of each cell
-/// to each corner, and a second one sums them for each vertex. No two threads write to one place.
+/// to each corner, and a second one sums them for each vertex. No two threads write to the same place.
 struct GatherLists {
   std::vector<Offset> offsets{0};          ///< n + 1: where the entries of each vertex begin
   std::vector<Index> cells = {};           ///< the cells of each vertex, ascending
@@ -65,7 +65,8 @@ struct GatherLists {
 /// Returns the gather lists of cells, which may be of several types, with at most 256 vertices each.
 ///
 /// @throws InvalidArgument for faulty cells and for cells with more vertices; TooLarge as `patches`
-/// @note O(Σ vertices of a cell + n) on one thread. A cell that names a vertex twice is listed twice there.
+/// @note O(Σ vertices of a cell + n) on one thread. If a cell names a vertex twice, the list of that vertex
+///       has the cell twice.
 [[nodiscard]] MESHORDER_API GatherLists gather_lists(const CellsView& cells, std::size_t vertex_count,
                                                      const Run& run = {});
 
@@ -89,8 +90,8 @@ struct Colours {
 
 /// Sorts the vertices of each linear triangle or tetrahedron as far as its orientation allows. A triangle
 /// begins with its smallest vertex. The vertices of a tetrahedron ascend; the last two are swapped if
-/// ascending order would reverse the orientation. Threads of a warp then read and add at nearer
-/// places.
+/// ascending order would reverse the orientation. The threads of a warp then read from and add to places that
+/// are nearer each other.
 ///
 /// @return m · k vertices
 /// @throws InvalidArgument for faulty cells and for other types; TooLarge as `patches`
@@ -98,14 +99,14 @@ struct Colours {
 [[nodiscard]] MESHORDER_API std::vector<Index> sort_corners(const CellsView& cells, std::size_t vertex_count,
                                                             const Run& run = {});
 
-/// Where a kernel keeps the numbers of vertices, of 4 bytes each: those that it reads for its cells, and
-/// those that it adds to. `patches` and `gathered` have three numbers of a vertex side by side.
+/// How a kernel stores the numbers of vertices, of 4 bytes each: the numbers that it reads for its cells, and
+/// the numbers that it adds to. `patches` and `gathered` have the three numbers of a vertex side by side.
 enum class GpuLayout {
   packed,   ///< the three numbers of a vertex side by side, each added separately
   apart,    ///< three arrays, one for each number
   padded,   ///< four numbers of a vertex side by side, added at once
   patches,  ///< as `packed`, in patches of 256 cells: each block adds once to each of its vertices
-  gathered  ///< two passes: cells store 16 bytes for each corner, vertices sum those of their gather lists
+  gathered  ///< two passes: cells store 16 bytes per corner, then vertices sum these by their gather lists
 };
 
 /// All values of `GpuLayout`.
@@ -123,12 +124,12 @@ inline constexpr std::size_t kGpuCacheBytes = std::size_t{50} << 20;
 
 /// Cost of a kernel on a graphics processor.
 struct GpuCost {
-  Offset requests = 0;  ///< additions, or loads and stores, each of a warp of 32 threads at once
+  Offset requests = 0;  ///< additions, or loads and stores; the 32 threads of a warp make one at once
   /// Sectors of 32 bytes that these requests touch. A sector of additions counts t times, where t is the
   /// largest number of threads of the warp that add to the same number in it: they wait for each other.
   Offset sectors = 0;
   /// Value of `sectors` if the numbers that each warp touches at once were all different and side by side;
-  /// for patches, also if no vertex were in two of them.
+  /// for patches, also if no vertex were in two patches.
   Offset floor = 0;
   Offset dram_bytes = 0;  ///< bytes read from memory, if the cache is filled again and again
   Offset dram_floor = 0;  ///< `dram_bytes` if each number were read once
@@ -140,18 +141,21 @@ struct GpuCost {
 /// Of two orders of the same cells, the one with fewer sectors is faster there. The counters of an NVIDIA
 /// H100 agree within 1.2 % for tetrahedra; docs/gpu.md has all figures.
 ///
-/// `sectors` are those of atomic additions; for `gathered`, those that the first pass stores and the second
-/// one loads. `dram_bytes` counts vertex numbers, of 4 bytes or within patches 2 bytes, and the layout's
-/// numbers of each vertex in two arrays: one is read, the other is added to. Other data of the cells is not
-/// counted.
+/// `sectors` counts those of atomic additions; for `gathered`, those that the first pass stores and the
+/// second pass loads. `dram_bytes` counts two things:
+/// - the cells' vertex numbers, of 4 bytes each, or 2 bytes within patches;
+/// - the values of each vertex in two arrays: one array is read, the other is added to.
+///
+/// Other data of the cells is not counted.
 ///
 /// @param cells         cells with the same number of vertices; edges are lines
 /// @param vertex_count  n
 /// @param layout        where the numbers are
 /// @param cache_bytes   size of the last cache, ≥ 1
 /// @param run           threads
-/// @throws InvalidArgument for faulty cells, cells of several types and no cache; for `patches` and
-///                         `gathered` as the functions of these names; TooLarge as `patches`
+/// @throws InvalidArgument for faulty cells, cells of several types and a cache of 0 bytes; for the layouts
+///                         `patches` and `gathered`, also as the functions of these names; TooLarge as
+///                         `patches`
 /// @note O(Σ vertices of a cell), on all threads except for `dram_bytes` and `gathered`.
 [[nodiscard]] MESHORDER_API GpuCost gpu_cost(const CellsView& cells, std::size_t vertex_count,
                                              GpuLayout layout, std::size_t cache_bytes = kGpuCacheBytes,
@@ -167,7 +171,8 @@ struct GpuCost {
 /// @param lanes        threads of a row: 1, 2, 4, 8, 16 or 32
 /// @param cache_bytes  size of the last cache, ≥ 1
 /// @param run          threads
-/// @throws InvalidArgument for other numbers of threads, no cache, and as `quality`; TooLarge as `quality`
+/// @throws InvalidArgument for another value of `lanes`, for a cache of 0 bytes, and as `quality`; TooLarge
+///         as `quality`
 /// @note O(n + entries), on all threads except for `dram_bytes`. Memory: a copy of the graph.
 [[nodiscard]] MESHORDER_API GpuCost gpu_product_cost(const GraphView& graph, int lanes = 1,
                                                      std::size_t cache_bytes = kGpuCacheBytes,

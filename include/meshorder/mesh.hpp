@@ -86,7 +86,7 @@ struct DataArray {
   /// The vertex or cell of each row, for arrays that cover only some (any order, each at most once); empty if
   /// row i belongs to vertex or cell i.
   std::vector<Index> indices = {};
-  std::vector<std::string> component_names = {};  ///< as the file names them; else empty
+  std::vector<std::string> component_names = {};  ///< the names in the file; empty if it has none
 
   /// Returns true if there is a row for every vertex or cell.
   [[nodiscard]] bool is_dense() const noexcept { return indices.empty(); }
@@ -162,14 +162,15 @@ const DataArray* find_array(const Mesh&& mesh, std::string_view name, Associatio
 
 /// Checks that the members of a mesh are consistent: coordinates are finite; every cell has at least the
 /// corners of its shape, and its vertices exist; every array has one row for each vertex or cell (or for each
-/// of its existing indices); members of sets exist; ids and blocks fit.
+/// of its existing indices); members of sets exist; ids, if any, are one for each vertex or cell; blocks
+/// ascend.
 ///
 /// @throws InvalidArgument for the first fault, which the message names
 /// @note O(size of the mesh).
 MESHORDER_API void check_mesh(const Mesh& mesh);
 
-/// Returns a view of the points and cells of a mesh, without its blocks; copies nothing. Valid until either
-/// changes its size. O(1).
+/// Returns a view of the points and cells of a mesh, without its blocks; copies nothing. Valid until the
+/// points or the cells change their size. O(1).
 [[nodiscard]] MESHORDER_API MeshView view(const Mesh& mesh MESHORDER_LIFETIMEBOUND);
 MeshView view(const Mesh&& mesh) = delete;
 
@@ -198,8 +199,9 @@ struct ReorderOptions {
   MeshMethods methods = {};
   Ids ids = Ids::renumber;
   /// Name of an array of whole numbers whose groups stay together and ascend; rows without a value come last.
-  /// An array on cells groups the cells and, by the smallest value among its elements, each vertex. Write
-  /// "cells:NAME" or "vertices:NAME" if both exist; "sets" groups by the sets of cells. Empty: no groups.
+  /// An array on cells groups the cells; it also groups the vertices: each takes the smallest value among the
+  /// elements that use it. Write "cells:NAME" or "vertices:NAME" if both exist; "sets" groups by the sets of
+  /// cells. Empty: no groups.
   std::string group_by = {};
   /// Name of the format that the mesh will be written in. If that format keeps cells of a type together,
   /// these cells are brought together first. Cells that it cannot hold stay: see `keep_cells`. Empty:
@@ -216,8 +218,8 @@ struct ReorderOptions {
 ///         describes the file that `write_mesh` makes
 /// @throws as `order_mesh`, and InvalidArgument for a mesh that `check_mesh` refuses and for an unknown array
 ///         or format
-/// @note Cost of `order_mesh`, then O(size of the mesh) and a copy of its largest part at a time; a copy of
-///       the mesh if cells move for the format.
+/// @note Cost of `order_mesh`, then O(size of the mesh) time. Memory: a copy of its largest part at a time; a
+///       copy of the whole mesh if cells move for the format.
 MESHORDER_API MeshOrder reorder(Mesh& mesh, const ReorderOptions& options = {});
 
 /// Moves the vertices and cells of a mesh to given places with all their data: cells name the renumbered
@@ -229,8 +231,9 @@ MESHORDER_API MeshOrder reorder(Mesh& mesh, const ReorderOptions& options = {});
 ///                  dimension
 /// @param ids       how ids change
 /// @throws InvalidArgument for a mesh that `check_mesh` refuses, if a size does not match, if `cells` moves a
-///         cell elsewhere, and for `Ids::attach` if the mesh already has an array "original"
-/// @note O(size of the mesh); a copy of its largest part at a time.
+///         cell to another block or dimension, and for `Ids::attach` if the mesh already has an array
+///         "original"
+/// @note O(size of the mesh) time; memory for a copy of its largest part at a time.
 MESHORDER_API void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells,
                                     Ids ids = Ids::renumber);
 

@@ -12,7 +12,8 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// Number of a vertex, a cell, or a row of a matrix inside meshorder: at most 2,147,483,647 of them.
+/// Number of a vertex, a cell, or a row of a matrix inside meshorder. There are at most 2,147,483,647 of
+/// each.
 using Index = std::int32_t;
 
 /// Position in an array with several entries for each vertex or cell; also a distance in bytes.
@@ -60,8 +61,8 @@ class IndexView {
   [[nodiscard]] constexpr int bytes() const noexcept { return bytes_; }
   [[nodiscard]] constexpr bool is_signed() const noexcept { return is_signed_; }
 
-  /// Returns integer `k` < size(). Unsigned ones from 2⁶³ on are negative. O(1), with a branch in each call:
-  /// inner loops should read the array by its type.
+  /// Returns integer `k` < size(). Unsigned integers from 2⁶³ on become negative. O(1), with a branch in each
+  /// call: inner loops should read the array by its type.
   [[nodiscard]] std::int64_t operator[](std::size_t k) const noexcept {
     if (bytes_ == 4) {
       return is_signed_ ? std::int64_t{static_cast<const std::int32_t*>(data_)[k]}

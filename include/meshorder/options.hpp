@@ -22,7 +22,7 @@ enum class Workload : std::uint8_t {
   springs,    ///< a force along every edge
   bandwidth,  ///< the bandwidth of the matrix, for banded and skyline solvers
   fill,       ///< few non-zeros in the factors of the matrix, for sparse direct solvers
-  gpu,        ///< graphics processors: products, a thread for each row; atomic additions, one for each cell
+  gpu,        ///< graphics processors: products, one thread a row; atomic additions, one thread a cell
 };
 
 /// All values of `Workload`.
@@ -46,7 +46,7 @@ enum class Check : std::uint8_t {
   /// pattern and weights symmetric. Symmetry is tested by a 64-bit hash sum over the entries, which misses a
   /// random fault with probability 2⁻⁶⁴.
   full,
-  /// The same, except that an asymmetric graph is accepted and gets an unspecified, valid order.
+  /// As `full`, except that an asymmetric graph is accepted and gets an unspecified, valid order.
   fast,
   /// Nothing. The graph must be what `full` accepts, with ascending rows, no loops and no repeats; anything
   /// else is undefined behaviour.
@@ -92,7 +92,7 @@ struct OrderOptions {
   double tolerance = 0.1;
   int max_iterations = 500;           ///< of the eigensolver on the whole graph, ≥ 1
   Workload workload = Workload::all;  ///< what `auto` optimises
-  RealView start = {};    ///< n numbers near the Fiedler vector, as `Order::vector` has them; or none
+  RealView start = {};    ///< an estimate of the Fiedler vector: n numbers, such as `Order::vector`; or none
   IndexView groups = {};  ///< group of each vertex, any integer, or none; groups stay together and ascend
   IndexView cell_groups = {};  ///< group of each cell, or none; used within each block and dimension
   Check check = Check::full;

@@ -57,7 +57,7 @@ struct MeshMethods {
 /// Orders the vertices of a graph or the rows of a matrix. Nothing is changed.
 ///
 /// Vertices without neighbours come last, in their old order, except under `original` and registered methods.
-/// With `options.groups` the groups ascend, and the method orders each.
+/// With `options.groups` the groups ascend, and the method orders each group.
 ///
 /// @param graph    n vertices (see `GraphView`); weights count for fiedler and registered methods only
 /// @param method   name of a vertex method
@@ -65,22 +65,26 @@ struct MeshMethods {
 /// @param points   n points for geometric methods (hilbert, morton); n or none for others, which ignore them
 /// @throws InvalidArgument for an unknown method (the message lists the known ones), for a geometric method
 ///         without coordinates, for sizes that do not match, and for what `check` refuses
-/// @throws TooLarge for more than 2,147,483,647 vertices, or entries beyond the index type of METIS
+/// @throws TooLarge for more than 2,147,483,647 vertices, or for more entries than METIS's integers can count
 /// @throws Unavailable for a method that this build lacks
 /// @throws Stopped if the progress callback returned false
-/// @note Time: rcm and bfs O(n + entries · log degree), with a copy of the graph; hilbert and morton O(n log
-/// n); fiedler O((n + entries) · iterations), about six; spectral: that of fiedler times log n; minla: that
-/// of fiedler and O(n + entries) a pass. A clean graph with int64 offsets and int32 neighbours is read in
-/// place; other offsets take 8 bytes a vertex, other neighbours 4 bytes an entry. Same input, options and
-/// version give the same order on any number of threads and for any integer types. Reentrant.
+/// @note Time of the methods:
+///       - rcm and bfs: O(n + entries · log degree), with a copy of the graph;
+///       - hilbert and morton: O(n log n);
+///       - fiedler: O((n + entries) · iterations), with about six iterations;
+///       - spectral: the time of fiedler times log n;
+///       - minla: the time of fiedler, and O(n + entries) for each pass.
+/// @note A clean graph with int64 offsets and int32 neighbours is read in place; other offsets take 8 bytes a
+///       vertex, other neighbours 4 bytes an entry. Same input, options and version give the same order on
+///       any number of threads and for any integer types. Reentrant.
 MESHORDER_API Order order_vertices(const GraphView& graph, std::string_view method = "auto",
                                    const OrderOptions& options = {}, const PointsView& points = {});
 
 /// Orders the cells of a mesh. Nothing is changed.
 ///
 /// The method orders the elements, which are the cells of the highest dimension; `lexmax` orders the cells of
-/// lower dimension (they stay under `original`). Cells stay within their block. In a block, a cell moves only
-/// to places that cells of its dimension had.
+/// lower dimension (under `original` they do not move). Cells stay within their block. In a block, a cell
+/// moves only to places that cells of its dimension had.
 ///
 /// @param cells     m cells of n vertices, any layout; see `CellsView`
 /// @param vertices  order of the n vertices, which most element orders follow
@@ -192,9 +196,9 @@ class MESHORDER_API Graph {
 /// @param cells         the cells; vertex e of the graph is the e-th cell of the highest dimension
 /// @param vertex_count  number of the mesh's vertices
 /// @param by_facet      true: join elements that share a face (volumes), an edge (surfaces) or an end
-///                      (lines). If more than two share it, each is joined to the next. A polyhedron is
-///                      joined to the elements that have three of its vertices. false: join those
-///                      that share a vertex, about 50 neighbours for a tetrahedron
+///                      (lines). If more than two elements share a facet, each is joined to the next. A
+///                      polyhedron is joined to the elements that have three of its vertices. false: join
+///                      those that share a vertex, about 50 neighbours for a tetrahedron
 /// @param run           threads, progress
 /// @throws as `vertex_graph`; InvalidArgument for `by_facet` with cells of unknown shape
 /// @note By facet O(facets · log facets at a vertex), by vertex O(Σ (elements at a vertex)²).
@@ -209,7 +213,8 @@ class MESHORDER_API Graph {
 /// @param run       threads
 /// @throws InvalidArgument as `check`, but for asymmetry only under `Symmetry::require`
 /// @throws TooLarge for more than 2,147,483,647 vertices
-/// @note O(n + entries · log degree) time; memory one copy of the result and, under `mirror`, of the input.
+/// @note O(n + entries · log degree) time; memory for one copy of the result and, under `mirror`, one of the
+///       input.
 [[nodiscard]] MESHORDER_API Graph cleaned(const GraphView& graph, Symmetry symmetry = Symmetry::mirror,
                                           const Run& run = {});
 
@@ -220,8 +225,9 @@ class MESHORDER_API Graph {
 /// @param level  what to check
 /// @throws InvalidArgument for the first fault; the message names the row, the entry and the fault
 /// @throws TooLarge for more than 2,147,483,647 vertices
-/// @note O(n + entries), on all threads; a slower pass with sorted rows only if symmetry fails. No memory
-///       for int64 offsets and int32 neighbours, else as `order_vertices`.
+/// @note O(n + entries) time, on all threads; a slower pass over sorted rows follows only if the first test
+///       of symmetry fails. No memory for int64 offsets and int32 neighbours; for other types as
+///       `order_vertices`.
 MESHORDER_API void check(const GraphView& graph, Check level = Check::full);
 
 }  // namespace v0_3

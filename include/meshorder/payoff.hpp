@@ -22,7 +22,7 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// The hot loops of simulators that are predicted and measured.
+/// The hot loops of simulators whose times are predicted and measured.
 enum class Kernel : std::uint8_t {
   spmv,      ///< product of a sparse matrix, which has an entry for each edge, with a vector
   element,   ///< forces of the elements
@@ -46,17 +46,18 @@ inline constexpr std::array kKernels{Kernel::spmv, Kernel::element, Kernel::asse
 /// Returns "spmv", "element", "assembly" or "springs". Valid for the life of the program.
 MESHORDER_API std::string_view to_string(Kernel kernel);
 
-/// Returns "plain" or "tuned", or the set of that name. The latter throws InvalidArgument for other names.
+/// Returns the name of a set, "plain" or "tuned"; and the set of a name. `parse_kernels` throws
+/// InvalidArgument for other names.
 MESHORDER_API std::string_view to_string(KernelSet kernels);
 MESHORDER_API KernelSet parse_kernels(std::string_view name);
 
-/// Milliseconds of one run of each kernel, among repeated runs.
+/// Milliseconds that one run of each kernel takes when it is run again and again.
 using KernelMilliseconds = std::array<double, kKernels.size()>;
 
 /// Times of the kernels in one order.
 struct OrderCosts {
-  /// From reuse distances and a cost model (docs/prediction.md). Compare them only with each other: they are
-  /// times of `Advice::machine`.
+  /// From reuse distances and a cost model (docs/prediction.md). Compare predicted times only with each
+  /// other: they are times on `Advice::machine`.
   std::optional<KernelMilliseconds> predicted = {};
   std::optional<KernelMilliseconds> measured = {};  ///< the best of interleaved rounds
 
@@ -113,7 +114,8 @@ struct Advice {
 
 /// Options of `advise` and `compare`.
 struct PayoffOptions {
-  /// The candidates; empty: the choice of `auto` for all kernels and, if another, its choice for springs.
+  /// The candidates; empty: the choice of `auto` for all kernels and, if it differs, the choice of `auto` for
+  /// springs.
   std::vector<MeshMethods> methods = {};
   bool predict = true;  ///< gives the same times on every run
   /// The machine to predict for: one whose costs are part of the library ("zen3"), or "this": the stored
@@ -121,7 +123,7 @@ struct PayoffOptions {
   /// of the environment variable MESHORDER_MACHINE, or "this" if it is not set.
   std::string machine = {};
   bool measure = false;                  ///< runs the kernels here
-  KernelSet kernels = KernelSet::plain;  ///< predictions are of the plain ones alone
+  KernelSet kernels = KernelSet::plain;  ///< only plain kernels can be predicted
   /// Time the kernels on all threads, which share each run, instead of one thread. Prediction then needs a
   /// calibration of this machine on the same number of threads; the shipped costs are for one thread.
   bool all_threads = false;
@@ -140,7 +142,8 @@ struct PayoffOptions {
 ///         less than `Advice::floor`, count as equal
 /// @throws as `order_mesh`, and InvalidArgument for a mesh without such cells, for unknown types and
 ///         machines, if neither `predict` nor `measure` is true, for `predict` with tuned kernels, and for
-///         `predict` with `all_threads` if those costs are not known, and for `Workload::gpu`
+///         `predict` with `all_threads` if the machine's costs on that number of threads are not known, and
+///         for `Workload::gpu`
 /// @note Time: that of the orders; to predict, about a second for each candidate and million tetrahedra; to
 ///       measure, the budget. Each candidate holds a copy of points, cells and graph, about 0.8 KB a vertex
 ///       of a tetrahedral mesh, and 2.5 KB a vertex more while it is measured. Stages of progress: those of
@@ -167,7 +170,8 @@ struct PayoffOptions {
 
 /// Options of `calibrate`.
 struct CalibrationOptions {
-  /// > 0: a measurement begins only if it would end before this, but each is made at least once.
+  /// Time limit, > 0: a measurement begins only if it would end in time, but each measurement is made at
+  /// least once.
   double seconds = 16;
   bool keep = true;  ///< store it, so that `advise` predicts for this machine from now on
   Run run = {};

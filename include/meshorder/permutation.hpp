@@ -39,7 +39,7 @@ class MESHORDER_API Permutation {
   /// @throws InvalidArgument if n is negative
   static Permutation identity(Index n);
 
-  /// Makes a permutation of a map from old to new places: `map[i]` is the new place of old i.
+  /// Makes a permutation from a map of old to new places: `map[i]` is the new place of old i.
   ///
   /// @throws InvalidArgument if the map is not a bijection of 0 … n−1; the message names the first faulty
   ///         entries
@@ -51,7 +51,7 @@ class MESHORDER_API Permutation {
     return from_old_to_new(std::vector<Index>(map));
   }
 
-  /// Makes a permutation of a map from new to old places: `map[k]` is the old place of new k, so that the map
+  /// Makes a permutation from a map of new to old places: `map[k]` is the old place of new k, so that the map
   /// lists the old items in their new order. Throws and costs as `from_old_to_new`.
   static Permutation from_new_to_old(IndexView map);
   static Permutation from_new_to_old(std::vector<Index>&& map);  ///< the same without a copy of the map
@@ -146,8 +146,8 @@ class MESHORDER_API Permutation {
   /// Moves the rows and columns of a square sparse matrix: B = P A Pᵀ, B[old_to_new[i], old_to_new[j]] = A[i,
   /// j].
   ///
-  /// Columns ascend in every row of B; repeated ones keep their order. The pattern of A may be asymmetric and
-  /// unsorted and may have a diagonal.
+  /// Columns ascend in every row of B; entries of repeated columns keep their order. The pattern of A may be
+  /// asymmetric and unsorted and may have a diagonal.
   ///
   /// @param matrix   A: n rows; its weights are ignored; B has the same base
   /// @param values   the same number of bytes for each entry of A, one after another; may be empty
@@ -156,8 +156,9 @@ class MESHORDER_API Permutation {
   /// @param moved    as many bytes as `values`, written; no output may overlap an input
   /// @throws InvalidArgument if sizes do not match, A is faulty or an output overlaps an input
   /// @throws TooLarge if an output type cannot hold its numbers
-  /// @note O(n + entries · log row), on all threads. Memory: 8 (n + 1) bytes and a row for each thread; for
-  ///       other than int64 offsets and int32 columns of base 0, 8 (n + 1) bytes and 4 bytes an entry more.
+  /// @note O(n + entries · log row), on all threads. Memory: 8 (n + 1) bytes and a row for each thread. If
+  ///       the offsets are not int64, the columns not int32 or the base not 0: up to 8 (n + 1) bytes and 4
+  ///       bytes an entry more.
   void move_csr(const GraphView& matrix, std::span<const std::byte> values, IndexSpan offsets,
                 IndexSpan columns, std::span<std::byte> moved) const;
 

@@ -13,19 +13,20 @@
 namespace meshorder {
 inline namespace v0_3 {
 
-/// Measures of how near the two ends of each edge are in an order. The span of edge ij is |rank i −
-/// rank j|. All 0 without edges.
+/// Measures of how near the two ends of each edge are in an order. The span of edge ij is |rank i − rank j|.
+/// All measures are 0 if there are no edges.
 struct Quality {
   Offset edges = 0;      ///< without loops; repeats count once
   double mean_span = 0;  ///< ≥ 1; about n/3 for a random order
   /// Mean of log₂ span; weighs short spans more than mean_span, which long spans dominate.
   double mean_log2_span = 0;
   Index bandwidth = 0;  ///< the largest span: the half bandwidth of the matrix with this pattern
-  Offset profile = 0;   ///< Σ over rows of the distance from the diagonal to the first entry before it
+  Offset profile = 0;   ///< Σ over rows of the distance from the row's first entry to the diagonal after it
   std::vector<Offset> histogram_log2 = {};  ///< entry k: the number of edges with span in [2ᵏ, 2ᵏ⁺¹)
-  /// Share, 0 … 1, of the lines of 8 entries whose first read, in a product with the matrix, is out of order:
-  /// not soon after one of the three lines before. If vectors exceed the last cache, it explains the times of
-  /// plain products and springs.
+  /// Share, 0 … 1, of jumps. In a product with the matrix, the vector is read by cache lines of 8 entries.
+  /// The first read of a line is a jump unless it comes soon after the first read of one of the three lines
+  /// before it. If vectors exceed the last cache, this share explains the times of plain products and
+  /// springs.
   double jump_share = 0;
 
   bool operator==(const Quality&) const = default;

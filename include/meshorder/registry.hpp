@@ -79,8 +79,8 @@ class [[nodiscard]] MESHORDER_API Registration {
 ///
 /// @param info    name and description
 /// @param method  must not be empty; its result is checked to have n places
-/// @throws InvalidArgument if the name is taken, is "auto" or has other characters, and for an empty
-///         method
+/// @throws InvalidArgument if the name is taken, is "auto" or has characters that are not allowed, and for an
+///         empty method
 /// @note Thread-safe.
 MESHORDER_API Registration register_vertex_method(MethodInfo info, VertexMethod method);
 

@@ -28,9 +28,10 @@ inline namespace v0_3 {
 struct GraphView {
   /// n + 1 numbers that ascend, the first is `base`; empty for the graph without vertices.
   IndexView offsets = {};
-  /// offsets[n] − base numbers in base … base + n − 1.
+  /// The neighbours: (offsets[n] − base) numbers, each from base to base + n − 1.
   IndexView neighbours = {};
-  /// One for each neighbour, > 0, finite, equal in both rows of an edge; or none: all are 1.
+  /// The weight of each neighbour: positive, finite, equal in both rows of an edge. Empty if all weights are
+  /// 1.
   RealView weights = {};
   /// Number of the first vertex: 0, or 1 for arrays of Fortran and Julia.
   int base = 0;
@@ -253,7 +254,7 @@ class CellsView {
 struct MeshView {
   PointsView points = {};  ///< one for each vertex, or none
   CellsView cells = {};
-  std::size_t vertex_count = 0;  ///< 0: the number of points; if there are points, no other number
+  std::size_t vertex_count = 0;  ///< 0: the number of points; otherwise equal to it if there are points
 };
 
 }  // namespace v0_3

@@ -20,7 +20,7 @@ class Buckets {
  public:
   /// @param rows         number of rows that the entries come from
   /// @param rows_of_part  rows that a thread takes at a time; they should have about 10⁵ entries
-  /// @param keys         number of keys: 0 … keys − 1
+  /// @param keys         number of keys, which are 0 … keys − 1
   /// @param entries_of   `entries_of(part, begin, end)` returns a function that calls its argument for each
   ///                     entry of the part's rows; that function is called twice. Parts run on all threads
   /// @param key          `key(entry)` returns the key of an entry
@@ -90,7 +90,7 @@ class Buckets {
   Index keys_;
   int log2_width_ = 10;  ///< of the number of keys in a bucket
   std::vector<SortedPart> parts_;
-  std::vector<Offset> starts_;  ///< where each bucket begins in all parts together, and the end
+  std::vector<Offset> starts_;  ///< where each bucket begins among the entries of all parts, and the end
 };
 
 }  // namespace meshorder

@@ -20,7 +20,7 @@ std::string format_message(const Location& location, const std::string& what, co
   }
   text.append(what);
   if (!remedy.empty()) text.append("; ").append(remedy);
-  return visible(text);  // one line, though a file's names may have several
+  return visible(text);  // one line, though names from a file may contain line ends
 }
 
 }  // namespace

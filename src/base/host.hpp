@@ -8,7 +8,8 @@
 namespace meshorder {
 
 /// Returns the name of the first processor in Linux's /proc/cpuinfo. ARM processors have only numbers there:
-/// "aarch64 processor, implementer 0x41, part 0xd0c". Without either, "`architecture` processor".
+/// "aarch64 processor, implementer 0x41, part 0xd0c". If the file has neither name nor numbers:
+/// "`architecture` processor".
 std::string processor_name(std::istream& cpuinfo, const std::string& architecture);
 
 /// Returns the name of this machine's processor, as processor_name.
@@ -31,7 +32,8 @@ ProcessorFamily family_of_this_machine();
 bool is_zen4(const ProcessorFamily& family);
 
 /// Returns the folder for files that can be remade: `$MESHORDER_CACHE`, `$XDG_CACHE_HOME/meshorder` or
-/// `~/.cache/meshorder`, the first that is set; empty if none of the variables is. It need not exist.
+/// `~/.cache/meshorder`, the first whose variable is set; empty if no variable is set. The folder need not
+/// exist.
 std::filesystem::path user_cache_folder();
 
 }  // namespace meshorder

@@ -11,7 +11,8 @@
 namespace meshorder {
 namespace {
 
-/// Returns how many threads TBB may start. Asked for more, it warns on stderr and reserves memory for all.
+/// Returns how many threads TBB may start. If asked for more threads, TBB warns on stderr and reserves memory
+/// for all of them.
 std::size_t allowed_threads() {
   return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }

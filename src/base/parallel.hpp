@@ -66,8 +66,8 @@ void for_each_chunk(Index n, Index size, Work work) {
 }
 
 /// Calls `work(i)` for 0 … n−1, on all threads. Each thread takes the next i when it has finished one, so the
-/// longest turns should come first. For few turns of a millisecond and more; each polls on the calling
-/// thread.
+/// longest turns should come first. Meant for few turns that take a millisecond or more. Turns on the calling
+/// thread poll.
 ///
 /// @throws as `parallel_loop`; turns that have not begun are then skipped
 template <class Work>

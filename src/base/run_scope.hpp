@@ -46,7 +46,7 @@ class RunScope {
 void report(std::string_view stage, double fraction = -1);
 
 /// Calls the user's progress function if 50 ms have passed since it was last called. Costs a nanosecond if
-/// there is none, otherwise a look at the clock: call it every 10 µs … 10 ms of work.
+/// there is no such function, otherwise a reading of the clock: call it every 10 µs … 10 ms of work.
 ///
 /// @throws as `report`; Stopped on a helping thread whose loop is cancelled
 void poll();

@@ -34,9 +34,9 @@ mo_status guarded(const Work& work) noexcept {
 
 // Input arrays.
 
-/// Returns a view of integers; an empty one of no array.
+/// Returns a view of integers; an empty view if there is no array.
 IndexView integers(const mo_in* array, const char* name);
-/// Returns a view of real numbers; an empty one of no array.
+/// Returns a view of real numbers; an empty view if there is no array.
 RealView reals(const mo_in* array, const char* name);
 PointsView points_of(const mo_in* array, int dimension);
 /// Returns offsets; throws if there are none.
@@ -55,7 +55,7 @@ void check_reals(const mo_out* array, std::size_t count, const char* name);
 /// Writes numbers, each plus `base`, into an array that `check_integers` accepted; does nothing if the array
 /// is null.
 ///
-/// @param count  more than each of the numbers
+/// @param count  greater than every number
 /// @throws TooLarge if the type of the array cannot hold count − 1 + base
 void write(std::span<const Index> numbers, std::size_t count, int base, const mo_out* array,
            const char* name);
@@ -70,7 +70,7 @@ void write(std::span<const double> values, const mo_out* array);
 
 void check_struct_size(std::size_t size, const char* name);
 
-/// Copies those of the fields that are entirely within the first `size` bytes of the structure.
+/// Copies the given fields if they are entirely within the first `size` bytes of the structure.
 template <class Struct, class... Fields>
 void copy_fields(const Struct& from, Struct& to, std::size_t size, Fields Struct::*... fields) {
   const auto copy = [&](auto field) {

@@ -49,7 +49,7 @@ void check_any_output(std::initializer_list<const mo_out*> maps,
   throw InvalidArgument("all outputs are null; give at least one");
 }
 
-/// Throws if two arrays of so many bytes overlap.
+/// Throws if two arrays of `bytes` bytes each overlap.
 void check_apart(const void* from, const void* to, std::uint64_t bytes) {
   const auto a = reinterpret_cast<std::uintptr_t>(from);
   const auto b = reinterpret_cast<std::uintptr_t>(to);

@@ -65,7 +65,7 @@ mo_status create(const Made** place, const char* name, const Make& make) {
 
 template <class Owned, class Made>
 void destroy(const Made* made) {
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-static-cast-downcast): `create` made it as one
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-static-cast-downcast): `create` made an `Owned`
   const std::unique_ptr<const Owned> ends_here(static_cast<const Owned*>(made));
 }
 

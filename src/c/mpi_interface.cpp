@@ -91,7 +91,7 @@ void check_same_options(const Communicator& communicator, const DistributedOptio
   });
 }
 
-/// Returns the caller's options. Throws on all ranks if one is invalid or they are not the same.
+/// Returns the caller's options. Throws on all ranks if an option is invalid or the ranks' options differ.
 DistributedOptions options_of(const Communicator& communicator, const mo_mpi_options* given) {
   DistributedOptions options;
   communicator.together([&] {

@@ -9,8 +9,8 @@
 namespace meshorder {
 
 /// Counts the bytes that a cache fetches from memory while a kernel reads records of an array, and streams
-/// through other arrays. The run is cut into windows in which the cache is filled once. Each sector of 32
-/// bytes that a window touches is fetched once in it.
+/// through other arrays. The accesses are cut into windows; in each window the cache is filled once. A sector
+/// of 32 bytes is fetched once in each window that touches it.
 class CacheWindows {
  public:
   static constexpr Offset kSectorBytes = 32;
@@ -55,7 +55,7 @@ class CacheWindows {
   Offset fetch_;
   Offset cache_bytes_;
   Index window_ = 0;
-  Offset filled_ = 0;  ///< bytes of this window
+  Offset filled_ = 0;  ///< bytes fetched in this window
   Offset bytes_ = 0;
 };
 

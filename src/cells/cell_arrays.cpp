@@ -31,8 +31,8 @@ Index checked_size(std::size_t size, const char* what) {
   return static_cast<Index>(size);
 }
 
-/// Returns the numbers of a view, less `base`: a span of the view if no conversion is needed, else of `own`.
-/// Numbers outside the range of Index become −1.
+/// Returns the numbers of a view minus `base`: as a span of the view's array if no conversion is needed, else
+/// of `own`. Numbers outside the range of Index become −1.
 std::span<const Index> narrowed(const IndexView& numbers, int base, std::vector<Index>& own) {
   if (numbers.bytes() == 4 && base == 0) {
     return {static_cast<const Index*>(numbers.data()), numbers.size()};
@@ -63,8 +63,8 @@ std::int64_t given_entry(const CellsView& view, std::size_t k) {
   return block->vertices[k];
 }
 
-/// Returns the fault of a number outside base … base + n − 1, with a remedy if the numbers seem to begin at
-/// another base.
+/// Describes the fault of a number outside base … base + n − 1, with a remedy if the numbers seem to begin at
+/// the other base.
 std::string out_of_range(std::int64_t number, Offset n, int base) {
   if (n == 0) return ", but there are no vertices";
   std::string range = ", outside " + std::to_string(base) + " … " + std::to_string(n + base - 1);

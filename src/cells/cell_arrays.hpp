@@ -13,8 +13,8 @@
 
 namespace meshorder {
 
-/// The cells of a view in the library's own types, numbered from 0: the caller's arrays where they have these
-/// types, copies of others.
+/// The cells of a view in the library's own types, numbered from 0. Refers to the caller's arrays that have
+/// these types already, and holds converted copies of the caller's other arrays.
 ///
 /// Movable, not copyable: the spans refer to the caller's arrays or to the own ones.
 struct CellArrays {
@@ -28,7 +28,7 @@ struct CellArrays {
   Index vertex_count = 0;
   std::span<const Offset> offsets;  ///< cells + 1, ascending from 0
   std::span<const Index> vertices;  ///< 0 … vertex_count − 1
-  std::span<const Shape> shapes;    ///< one for each cell, or none where shapes are not known
+  std::span<const Shape> shapes;    ///< one for each cell, or none if shapes are not known
   std::vector<Index> block_starts;  ///< the first cell of each block, from 0; empty for one block
   std::vector<Offset> own_offsets;
   std::vector<Index> own_vertices;
@@ -37,7 +37,7 @@ struct CellArrays {
 
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
   [[nodiscard]] IncidenceRef incidence() const { return {vertex_count, offsets, vertices}; }
-  /// Returns the dimension of a cell; 3 for all where shapes are not known.
+  /// Returns the dimension of a cell; 3 for every cell if shapes are not known.
   [[nodiscard]] int dimension_of(Index cell) const { return shapes.empty() ? 3 : dimension(shapes[cell]); }
 };
 
@@ -63,9 +63,9 @@ std::set<int> cell_widths(Shape shape);
 /// @note O(entries), on all threads of the arena.
 CellArrays cell_arrays(const CellsView& view, std::size_t vertex_count, Check check);
 
-/// Returns how many vertices each cell has; 0 without cells. O(cells).
+/// Returns the number of vertices that all cells have; 0 without cells. O(cells).
 ///
-/// @throws InvalidArgument where they differ; the message begins with `caller`
+/// @throws InvalidArgument if cells have different numbers; the message begins with `caller`
 int uniform_width(const CellArrays& cells, const char* caller);
 
 /// Some cells, and the vertices that each joins.

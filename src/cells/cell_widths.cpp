@@ -6,7 +6,7 @@ namespace {
 
 constexpr int kHighestOrder = 10;
 
-/// Adds the numbers of vertices of prisms whose base has `base` vertices: 2 to 11 layers of them.
+/// Adds the numbers of vertices of prisms whose base has `base` vertices: 2 to 11 layers of `base` vertices.
 void add_prisms(int base, std::set<int>& widths) {
   for (int p = 1; p <= kHighestOrder; ++p) widths.insert((p + 1) * base);
 }

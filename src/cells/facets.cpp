@@ -62,7 +62,7 @@ std::vector<ElementFacet> matched_facets(const CellArrays& cells, const CellSele
 
 namespace {
 
-/// Adds the joins of polyhedra with all elements that share at least three vertices with them.
+/// Joins each polyhedron with all elements that share at least three vertices with it.
 void join_polyhedra(const CellArrays& cells, const CellSelection& elements, std::vector<Edge>& joins) {
   constexpr int kFaceCorners = 3;
   constexpr std::size_t kMostElements = 1024;
@@ -97,7 +97,7 @@ CsrGraph joined_by_facet(const CellArrays& cells, const CellSelection& elements)
   std::vector<Edge> joins;
   join_polyhedra(cells, elements, joins);
   for (std::size_t i = 1; i < facets.size(); ++i) {
-    // a facet of more than two elements joins each to the next, which keeps them together
+    // if more than two elements share a facet, join each to the next, so that they stay together
     if (facets[i - 1].corners == facets[i].corners)
       joins.push_back({facets[i - 1].element, facets[i].element});
   }

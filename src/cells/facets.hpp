@@ -26,7 +26,8 @@ class FacetsOfTypes {
   std::map<std::pair<Shape, int>, std::vector<std::vector<int>>> by_type_;
 };
 
-/// Returns the corners of a cell at these positions, at most four, descending, −1 after the last.
+/// Returns the corners of a cell at these positions (at most four), in descending order; −1 in the remaining
+/// places.
 std::array<Index, 4> sorted_corners(std::span<const Index> cell, const std::vector<int>& positions);
 
 /// Sorts facets so that those with the same corners are adjacent, in ascending order of their elements.
@@ -39,10 +40,10 @@ std::vector<ElementFacet> matched_facets(const std::vector<ElementFacet>& facets
 std::vector<ElementFacet> matched_facets(const CellArrays& cells, const CellSelection& elements);
 
 /// Joins elements that share a facet, numbered as in `elements`: a face for volumes, an edge for surfaces, an
-/// end for lines. Facets are the same if their corners are, in any order. If more than two elements share a
-/// facet, each is joined to the next. A polyhedron, whose faces are not known, is joined to the elements that
-/// share three vertices with it; vertices of over 1,024 elements do not count. O(facets · log facets at a
-/// vertex), for polyhedra O(Σ elements at their vertices).
+/// end for lines. Two facets are the same if they have the same corners, in any order. If more than two
+/// elements share a facet, each is joined to the next. A polyhedron, whose faces are not known, is joined to
+/// the elements that share three vertices with it; vertices of over 1,024 elements do not count. O(facets ·
+/// log facets at a vertex), for polyhedra O(Σ elements at their vertices).
 ///
 /// @throws InvalidArgument if the shapes of cells are not known
 CsrGraph joined_by_facet(const CellArrays& cells, const CellSelection& elements);

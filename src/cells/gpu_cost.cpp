@@ -35,9 +35,9 @@ namespace {
 
 constexpr Offset kFloatBytes = 4;
 constexpr Offset kIndexBytes = 4;
-constexpr Offset kLocalBytes = 2;          // of the number of a vertex within its patch
+constexpr Offset kLocalBytes = 2;          // of a vertex's number within its patch
 constexpr Offset kPackedBytes = 12;        // three numbers side by side
-constexpr Offset kContributionBytes = 16;  // of a cell to a corner
+constexpr Offset kContributionBytes = 16;  // that a cell stores for a corner
 constexpr Offset kSector = CacheWindows::kSectorBytes;
 
 /// Returns the bytes of the offsets of n lists.
@@ -50,7 +50,8 @@ Offset checked_cache(std::size_t bytes, const char* caller) {
   return static_cast<Offset>(std::min<std::size_t>(bytes, std::size_t{1} << 62));
 }
 
-/// Returns the sectors that threads load of the 32-bit offsets where each of n lists begins and ends.
+/// Returns the number of sectors that threads load to read the offsets, of 32 bits, at which each of n lists
+/// begins and ends.
 ///
 /// @param lanes  threads of each list
 Offset sectors_of_offsets(Offset n, Offset lanes) {
@@ -63,7 +64,8 @@ Offset sectors_of_offsets(Offset n, Offset lanes) {
   return sectors;
 }
 
-/// Returns the rows of a graph with their own numbers, ascending: the pattern of a matrix with a diagonal.
+/// Returns a graph with each vertex added to its own row, still ascending: the pattern of a matrix with a
+/// diagonal.
 CsrGraph with_diagonal(GraphRef graph) {
   CsrGraph matrix;
   matrix.offsets.reserve(static_cast<std::size_t>(graph.size()) + 1);

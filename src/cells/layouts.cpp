@@ -19,15 +19,16 @@ namespace {
 constexpr Index kCellsInChunk = 1 << 14;
 constexpr Index kFirstColours = 256;  ///< each vertex records which of these colours are taken
 
-/// Calls `work(cell)` for the cells begin … end − 1, in the order of a patch: each thread of a warp takes a
-/// run of adjacent cells, and warp w has the w-th cell of each run. The last warp may have fewer threads.
+/// Calls `work(cell)` for the cells begin … end − 1, in the order of a patch. The cells are cut into 32
+/// series of adjacent cells, one for each thread of a warp; warp w gets the w-th cell of each series. The
+/// last warp may have fewer threads.
 template <class Work>
 void deal_out(Index begin, Index end, const Work& work) {
   const Index warps = chunk_count(end - begin, kWarp);
   const Index in_last = end - begin - (warps - 1) * kWarp;
   for (Index warp = 0; warp < warps; ++warp) {
     const Index threads = warp + 1 < warps ? kWarp : in_last;
-    // the runs of threads that the last warp lacks are one cell shorter
+    // the series of threads that the last warp lacks are one cell shorter
     for (Index thread = 0; thread < threads; ++thread)
       work(begin + thread * warps - std::max(thread - in_last, 0) + warp);
   }
@@ -151,7 +152,7 @@ GatherLists gather_lists(const CellsView& cells, std::size_t vertex_count, const
     std::partial_sum(lists.offsets.begin(), lists.offsets.end(), lists.offsets.begin());
     lists.cells.resize(arrays.vertices.size());
     lists.corners.resize(arrays.vertices.size());
-    // faster than `transposed`: to look for the corners in its cells takes three times as long
+    // faster than `transposed` and a search for each vertex in its cells, which take three times as long
     std::vector<Offset> next(lists.offsets.begin(), lists.offsets.end() - 1);
     for (Index c = 0; c < arrays.size(); ++c) {
       const std::span<const Index> corners = arrays.incidence()[c];

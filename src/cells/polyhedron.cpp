@@ -162,7 +162,7 @@ class FewFaces {
   std::span<const PolyhedronFace> faces_;
   std::array<FaceEdge, kMostFaces * kMostCorners> edges_{};
   std::size_t edge_count_ = 0;
-  std::array<bool, kMostFaces> is_turned_{};  ///< whether the face gives its corners the other way round
+  std::array<bool, kMostFaces> is_turned_{};  ///< whether a face lists its corners in the other direction
 };
 
 }  // namespace

@@ -22,13 +22,13 @@ struct CellOfFaces {
   enum class Kind : std::uint8_t {
     standard,  ///< a tetrahedron, pyramid, wedge or hexahedron
     other,     ///< any other pattern of faces
-    open       ///< fewer than four faces, or an edge that does not belong to exactly two of them
+    open       ///< fewer than four faces, or an edge that does not belong to exactly two faces
   };
   Kind kind = Kind::other;
-  Shape shape = Shape::tetrahedron;  ///< of a standard one
-  std::array<Index, 8> corners{};    ///< of a standard one, in the order of `Cells`
+  Shape shape = Shape::tetrahedron;  ///< of a standard cell
+  std::array<Index, 8> corners{};    ///< of a standard cell, in the order of `Cells`
   int size = 0;                      ///< number of corners
-  bool signs_agree = false;          ///< whether `is_inward` of all faces fits one orientation
+  bool signs_agree = false;          ///< whether all `is_inward` belong to the same orientation
 
   [[nodiscard]] std::span<const Index> cell() const {
     return {corners.data(), static_cast<std::size_t>(size)};
@@ -36,8 +36,9 @@ struct CellOfFaces {
 };
 
 /// Returns the cell that these faces enclose, whatever their order. Its orientation is that of the first
-/// face; those of the others only affect `signs_agree`. O(faces² + edges²) for up to six faces of up to four
-/// corners; O(faces) for others, which are `other`: their edges are not read.
+/// face; the orientations of other faces only affect `signs_agree`. O(faces² + edges²) time for up to six
+/// faces of up to four corners. All other polyhedra get the kind `other` in O(faces) time, without a look at
+/// their edges.
 CellOfFaces cell_of_faces(std::span<const PolyhedronFace> faces);
 
 /// Turns a linear tetrahedron, pyramid, wedge or hexahedron inside out.

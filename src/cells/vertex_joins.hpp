@@ -13,13 +13,13 @@
 namespace meshorder {
 
 /// Returns whether a cell joins its vertices by pieces, instead of each to all others. A polyline joins
-/// consecutive points, a triangle strip those of each of its triangles, a point cloud none. A polygon or
-/// polyhedron of more than 64 vertices is cut as the kernels cut it (`cut_into_simplices`), because the
-/// number of all pairs is quadratic in the vertices. O(1).
+/// consecutive points, a triangle strip joins the points of each of its triangles, a point cloud joins no
+/// points. A polygon or polyhedron of more than 64 vertices is cut as the kernels cut it
+/// (`cut_into_simplices`), because the number of all pairs is quadratic in the vertices. O(1).
 bool is_joined_by_pieces(Shape shape, std::size_t vertices);
 
-/// Calls `call` with the vertices of each piece of a cell: each of its vertices is joined to all others. A
-/// cell that is not joined by pieces is one piece. O(vertices).
+/// Calls `call` with the vertices of each piece of a cell; all vertices of a piece are joined to each other.
+/// A cell that is not joined by pieces is one piece. O(vertices).
 template <class Number, class Call>
 void for_each_piece(Shape shape, std::span<const Number> cell, const Call& call) {
   if (!is_joined_by_pieces(shape, cell.size())) return call(cell);
@@ -37,7 +37,7 @@ void for_each_piece(Shape shape, std::span<const Number> cell, const Call& call)
   }
 }
 
-/// Returns the graph that joins any two vertices of a common element (the paper, section 3), by pieces where
+/// Returns the graph that joins any two vertices of an element (the paper, section 3), or of a piece of it if
 /// `is_joined_by_pieces`. Cells of lower dimension join nothing. O(sum of piece sizes squared · log degree).
 ///
 /// @throws TooLarge as `require_memory_to_join`

@@ -17,7 +17,7 @@ constexpr Index kWarpsInChunk = 512;
 
 /// How the additions of a thread to a vertex lie in memory.
 struct Additions {
-  int record_bytes;  ///< distance from one vertex to the next
+  int record_bytes;  ///< bytes from the record of one vertex to the next
   int count;         ///< number of additions, one after another in the record
   int arrays;        ///< number of arrays that have these additions
 };
@@ -33,7 +33,8 @@ Additions additions_of(GpuLayout layout) {
   }
 }
 
-/// Returns the sectors of one addition to ascending vertices: per sector, the most threads at one vertex.
+/// Returns the sectors of one addition to ascending vertices. A sector counts as often as the largest number
+/// of threads that add to one of its vertices.
 Offset sectors_of_addition(std::span<const Index> ascending, int record_bytes, int first_byte) {
   Offset sectors = 0;
   Offset sector = -1;
@@ -53,7 +54,7 @@ Offset sectors_of_addition(std::span<const Index> ascending, int record_bytes, i
   return sectors + most;
 }
 
-/// Returns the same for all additions to a vertex.
+/// Returns the sectors of all additions that a thread makes to its vertex.
 Offset sectors_of_additions(std::span<const Index> ascending, const Additions& additions) {
   Offset sectors = 0;
   for (int k = 0; k < additions.count; ++k) {
@@ -78,7 +79,7 @@ class Touched {
   std::size_t size_ = 0;
 };
 
-/// Returns how many different numbers there are; sorts them.
+/// Returns how many different numbers there are; sorts `numbers`.
 Offset different(std::span<Offset> numbers) {
   if (!std::ranges::is_sorted(numbers)) std::ranges::sort(numbers);
   Offset count = numbers.empty() ? 0 : 1;
@@ -124,7 +125,8 @@ class WarpLoop {
 
   std::span<Thread> threads() { return std::span(threads_).first(size_); }
 
-  /// Lets the threads that take part read entries, one at each step. Returns whether any take part.
+  /// Lets the threads for which `takes_part` is true read `steps` entries each, one at a step. Returns
+  /// whether there is such a thread.
   template <class TakesPart>
   bool read(Offset steps, TakesPart takes_part) {
     std::array<Thread*, kWarp> active{};
@@ -156,7 +158,8 @@ class WarpLoop {
   ListLoads loads_;
 };
 
-/// Calls `count(begin, end)` for the places of every stride-th warp of `size` threads; returns the sum.
+/// Divides `size` threads into warps and calls `count(begin, end)` for the threads of every stride-th warp;
+/// returns the sum of the results.
 template <class Count>
 Offset sum_over_warps(Index size, Index stride, const Count& count) {
   const Index looked_at = chunk_count(chunk_count(size, kWarp), stride);

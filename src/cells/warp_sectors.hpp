@@ -18,20 +18,20 @@ inline constexpr Index kWarp = 32;
 /// Elements in an order.
 struct ElementOrder {
   IncidenceRef elements;
-  std::span<const Index> new_to_old = {};         ///< empty: as they are numbered
+  std::span<const Index> new_to_old = {};         ///< empty: the order of their numbers
   std::span<const Index> vertex_old_to_new = {};  ///< likewise
 };
 
-/// Returns the sectors of atomic additions to the vertices of elements, with one thread for each element, as
-/// `GpuCost::sectors` counts them. O(entries), on all threads.
+/// Returns the sectors of atomic additions to the vertices of elements, counted as in `GpuCost::sectors`,
+/// with one GPU thread for each element. O(entries) time, on all threads.
 ///
-/// @param stride  every stride-th warp is looked at, ≥ 1
+/// @param stride  only every stride-th warp is counted, ≥ 1
 Offset sectors_of_additions(const ElementOrder& order, GpuLayout layout, Index stride = 1);
 
 /// Returns `GpuCost::requests` and `floor` of elements with `width` vertices each. O(width).
 GpuCost requests_and_floor(Index elements, int width, GpuLayout layout);
 
-/// Returns requests and sectors of threads that add to vertices one after another: a warp adds to 32 of them
+/// Returns the requests and sectors of adding to a list of vertices: each warp adds to the next 32 vertices
 /// at once.
 ///
 /// @param ascending  different vertices in ascending order
@@ -60,18 +60,24 @@ struct RecordLists {
   }
 };
 
-/// Counts what the threads of a warp load at once. Each takes every `lanes`-th entry of its list, in a loop
-/// as NVIDIA's compiler unrolls it: first the entries left over by a division by four, then 16 at a time
-/// while more than 12 are left, then 8 if more than 4 are left, then 4. O(entries), on all threads.
+/// Counts what the threads of a warp load at once. Each thread takes every `lanes`-th entry of its list, in a
+/// loop as NVIDIA's compiler unrolls it. A thread that has k entries reads:
+/// 1. k mod 4 entries, one at a time;
+/// 2. 16 entries at a time while more than 12 remain;
+/// 3. 8 entries if more than 4 remain;
+/// 4. 4 entries if any remain.
+///
+/// O(entries) time, on all threads.
 ///
 /// @param lanes  threads of each list: 1, 2, 4, 8, 16 or 32
 ListLoads loads_of_lists(const RecordLists& lists, int lanes);
 
-/// Returns the sectors of the vector (4 bytes a number) that a matrix-vector product reads with one thread a
-/// row, as `loads_of_lists` counts them. The matrix has a diagonal. O(entries counted · log degree).
+/// Returns how many sectors of the vector (4 bytes a number) a matrix-vector product reads with one thread
+/// for each row, counted as by `loads_of_lists`. The matrix has a diagonal. O(entries of the counted rows ·
+/// log degree) time.
 ///
 /// @param order   of rows and neighbours
-/// @param stride  every stride-th warp is looked at, ≥ 1
+/// @param stride  only every stride-th warp is counted, ≥ 1
 Offset sectors_of_product(GraphRef graph, const Permutation& order, Index stride = 1);
 
 }  // namespace meshorder

@@ -15,8 +15,8 @@
 namespace meshorder {
 namespace {
 
-/// Sorts row v, drops its loops and merges its repeats. Returns how many entries it keeps, from its old
-/// beginning on.
+/// Sorts row v, drops its loops and merges its repeats. Returns how many entries remain; they begin where the
+/// row began.
 Offset clean_row(OwnedGraph& rows, Index v, std::vector<std::pair<Index, double>>& buffer) {
   const Offset begin = rows.offsets[v];
   const Offset end = rows.offsets[v + 1];
@@ -69,7 +69,7 @@ OwnedGraph cleaned_rows(OwnedGraph rows) {
   return rows;
 }
 
-/// Copies a graph without its loops; its rows must ascend without repeats.
+/// Copies a graph without its loops. The rows must ascend and have no repeats.
 OwnedGraph without_loops(const GraphArrays& graph) {
   constexpr Index kRows = 4096;  // copied by a thread at a time
   OwnedGraph copy;

@@ -18,19 +18,19 @@ struct OwnedGraph {
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
 };
 
-/// Makes a caller's graph clean: ascending rows, no loops, no repeats, every edge in both rows. Makes
-/// no copy where it is clean already and has the library's types; otherwise `notes` say what was done.
+/// Makes a caller's graph clean: ascending rows, no loops, no repeats, every edge in both rows. Makes no copy
+/// of arrays that are clean already and have the library's types; otherwise `notes` report what was done.
 ///
 /// @param check     full, fast: see `Check`; fast mirrors an asymmetric pattern. none: the arrays are taken
-///                  as they are, apart from their types, unless `symmetry` is mirror
+///                  as they are, except that types are converted, unless `symmetry` is mirror
 /// @param symmetry  mirror: the pattern of A + Aᵀ, weights of (A + Aᵀ) / 2
 /// @throws InvalidArgument, TooLarge as `meshorder::check`
 /// @note O(n + entries · log degree), on all threads of the arena.
 GraphArrays clean_graph(const GraphView& graph, Check check, Symmetry symmetry);
 
-/// Returns a clean copy; the argument may have loops, repeats and unsorted rows, its numbers are in range.
-/// Weights of repeats are added in ascending order, so that both rows of an edge get the same bits. O(n +
-/// entries · log degree); O(n · log degree + entries) if rows ascend.
+/// Returns a clean copy. The argument may have loops, repeats and unsorted rows; its numbers must be in
+/// range. Weights of repeats are added in ascending order, so that both rows of an edge get the same bits.
+/// O(n + entries · log degree); O(n · log degree + entries) if rows ascend.
 ///
 /// @param findings  of the graph
 OwnedGraph cleaned_copy(const GraphArrays& graph, const GraphFindings& findings);

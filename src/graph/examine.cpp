@@ -66,7 +66,7 @@ GraphFindings examine_rows(const GraphArrays& graph, Index begin, Index end) {
         std::uint64_t hash = odd_number_of(u, seed);
         if constexpr (Weighted)
           hash = mixed(hash * odd_number_of(v, seed) ^ std::bit_cast<std::uint64_t>(graph.weights[k]));
-        // without a branch: which end is larger is unpredictable in shuffled graphs
+        // without a branch: in shuffled graphs it is unpredictable which end is larger
         const std::uint64_t sign = std::uint64_t{v < u} - std::uint64_t{v > u};
         of_row += sign * hash;
       }
@@ -135,7 +135,7 @@ void refuse_asymmetry(std::span<const Offset> offsets, std::span<const Index> ne
   // too.
   std::vector<Offset> cursor(offsets.begin(), offsets.end() - 1);
   for (Index v = 0; v < n; ++v) {
-    // a lower neighbour that no earlier row has matched
+    // the row of a lower neighbour lacks v
     if (cursor[v] < offsets[v + 1] && neighbours[cursor[v]] < v) refuse(neighbours[cursor[v]], v);
     for (Offset k = cursor[v]; k < offsets[v + 1]; ++k) {
       const Index u = neighbours[k];

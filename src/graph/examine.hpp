@@ -12,7 +12,7 @@ struct GraphFindings {
   Offset out_of_range = 0;  ///< neighbours outside 0 … n−1
   Offset bad_weights = 0;   ///< not positive or not finite
   Offset loops = 0;
-  Offset unordered = 0;         ///< neighbours not above the one before in their row, including repeats
+  Offset unordered = 0;         ///< neighbours ≤ the neighbour before them in their row; includes repeats
   std::uint64_t asymmetry = 0;  ///< Σ h(u, v) for u < v, −h for u > v, modulo 2⁶⁴; 0 for a symmetric graph
 
   [[nodiscard]] bool is_clean() const noexcept { return loops == 0 && unordered == 0; }
@@ -21,19 +21,19 @@ struct GraphFindings {
 
 /// Examines all entries in one pass.
 ///
-/// The asymmetry of an entry includes its weight. A symmetric graph has 0 if its repeats are symmetric too; a
-/// random asymmetric one has 0 with probability 2⁻⁶⁴.
+/// The asymmetry of an entry includes its weight. The sum is 0 for a symmetric graph whose repeats are
+/// symmetric too; for a random asymmetric graph it is 0 with probability 2⁻⁶⁴.
 ///
 /// @param symmetry  whether to compute `asymmetry`
 /// @note O(n + entries), on all threads; the result does not depend on their number.
 GraphFindings examine(const GraphArrays& graph, bool symmetry);
 
 /// Throws InvalidArgument for the first neighbour out of range or the first bad weight; `view` gives the
-/// caller's numbers. Returns if there is none. O(n + entries).
+/// caller's numbers. Returns if all are valid. O(n + entries).
 void refuse_faults(const GraphView& view, const GraphArrays& graph, const GraphFindings& findings);
 
 /// Throws InvalidArgument for the first edge of a clean graph that is in one row only or has two weights;
-/// returns if there is none. One cursor for each row; O(n + entries) time, 8 n bytes.
+/// returns if there is no such edge. Uses a cursor for each row: O(n + entries) time, 8 n bytes of memory.
 ///
 /// @param base  number of the first vertex in messages
 void refuse_asymmetry(std::span<const Offset> offsets, std::span<const Index> neighbours,

@@ -12,7 +12,8 @@
 namespace meshorder {
 namespace {
 
-/// number ± base in unsigned arithmetic, which may wrap: a faulty offset can be at an end of the range.
+/// The two functions return number ± base. Unsigned arithmetic may wrap around: a faulty offset can be at an
+/// end of the range.
 Offset less_base(std::int64_t number, int base) {
   return static_cast<Offset>(static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(base));
 }

@@ -10,8 +10,9 @@
 
 namespace meshorder {
 
-/// The arrays of a graph in the library's own types, numbered from 0: the caller's where they have these
-/// types (int64 or uint64 offsets, int32 or uint32 neighbours, double weights, base 0), copies of the others.
+/// The arrays of a graph in the library's own types, numbered from 0. Refers to the caller's arrays that have
+/// these types already (int64 or uint64 offsets, int32 or uint32 neighbours, double weights, base 0), and
+/// holds converted copies of the caller's other arrays.
 ///
 /// Movable, not copyable: the spans refer to the caller's arrays or to the own ones.
 struct GraphArrays {
@@ -34,8 +35,7 @@ struct GraphArrays {
   [[nodiscard]] Index size() const noexcept { return static_cast<Index>(offsets.size() - 1); }
 };
 
-/// Converts a view. Sizes and offsets are checked (sizes alone where `trusted`), neighbours and weights are
-/// not.
+/// Converts a view. Checks sizes and, unless `trusted`, offsets. Does not check neighbours and weights.
 ///
 /// @throws InvalidArgument for sizes that do not match, offsets that descend, a base that is neither 0 nor 1
 /// @throws TooLarge for more than 2,147,483,647 vertices

@@ -18,17 +18,17 @@
 namespace meshorder {
 namespace {
 
-/// Where a matrix has an entry.
+/// The position of an entry of a matrix.
 struct Position {
   Index row;
   Index column;
 };
 
-/// Returns whether the columns of consecutive rows lie far apart, so that writing by columns waits for
-/// memory. Looks at about a thousand rows.
+/// Returns whether the columns of consecutive rows lie far apart; writing column by column would then wait
+/// for memory. Looks at about a thousand rows.
 bool is_scattered(IncidenceRef incidence) {
   constexpr Index kLooks = 1000;
-  constexpr Index kFar = 65536;  // columns, whose entries fill a cache of some megabytes
+  constexpr Index kFar = 65536;  // number of columns whose entries fill a cache of some megabytes
   const Index step = incidence.size() / kLooks + 1;
   Index looks = 0;
   Index far = 0;
@@ -132,8 +132,8 @@ struct Rows {
   Offset end = 0;  ///< of the neighbours in use
 };
 
-/// Finds the vertices of each element in the list of all. `Size` is the size of every element, and the
-/// offsets need not be read; 0 if sizes differ.
+/// Finds the vertices of each element in the list of all vertices. `Size` is the size of every element, so
+/// that the offsets need not be read; 0 if sizes differ.
 template <int Size>
 struct Elements {
   IncidenceRef incidence;
@@ -146,7 +146,7 @@ struct Elements {
   }
 };
 
-/// Appends the neighbours of v. `seen_by[u] == v` marks those that the row already has.
+/// Appends the neighbours of v. `seen_by[u] == v` marks the neighbours that the row already has.
 template <int Size>
 void append_row(Elements<Size> elements, const Incidence& at_vertex, Index v, std::vector<Index>& seen_by,
                 Rows& rows) {
@@ -177,7 +177,7 @@ void append_row(Elements<Size> elements, const Incidence& at_vertex, Index v, st
   rows.end = end;
 }
 
-/// Returns all rows, kRowsOfPart in each part, and the degrees: `degrees[v + 1]` is that of v.
+/// Returns all rows, kRowsOfPart in each part, and sets the degrees: `degrees[v + 1]` is the degree of v.
 template <int Size>
 std::vector<Rows> find_rows(Elements<Size> elements, std::vector<Offset>& degrees) {
   const Incidence at_vertex = transposed(elements.incidence);
@@ -238,7 +238,8 @@ struct LimitOnJoins {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process
 LimitOnJoins limit_on_joins;
 
-/// Returns a bound on the graph's entries from long rows: a member has at most all others as neighbours.
+/// Returns an upper bound on the number of entries that long rows give to the graph: each member of a row has
+/// at most all other members as neighbours.
 std::uint64_t entries_of_long_rows(IncidenceRef rows) {
   std::vector<Offset> neighbours(static_cast<std::size_t>(rows.vertex_count), 0);
   for (Index e = 0; e < rows.size(); ++e) {

@@ -40,15 +40,15 @@ struct IncidenceRef {
   }
 };
 
-/// Returns the size that all elements share, 0 where they differ. O(elements).
+/// Returns the number of vertices of every element; 0 if elements have different numbers. O(elements).
 Offset common_size(IncidenceRef elements);
 
 /// Returns the elements at each vertex, ascending. O(entries).
 Incidence transposed(IncidenceRef incidence);
 
 /// Joins any two vertices of a common element: the vertex graph of a mesh (the paper, section 3). Vertices
-/// that an element repeats make no loop. Throws TooLarge as `require_memory_to_join`, where elements of many
-/// vertices would make it too large. O(sum of element sizes squared).
+/// that an element repeats make no loop. Throws TooLarge as `require_memory_to_join` if elements of many
+/// vertices would make the graph too large. O(sum of element sizes squared).
 CsrGraph joined_vertices(IncidenceRef elements);
 
 /// Joins any two elements that share a vertex: the dual graph of the paper, section 4.1. This is

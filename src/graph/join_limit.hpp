@@ -10,7 +10,7 @@
 
 namespace meshorder {
 
-/// Rows of more members than this count towards the limit on a graph that joins all of them.
+/// The memory limit on a graph that joins all members of each row counts only rows of more members than this.
 inline constexpr std::size_t kManyJoined = 64;
 
 /// The most bytes that ordering takes for an entry of a graph made of long rows, including the graph and its
@@ -29,11 +29,11 @@ struct JoinNames {
   const char* row = "cell";
   const char* members = "vertices";
   const char* remedy = "cut such cells";
-  std::function<Index(Index)> number_of = {};  ///< returns the number of a row; none: its place
+  std::function<Index(Index)> number_of = {};  ///< returns the number of a row; empty: the row's place
 };
 
-/// Throws TooLarge where rows of more than `kManyJoined` members would make a graph beyond the limit; names
-/// the longest row. O(entries).
+/// Throws TooLarge if rows of more than `kManyJoined` members would make a graph beyond the limit; the
+/// message names the longest row. O(entries).
 void require_memory_to_join(IncidenceRef rows, const JoinNames& names = {});
 
 }  // namespace meshorder

@@ -14,8 +14,8 @@ namespace meshorder {
 template <int M>
 using VectorBlock = std::vector<std::array<double, M>>;
 
-/// The Laplacian L = D − A of a weighted graph as an operator. Row v has −weight at each neighbour and on the
-/// diagonal the sum of its weights, so that constants are in the null space.
+/// The Laplacian L = D − A of a weighted graph as an operator. Row v has the negative weight at each
+/// neighbour, and the sum of its weights on the diagonal. Constant vectors are in the null space.
 struct Laplacian {
   std::vector<Offset> offsets{0};  ///< n + 1
   std::vector<Index> neighbours;
@@ -45,8 +45,8 @@ struct Laplacian {
     return sum;
   }
 
-  /// Computes y = L x from differences along edges, which avoids cancellation where x hardly varies, as
-  /// eigenvectors do along heavy edges. O(n + edges), on all threads.
+  /// Computes y = L x from differences along edges, which avoids cancellation where x hardly varies;
+  /// eigenvectors hardly vary along heavy edges. O(n + edges), on all threads.
   template <int M>
   void apply(const VectorBlock<M>& x, VectorBlock<M>& y) const {
     constexpr Index kRows = 4096;

@@ -10,7 +10,7 @@
 namespace meshorder {
 
 Index LevelSearch::run(Index start, std::span<Index> places, Arrange arrange) {
-  constexpr Index kToShare = 2048;  // vertices of a level that are worth the start of other threads
+  constexpr Index kToShare = 2048;  // least size of a level for which other threads are started
   level_start_.clear();
   places[0] = start;
   found_by_[start] = -1;  // before all places

@@ -10,10 +10,11 @@
 namespace meshorder {
 
 /// Breadth-first searches of one graph, level after level. All threads share large levels. For any number of
-/// threads, the vertices of a level are ordered by the first vertex that finds them, then by its row.
+/// threads, the vertices of a level are sorted by the first vertex that finds them, then by their place in
+/// its row.
 ///
-/// On several threads each vertex of a level claims its neighbours. The smallest place wins, and the others
-/// drop the neighbours that they lost.
+/// On several threads each vertex of a level claims its neighbours. A neighbour goes to the vertex with the
+/// smallest place; the other vertices drop it.
 class LevelSearch {
  public:
   /// Sorts the vertices that one vertex has found, in place.
@@ -24,8 +25,8 @@ class LevelSearch {
 
   /// Finds the component of a vertex that was not found before. O(component).
   ///
-  /// @param places   receives the vertices in their order; at least one longer than the component
-  /// @param arrange  none: keeps the order of the rows
+  /// @param places   receives the vertices in their order; must be longer than the component by at least one
+  /// @param arrange  null: keeps the order of the rows
   /// @return how many vertices there are
   Index run(Index start, std::span<Index> places, Arrange arrange = nullptr);
 
@@ -51,7 +52,7 @@ class LevelSearch {
   Index find_next_level_together(std::span<Index> places, Index begin, Index end, Arrange arrange);
 
   GraphRef graph_;
-  std::vector<Index> found_by_;  ///< the place of the vertex that found each
+  std::vector<Index> found_by_;  ///< for each vertex, the place of the vertex that found it
   std::vector<Index> level_start_;
   std::vector<std::vector<Finding>> findings_;  ///< of each chunk of a level
 };

@@ -7,8 +7,8 @@
 
 namespace meshorder {
 
-// Loops over vertices visit rows anywhere in memory and search them for unpredictable entries. These
-// functions prefetch rows a few steps ahead, and search without branches.
+// Loops over vertices visit rows that are anywhere in memory, and search them with unpredictable results.
+// These functions prefetch rows a few steps ahead, and search without branches.
 
 /// Prefetches the row of the vertex that comes a few places after `k` in the order.
 inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {

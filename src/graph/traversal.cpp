@@ -15,7 +15,8 @@ namespace meshorder {
 
 namespace {
 
-/// A forest: the parent of each vertex is a smaller one of its component, or itself if it is a root.
+/// A forest: the parent of each vertex is a smaller vertex of its component, or the vertex itself if it is a
+/// root.
 class Forest {
  public:
   explicit Forest(Index vertices) : parents_(static_cast<std::size_t>(vertices)) {
@@ -168,7 +169,7 @@ BreadthFirstCopy copy_on_threads(GraphRef graph) {
 
 BreadthFirstCopy breadth_first_copy(GraphRef graph) {
   constexpr Index kSmall = 1 << 15;
-  // two threads lose as much by reading the rows twice as they save
+  // two threads would save no more time than reading the rows twice costs
   const bool is_shared = thread_count() > 2 && graph.size() >= kSmall;
   BreadthFirstCopy copy = is_shared ? copy_on_threads(graph) : copy_in_one_pass(graph);
   std::stable_sort(copy.components.begin(), copy.components.end(),
@@ -179,7 +180,8 @@ BreadthFirstCopy breadth_first_copy(GraphRef graph) {
 std::vector<Index> search_from_rim(const BreadthFirstCopy& copy, const BreadthFirstCopy::Component& component,
                                    LevelSearch& search) {
   const Index size = component.end - component.first;
-  std::vector<Index> order = index_range(component.first, size);  // first the order of the copy's own search
+  // begin with the order of the search that made the copy
+  std::vector<Index> order = index_range(component.first, size);
   std::vector<Index> next(static_cast<std::size_t>(size) + 1);
   Index depth = component.depth;
   std::span<const Index> last_level = std::span(order).subspan(component.last_level - component.first);

@@ -8,8 +8,8 @@
 
 namespace meshorder {
 
-/// Returns the vertices of each connected component, rising; components by falling size, ties by their
-/// smallest vertex, so that isolated vertices come last. O(edges · log n), nearly O(edges).
+/// Returns the vertices of each connected component, in ascending order. The largest component comes first,
+/// ties by their smallest vertex, so that isolated vertices come last. O(edges · log n), nearly O(edges).
 std::vector<std::vector<Index>> connected_components(GraphRef graph);
 
 /// The number of connected components of a graph.
@@ -18,7 +18,8 @@ struct ComponentCounts {
   Index isolated = 0;  ///< components of one vertex
 };
 
-/// Counts the components that `connected_components` would list. Takes four bytes a vertex and the same time.
+/// Counts the components that `connected_components` would list. Takes four bytes a vertex, and the same time
+/// as that function.
 ComponentCounts component_counts(GraphRef graph);
 
 /// A graph numbered by breadth-first searches, one from the smallest vertex of each component; further
@@ -45,9 +46,10 @@ struct BreadthFirstCopy {
 BreadthFirstCopy breadth_first_copy(GraphRef graph);
 
 /// Returns the vertices of a component in breadth-first order from a vertex that is far from the others. Each
-/// search starts at a vertex of least degree in the last level of the one before (ties: smallest old number),
-/// until the number of levels stops growing (Gibbs, Poole, Stockmeyer 1976, as simplified by George and Liu
-/// 1979). O(searches · component), with few searches in practice; the copy has made the first.
+/// search starts at a vertex of least degree in the last level of the previous search (ties: smallest old
+/// number), until the number of levels stops growing (Gibbs, Poole, Stockmeyer 1976, as simplified by George
+/// and Liu 1979). O(searches · component), with few searches in practice. The search that made the copy is
+/// the first.
 ///
 /// @param search  of the copy's graph; forgets its earlier finds in the component before each new search
 std::vector<Index> search_from_rim(const BreadthFirstCopy& copy, const BreadthFirstCopy::Component& component,

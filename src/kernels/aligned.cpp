@@ -67,8 +67,8 @@ void free_pages(void* block, std::size_t /*bytes*/) noexcept {
 
 #endif
 
-/// Returns the size of the whole large pages for an array that begins `colour` bytes after the start of the
-/// first; no other array may share the last page.
+/// Returns the total size of the large pages for an array that begins `colour` bytes after the start of the
+/// first page. No other array may share the last page.
 std::size_t bytes_of_pages(std::size_t bytes, std::size_t colour) {
   return (bytes + colour + kHugePage - 1) / kHugePage * kHugePage;
 }
@@ -86,7 +86,7 @@ void* allocate_aligned(std::size_t bytes) {
 
 void free_aligned(void* block, std::size_t bytes) noexcept {
   const std::size_t alignment = alignment_of(bytes);
-  // colours are less than the alignment of the blocks that have them
+  // the colour of a block is less than its alignment
   const std::size_t colour = reinterpret_cast<std::uintptr_t>(block) % alignment;
   char* const start = static_cast<char*>(block) - colour;
   if (alignment == kHugePage) return free_pages(start, bytes_of_pages(bytes, colour));

@@ -12,9 +12,9 @@ void* allocate_aligned(std::size_t bytes);
 void free_aligned(void* block, std::size_t bytes) noexcept;
 
 /// Allocates at multiples of 64 bytes, so that batches of the kernels never straddle a cache line and every
-/// order of a mesh is measured at the same alignment. Blocks of 1 MiB and more are put on pages of 2 MiB
-/// where the system has them: gathers then miss the page tables less, and prefetchers stop at fewer page
-/// ends.
+/// order of a mesh is measured at the same alignment. Blocks of 1 MiB and more are put on pages of 2 MiB if
+/// the system has such pages: gathers then need fewer look-ups in the page tables, and prefetchers stop at
+/// fewer page ends.
 template <class T>
 struct AlignedAllocator {
   using value_type = T;

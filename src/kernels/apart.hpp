@@ -14,15 +14,15 @@ namespace meshorder {
 /// Processors compare a load with earlier stores first by the low 12 bits of the addresses, and many let the
 /// load wait if these agree. A kernel that reads positions[v] and adds to forces[v] would wait for the stores
 /// to all vertices near v if both arrays began at a page: springs took 1.4 to 2.2 times as long on an Intel
-/// Xeon (docs/evidence/benchmarks.md). Some 30 vertices of 32 bytes are near v: a distance of 64 bytes is
-/// not enough.
+/// Xeon (docs/evidence/benchmarks.md). Some 30 vertices of 32 bytes each are near v, so that a distance of 64
+/// bytes is not enough.
 inline constexpr std::size_t kApart = 1088;
 
 /// Returns whether the addresses differ by less than kApart modulo 4096.
 bool aliases(const void* a, const void* b) noexcept;
 
-/// Returns an empty vector with room for `count` entries whose memory does not alias that of up to two other
-/// arrays, if it is large: large vectors begin at three places of a page in turns (aligned.cpp).
+/// Returns an empty vector with room for `count` entries. If the vector is large, its memory does not alias
+/// that of up to two other arrays: large vectors begin at three places of a page in turn (aligned.cpp).
 template <class T>
 AlignedVector<T> reserved_apart(std::size_t count, std::initializer_list<const void*> others) {
   AlignedVector<T> tries[3];

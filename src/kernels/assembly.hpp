@@ -18,14 +18,15 @@ struct AssemblyMap {
 AssemblyMap assembly_map(const RestShapes& rest, const BlockCsr& matrix);
 
 /// The map of one share of `owned_batches` (of rest.vertices). It has the blocks of the share's boundary
-/// batches, in their sequence; spare blocks replace those in rows that the share does not own.
+/// batches, in their sequence; spare blocks replace blocks in rows that the share does not own.
 struct OwnedBlocks {
   AlignedVector<Index> blocks;
-  Offset room = 0;  ///< blocks that the matrix's values must hold, including spare ones
+  Offset room = 0;  ///< number of blocks that the matrix must hold, including spare blocks
 };
 
-/// Returns the map of share number `part`. Its spare blocks come after the matrix's blocks and those of the
-/// shares before it. Throws InvalidArgument if a block's number exceeds an Index. O(boundary simplices).
+/// Returns the map of share number `part`. Its spare blocks come after the matrix's blocks and the spare
+/// blocks of earlier shares. Throws InvalidArgument if a block's number exceeds an Index. O(boundary
+/// simplices).
 OwnedBlocks owned_blocks(const RestShapes& rest, const AssemblyMap& map, const BlockCsr& matrix,
                          const OwnedBatches& share, Index part);
 

@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// In place of a Tangent: compute forces only.
+/// Given instead of a Tangent if only forces are computed.
 struct NoTangent {};
 
 template <int D>
@@ -36,7 +36,7 @@ HWY_INLINE LameLanes<Lanes> load_lame(const ElasticPass& pass, Offset batch, Ind
   return {Lanes::load(pass.mu + place), Lanes::load(pass.lambda + place)};
 }
 
-/// The blocks of the matrix that a batch of a pass adds to, and those of the next batch.
+/// The blocks of the matrix that a batch of a pass adds to, and the blocks that the next batch adds to.
 struct BatchBlocks {
   const Index* blocks = nullptr;
   const Index* next = nullptr;
@@ -44,7 +44,7 @@ struct BatchBlocks {
   Index next_count = 0;
 };
 
-/// Returns the blocks of batch number i of the pass's `batches`.
+/// Returns the blocks of batch number i of the `batches` batches of the pass.
 template <int D>
 HWY_INLINE BatchBlocks blocks_of(const ElasticPass& pass, Offset i, Offset batches) {
   constexpr Offset kBlocks = kBatch * (D + 1) * (D + 1);
@@ -60,8 +60,8 @@ HWY_INLINE BatchBlocks blocks_of(const ElasticPass& pass, Offset i, Offset batch
   return result;
 }
 
-/// Computes a batch of simplices and adds its forces to `targets`: the vertices of the batch or, for those of
-/// other threads, spare vertices.
+/// Computes a batch of simplices and adds its forces to `targets`: the vertices of the batch, with spare
+/// vertices in place of other threads' vertices.
 ///
 /// A Law loads a deformation and its Lamé parameters; it computes stress(P) and energy(). A Tangent loads a
 /// deformation, its law, parameters and a weight; it computes block(a, b, K) = weight · gₐ·∂P/∂F·g_b for two
@@ -99,7 +99,8 @@ HWY_INLINE void add_batch(const ElasticPass& pass, Offset batch, const Index* ta
   }
 }
 
-/// Computes all batches or those of a share; boundary batches of a share have their own targets and blocks.
+/// Computes all batches or the batches of a share; boundary batches of a share have their own targets and
+/// blocks.
 template <int D, class Lanes, class Law, class Tangent>
 HWY_INLINE void add_batches(const ElasticPass& pass) {
   constexpr Offset kAhead = 8;  // batches between the one in use and the one prefetched

@@ -25,7 +25,7 @@ void round_to_single(const BlockCsr& matrix, BlockCsrOf<float>& result) {
   constexpr Index kRows = 4096;
   result.offsets = matrix.offsets;
   result.columns = matrix.columns;
-  // without spare blocks at the end of the values
+  // the copy has no spare blocks at the end of its values
   result.values.resize(9 * matrix.columns.size());
   for_each_chunk(matrix.size(), kRows, [&](Index, Index begin, Index end) {
     const Offset last = 9 * matrix.offsets[end];

@@ -16,8 +16,8 @@ namespace meshorder::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_MAX_BYTES >= 32
-/// Sums a row's blocks times the vector. Each of a block's nine products has its own sum, because adding
-/// three of them would make additions wait for each other. The first eight sums are in vectors.
+/// Sums a row's blocks times the vector. Each of a block's nine products has its own sum: adding three
+/// products to one sum would make additions wait for each other. The first eight sums are in vectors.
 struct RowSums {
   using Tag = hn::CappedTag<double, 8>;
   static constexpr int kLanes = static_cast<int>(MaxLanes(Tag()));
@@ -31,7 +31,8 @@ struct RowSums {
 
   template <class Value>
   HWY_INLINE void add(const Value* block, const double* p) {
-    // p₀ p₁ p₂ p₂: nothing may be read beyond p₂; loads as wide as the stores of subtract_from do not stall
+    // p₀ p₁ p₂ p₂, because nothing may be read beyond p₂; loads as wide as the stores of subtract_from do not
+    // stall
     const hn::FixedTag<double, 2> two;
     const hn::FixedTag<double, 4> four;
     const auto p0122 = hn::Combine(four, hn::Set(two, p[2]), hn::LoadU(two, p));
@@ -77,7 +78,7 @@ struct RowSums {
   }
 };
 #else
-/// As above, without vectors: two lanes gain nothing.
+/// As above, without vectors: vectors of two lanes would gain nothing.
 struct RowSums {
   double s[9] = {};
 

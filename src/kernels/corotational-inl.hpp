@@ -34,7 +34,7 @@ struct Corotational {
 
   HWY_INLINE void stress(const Deformation<3, Lanes>& deformation, const LameLanes<Lanes>& lame,
                          Value (&p)[3][3]) const {
-    // not 2μF + cR, whose terms cancel near rest
+    // not computed as 2μF + cR, whose terms cancel near rest
     const Value two_mu = lame.mu + lame.mu;
     const Value pressure = lame.lambda * (trace - Lanes::set(3.0));
     MESHORDER_UNROLL
@@ -164,7 +164,7 @@ struct CorotationalTangent {
  private:
   HWY_INLINE void load_turn(const Deformation<3, Lanes>& deformation, const Corotational<Lanes>& law,
                             Value weight) {
-    // G = tr(S) I − F Rᵀ has the eigenvalues σᵢ + σⱼ, none negative
+    // G = tr(S) I − F Rᵀ has the eigenvalues σᵢ + σⱼ, which are not negative
     Value g[3][3];
     MESHORDER_UNROLL
     for (int i = 0; i < 3; ++i) {
@@ -180,7 +180,8 @@ struct CorotationalTangent {
     Value determinant = g[0][0] * turn[0][0];
     determinant = Lanes::mul_add(g[0][1], turn[0][1], determinant);
     determinant = Lanes::mul_add(g[0][2], turn[0][2], determinant);
-    // bounds the least eigenvalue at about kMinSum: the product of the two larger ones is about tr²(S)
+    // keeps the least eigenvalue above about kMinSum: the product of the two larger eigenvalues is about
+    // tr²(S)
     const Value min_determinant =
         Lanes::mul_add(Lanes::set(kMinSum) * law.trace, law.trace, Lanes::set(1e-280));
     const Value factor = weight / Lanes::max(determinant, min_determinant);

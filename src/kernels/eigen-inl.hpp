@@ -49,8 +49,9 @@ HWY_INLINE void rotate_plane(int p, int q, typename Lanes::Value (&a)[N][N],
 }
 
 /// Computes eigenvalues and orthonormal eigenvectors (the columns of `vectors`) of symmetric N×N matrices, N
-/// = 3 or 4, by Jacobi's cyclic method. Errors are rounding relative to the largest entry, for any matrix; it
-/// ends for NaN too. Squares of entries must not underflow or overflow. Overwrites the upper triangle of `a`.
+/// = 3 or 4, by Jacobi's cyclic method. For any matrix, the only errors are rounding errors relative to the
+/// largest entry. The function also ends for NaN. Squares of entries must not underflow or overflow.
+/// Overwrites the upper triangle of `a`.
 template <int N, class Lanes>
 HWY_INLINE void symmetric_eigen(typename Lanes::Value (&a)[N][N], typename Lanes::Value (&values)[N],
                                 typename Lanes::Value (&vectors)[N][N]) {

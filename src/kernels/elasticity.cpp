@@ -23,7 +23,7 @@ ElasticKernels kernels_of(MaterialModel model) {
   throw InvalidArgument("elasticity: unknown material model");
 }
 
-/// A batch of equal parameters, for a law with the same parameters everywhere.
+/// The parameters of a batch, all equal, for a law with the same parameters everywhere.
 struct UniformLame {
   alignas(64) std::array<double, kBatch> mu, lambda;
 

@@ -11,11 +11,12 @@ namespace meshorder {
 
 /// Returns the elastic energy Σ V Ψ(F) of simplices in space; F is a simplex's 3×D deformation gradient.
 /// Tetrahedra are solids. With the law stvk, triangles are membranes and lines bars, of thickness 1.
-/// `positions` has the layout of padded_positions, here and below. On all threads; same bits for any
-/// number of them. Infinite or NaN if a position is, or if the law's energy is infinite. O(simplices).
+/// `positions` has the layout of padded_positions, here and below. Runs on all threads, with the same bits
+/// for any number of threads. The result is infinite or NaN if a position is, or if the law's energy is
+/// infinite. O(simplices).
 ///
-/// Throws InvalidArgument, here and below, for a law or tangent that does not support such simplices, for an
-/// approximate tangent of another law than the corotational one, and if the sizes of two arrays disagree.
+/// Throws InvalidArgument, here and below, for a law or tangent that does not support such simplices, for the
+/// approximate tangent unless the law is corotational, and if the sizes of two arrays disagree.
 double elastic_energy(const RestShapes& rest, const Elasticity& elasticity,
                       std::span<const double> positions);
 
@@ -29,8 +30,8 @@ struct Stiffness {
 /// Adds −∂E/∂x to `forces`, in the layout of padded_positions, unless it is empty. Adds scale · K to the
 /// matrix of `stiffness`, unless it is null; K is ∂²E/∂x² or the approximation that `elasticity.tangent`
 /// names. K and its diagonal blocks are symmetric to the last bit. One pass over the simplices, in batches,
-/// by the best vector instructions of the processor. The rounding of sums depends only on their number of
-/// lanes. O(simplices).
+/// by the best vector instructions of the processor. The rounding of sums depends only on the number of lanes
+/// of these instructions. O(simplices).
 void add_elasticity(const RestShapes& rest, const Elasticity& elasticity, std::span<const double> positions,
                     std::span<double> forces, const Stiffness* stiffness);
 
@@ -41,7 +42,8 @@ void add_elasticity(const RestShapes& rest, const Elasticity& elasticity, std::s
                     std::span<double> forces, const Stiffness* stiffness, const OwnedBatches& share,
                     const OwnedBlocks& boundary);
 
-/// As the first, but a scalar reference: the same source, one simplex at a time, without vector instructions.
+/// Like the first `add_elasticity`, as a scalar reference: the same source, one simplex at a time, without
+/// vector instructions.
 void add_elasticity_scalar(const RestShapes& rest, const Elasticity& elasticity,
                            std::span<const double> positions, std::span<double> forces,
                            const Stiffness* stiffness);

@@ -12,8 +12,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// The stiffness blocks of a batch of simplices. This buffer holds them between their computation, which is
-/// for many simplices at a time, and their addition to the matrix, one simplex at a time.
+/// The stiffness blocks of a batch of simplices. Blocks are computed for many simplices at a time; this
+/// buffer holds them until they are added to the matrix, one simplex at a time.
 template <int D>
 struct ElementBlocks {
   static constexpr int kBlocks = (D + 1) * (D + 1);
@@ -35,7 +35,8 @@ struct ElementBlocks {
   }
 
   /// Prefetches the blocks that a simplex will add to, one batch in advance. They are scattered over the
-  /// matrix, so that hardware does not prefetch them. Measurements: assembly waits for memory half as long.
+  /// matrix, so that hardware does not prefetch them. In measurements, assembly then waited for memory half
+  /// as long.
   static HWY_INLINE void fetch(const Index* blocks, const double* values) {
     for (int block = 0; block < kBlocks; ++block) {
       const double* const place = values + Offset{9} * blocks[block];
@@ -69,8 +70,8 @@ struct ElementBlocks {
   }
 };
 
-/// Computes all blocks of some simplices from those of the corners 1 … D (numbered from 0), which `tangent`
-/// computes. A translation changes no force, so every row of blocks adds up to zero; this gives the blocks of
+/// Computes all blocks of some simplices. `tangent` computes the blocks of the corners 1 … D (numbered from
+/// 0). A translation changes no force, so every row of blocks adds up to zero; this gives the blocks of
 /// corner 0.
 template <int D, class Lanes, class Tangent>
 HWY_INLINE void compute_blocks(const Tangent& tangent, Index lane, ElementBlocks<D>& out) {

@@ -22,13 +22,13 @@ constexpr Offset kBytesAhead = 3072;
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// The sums of a row of a slab; also adds its blocks, transposed, to other rows. Each row of a block is
-/// loaded together with the number after it, whose products are in lane 3 and never used.
+/// loaded together with the number after it; the products of that number are in lane 3 and never used.
 class HalfRow {
  public:
   HWY_INLINE explicit HalfRow(const double* p)
       : p0_(hn::Set(Tag(), p[0])), p1_(hn::Set(Tag(), p[1])), p2_(hn::Set(Tag(), p[2])) {}
 
-  /// Adds a block that counts only in this row.
+  /// Adds a block that is used only in this row.
   template <class Value>
   HWY_INLINE void add(const Value* block, const double* p) {
     const auto factors = load_three(p);
@@ -88,7 +88,7 @@ class HalfRow {
   hn::Vec<Tag> row2_ = hn::Zero(Tag());
 };
 #else
-/// As above, without vectors: two lanes gain nothing.
+/// As above, without vectors: vectors of two lanes would gain nothing.
 class HalfRow {
  public:
   HWY_INLINE explicit HalfRow(const double* p) : p_(p) {}
@@ -120,7 +120,7 @@ class HalfRow {
 #endif
 
 /// Computes the rows begin … end − 1, a slab, of y = A x; returns their part of xᵀA x. `sums` must hold
-/// kPaddedStride zeros for each row, and does so again afterwards. With `Gather`, prefetches x as well.
+/// kPaddedStride zeros for each row; it holds zeros again afterwards. With `Gather`, prefetches x as well.
 template <bool Gather, class Value>
 double half_product_rows(const HalfBlockCsrOf<Value>& matrix, const double* x, double* sums, double* y,
                          Index begin, Index end) {
@@ -210,7 +210,7 @@ Offset blocks_between(const BlockCsr& matrix, Index begin, Index end) {
   return count;
 }
 
-/// Numbers of stored blocks of a row: those that count only in it, and those that count in two rows.
+/// How many of a row's stored blocks are used only in this row (`alone`), and how many in two rows (`both`).
 struct RowCounts {
   Offset alone = 0, both = 0;
 };
@@ -316,8 +316,8 @@ template void multiply(const HalfBlockCsrOf<float>&, std::span<const double>, st
 bool half_storage_pays(const BlockCsr& matrix) {
   // larger than most second-level caches; for a smaller matrix the copy does not pay
   constexpr Offset kMinBytes = Offset{4} << 20;
-  // stored blocks are read at some 0.8 of the full matrix's rate, and (1 + share) / 2 of all are stored: the
-  // break-even share is 0.6
+  // stored blocks are read at about 0.8 of the full matrix's rate, and (1 + share) / 2 of all blocks are
+  // stored: the break-even share is 0.6
   constexpr double kMaxShare = 0.5;
   constexpr Offset kBlockBytes = 9 * sizeof(double) + sizeof(Index);
   return kBlockBytes * matrix.block_count() >= kMinBytes && share_between_slabs(matrix) < kMaxShare;

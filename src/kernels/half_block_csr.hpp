@@ -9,15 +9,16 @@
 namespace meshorder {
 
 /// A symmetric matrix of 3×3 blocks that stores most pairs of mirrored blocks once. The rows are cut into
-/// slabs of about equal numbers of blocks. A block on the diagonal or between two slabs is stored in its row.
-/// Of two blocks that mirror each other within a slab only the upper one is stored; it counts in both rows.
-/// So a slab writes only to its own rows: threads take slabs, without atomics or a second pass, and every sum
-/// has its terms in the same sequence for any number of threads. In a poor order most blocks are between
-/// slabs, and nearly the full matrix is stored.
+/// slabs of about equal numbers of blocks. A block is stored in its row if it is on the diagonal, or if its
+/// row and column are in different slabs. Of two blocks that mirror each other within a slab, only the block
+/// above the diagonal is stored; it is used in both rows. The product of a slab therefore writes only to the
+/// slab's own rows: threads take slabs, without atomics or a second pass, and every sum has its terms in the
+/// same sequence for any number of threads. In a poor order most blocks are between slabs, and nearly the
+/// full matrix is stored.
 ///
 /// Block k holds `values[9 k] … values[9 k + 8]`, row by row. Of row v, blocks `offsets[2 v] … offsets[2 v +
-/// 1] − 1` count in row v only, blocks `offsets[2 v + 1] … offsets[2 v + 2] − 1` also in their column's row.
-/// Columns ascend in both parts. With its column a block takes 76 bytes in double, 40 in float.
+/// 1] − 1` are used in row v only, blocks `offsets[2 v + 1] … offsets[2 v + 2] − 1` also in the row of their
+/// column. Columns ascend in both parts. With its column a block takes 76 bytes in double, 40 in float.
 template <class Value>
 struct HalfBlockCsrOf {
   std::vector<Index> slabs{0};     ///< bounds of the slabs
@@ -38,8 +39,8 @@ using HalfBlockCsr = HalfBlockCsrOf<double>;
 /// Returns the bounds of the slabs of a matrix: 16 slabs, or one per row if it has fewer rows. O(log n).
 std::vector<Index> slabs_of(const BlockCsr& matrix);
 
-/// Returns the share of a matrix's blocks whose row and column are in different slabs, 0 … 1; of these both
-/// mirror images are stored. O(blocks); reads only the columns.
+/// Returns the share, 0 … 1, of a matrix's blocks whose row and column are in different slabs; such a block
+/// and its mirror image are both stored. O(blocks) time; reads only the columns.
 double share_between_slabs(const BlockCsr& matrix);
 
 /// Copies a matrix to `result`, reusing its memory; rounds the values if Value is float. The matrix and its
@@ -61,9 +62,9 @@ template <class Value>
 void multiply(const HalfBlockCsrOf<Value>& matrix, std::span<const double> x, std::span<double> y);
 
 /// Returns whether repeated products with a symmetric matrix of this pattern are expected to be faster with
-/// half of it stored (see HalfBlockCsr): the matrix must have 4 MiB or more, too large for a core's own
-/// caches, and less than half of its blocks between slabs. The answer is the same on every machine, by the
-/// measurements in docs/evidence/benchmarks.md. O(blocks); reads only the columns.
+/// half of it stored (see HalfBlockCsr): the matrix must take 4 MiB or more, too much for a core's own
+/// caches, and less than half of its blocks may be between slabs. The answer is the same on every machine; it
+/// comes from the measurements in docs/evidence/benchmarks.md. O(blocks); reads only the columns.
 bool half_storage_pays(const BlockCsr& matrix);
 
 }  // namespace meshorder

@@ -43,20 +43,20 @@ struct OneLaneOf {
   static HWY_INLINE void store(Value value, Real* to) { *to = value; }
   static HWY_INLINE Value mul_add(Value a, Value b, Value c) { return a * b + c; }
   static HWY_INLINE Value square_root(Value a) { return std::sqrt(a); }
-  /// Returns where > 0 ? value : 0 for each lane.
+  /// Returns `where > 0 ? value : 0` for each lane.
   static HWY_INLINE Value if_positive(Value where, Value value) { return where > 0 ? value : 0; }
-  /// Returns where > 0 ? yes : no for each lane.
+  /// Returns `where > 0 ? yes : no` for each lane.
   static HWY_INLINE Value choose(Value where, Value yes, Value no) { return where > 0 ? yes : no; }
   static HWY_INLINE Value max(Value a, Value b) { return a > b ? a : b; }
   static HWY_INLINE Value min(Value a, Value b) { return a < b ? a : b; }
   static HWY_INLINE Value abs(Value a) { return std::abs(a); }
   static HWY_INLINE Value with_sign_of(Value value, Value sign) { return std::copysign(value, sign); }
   static HWY_INLINE Value log(Value a) { return std::log(a); }
-  /// Returns whether every lane is at most the bound; false if one is NaN.
+  /// Returns whether every lane is at most the bound; false if a lane is NaN.
   static HWY_INLINE bool all_at_most(Value a, double bound) { return a <= static_cast<Real>(bound); }
   /// Returns the sum of the lanes.
   static HWY_INLINE Real sum(Value a) { return a; }
-  /// Stores lane l of the kCount rows, side by side, from to[l · stride] on.
+  /// Stores lane l of all kCount rows, one after another, from to[l · stride] on.
   static HWY_INLINE void store_transposed(const Value* rows, Real* to, Offset /*stride*/) { *to = *rows; }
   /// Loads the three coordinates of vertex v[0] into p.
   static HWY_INLINE void gather(const Real* positions, const Index* v, Value (&p)[3]) {
@@ -194,7 +194,7 @@ struct ManyLanes : LaneArithmetic<double, kBatch> {
       p[2] =
           hn::InterleaveLower(d, hn::Load(d, at(positions, v[0]) + 2), hn::Load(d, at(positions, v[1]) + 2));
     } else {
-      // blocks of two doubles: x₀x₁ z₀z₁ x₄x₅ z₄z₅, x₂x₃ z₂z₃ x₆x₇ z₆z₇, and so for y and the padding
+      // blocks of two doubles: x₀x₁ z₀z₁ x₄x₅ z₄z₅, x₂x₃ z₂z₃ x₆x₇ z₆z₇, and likewise for y and the padding
       const Value v0 = load_fourth(d, positions, v);
       const Value v1 = load_fourth(d, positions, v + 1);
       const Value v2 = load_fourth(d, positions, v + 2);

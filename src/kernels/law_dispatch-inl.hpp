@@ -4,7 +4,7 @@
 // returns these kernels, and in meshorder::HWY_NAMESPACE a struct LawOfFile with
 //   Law<D, Lanes>, ExactTangent<D, Lanes>, ApproximateTangent<D, Lanes>: see add_batch;
 //   kVolumesOnly: whether the law supports only tetrahedra.
-// A law without an approximate tangent sets ApproximateTangent to its exact one.
+// A law without an approximate tangent sets ApproximateTangent to its ExactTangent.
 #include "kernels/batches-inl.hpp"
 #include "kernels/projected-inl.hpp"
 

@@ -56,8 +56,9 @@ struct Lame {
 struct Elasticity {
   MaterialModel model = MaterialModel::corotational;
   Tangent tangent = Tangent::exact;
-  Lame lame;  ///< of all simplices, if the two below are empty
-  /// If parameters differ: those of simplex s at [s], padded to whole batches (see RestShapes).
+  Lame lame;  ///< of all simplices, if `mu` and `lambda` are empty
+  /// If simplices have different parameters: entry s is that of simplex s; padded to whole batches (see
+  /// RestShapes).
   AlignedVector<double> mu, lambda;
 };
 

@@ -77,7 +77,7 @@ struct NeoHookean {
                                              Lanes::mul_add(of_lengths, sigma[k] * sigma[k], of_deformation));
       MESHORDER_UNROLL
       for (int j = k + 1; j < 3; ++j) {
-        // the cofactors of σ_k and σ_j share the third value
+        // the cofactors of σ_k and σ_j both contain the third value
         const Value& third = sigma[3 - k - j];
         const Value both = sigma[k] * sigma[j];
         hessian.stretch[k][j] = Lanes::mul_add(lambda * third * third, both, of_lengths * both);

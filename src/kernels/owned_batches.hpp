@@ -10,29 +10,29 @@
 namespace meshorder {
 
 /// One thread's share of a kernel that adds to the vertices of elements or springs: a range of vertices that
-/// it owns, and all batches that touch one of them. Contributions to vertices that other threads own go to
-/// spare vertices after the mesh's; their results are not used, as the owners compute these batches as well.
-/// So no two threads write to the same address, without atomics or colouring. Every sum has the terms of the
-/// serial kernel in the same sequence, so the bits are the same for any number of threads. In a good order
-/// few batches are computed twice.
+/// it owns, and all batches that touch a vertex of the range. Contributions to vertices that other threads
+/// own go to spare vertices, which come after the mesh's vertices. The sums at spare vertices are not used,
+/// because the owners compute these batches as well. So no two threads write to the same address, without
+/// atomics or colouring. Every sum has the terms of the serial kernel in the same sequence, so the bits are
+/// the same for any number of threads. In a good order few batches are computed twice.
 struct OwnedBatches {
   Index begin = 0;  ///< the vertices begin … end − 1 are owned
   Index end = 0;
-  Index room = 0;              ///< vertices that the vector of forces must hold, including spare ones
+  Index room = 0;              ///< number of vertices that the forces must hold, including spare vertices
   std::vector<Index> batches;  ///< ascending
   std::vector<Index>
       boundary;  ///< for each batch: −1 if all its vertices are owned, else its number among boundary batches
-  /// The vertices of each boundary batch, with spare vertices in place of those not owned.
+  /// The vertices of each boundary batch, with spare vertices in place of vertices that are not owned.
   AlignedVector<Index> targets;
 
-  /// Returns the vertices that batch `i` of `batches`, whose corners are `vertices`, adds to.
+  /// Returns the vertices to which batch `i` of `batches` adds; `vertices` are the corners of that batch.
   [[nodiscard]] const Index* targets_of(Offset i, const Index* vertices, Index corners) const {
     return boundary[i] < 0 ? vertices : targets.data() + Offset{boundary[i]} * corners * kBatch;
   }
 };
 
-/// Returns the bounds (parts + 1 of them) of contiguous ranges of rows with about equal numbers of entries.
-/// `offsets` are those of compressed rows. O(parts · log rows).
+/// Returns the parts + 1 bounds of contiguous ranges of rows with about equal numbers of entries. `offsets`
+/// are the offsets of the compressed rows. O(parts · log rows).
 std::vector<Index> balanced_ranges(std::span<const Offset> offsets, Index parts);
 
 /// Sets `owners` to the numbers of the ranges of `bounds` that contain the vertices, each once, ascending.

@@ -11,8 +11,8 @@ namespace meshorder {
 struct ElasticPass {
   const RestShapes& rest;
   Tangent tangent = Tangent::exact;
-  /// Lamé's parameters of batch b begin at mu[lame_stride · b]. If all simplices have the same, the stride is
-  /// 0 and all batches read one batch of equal values, so that kernels need no branch.
+  /// Lamé's parameters of batch b begin at mu[lame_stride · b]. If all simplices have the same parameters,
+  /// the stride is 0, so that all batches read the same values and kernels need no branch.
   const double* mu = nullptr;
   const double* lambda = nullptr;
   Offset lame_stride = 0;
@@ -22,7 +22,7 @@ struct ElasticPass {
   double* values = nullptr;
   double scale = 1.0;             ///< multiplies the stiffness
   const Index* blocks = nullptr;  ///< AssemblyMap::blocks
-  /// One share of the batches, with OwnedBlocks::blocks in `boundary_blocks`; null for all batches.
+  /// One share of the batches, whose OwnedBlocks::blocks are in `boundary_blocks`; null for all batches.
   const OwnedBatches* share = nullptr;
   const Index* boundary_blocks = nullptr;
 };

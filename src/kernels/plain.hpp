@@ -9,7 +9,7 @@
 #include <span>
 
 // Kernels as ordinary programs write them: one loop, no prefetching, no blocking, no threads. Their times
-// show what an order of a mesh is worth to most users. The other kernels in this folder are tuned, and run
+// show how much most users gain by an order of a mesh. The other kernels in this folder are tuned, and run
 // about equally fast in all good orders.
 //
 // Arrays of positions and forces hold x, y, z of each vertex side by side. Functions add forces and matrix
@@ -17,7 +17,8 @@
 namespace meshorder::plain {
 
 /// The vertices that a thread adds to: all of them, or a range. When threads share a loop over elements or
-/// edges, each computes those that touch a vertex of its range, and adds only to vertices of its range.
+/// edges, each thread computes the elements or edges that touch a vertex of its range, and adds only to
+/// vertices of its range.
 struct AllVertices {
   [[nodiscard]] static constexpr bool has(Index /*v*/) { return true; }
 };
@@ -46,7 +47,8 @@ void multiply(const Matrix<Number, Column, Start>& a, std::span<const Number> x,
   }
 }
 
-/// Adds the forces of springs of stiffness 1: `ends` has two vertices for each of `lengths`.
+/// Adds the forces of springs of stiffness 1: `ends` has two vertices for each spring, `lengths` its length
+/// at rest.
 template <class Number, class Owned = AllVertices>
 void springs(std::span<const Index> ends, std::span<const Number> lengths, std::span<const Number> positions,
              std::span<Number> forces, const Owned& owned = {}) {

@@ -14,8 +14,8 @@
 
 namespace meshorder {
 
-/// Numbers per vertex in the positions and forces of the element and spring kernels: x, y, z and one that
-/// stays 0, so that a vertex never straddles a cache line and aligned vector loads can read it.
+/// Numbers per vertex in the positions and forces of the element and spring kernels: x, y, z and a fourth
+/// number that stays 0, so that a vertex never straddles a cache line and aligned vector loads can read it.
 inline constexpr Index kPaddedStride = 4;
 
 /// Returns n vertices at zero in that layout. O(n).
@@ -48,7 +48,8 @@ inline Point point_of(std::span<const double> positions, Index v) {
   return {x[0], x[1], x[2]};
 }
 
-/// Returns the unit normal of a triangle at these positions; none if it has no area or is not finite.
+/// Returns the unit normal of a triangle at these positions; nothing if the triangle has no area or the
+/// normal is not finite.
 inline std::optional<Point> triangle_normal(std::span<const double> positions, Index a, Index b, Index c) {
   const Point origin = point_of(positions, a);
   const Point normal = cross(minus(point_of(positions, b), origin), minus(point_of(positions, c), origin));

@@ -25,8 +25,11 @@ struct PrincipalHessian {
 };
 
 /// The positive semi-definite part of the Hessian, by its eigenvectors in closed form (Smith, De Goes, Kim
-/// 2019). With F = U Σ Vᵀ these are, rotated by U and V: three symmetric matrices with two equal entries
-/// (flips), three antisymmetric ones (twists), and three diagonal ones, the eigenvectors of ∂²Ψ/∂σᵢ∂σⱼ.
+/// 2019). With F = U Σ Vᵀ the eigenvectors are these matrices, rotated by U and V:
+/// - three symmetric matrices with two equal entries (flips);
+/// - three antisymmetric matrices (twists);
+/// - three diagonal matrices, the eigenvectors of ∂²Ψ/∂σᵢ∂σⱼ.
+///
 /// Negative eigenvalues become 0. `Law` has principal(σ, lame, hessian).
 template <class Lanes, class Law>
 struct ProjectedTangent {
@@ -35,7 +38,7 @@ struct ProjectedTangent {
   Value h[3][3];        ///< h_a = Vᵀ g_a of the corners 1, 2, 3
   Value stretch[3][3];  ///< weighted; both triangles
   Value alike[3];       ///< ½ (flip + twist), weighted: couples an entry of δF in principal axes to itself
-  Value across[3];      ///< ½ (flip − twist), weighted: couples it to the transposed entry
+  Value across[3];      ///< ½ (flip − twist), weighted: couples such an entry to the transposed one
 
   HWY_INLINE void load(const Deformation<3, Lanes>& deformation, const Law& law, const LameLanes<Lanes>& lame,
                        Value weight) {

@@ -42,7 +42,7 @@ std::vector<bool> groups_with_simplices(const Simplices& simplices, const Groupi
   return has;
 }
 
-/// Returns the group with simplices that has that name or, if groups have no names, that value.
+/// Returns the group that has that name (or, if groups have no names, that value) and has simplices.
 std::optional<std::size_t> find_group(const Grouping& grouping, const std::vector<bool>& has,
                                       const std::string& region) {
   for (std::size_t group = 0; group < grouping.values.size(); ++group) {
@@ -81,7 +81,7 @@ void check(const Simplices& simplices, const Grouping& grouping) {
   }
 }
 
-/// Returns the material of each group; the last group has the cells in no group.
+/// Returns the material of each group; the last group has the cells that belong to no group of the grouping.
 std::vector<Material> materials_of_groups(const Grouping& grouping, const std::vector<bool>& has,
                                           const Material& elsewhere,
                                           const std::vector<RegionMaterial>& regions) {

@@ -25,19 +25,19 @@ struct RegionMaterial {
 
 /// The materials of all simplices, in the form that Elasticity takes.
 struct SimplexMaterials {
-  Lame lame;                         ///< of all simplices, if the two below are empty
+  Lame lame;                         ///< of all simplices, if `mu` and `lambda` are empty
   AlignedVector<double> mu, lambda;  ///< of each simplex, padded to whole batches
-  std::vector<double> densities;     ///< one for all simplices, or one for each
+  std::vector<double> densities;     ///< one entry for all simplices, or one for each
 };
 
 /// Returns one material for all simplices. Throws InvalidArgument, which states the valid range, for numbers
 /// that are out of range or not finite.
 SimplexMaterials uniform_material(const Material& material);
 
-/// Returns the materials of simplices whose cells are grouped: those of `regions` in their cells, `elsewhere`
-/// in all others. Throws InvalidArgument for numbers out of range, for a grouping of vertices or of another
-/// mesh, for a region given twice and for one without simplices; that message lists the regions that have
-/// simplices. O(simplices + regions · groups).
+/// Returns the materials of simplices whose cells are grouped: the materials of `regions` in the cells of
+/// these regions, `elsewhere` in all other cells. Throws InvalidArgument for numbers out of range, for a
+/// grouping of vertices or of another mesh, for a region given twice, and for a region without simplices; the
+/// message for the latter lists the regions that have simplices. O(simplices + regions · groups).
 SimplexMaterials materials_by_region(const Simplices& simplices, const Grouping& grouping,
                                      const Material& elsewhere, const std::vector<RegionMaterial>& regions);
 

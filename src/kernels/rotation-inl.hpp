@@ -15,8 +15,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 
-/// Computes the rotations closest to any matrices. As unit quaternions q they maximise qᵀN q, where N is a
-/// symmetric 4×4 matrix linear in F (Davenport; Horn 1987): q is an eigenvector of its largest eigenvalue.
+/// Computes the rotations closest to any matrices. The unit quaternion q of such a rotation maximises qᵀN q,
+/// where N is a symmetric 4×4 matrix linear in F (Davenport; Horn 1987). So q is an eigenvector of the
+/// largest eigenvalue of N.
 template <class Lanes>
 HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3],
                                            typename Lanes::Value (&r)[3][3]) {
@@ -52,7 +53,7 @@ HWY_NOINLINE void rotations_by_quaternions(const typename Lanes::Value (&f)[3][3
   Value values[4];
   Value vectors[4][4];
   symmetric_eigen<4, Lanes>(n, values, vectors);
-  // of equal eigenvalues the first counts: the identity for F = 0
+  // of several equal largest eigenvalues, take the first: this gives the identity for F = 0
   Value greatest = values[0];
   Value q[4] = {vectors[0][0], vectors[1][0], vectors[2][0], vectors[3][0]};
   MESHORDER_UNROLL
@@ -90,7 +91,7 @@ struct RotationTerms {
 };
 
 /// Computes the closest rotations by a formula, for matrices whose closest rotation is well separated from
-/// others. Returns false, with unusable results, unless this holds for all of the matrices.
+/// others. Returns false, with unusable results, unless all matrices are such matrices.
 ///
 /// The largest eigenvalue of N is λ = tr S, the largest root of λ⁴ − 2aλ² − 8dλ + a² − 4b with a = ‖F‖²,
 /// b = ‖cof F‖² and d = det F. Halley's method decreases to it from √3 ‖F‖ without overshooting, since all
@@ -102,11 +103,13 @@ HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3], typ
   using Value = typename Lanes::Value;
   constexpr bool kFloat = std::is_same_v<typename Lanes::Number, float>;
   constexpr int kSteps = 10;
-  // convergence is cubic: a relative error of that size before a step is rounding after it
+  // convergence is cubic: if the relative error is this small before a step, only rounding errors remain
+  // after it
   constexpr double kNear = kFloat ? 1e-3 : 1e-6;
-  // rounding errors grow by about the square of this ratio of λ³ to the denominator, 27/16 at rest
+  // limit on the ratio λ³ / denominator, which is 27/16 at rest; rounding errors grow about as the square of
+  // the ratio
   constexpr double kLargestRatio = kFloat ? 6.0 : 12.0;
-  // no seventh power of the root underflows
+  // with this least root, its seventh power does not underflow
   constexpr double kSmallest = kFloat ? 1e-4 : 1e-40;
   const auto& cof = terms.cof;
   cofactors<Lanes>(f, terms.cof);

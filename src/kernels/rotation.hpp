@@ -12,8 +12,8 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 /// Returns the rotation closest to F: R with RᵀR = I and det R = 1 that minimises ‖F − R‖. For det F > 0 it
 /// is the rotation of F's polar decomposition. It exists for every F. If it is not unique (F = 0, or σ₂ + σ₃
-/// = 0 for the signed singular values), returns one of them: the identity for F = 0. NaN if an entry is not
-/// finite. The error is about 1e-15 σ₁ / (σ₂ + σ₃).
+/// = 0 for the signed singular values), returns one of the closest rotations: the identity for F = 0. NaN if
+/// an entry is not finite. The error is about 1e-15 σ₁ / (σ₂ + σ₃).
 inline Matrix3 closest_rotation(const Matrix3& f) {
   double from[3][3];
   double to[3][3];

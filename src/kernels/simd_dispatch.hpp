@@ -15,7 +15,8 @@
 namespace meshorder {
 
 /// Returns the instruction sets of this processor among those that Highway compiles for, as bits of
-/// HWY_TARGETS. Better ones have lower bits. They include those that the compiler presupposes.
+/// HWY_TARGETS. Better instruction sets have lower bits. The result includes the instruction sets that the
+/// compiler may use anyway.
 std::int64_t simd_targets();
 
 /// Restricts `simd_targets` to these, for tests; 0: no restriction. Call it only while no kernel runs.
@@ -27,7 +28,7 @@ std::string simd_target();
 
 /// Returns the place of the best version in a table of MESHORDER_SIMD_VERSIONS.
 ///
-/// @param targets  the instruction sets that there is a version for, as bits of HWY_TARGETS
+/// @param targets  the instruction sets for which the table has a version, as bits of HWY_TARGETS
 inline std::size_t simd_version(std::int64_t targets) {
   constexpr int kLowest = HWY_HIGHEST_TARGET_BIT + 1 - HWY_MAX_DYNAMIC_TARGETS;
   constexpr std::uint64_t kFallback = std::uint64_t{1} << HWY_MAX_DYNAMIC_TARGETS;

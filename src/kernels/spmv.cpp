@@ -18,8 +18,8 @@ namespace {
 // number of blocks between the block in use and the one prefetched
 constexpr Offset kAhead = 128;
 
-/// Computes the rows begin … end − 1; returns their part of xᵀA x. `Blocks` prefetches the blocks, `Gather`
-/// the entries of x: then at least kAhead blocks must follow row end − 1.
+/// Computes the rows begin … end − 1; returns their part of xᵀA x. With `Blocks` it prefetches the blocks,
+/// with `Gather` the entries of x. With `Gather`, at least kAhead blocks must follow row end − 1.
 template <bool Blocks, bool Gather, class Value>
 double product_rows(const BlockCsrOf<Value>& matrix, const double* x, double* y, Index begin, Index end) {
   const Value* const values = matrix.values.data();
@@ -83,8 +83,9 @@ MESHORDER_SIMD_VERSIONS(product_of_doubles);
 MESHORDER_SIMD_VERSIONS(product_of_streamed_doubles);
 MESHORDER_SIMD_VERSIONS(product_of_floats);
 
-/// Returns whether the processor is known to read blocks of doubles faster without prefetches. Zen 4 does,
-/// Zen 3 does not, others were not measured (docs/evidence/benchmarks.md, What the product asks for).
+/// Returns whether the processor is known to read blocks of doubles faster without prefetches. This is true
+/// of Zen 4 and false of Zen 3; other processors were not measured (docs/evidence/benchmarks.md, What the
+/// product asks for).
 bool streams_by_itself() {
   static const bool result = is_zen4(family_of_this_machine());
   return result;

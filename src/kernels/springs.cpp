@@ -11,7 +11,8 @@ HWY_BEFORE_NAMESPACE();
 namespace meshorder::HWY_NAMESPACE {
 namespace {
 
-/// Computes a batch of springs; adds its forces to `targets`: its ends or, in place of some, spare vertices.
+/// Computes a batch of springs and adds its forces to `targets`: the ends of the springs, some of them
+/// replaced by spare vertices.
 template <class Lanes>
 HWY_INLINE void add_batch(const double* rest_length, const Index* ends, const Index* targets,
                           double stiffness, const double* positions, double* forces) {
@@ -35,8 +36,8 @@ HWY_INLINE void add_batch(const double* rest_length, const Index* ends, const In
   }
 }
 
-/// Prefetches data of later batches that is read from front to back: the springs, and vertices after the
-/// larger ends of this batch, by which springs are sorted.
+/// Prefetches data of later batches that are read from front to back: springs, and the vertices after the
+/// larger ends of this batch (springs are sorted by their larger ends).
 HWY_INLINE void fetch_streams(const double* rest_length, const Index* ends, const double* positions,
                               const double* forces) {
   constexpr Offset kBatches = 16;
@@ -48,7 +49,7 @@ HWY_INLINE void fetch_streams(const double* rest_length, const Index* ends, cons
   fetch_stream<sizeof(double) * kPaddedStride>(forces + vertex);
 }
 
-/// Computes all batches, or those of a share.
+/// Computes all batches, or the batches of a share.
 template <class Lanes>
 HWY_INLINE void add_forces(const Springs& springs, double stiffness, const double* positions, double* forces,
                            const OwnedBatches* share) {

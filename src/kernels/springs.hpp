@@ -18,8 +18,8 @@ struct Springs {
 };
 
 /// Returns a spring for every edge of the graph, from its smaller to its larger end, at rest at the given
-/// points. Springs are sorted by the larger end and then the smaller, as `lexmax` sorts elements, so that
-/// vertices with smaller neighbours are first visited in the order of memory. O(n + edges).
+/// points. Springs are sorted by the larger end and then the smaller, as `lexmax` sorts elements, so that the
+/// first visits of vertices that have smaller neighbours are in the order of memory. O(n + edges).
 Springs springs_on_edges(const CsrGraph& graph, std::span<const Point> points);
 
 /// Returns the energy Σ ½ k (‖d‖ − ℓ₀)² of springs of stiffness k, d = x_b − x_a. O(springs).
@@ -35,7 +35,8 @@ void add_spring_forces(const Springs& springs, double stiffness, std::span<const
 void add_spring_forces(const Springs& springs, double stiffness, std::span<const double> positions,
                        std::span<double> forces, const OwnedBatches& share);
 
-/// As the first, but a scalar reference: the same source, one spring at a time, without vector instructions.
+/// Like the first `add_spring_forces`, as a scalar reference: the same source, one spring at a time, without
+/// vector instructions.
 void add_spring_forces_scalar(const Springs& springs, double stiffness, std::span<const double> positions,
                               std::span<double> forces);
 

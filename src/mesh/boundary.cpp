@@ -24,7 +24,7 @@ void for_elements(const Mesh& mesh, Visit visit) {
   }
 }
 
-/// Keeps the facets that exactly one element has, in ascending order of their elements.
+/// Removes the facets that several elements have; sorts the other facets by their elements, ascending.
 void keep_unmatched(std::vector<ElementFacet>& facets) {
   auto kept = facets.begin();
   for (auto begin = facets.begin(); begin != facets.end();) {
@@ -38,10 +38,11 @@ void keep_unmatched(std::vector<ElementFacet>& facets) {
             [](const ElementFacet& a, const ElementFacet& b) { return a.element < b.element; });
 }
 
-/// Removes the facets whose corners all belong to one polyhedron: they are between the polyhedron and their
-/// element. O(facets · corners of the polyhedra at the facet's corner with the fewest polyhedra).
+/// Removes the facets whose corners all belong to one polyhedron: such a facet is between the polyhedron and
+/// its element. For each facet, compares the corners of all polyhedra at one of the facet's corners, the one
+/// with the fewest polyhedra.
 void drop_facets_of_polyhedra(const Mesh& mesh, std::vector<ElementFacet>& facets) {
-  std::vector<std::pair<Index, Index>> polyhedra;  // a vertex and a polyhedron there
+  std::vector<std::pair<Index, Index>> polyhedra;  // a vertex, and a polyhedron that has it as a corner
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     if (mesh.cells.shapes[c] != Shape::polyhedron) continue;
     for (const Index v : mesh.cells[c]) polyhedra.emplace_back(v, c);
@@ -93,7 +94,7 @@ void add_face(const Mesh& mesh, Index c, const std::vector<int>& positions,
   for (const int position : positions) face.push_back(cell[position]);
   const Point inner = centre(mesh, cell.first(corners(mesh.cells.shapes[c], static_cast<int>(cell.size()))));
   const Point& a = mesh.points[face[0]];
-  // the product of a quadrilateral's diagonals, or of two sides of a triangle
+  // the cross product of a quadrilateral's diagonals, or of two sides of a triangle
   const Point normal =
       face.size() == 3
           ? cross(minus(mesh.points[face[1]], a), minus(mesh.points[face[2]], a))

@@ -24,8 +24,8 @@ inline CellArrays cell_arrays(const Mesh& mesh) {
 inline CsrGraph vertex_graph(const Mesh& mesh) { return vertex_graph(cell_arrays(mesh)); }
 
 /// Returns the graph of elements that share a facet, numbered in the order of cells: a face for volumes, an
-/// edge for surfaces, an end for lines. Facets are the same if their corners are, in any order. O(facets ·
-/// log facets at a vertex).
+/// edge for surfaces, an end for lines. Two facets are the same if they have the same corners, in any order.
+/// O(facets · log facets at a vertex).
 inline CsrGraph facet_graph(const Mesh& mesh) {
   const CellArrays cells = cell_arrays(mesh);
   return joined_by_facet(cells, CellSelection::elements(cells));

@@ -11,7 +11,7 @@
 namespace meshorder {
 namespace {
 
-/// Returns the value as a 64-bit integer, or nothing if it is not one.
+/// Returns the value as a 64-bit integer; nothing if it is not an integer of 64 bits.
 template <class Value>
 std::optional<std::int64_t> whole(const Value& value) {
   if constexpr (std::is_integral_v<Value>) {
@@ -57,7 +57,8 @@ std::string usable_names(const Mesh& mesh) {
   return list.empty() ? "none" : list;
 }
 
-/// Returns the array of that name, or of the name after "cells:" or "vertices:"; else nullptr.
+/// Returns the array of that name, or of the name after "cells:" or "vertices:"; nullptr if there is no such
+/// array.
 const DataArray* array_meant(const Mesh& mesh, std::string_view name) {
   for (const Association association : {Association::cells, Association::vertices}) {
     if (const DataArray* array = find_array(mesh, name, association)) return array;
@@ -84,7 +85,7 @@ std::vector<Index> numbered(const DataArray& array, const std::vector<std::int64
   return groups;
 }
 
-/// Returns the smallest group among the elements of each vertex; `none` without elements.
+/// Returns for each vertex the smallest group among its elements; `none` for a vertex without elements.
 std::vector<Index> smallest_at_vertices(const Mesh& mesh, const std::vector<Index>& of_cells, Index none) {
   std::vector<Index> groups(mesh.points.size(), none);
   const int highest = mesh.cells.highest_dimension();
@@ -95,7 +96,7 @@ std::vector<Index> smallest_at_vertices(const Mesh& mesh, const std::vector<Inde
   return groups;
 }
 
-/// Makes a group for each set of cells that is the smallest set of at least one cell.
+/// Makes a group for each set of cells that is, for at least one cell, the smallest set with this cell.
 Grouping grouping_by_sets(const Mesh& mesh) {
   std::vector<const EntitySet*> set_of(mesh.cells.shapes.size(), nullptr);
   for (const EntitySet& set : mesh.sets) {

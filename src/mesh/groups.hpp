@@ -18,23 +18,24 @@ struct Grouping {
   Association association = Association::cells;  ///< of that array
   std::vector<std::int64_t> values;              ///< distinct, ascending: group g has values[g]
   std::vector<std::string> names;                ///< for sets: the name of each group's set; else empty
-  std::vector<Index> of_vertices;                ///< the group of each vertex; values.size() if it has none
-  std::vector<Index> of_cells;  ///< likewise for each cell; empty if the array is on vertices
+  std::vector<Index> of_vertices;                ///< the group of each vertex; values.size(): no group
+  std::vector<Index> of_cells;  ///< the group of each cell; empty if the array is on vertices
 
-  /// Returns the number of groups, including the one without value.
+  /// Returns the number of groups, including the group without value.
   [[nodiscard]] Index count() const noexcept { return index_size(values) + 1; }
 };
 
-/// Groups a mesh by an array of one integer each (of an integer type, or real numbers without fractions, as
-/// TetGen writes regions).
+/// Groups a mesh by an array with one integer for each cell or vertex. Its values may be of an integer type,
+/// or real numbers without fractions, as TetGen writes regions.
 ///
 /// An array on cells groups the cells, and through them the vertices: a vertex belongs to the smallest value
-/// among its elements, the cells of the highest dimension. An array on vertices groups the vertices alone. If
-/// both have an array of that name, the one on cells is used; "cells:NAME" and "vertices:NAME" choose one.
+/// among its elements, the cells of the highest dimension. An array on vertices groups only the vertices. If
+/// cells and vertices both have an array of that name, the array on cells is used; "cells:NAME" and
+/// "vertices:NAME" choose one of them.
 ///
 /// "sets", if no array has that name, groups the cells by the mesh's sets of cells, such as Vega's regions
-/// and Gmsh's named physical groups. A cell in several sets belongs to the smallest one (ties: the first in
-/// the file). The value of a group is the index of its set in `mesh.sets`.
+/// and Gmsh's named physical groups. A cell in several sets belongs to the group of the smallest set (ties:
+/// the first in the file). The value of a group is the index of its set in `mesh.sets`.
 ///
 /// Throws InvalidArgument, which lists the usable arrays, if there is no such array or it holds other values.
 /// O(size of the mesh · log groups).

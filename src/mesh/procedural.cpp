@@ -108,7 +108,8 @@ double volume(const std::array<Point, 4>& p) {
 }
 
 /// Applies `map` to every vertex. Where the map flattens cubes, at the rim and along diagonals, jitter could
-/// invert tetrahedra: if one has less than a tenth of its regular volume, its vertices lose their jitter.
+/// invert tetrahedra. If a tetrahedron has less than a tenth of its regular volume, its vertices lose their
+/// jitter.
 template <class Map>
 void bend(Mesh& mesh, const Lattice& lattice, Map map) {
   constexpr double kMinShare = 0.1;

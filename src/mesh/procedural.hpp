@@ -7,7 +7,7 @@
 
 namespace meshorder {
 
-/// Options of a procedural tetrahedral mesh. Cubes of a lattice are cut into six tetrahedra each around a
+/// Options of a procedural tetrahedral mesh. Each cube of a lattice is cut into six tetrahedra around a
 /// diagonal (Kuhn 1960); inner vertices are moved at random by up to `jitter` of a lattice step along each
 /// axis. All tetrahedra have positive volume; for that, a few vertices of ball and torus have no jitter.
 struct ProceduralOptions {
@@ -19,10 +19,12 @@ struct ProceduralOptions {
 /// Makes the unit cube: (size + 1)³ vertices, 6 size³ tetrahedra.
 Mesh make_grid(const ProceduralOptions& options);
 
-/// Makes the unit ball: the cube's lattice, mapped into the ball; as many vertices and tetrahedra.
+/// Makes the unit ball: the cube's lattice, mapped into the ball, with the same numbers of vertices and
+/// tetrahedra.
 Mesh make_ball(const ProceduralOptions& options);
 
-/// Makes a torus of radius 1 and tube radius 0.4: size × size cubes through the tube, 8 size around.
+/// Makes a torus of radius 1 and tube radius 0.4: size × size lattice cubes across the tube, 8 · size cubes
+/// around.
 Mesh make_torus(const ProceduralOptions& options);
 
 }  // namespace meshorder

@@ -66,7 +66,7 @@ void reorder_data(DataArray& array, const Permutation& order) {
   }
 }
 
-/// Sorts the ids of each class and puts them at the positions of that class; without classes, sorts all.
+/// Sorts the ids of each class and puts them at the positions of that class; without classes, sorts all ids.
 void sort_ids_within_classes(std::vector<std::int64_t>& ids, const std::vector<Index>& classes, Index count) {
   if (classes.empty()) return std::sort(ids.begin(), ids.end());
   std::vector<std::vector<std::int64_t>> by_class(count);

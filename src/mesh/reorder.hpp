@@ -27,7 +27,7 @@ MeshOrder compute_reordering(const Mesh& mesh, const CsrGraph& graph, const Reor
 /// Like `move_mesh`, with the order that `compute_reordering` returned.
 void apply_reordering(Mesh& mesh, const MeshOrder& order, Ids ids = Ids::renumber);
 
-/// Like the public `apply_reordering`, but does not check the mesh; for `Ids::keep` it must have its ids.
+/// Like the public `apply_reordering`, but does not check the mesh. For `Ids::keep` the mesh must have ids.
 void move_mesh(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids);
 
 /// Returns the places of cells sorted by dimension, highest first, then by type, in their old order within a

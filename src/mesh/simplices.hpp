@@ -35,12 +35,12 @@ struct Simplices {
 /// tetrahedra, a wedge into three, a pyramid into two, a polygon into a fan of triangles. Ignores mid-side
 /// nodes and cells of lower dimension. A polyhedron, whose faces are not known, becomes a chain of
 /// tetrahedra, each on four successive corners: they touch the same vertices as a true cut, but do not fill
-/// it. The pieces of a cell depend only on the order of its corners, so that reordering the mesh reorders the
-/// simplices and changes none. O(cells).
+/// the polyhedron. The pieces of a cell depend only on the order of its corners, so that reordering the mesh
+/// reorders the simplices and changes no simplex. O(cells).
 Simplices cut_into_simplices(const Mesh& mesh);
 
-/// The simplices that `cut_into_simplices` makes of a mesh. If every cell is a simplex on its corners alone,
-/// they are the mesh's own array and take no memory.
+/// The simplices that `cut_into_simplices` makes of a mesh. If every cell is a simplex without mid-side
+/// nodes, they refer to the mesh's own array and take no memory.
 class CellSimplices {
  public:
   /// No simplices.
@@ -65,13 +65,13 @@ class CellSimplices {
   std::vector<Offset> starts_;  ///< the first simplex of each cell; empty if each cell is one simplex
 };
 
-/// Returns the visible surface of a mesh as triangles on its corners. For volumes: the faces of exactly one
-/// cell, including those of cavities, counterclockwise as seen from outside for either orientation of the
-/// cell (a cell without volume leaves its faces as they are). For a surface mesh: its cells. Quadrilaterals
-/// and polygons are cut into fans. Faces of polyhedra are not known and are left out, as are the faces of
-/// other cells whose corners all belong to one polyhedron. Triangles are in the order of cells. Throws
-/// InputError for a mesh without cells of two or three dimensions. O(facets · log facets at a vertex), and
-/// for polyhedra their corners there.
+/// Returns the visible surface of a mesh as triangles on its corners. For volumes: the faces that exactly one
+/// cell has, including the faces of cavities. They are counterclockwise as seen from outside, whatever the
+/// orientation of the cell (the faces of a cell without volume are left as they are). For a surface mesh: its
+/// cells. Quadrilaterals and polygons are cut into fans. Faces of polyhedra are not known and are left out,
+/// as are the faces of other cells whose corners all belong to one polyhedron. Triangles are in the order of
+/// cells. Throws InputError for a mesh without cells of two or three dimensions. O(facets · log facets at a
+/// vertex) time; with polyhedra, more for each facet at their corners.
 std::vector<std::array<Index, 3>> boundary_triangles(const Mesh& mesh);
 
 /// Returns the faces that exactly one tetrahedron has, ascending, as 4 · tetrahedron + k; face k is opposite

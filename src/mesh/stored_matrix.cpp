@@ -16,8 +16,9 @@
 namespace meshorder {
 namespace {
 
-/// Returns whether each entry has a transposed one. Rows are visited in ascending order; in a symmetric
-/// pattern the rows with an entry in a column then come in the order of the entries in that column's own row.
+/// Returns whether the transposed place of each entry has an entry, too. Visits rows in ascending order. In a
+/// symmetric pattern, the rows that have an entry in column c are then visited in the order of the entries of
+/// row c.
 bool is_symmetric_pattern(const EntryPattern& pattern) {
   std::vector<Offset> next(pattern.starts.begin(), pattern.starts.end() - 1);
   for (Index row = 0; row < pattern.rows(); ++row) {

@@ -18,8 +18,8 @@ namespace meshorder {
 struct StoredMatrix : FormatMetadata {
   bool is_graph = false;           ///< a graph of vertices and edges, without entries on the diagonal
   bool is_half = false;            ///< each line represents two entries, (i, j) and (j, i)
-  std::string_view field = {};     ///< "real", as the file names it; empty for a graph
-  std::string_view symmetry = {};  ///< "general", as the file names it; empty for a graph
+  std::string_view field = {};     ///< such as "real", the word in the file; empty for a graph
+  std::string_view symmetry = {};  ///< such as "general", the word in the file; empty for a graph
 
   [[nodiscard]] std::vector<std::string> contents() const override { return {}; }
 };
@@ -28,8 +28,9 @@ struct StoredMatrix : FormatMetadata {
 /// `mesh.format_metadata`.
 const StoredMatrix* stored_matrix(const Mesh& mesh);
 
-/// Returns a matrix as the mesh that its reader would make of it: rows at the origin, entries in
-/// their order. Throws InvalidArgument, TooLarge as `check`; a pattern need not be symmetric. O(n + entries).
+/// Returns the mesh that the reader of a matrix file would make of this matrix: rows at the origin, entries
+/// in their order. Throws InvalidArgument, TooLarge as `check`; a pattern need not be symmetric. O(n +
+/// entries).
 Mesh matrix_mesh(const GraphView& matrix);
 
 /// Returns whether the points of a mesh differ. All points of a matrix are 0 unless given separately.
@@ -62,11 +63,11 @@ struct PatternFacts {
   Index most_in_row = 0;
   bool is_symmetric = true;
   Index missing_diagonal = 0;  ///< rows without an entry on the diagonal
-  /// The largest b of 2 … 8 that divides the number of rows and for which the b × b blocks with an entry are
-  /// filled at least to the share `kFullBlocks`; 1 if there is none.
+  /// The largest b of 2 … 8 such that b divides the number of rows and entries fill at least the share
+  /// `kFullBlocks` of the b × b blocks that have an entry; 1 if there is no such b.
   int block = 1;
   double block_fill = 0;                    ///< share of the places in these blocks that are entries
-  std::vector<Offset> histogram_log2 = {};  ///< entry k: entries 2^k … 2^(k+1) − 1 places off the diagonal
+  std::vector<Offset> histogram_log2 = {};  ///< entry k: number of entries 2^k … 2^(k+1) − 1 off the diagonal
 };
 inline constexpr double kFullBlocks = 0.8;
 

@@ -73,8 +73,8 @@ inline Index item_count(const Mesh& mesh, Association association) {
   return association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
 }
 
-/// Returns for each of `count` vertices or cells its row in the array, −1 for none. Returns an empty list for
-/// a dense array, in which vertex or cell i has row i. O(count).
+/// Returns for each of `count` vertices or cells its row in the array, −1 if it has no row. Returns an empty
+/// list for a dense array, in which vertex or cell i has row i. O(count).
 std::vector<Index> rows_by_item(const DataArray& array, Index count);
 
 /// Returns the given rows of an array's values, `components` values each. O(returned values).

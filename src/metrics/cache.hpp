@@ -23,15 +23,15 @@ struct Caches {
 };
 
 /// Returns caches of the given sizes, "48K,1M,32M", from the smallest level to the largest: whole numbers of
-/// bytes, or of 2^10, 2^20 or 2^30 bytes with K, M or G. Throws InvalidArgument if one is not a size, is not
-/// a multiple of kLineBytes or is not larger than the one before.
+/// bytes, or of 2^10, 2^20 or 2^30 bytes with K, M or G. Throws InvalidArgument if a part of the text is not
+/// a size, is not a multiple of kLineBytes or is not larger than the size before it.
 Caches parse_cache_sizes(std::string_view text);
 
 /// Returns the sizes as text that parse_cache_sizes reads, "48K,1M,32M".
 std::string to_string(const Caches& caches);
 
-/// Returns the misses of each level. From a `Reuse`'s `all` these are all misses; from its `jumps`, those
-/// that no hardware prefetcher of streams avoids.
+/// Returns the misses of each level. For the histogram `Reuse::all` these are all misses; for `Reuse::jumps`,
+/// the misses that no hardware prefetcher of streams avoids.
 std::vector<Offset> misses(const ReuseHistogram& histogram, const Caches& caches);
 
 }  // namespace meshorder

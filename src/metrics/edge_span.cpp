@@ -26,7 +26,7 @@ void for_each_span(GraphRef graph, PlaceOf place_of, Index begin, Index end, Vis
   }
 }
 
-/// Calls `call(place)` with a function that returns the new number of a vertex. `place_of` is that of
+/// Calls `call(place)` with a function that returns the new number of a vertex. `place_of` as in
 /// `sampled_edge_span`.
 template <class Call>
 auto with_places(std::span<const Index> place_of, Call call) {
@@ -40,7 +40,7 @@ void for_each_span(GraphRef graph, std::span<const Index> place_of, Visit visit)
   with_places(place_of, [&](auto place) { for_each_span(graph, place, 0, graph.size(), visit); });
 }
 
-/// Returns the number of edges in each bin, up to the last bin that has any.
+/// Returns the number of edges in each bin, up to the last bin that has edges.
 template <class BinOf>
 std::vector<Offset> histogram(GraphRef graph, const Permutation& order, BinOf bin_of) {
   std::vector<Offset> bins;
@@ -52,7 +52,7 @@ std::vector<Offset> histogram(GraphRef graph, const Permutation& order, BinOf bi
   return bins;
 }
 
-/// Returns the spans of all edges. `place_of` is that of `sampled_edge_span`.
+/// Returns the spans of all edges. `place_of` as in `sampled_edge_span`.
 EdgeSpan exact_span(GraphRef graph, std::span<const Index> place_of) {
   EdgeSpan result;
   if (graph.neighbours.empty()) return result;
@@ -79,7 +79,7 @@ template <class PlaceOf>
 EdgeSpan span_of_sample(GraphRef graph, PlaceOf place_of) {
   constexpr Index kAtOnce = 4096;  // taken by a thread at a time
   constexpr Index kAhead = 8;
-  constexpr double kLargeProduct = 0x1p+960;  // times another span, still below the largest double
+  constexpr double kLargeProduct = 0x1p+960;  // the product with one more span does not overflow
   const VertexSample sample(graph.size());
   const auto sums = sum_over_chunks<SpanSums<Offset>>(sample.size(), kAtOnce, [&](Index begin, Index end) {
     SpanSums<Offset> part;

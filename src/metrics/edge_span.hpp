@@ -24,13 +24,12 @@ struct EdgeSpan {
 /// Returns the spans of the graph's edges in the given order. O(n + edges).
 EdgeSpan edge_span(GraphRef graph, const Permutation& order);
 
-/// Like `edge_span`, for the edges at a `VertexSample`, on all threads. On tetrahedral meshes means are
-/// within 5 % of the exact ones, mean_log2 within 0.05, and `max` at most the exact one. Below 262,144
-/// vertices all are exact except for rounding. Does not depend on the number of threads. O(vertices and edges
-/// of
-/// the sample).
+/// Like `edge_span`, for the edges at a `VertexSample`, on all threads. On tetrahedral meshes `mean` is
+/// within 5 % of the exact value and `mean_log2` within 0.05; `max` is at most the exact value. Below 262,144
+/// vertices all values are exact except for rounding. They do not depend on the number of threads. O(vertices
+/// and edges of the sample).
 ///
-/// @param place_of  the new number of each vertex; empty: as they are numbered
+/// @param place_of  the new number of each vertex; empty: the vertices keep their numbers
 EdgeSpan sampled_edge_span(GraphRef graph, std::span<const Index> place_of);
 
 /// Sums over the entries of a graph; each edge has two entries.
@@ -58,16 +57,16 @@ struct SpanSize {
   SpanSize& operator+=(const SpanSize& other);
 };
 
-/// Adds up the spans of all edges, on all threads; polls. `place_of` is that of `sampled_edge_span`.
-/// O(n + edges).
+/// Adds up the spans of all edges, on all threads; polls. `place_of` as in `sampled_edge_span`. O(n + edges).
 SpanSize span_size(GraphRef graph, std::span<const Index> place_of);
 
-/// Like `edge_span`. From 262,144 vertices on it uses all threads, and `mean_log2` is that of
+/// Like `edge_span`. From 262,144 vertices on it uses all threads, and `mean_log2` is the estimate of
 /// `sampled_edge_span`. Does not depend on the number of threads. O(n + edges).
 EdgeSpan quick_edge_span(GraphRef graph, std::span<const Index> place_of);
 
 /// Returns the size of the envelope of a matrix with this pattern, without the diagonal: the sum, over all
-/// vertices, of the distance to their first neighbour, if that comes before them in the order. O(n + edges).
+/// vertices, of the distance to the vertex's first neighbour in the order, if that comes before the vertex.
+/// O(n + edges).
 Offset profile(GraphRef graph, const Permutation& order);
 
 /// Returns all measures, as the public `quality` does. O(n + edges).

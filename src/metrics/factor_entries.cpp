@@ -10,8 +10,9 @@ namespace {
 
 constexpr Index kNoPlace = -1;
 
-/// Returns the elimination tree: for each place of the order the first later place whose row of the factor
-/// has an entry there, kNoPlace for roots (Liu 1990, The role of elimination trees in sparse factorization).
+/// Returns the elimination tree: for each place k of the order, the first later place whose row of the factor
+/// has an entry in column k; kNoPlace for roots (Liu 1990, The role of elimination trees in sparse
+/// factorization).
 std::vector<Index> elimination_tree(GraphRef graph, const Permutation& order) {
   std::vector<Index> parent(static_cast<std::size_t>(graph.size()), kNoPlace);
   std::vector<Index> ancestor(parent);  // in the tree found so far, with shortened paths
@@ -37,7 +38,7 @@ struct Postordered {
   std::vector<Index> depth;             ///< by number; 0 for roots
 };
 
-/// Numbers a tree in postorder. `parent` has a later node for each node, or kNoPlace.
+/// Numbers a tree in postorder. `parent` has for each node its parent, a later node, or kNoPlace.
 Postordered postordered(std::span<const Index> parent) {
   const Index n = index_size(parent);
   std::vector<Index> size(parent.size(), 1);
@@ -64,7 +65,7 @@ Postordered postordered(std::span<const Index> parent) {
   return tree;
 }
 
-/// Sets of nodes, each named by one of them.
+/// Sets of nodes; each set is named by one of its nodes.
 class DisjointSets {
  public:
   explicit DisjointSets(Index n) : towards_(static_cast<std::size_t>(n)) {

@@ -15,9 +15,9 @@ constexpr Index kLinesBefore = 3;
 constexpr Index kRecent = 32;         // first touches
 constexpr Index kWindow = 4096;       // rows
 constexpr Index kWindowsForOne = 16;  // step between windows of small graphs
-constexpr Index kWindows = 8;         // number of windows of large graphs, at times one more
+constexpr Index kWindows = 8;         // number of windows of large graphs; sometimes there is one more
 
-/// Counts the first touches of lines, and how many of them are jumps, window by window.
+/// Counts, window by window, the first touches of lines, and those first touches that are jumps.
 class FirstTouches {
  public:
   FirstTouches(GraphRef graph, const Permutation& order)

@@ -23,10 +23,10 @@ struct Iterations {
   bool operator==(const Iterations&) const = default;
 };
 
-/// Returns how many iterations two preconditioners that depend on the order need until the residual is 1e-8
-/// of the right side. The matrix is the Laplacian of the graph in that order, with a hundredth of the mean
-/// degree added to its diagonal. The right side is the same in every order, vertex by vertex. More than 1,000
-/// iterations count as 1,000. O(entries · iterations), and 40 bytes an entry.
+/// Returns how many iterations are needed, with each of two preconditioners that depend on the order, until
+/// the residual is 1e-8 of the right side. The matrix is the Laplacian of the graph in that order, with a
+/// hundredth of the mean degree added to its diagonal. The right side is the same in every order, vertex by
+/// vertex. More than 1,000 iterations count as 1,000. O(entries · iterations), and 40 bytes an entry.
 Iterations iterations_in(GraphRef graph, const Permutation& order);
 
 /// Returns the entries below the diagonal of the Cholesky factor of a matrix with this pattern, whose rows
@@ -35,10 +35,10 @@ Iterations iterations_in(GraphRef graph, const Permutation& order);
 /// An efficient algorithm to compute row and column counts for sparse Cholesky factorization).
 Offset factor_entries(GraphRef graph, const Permutation& order);
 
-/// Returns the share of a vector's lines that a sweep over the rows of a matrix first reads out of order: of
-/// all lines of 8 entries, the share whose first touch is a jump. The first touch of a line is no jump if one
-/// of the three lines before it was among the last 32 lines touched for the first time. Rows are in the given
-/// order, the entries of a row in the order of their columns.
+/// Returns the share of a vector's lines, of 8 entries each, whose first touch in a sweep over the rows of a
+/// matrix is a jump. The first touch of a line is a jump unless one of the three lines before it is among the
+/// last 32 lines that were touched for the first time. Rows are in the given order, the entries of a row in
+/// the order of their columns.
 ///
 /// If vectors exceed the last cache, a sweep reads every line from memory once; processors prefetch
 /// consecutive lines. On such meshes this share explains how fast plain products and springs run in different
@@ -56,12 +56,12 @@ double sampled_jump_share(GraphRef graph, const Permutation& order);
 inline constexpr std::array<Index, 3> kElementsAtOnce{64, 512, 4096};
 
 /// Returns for each of `kElementsAtOnce` the mean number of distinct vertices that so many consecutive
-/// elements use in that order (Denning 1968: The working set model for program behavior). The data of these
-/// vertices, and of pairs of them, pass through the caches in this time.
+/// elements use in that order (Denning 1968: The working set model for program behavior). While these
+/// elements are visited, the data of these vertices, and of pairs of them, pass through the caches.
 ///
 /// Counted at up to 15 places, evenly spread. O(vertices + 61,440 elements).
 ///
-/// @param new_to_old  the order of all elements; empty: as they are numbered
+/// @param new_to_old  the order of all elements; empty: the order of their numbers
 std::array<double, kElementsAtOnce.size()> working_sets(IncidenceRef elements,
                                                         std::span<const Index> new_to_old);
 

@@ -18,8 +18,8 @@ constexpr int kFineBits = 7;
 constexpr std::uint32_t kWord = 64;
 constexpr std::uint32_t kSisters = 16;
 
-/// Entry i of row k is 1 if i < k. Adding a row in vector registers avoids a loop to k, whose end would be
-/// mispredicted.
+/// Entry i of row k is 1 if i < k. Adding row k in vector registers avoids a loop up to k, whose end the
+/// processor would mispredict.
 constexpr auto kOneBefore = [] {
   std::array<std::array<std::uint32_t, kSisters>, kSisters> rows{};
   for (std::uint32_t k = 0; k < kSisters; ++k) {
@@ -28,7 +28,7 @@ constexpr auto kOneBefore = [] {
   return rows;
 }();
 
-/// Subtracts through a copy, without which the compiler handles one entry at a time.
+/// Subtracts through a copy; without the copy, the compiler would handle one entry at a time.
 void subtract(const std::array<std::uint32_t, kSisters>& what, std::array<std::uint32_t, kSisters>& from) {
   std::array<std::uint32_t, kSisters> rest;
   for (std::uint32_t i = 0; i < kSisters; ++i) rest[i] = from[i] - what[i];
@@ -69,7 +69,7 @@ ReuseHistogram ReuseHistogram::scaled(int halvings, double times) const {
   ReuseHistogram result;
   for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
     if (bins_[bin] == 0) continue;
-    // one sampled line more means 2^halvings lines more: take the middle of that range
+    // a distance of one more sampled line means 2^halvings more lines: take the middle of that range
     const double distance = std::ldexp(middle_of(bin) + 0.5, halvings) - 0.5;
     const auto in_range = static_cast<Index>(std::min<double>(distance, kMaxIndex));
     result.bins_[bin_of(in_range)] += std::llround(times * static_cast<double>(bins_[bin]));
@@ -141,7 +141,7 @@ Index ReuseDistance::move_to_front(Index line) {
   return distance;
 }
 
-/// Counts a far access; returns whether it is a jump.
+/// Counts a far access, and returns whether it is a jump.
 bool ReuseDistance::is_jump(Index line, Access how, std::uint32_t streamed) {
   if (halvings_ > 0) return is_jump_in_sample(line, how, streamed);
   ++far_accesses_;
@@ -197,7 +197,7 @@ Index ReuseDistance::move_mark(Slot from, Slot to) {
   return static_cast<Index>(between + in_open);
 }
 
-/// Completes a word, and each node that ends with it: from now on the next slot comes after them.
+/// Completes a word, and each node that ends with it: the next slots come after them.
 void ReuseDistance::close_word(std::size_t word) {
   std::size_t node = word;
   for (std::size_t level = 0; level < levels_.size(); ++level) {
@@ -233,8 +233,9 @@ void ReuseDistance::close_gaps() {
 }
 
 Reuse ReuseDistance::repeated() && {
-  // accesses within a run have the same distances in every run; the distance of a line's first access in a
-  // run reaches back into the run before, and each line accessed meanwhile counts once
+  // In each repetition, the accesses have the same distances, except the first access to each line. The
+  // distance of that access reaches back into the repetition before; each line accessed in between counts
+  // once.
   reuse_.all.forget_cold();
   reuse_.jumps.forget_cold();
   for (std::size_t k = 0; k < first_accesses_.size(); ++k) {

@@ -12,8 +12,9 @@ namespace meshorder {
 
 /// Counts how often each reuse distance occurs in a stream of accesses to cache lines. The reuse distance is
 /// the number of other lines accessed since a line's last access. A fully associative cache of c lines that
-/// drops the least recently used one misses the accesses of distance c and more, and the cold ones, the first
-/// to a line (Mattson, Gecsei, Slutz and Traiger 1970: Evaluation techniques for storage hierarchies).
+/// replaces the least recently used line misses the accesses of distance c and more, and the cold accesses,
+/// which are the first to a line (Mattson, Gecsei, Slutz and Traiger 1970: Evaluation techniques for storage
+/// hierarchies).
 ///
 /// Distances below 256 are counted one by one, larger ones in 128 bins to each power of two.
 class ReuseHistogram {
@@ -30,8 +31,9 @@ class ReuseHistogram {
   [[nodiscard]] Offset accesses() const;
   [[nodiscard]] Offset cold() const noexcept { return cold_; }
 
-  /// Returns the misses of a cache of that many lines, ≥ 0. Exact if the number has at most 8 significant
-  /// bits, as those of caches have; else it is rounded down to such a number, by less than 1 %. O(bins).
+  /// Returns the misses of a cache of that many lines, ≥ 0. Exact if the number of lines has at most 8
+  /// significant bits, as for real caches; otherwise that number is rounded down to 8 bits, by less than 1 %.
+  /// O(bins).
   [[nodiscard]] Offset misses(Offset lines) const;
 
   /// Returns the mean of log₂(distance + 1) over the accesses that are not cold; 0 if there are none. Every
@@ -48,16 +50,16 @@ class ReuseHistogram {
   Offset cold_ = 0;
 };
 
-/// How a program reaches a cache line. streamed: as the next one of an array that it reads from front to
-/// back; gathered: at a place that the mesh names.
+/// How a program reaches a cache line. streamed: as the next line of an array that it reads from front to
+/// back; gathered: at a place that depends on the mesh.
 enum class Access : bool { streamed, gathered };
 
 /// The accesses of a stream, as a processor's caches see them.
 struct Reuse {
   ReuseHistogram all;
-  /// Gathered accesses of distance 512 (an L1 cache of 32 KB) or more that continue no stream: neither of
-  /// the two lines before was among the last 64 accesses of such a distance. Processors prefetch the lines
-  /// that follow such accesses; a jump waits for the memory.
+  /// Gathered accesses of distance 512 (an L1 cache of 32 KB) or more that do not continue a stream: neither
+  /// of the two lines before the line is among the last 64 accesses of such a distance. Processors prefetch
+  /// the lines that continue a stream; a jump waits for the memory.
   ReuseHistogram jumps;
 
   bool operator==(const Reuse&) const = default;
@@ -68,13 +70,13 @@ struct Reuse {
 /// Each access takes a slot, which is marked as long as it is the last access to its line. A distance is then
 /// the number of marks after a line's own (Bennett and Kruskal 1975, LRU stack processing). The marks are
 /// bits, counted by a tree with 16 children a node. An access goes up the tree only until its line's old and
-/// new slots meet: O(log distance) steps. When the slots run out, the marks are moved together.
-/// Memory: 13 bytes for each line.
+/// new slots meet: O(log distance) steps. When there are no more free slots, the marks are moved to the first
+/// slots. Memory: 13 bytes for each line.
 class ReuseDistance {
  public:
-  /// For accesses to lines 0 … lines − 1. If `halvings` > 0, these are a sample of 2^-halvings of the lines,
-  /// as drawn by ReuseSample: the last nine of each eleven lines count, and an access is far at a distance
-  /// that is 2^halvings times shorter.
+  /// For accesses to lines 0 … lines − 1. If `halvings` > 0, these lines are a sample that ReuseSample has
+  /// drawn, 2^-halvings of all lines. In each block of eleven lines only the last nine count, and an access
+  /// is far at a distance that is shorter by the factor 2^halvings.
   explicit ReuseDistance(Index lines, int halvings = 0);
 
   /// Returns the distance, −1 for a cold access. Amortised O(1 + log distance).
@@ -95,10 +97,10 @@ class ReuseDistance {
   /// Returns the number of lines accessed so far.
   [[nodiscard]] Index distinct() const noexcept { return index_size(first_accesses_); }
 
-  /// Returns the accesses of every run but the first if the stream so far is repeated for ever. None is cold:
-  /// the first access to a line in a run reuses it from the run before. Such an access is a jump if it is
-  /// far and the line's cold access was a jump. Ends the measurement.
-  /// O(distinct lines · log distance).
+  /// Suppose the stream so far is repeated for ever: returns the counts of one repetition, any but the first.
+  /// No access is cold: the first access to a line in a repetition reuses the line from the repetition
+  /// before. Such an access is a jump if it is far and the line's cold access was a jump. Ends the
+  /// measurement. O(distinct lines · log distance).
   [[nodiscard]] Reuse repeated() &&;
 
  private:
@@ -109,18 +111,18 @@ class ReuseDistance {
   static constexpr Index kSampledBlock = 11;
   static constexpr Index kUncounted = 2;  ///< the first lines of a block
 
-  /// Both are read together and are seldom in this machine's caches, so they are side by side.
+  /// The two numbers are read together and are seldom in this machine's caches, so they are side by side.
   struct LastAccess {
     Slot slot = kNever;
-    std::uint32_t far = 0;  ///< number of the last far access, cold ones included
+    std::uint32_t far = 0;  ///< number of the last far access; cold accesses count too
   };
 
-  /// Numbers of far accesses before a line's last one, in a sample. A block is sampled as a whole, so
-  /// gathered accesses to the line's own block are counted exactly; those to other blocks are a sample.
-  /// Streamed accesses count as far.
+  /// In a sample: numbers of far accesses before a line's last far access. A block is sampled as a whole, so
+  /// gathered accesses to the line's own block are counted exactly; gathered accesses to other blocks are
+  /// estimated by those to sampled blocks. Streamed accesses count as far.
   struct FarOfSample {
     std::uint32_t gathered = 0;
-    std::uint32_t own = 0;  ///< gathered ones in the line's block
+    std::uint32_t own = 0;  ///< gathered accesses to the line's block
     std::uint32_t streamed = 0;
   };
 
@@ -145,15 +147,16 @@ class ReuseDistance {
   std::vector<LastAccess> last_access_of_line_;
   std::vector<Index> first_accesses_;  ///< lines in the order of their first accesses
   std::vector<std::uint64_t> marks_;   ///< a bit for each slot
-  /// One for each level above the words of marks_; the nodes that hold the next slot count as empty here.
+  /// One vector for each level above the words of marks_. The nodes that hold the next slot count as empty
+  /// here.
   std::vector<std::vector<Sisters>> levels_;
   std::vector<std::uint32_t> marks_in_open_;  ///< for each level, marks in the node that holds the next slot
   Slot slot_count_ = 0;
   Slot next_ = 0;
-  std::uint32_t far_accesses_ = kFollowing;  ///< in a sample only the gathered ones
+  std::uint32_t far_accesses_ = kFollowing;  ///< in a sample only gathered accesses
   std::vector<FarOfSample> far_of_line_;     ///< only in a sample
   std::vector<std::uint32_t> far_of_block_;  ///< only in a sample: gathered accesses
-  std::vector<bool> first_access_jumps_;     ///< for each of first_accesses_, whether it is a jump
+  std::vector<bool> first_access_jumps_;     ///< for each entry of first_accesses_, whether it is a jump
   Reuse reuse_;
   friend class ReuseSample;
 };

@@ -12,14 +12,15 @@
 namespace meshorder {
 
 /// Estimates the reuse distances of a stream from the accesses to a sample of its lines: the distance counted
-/// in sampled lines alone is about the true distance times the share of lines that are sampled
-/// (Waldspurger, Park, Garthwaite and Ahmad 2015: Efficient MRC construction with SHARDS).
+/// only in sampled lines is about the true distance times the share of lines that are sampled (Waldspurger,
+/// Park, Garthwaite and Ahmad 2015: Efficient MRC construction with SHARDS).
 ///
-/// The sample consists of blocks of eleven lines, chosen by a hash of their number. The last nine count; the
-/// first two show whether a stream continues in those. Eleven divides no period of a kernel's arrays, such as
-/// the 9 lines of 8 matrix blocks. An access to another block costs a hash. The same stream gives the same
-/// estimate on every run. Its error falls with the root of the lines sampled and of the cache's size:
-/// estimates for caches below about 100 · 2^halvings lines are unreliable.
+/// The sample consists of blocks of eleven lines, chosen by a hash of their number. The last nine lines of a
+/// block count; the first two show whether a stream continues into these nine. No period of a kernel's
+/// arrays, such as the 9 lines of 8 matrix blocks, is a multiple of eleven. An access to a block that is not
+/// sampled costs only a hash. The same stream gives the same estimate on every run. Its error falls with the
+/// square roots of the number of sampled lines and of the cache's size: estimates for caches below about 100
+/// · 2^halvings lines are unreliable.
 class ReuseSample {
  public:
   /// For accesses to lines 0 … lines − 1, of which 2^-halvings are sampled. With 0 halvings it is exact.
@@ -49,7 +50,8 @@ class ReuseSample {
     }
   }
 
-  /// Returns whether one of the lines first … last is sampled; other accesses need not be reported. O(lines).
+  /// Returns whether one of the lines first … last is sampled. Accesses to lines that are not sampled need
+  /// not be reported. O(lines).
   [[nodiscard]] bool samples(Index first, Index last) const noexcept {
     if (place_of_block_.empty()) return true;
     for (Index block = first / kBlock; block <= last / kBlock; ++block) {
@@ -64,9 +66,9 @@ class ReuseSample {
  private:
   static constexpr Index kBlock = ReuseDistance::kSampledBlock;
 
-  /// A sampled access. It is measured 32 sampled accesses later; meanwhile the cache fetches its data: first
-  /// the place of its block among the sampled blocks and, after 16 accesses, when the number of its line
-  /// among the sampled lines is known, the data of that line.
+  /// A sampled access. It is measured 32 sampled accesses later, so that its data can be prefetched: at once
+  /// the entry of its block; 16 accesses later, when the line's number among the sampled lines is known, the
+  /// entry of its line.
   struct Waiting {
     Index line = 0;
     Access how = Access::gathered;
@@ -92,7 +94,7 @@ class ReuseSample {
 
   void measure_those_that_wait();
 
-  /// Decides by mixed bits of the block's number, so that no stride of a stream is in step with the sample.
+  /// Decides by a hash of the block's number, so that no stride of a stream is in step with the sample.
   [[nodiscard]] bool sampled(Index block) const noexcept {
     std::uint32_t bits = static_cast<std::uint32_t>(block) * 0x9e3779b1U;
     bits = (bits ^ bits >> 15U) * 0x85ebca6bU;

@@ -35,29 +35,30 @@ Order hilbert_elements(const ElementInput&, const OrderOptions&);
 std::vector<MethodInfo> built_in_vertex_methods();
 std::vector<MethodInfo> built_in_element_methods();
 
-// What several of them consist of.
+// Parts that several methods share.
 
 /// Renumbers each chunk of 2,048 vertices of an order breadth first. The search starts from the vertices with
 /// neighbours in earlier chunks, those with the earliest neighbour first.
 ///
 /// A sweep over rows or edges then touches new vertices nearly in the order of their numbers. If vectors
-/// exceed the last cache, it reads memory forward, which processors prefetch, as after breadth-first
-/// numbering of the whole graph; but each chunk remains the compact region that the order gave it. Vertices
-/// move within their chunk only.
+/// exceed the last cache, it then reads memory forward, as after breadth-first numbering of the whole graph;
+/// processors prefetch that. But each chunk remains the compact region that the order made it. Vertices move
+/// only within their chunk.
 ///
 /// O(n + edges · log degree) on all threads; the result does not depend on their number.
 Permutation in_fronts(GraphRef graph, const Permutation& order);
 
 /// Orders a small graph by bisection down to a few vertices. Returns the vertices in their new order.
 ///
-/// Each piece is cut at the median of a smooth function: the difference of the distances from two far ends,
-/// averaged over neighbours a few times. These are a few steps of the power method from a good start; in
-/// small graphs the result is close enough to the Fiedler vector. A piece that is not connected is ordered
-/// component by component.
+/// Each piece is cut at the median of a smooth function: the distance from one far end minus the distance
+/// from the other far end, averaged over neighbours a few times. These are a few steps of the power method
+/// from a good start; in small graphs the result is close enough to the Fiedler vector. A piece that is not
+/// connected is ordered component by component.
 ///
-/// `pull` has an entry for each vertex: the number of its neighbours before this graph in the whole order
-/// minus that of neighbours after it. Each cut takes the direction that brings vertices nearer
-/// to their neighbours elsewhere. O((n + edges) · log n) time, O(n + edges) memory; one thread.
+/// `pull` has an entry for each vertex. In the whole order, some of the vertex's neighbours come before this
+/// graph and some come after it; the entry is the number of the former minus that of the latter. Each cut
+/// takes the direction that brings vertices nearer to these neighbours. O((n + edges) · log n) time, O(n +
+/// edges) memory; one thread.
 std::vector<Index> smoothed_bisection(CsrGraph graph, std::vector<float> pull);
 
 }  // namespace meshorder

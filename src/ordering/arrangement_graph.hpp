@@ -29,22 +29,23 @@ Offset total_span(const ArrangementGraph& graph, const std::vector<Index>& order
 
 /// A graph with fewer vertices, each of which is a group of vertices of a finer graph.
 struct CoarseArrangement {
-  ArrangementGraph graph;       ///< vertices numbered in the order of the first members of their groups
+  ArrangementGraph graph;       ///< its vertices are numbered in the order of their groups' first members
   std::vector<Index> group_of;  ///< for each vertex of the finer graph
 };
 
-/// Puts each vertex, in the given order, into the group of the neighbour with the largest weight over
-/// distance on the line; a group has up to eight vertices. Groups hold near and strongly joined vertices, so
-/// that the order of the groups fixes most of the order of the vertices. All edges between two groups become
-/// one, with the sum of their weights. O(n + edges), deterministic.
+/// Puts each vertex, in the given order, into the group of a neighbour: the one with the largest ratio of
+/// edge weight to distance on the line. A group has up to eight vertices. Groups hold near and strongly
+/// joined vertices, so that the order of the groups fixes most of the order of the vertices. All edges
+/// between two groups become one, with the sum of their weights. O(n + edges), deterministic.
 CoarseArrangement coarsen(const ArrangementGraph& graph, const std::vector<Index>& order);
 
 /// Improves an order by local search: takes out each vertex in turn and puts it back where the total span is
-/// least. Makes `passes` passes, fewer if none moves. Returns the total span of the result.
+/// least. Makes `passes` passes, or fewer if no vertex moves any more. Returns the total span of the result.
 ///
-/// Changes are computed exactly: when a vertex slides past the next on the line, only the spans of edges at
-/// these two change, by a known sum, so that each step of a slide costs O(1). A slide ends when the span has
-/// risen so far above its least that a better place is rare, or after a number of steps for each edge.
+/// Changes are computed exactly: when a vertex slides past the next vertex on the line, only the spans of
+/// edges at these two vertices change, by a known sum. Each step of a slide therefore takes O(1) time. A
+/// slide ends when the span has risen so far above its least value that a better place is rare, or after a
+/// number of steps proportional to the vertex's edges.
 ///
 /// Works on chunks of the order, on all threads. Vertices stay in their chunk; each chunk of the next pass
 /// overlaps two of this one. The result does not depend on the number of threads. O(n + edges) a pass.

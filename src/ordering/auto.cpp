@@ -39,10 +39,11 @@ Workload parse_workload(std::string_view name) { return parse<Workload>(name); }
 
 namespace {
 
-/// A lattice, cut into cells of any shape; else a graph with or without coordinates.
+/// The kind of a graph: a lattice, cut into cells of any shape; another graph with coordinates; another graph
+/// without them.
 enum class Kind : std::uint8_t { lattice, placed, bare };
 
-/// A condition for a method; the first rule that fits decides.
+/// A condition under which a method is chosen; the first rule that fits decides.
 struct Rule {
   std::span<const Workload> workloads = {};  ///< empty: any
   Index least_vertices = 0;                  ///< smallest number of vertices
@@ -95,9 +96,9 @@ bool fits(const Rule& rule, Index vertices, Kind kind, Workload workload) {
          vertices >= rule.least_vertices && (!rule.kind || *rule.kind == kind);
 }
 
-/// Returns whether most vertices have the same number of neighbours, as inside a lattice: 14 if its cubes are
-/// cut into tetrahedra, 26 if they are cells. The most frequent number occurs at no more than a sixth of the
-/// vertices in meshes by TetGen, and at half in good triangulations of surfaces. O(n).
+/// Returns whether most vertices have the same number of neighbours, as inside a lattice: 14 if the lattice's
+/// cubes are cut into tetrahedra, 26 if the cubes are the cells. The most frequent number occurs at no more
+/// than a sixth of the vertices in meshes by TetGen, and at half in good triangulations of surfaces. O(n).
 bool is_lattice(const GraphRef& graph) {
   constexpr double kMost = 0.6;
   std::vector<Index> with_degree;
@@ -128,7 +129,7 @@ Kind kind_of(const VertexInput& input) {
 }
 
 /// Returns whether the graph is a lattice whose vertices are numbered about as well as by `order`: a sweep
-/// reads few lines out of order, and the mean span is at most half as long again.
+/// reads few lines out of order, and the mean span is at most 1.5 times that of `order`.
 bool is_well_numbered_lattice(const VertexInput& input, const Permutation& order) {
   constexpr double kFew = 0.1;
   constexpr double kAlike = 1.5;

@@ -14,8 +14,8 @@ namespace {
 
 constexpr Index kUnranked = -1;
 
-/// The place of a new vertex: after the old vertex of that rank. New vertices with the same place keep the
-/// order in which they were found.
+/// The place of a new vertex: after the old vertex whose rank is `after`. New vertices with the same place
+/// keep the order in which they were found.
 struct Insertion {
   Index after;
   Index vertex;
@@ -31,7 +31,7 @@ std::vector<Index> survivors(std::span<const Index> places, Index count) {
   return at;
 }
 
-/// Returns the median rank of the neighbours that have a rank; kUnranked if none has.
+/// Returns the median rank of the neighbours that have a rank; kUnranked if no neighbour has a rank.
 Index median_rank(std::span<const Index> neighbours, std::span<const Index> rank_of,
                   std::vector<Index>& ranks) {
   ranks.clear();
@@ -47,7 +47,8 @@ Index median_rank(std::span<const Index> neighbours, std::span<const Index> rank
 
 /// Finds a rank for the new vertices in waves: the vertices of a wave have neighbours with a rank.
 ///
-/// @param rank_of  rank of each vertex, kUnranked for new ones; the ranks found are added
+/// @param rank_of  rank of each vertex, kUnranked for new vertices; the ranks that are found are written to
+///                 it
 std::vector<Insertion> found_places(std::span<const Index> added, const NeighbourRows& rows,
                                     std::vector<Index>& rank_of) {
   const auto row_of = [&](Index k) {
@@ -73,7 +74,8 @@ std::vector<Insertion> found_places(std::span<const Index> added, const Neighbou
       found.push_back({after, added[static_cast<std::size_t>(k)]});
       for (const Index u : row_of(k)) next.push_back(number_of[static_cast<std::size_t>(u)]);
     }
-    // ranks count from the next wave on, so that the numbers of vertices do not matter
+    // new ranks are used only from the next wave on, so that the result does not depend on how vertices are
+    // numbered
     for (std::size_t i = first; i < found.size(); ++i) {
       rank_of[static_cast<std::size_t>(found[i].vertex)] = found[i].after;
       number_of[static_cast<std::size_t>(found[i].vertex)] = kUnranked;

@@ -9,10 +9,10 @@
 
 namespace meshorder {
 
-/// The vertices of an update compared with those of the last one.
+/// The vertices of an update compared with those of the previous update.
 struct VertexChanges {
   std::vector<Index>
-      places;  ///< of each vertex after the last update, −1 for new ones; empty: nothing changed
+      places;  ///< of each vertex after the last update, −1 for new vertices; empty: nothing changed
   std::vector<Index> added;
   Index removed = 0;
 };
@@ -31,9 +31,9 @@ struct NeighbourRows {
 
 /// Returns the vertices in their old order, with new ones next to their neighbours: each comes after the
 /// median of its neighbours that have a place. New vertices are placed in waves, from neighbour to neighbour;
-/// those that reach no placed vertex come last.
+/// vertices from which no placed vertex can be reached come last.
 ///
-/// @param places  each vertex's place in the old order, −1 for a new one; no place occurs twice
+/// @param places  each vertex's place in the old order, −1 for a new vertex; no place occurs twice
 /// @param count   number of places in the old order
 /// @param added   the new vertices, ascending
 /// @param rows    a row for each new vertex

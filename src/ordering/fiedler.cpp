@@ -30,7 +30,8 @@ void append_sorted(const std::vector<Index>& component, const std::vector<double
   for (const Index k : sorted_by(n, value, n, place).new_to_old()) new_to_old.push_back(component[k]);
 }
 
-/// Returns component after component, largest first, each by ascending Fiedler value, ties by old number.
+/// Returns the order of the vertices: component after component, largest first; within a component by
+/// ascending Fiedler value, ties by old number.
 Order by_fiedler_vector(GraphRef graph, std::span<const double> weights, const OrderOptions& options) {
   FiedlerVectors fiedler = fiedler_vectors(graph, weights, solver_options(options));
   report("sort");

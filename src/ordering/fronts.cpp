@@ -23,7 +23,7 @@ constexpr Index kAheadOfPlaces = 4;
 /// would be unpredictable.
 class SectionRenumbering {
  public:
-  /// @param places  maps each place in the old order to the new one, where that is known
+  /// @param places  maps each place in the old order to the new place, if that is known
   SectionRenumbering(GraphRef graph, const Permutation& order, Index begin, std::span<Index> places)
       : graph_(graph), order_(order), begin_(begin), places_(places) {}
 
@@ -38,7 +38,7 @@ class SectionRenumbering {
       is_queued_[vertex] = 1;
     };
     for (const auto& [earliest, vertex] : seeds_) enqueue(vertex);
-    Index first = 0;  // no vertex before this one is unreached
+    Index first = 0;  // all vertices before this one are reached
     for (Index next = 0; next < end - begin;) {
       if (next == queued) {
         enqueue(first++);
@@ -87,7 +87,7 @@ class SectionRenumbering {
   }
 
   /// Returns the new number of a place before the chunk. Another thread may be renumbering places before the
-  /// section: for these it returns the place itself, which is less than a chunk away.
+  /// section: for these it returns the old place, which is less than a chunk away from the new one.
   [[nodiscard]] Index number_at(Index place) const { return place < begin_ ? place : places_[place]; }
 
   GraphRef graph_;

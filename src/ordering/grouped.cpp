@@ -14,7 +14,7 @@
 namespace meshorder {
 namespace {
 
-/// The vertices group after group, in their old order within each.
+/// The vertices group after group; within a group in their old order.
 struct Sorted {
   std::vector<Index> vertices;
   std::vector<Index> starts;  ///< groups + 1
@@ -45,8 +45,9 @@ struct GroupInput {
   std::vector<double> start;  ///< for the eigensolver
 };
 
-/// Returns the graph of one group's vertices among themselves, with their weights, points and start. Its cost
-/// depends on the group alone, unlike that of induced_subgraph: there may be as many groups as vertices.
+/// Returns the graph of one group's vertices among themselves, with their weights, points and start. Unlike
+/// with induced_subgraph, the cost depends only on the size of the group: there may be as many groups as
+/// vertices.
 GroupInput input_of_group(const VertexInput& input, RealView start, const Sorted& sorted, Index group) {
   const Index begin = sorted.starts[group];
   const Index end = sorted.starts[group + 1];

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Index kChunk = 4096;
 constexpr Index kReach = 64;  // places that a slide may pass for each edge of the vertex
-constexpr Offset kSlack = 2;  // times the weight of the vertex's edges, times its volume
+constexpr Offset kSlack = 2;  // factor on (weight of the vertex's edges · its volume)
 
 /// The places begin … end−1 of the line.
 struct Places {
@@ -43,7 +43,7 @@ class InsertionSearch {
   }
 
   /// Takes every vertex out and puts it back, chunk by chunk; the first chunk is shorter by `shift`. Returns
-  /// whether anything moved.
+  /// whether a vertex moved.
   bool pass(Index shift) {
     const Index n = graph_.size();
     for (Index k = 0; k < n; ++k) chunk_of_[order_[k]] = (k + shift) / kChunk;
@@ -59,7 +59,7 @@ class InsertionSearch {
   }
 
   [[nodiscard]] Offset total_span() const {
-    // an edge counts its weight times the later middle minus the earlier one
+    // the span of an edge is its weight times the difference of the later and the earlier middle
     Offset sum = 0;
     Offset begin = 0;
     for (Index k = 0; k < graph_.size(); ++k) {
@@ -75,7 +75,7 @@ class InsertionSearch {
     Offset change = 0;  ///< change of the total span at that place
   };
 
-  /// Returns the best place on one side of `from`: later places for a `step` of 1, earlier ones for −1.
+  /// Returns the best place on one side of `from`: later places for a `step` of 1, earlier places for −1.
   /// `weight_at_` has the weights of the vertex's edges.
   [[nodiscard]] Slide slide(Index from, Index step, Index last, Offset allowance) const {
     Slide best{from};
@@ -118,7 +118,8 @@ class InsertionSearch {
     return true;
   }
 
-  /// Moves v to the place `to`, which lies in the direction of `step`; those between move by one.
+  /// Moves v to the place `to`, which lies in the direction of `step`; the vertices in between move by one
+  /// place.
   void move(Index v, Index chunk, Index to, Index step) {
     const Index from = place_[v];
     const Index volume = volume_at_[from];
@@ -146,7 +147,7 @@ class InsertionSearch {
   const ArrangementGraph& graph_;
   std::vector<Index>& order_;
   std::vector<Index> place_;
-  // by place, since slides read them in a row
+  // by place, since slides read successive places
   std::vector<Index> volume_at_;
   std::vector<Offset> balance_at_;  // weight of edges to later vertices minus that to earlier ones
   std::vector<Offset> weight_at_;   // weight of the edge to the vertex being moved

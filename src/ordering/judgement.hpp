@@ -18,25 +18,25 @@ Workload made_for(std::string_view method);
 /// Judges an order by the figure for the workload: the bandwidth, the entries of the Cholesky factor, the
 /// sectors that a product reads on a graphics processor, or else the edge spans. Sectors must fall by at
 /// least 10 %. Spans must fall, in the mean or in the geometric mean, by at least 2 %, and the mean must not
-/// grow by more than 5 %. On large graphs, which are sampled, the share of jumps may decide alone.
+/// grow by more than 5 %. On large graphs, which are sampled, the share of jumps alone may decide.
 ///
 /// Returns why the vertices should stay where they are, a sentence with the method's name and both figures;
 /// empty if the order is better. O(n + entries).
 std::string reason_to_keep(GraphRef graph, const Permutation& order, std::string_view method,
                            Workload workload);
 
-/// Judges an order of elements by the working sets of `kElementsAtOnce` elements: one of these must fall by
-/// at least 2 %, and none may grow by more than 5 %. Returns why the elements should stay where they are, as
-/// above. O(vertices + elements).
+/// Judges an order of elements by the working sets of `kElementsAtOnce` elements: at least one working set
+/// must fall by 2 % or more, and none may grow by more than 5 %. Returns why the elements should stay where
+/// they are, as above. O(vertices + elements).
 ///
-/// @param as_is  the elements in their old order; empty: as they are numbered
+/// @param as_is  the elements in their old order; empty: the order of their numbers
 /// @param order  the elements in the order to be judged
 std::string reason_to_keep_elements(IncidenceRef elements, std::span<const Index> as_is,
                                     std::span<const Index> order, std::string_view method);
 
 /// Judges an order of elements by the sectors of their additions on a graphics processor, which must fall by
 /// at least 10 % in the geometric mean of the three layouts. Returns why the elements should stay where they
-/// are, as above. Many elements are sampled.
+/// are, as above. If there are many elements, only a sample is counted.
 ///
 /// @param vertices  the order of the vertices
 /// @param order     the elements in the order to be judged

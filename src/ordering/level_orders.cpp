@@ -15,7 +15,7 @@ namespace {
 
 /// Sorts vertices by rising degree, stably.
 void sort_by_degree(GraphRef graph, std::span<Index> vertices) {
-  constexpr std::size_t kFew = 32;  // std::stable_sort allocates memory even to sort two
+  constexpr std::size_t kFew = 32;  // std::stable_sort allocates memory even for two vertices
   const auto less = [&](Index a, Index b) { return graph.degree(a) < graph.degree(b); };
   if (vertices.size() > kFew) return std::stable_sort(vertices.begin(), vertices.end(), less);
   for (std::size_t k = 1; k < vertices.size(); ++k) {
@@ -27,8 +27,8 @@ void sort_by_degree(GraphRef graph, std::span<Index> vertices) {
 }
 
 /// Orders the components of a graph one after the other. `place(search, component, found, places)` fills
-/// `places`, except the last one, with the vertices of a component. `found` has them in breadth-first order
-/// from a vertex at the rim.
+/// `places`, except the last place, with the vertices of a component. `found` has these vertices in
+/// breadth-first order from a vertex at the rim.
 template <class Place>
 Order by_components(GraphRef graph, const Place& place) {
   const BreadthFirstCopy copy = breadth_first_copy(graph);

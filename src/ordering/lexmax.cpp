@@ -18,8 +18,8 @@ namespace {
 constexpr Offset kInEntry = 4;  // ranks
 constexpr Index kPart = 65536;  // elements taken by a thread at a time
 
-/// An element with the largest ranks of its vertices, falling, −1 if there are fewer. Most comparisons need
-/// only these, so they are side by side in memory.
+/// An element with the largest ranks of its vertices in descending order, then −1 if it has fewer vertices.
+/// Most comparisons need only these ranks, so they are side by side in memory.
 struct Entry {
   std::array<Index, kInEntry> ranks;
   Index item;  ///< the element
@@ -38,7 +38,8 @@ Entry entry_of(Index element, std::span<const Index> vertices, std::span<const I
   return entry;
 }
 
-/// Returns the ranks of every element's vertices, falling within each element; empty if Entry has them all.
+/// Returns the ranks of every element's vertices, in descending order within each element; empty if every
+/// Entry holds all ranks of its element.
 std::vector<Index> falling_ranks(IncidenceRef elements, std::span<const Index> rank_of) {
   Offset most = 0;
   for (Index e = 0; e < elements.size(); ++e) most = std::max<Offset>(most, std::ssize(elements[e]));
@@ -69,7 +70,7 @@ Order lexmax_elements(const ElementInput& input, const OrderOptions&) {
   const Buckets<Entry> buckets(elements.size(), kPart, elements.vertex_count, entries_of, largest_rank);
 
   const std::vector<Index> all_ranks = falling_ranks(elements, rank_of);
-  // by the ranks after the largest, ties by number: no two are equal
+  // compares the ranks after the largest, then the numbers of the elements, so that no two entries are equal
   const auto before = [&](const Entry& a, const Entry& b) {
     for (std::size_t k = 1; k < kInEntry; ++k) {
       if (a.ranks[k] != b.ranks[k]) return a.ranks[k] < b.ranks[k];

@@ -21,8 +21,8 @@ struct VertexInput {
   PointsView points = {};                ///< one for each vertex, or none
   std::span<const double> weights = {};  ///< one for each neighbour, or none
   /// If the graph is a part of a larger one: for each vertex, the number of its neighbours in earlier parts
-  /// minus those in later parts; or none. `spectral` chooses the direction of its cuts by it, the other
-  /// methods ignore it.
+  /// minus the number in later parts. Otherwise empty. `spectral` chooses the direction of its cuts by it;
+  /// the other methods ignore it.
   std::span<const float> pull = {};
 };
 

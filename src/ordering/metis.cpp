@@ -95,7 +95,7 @@ Order metis_nd_vertices(const VertexInput& input, const OrderOptions& options) {
 }
 
 // One half of the mesh comes before the other, and so on within each half. METIS's own recursion into many
-// parts prints to stdout and fails if a part becomes empty, so each call asks it for one bisection.
+// parts prints to stdout and fails if a part becomes empty, so each call requests only one bisection.
 Order metis_rb_vertices(const VertexInput& input, const OrderOptions& options) {
   std::vector<Index> all(input.graph.size());
   std::iota(all.begin(), all.end(), Index{0});

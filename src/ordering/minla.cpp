@@ -40,7 +40,7 @@ std::vector<Index> identity(Index n) {
   return order;
 }
 
-/// Returns the vertices group by group along `coarse_order`, those of a group in the order of `order`.
+/// Returns the vertices group by group along `coarse_order`; within a group in the order of `order`.
 std::vector<Index> expanded(const std::vector<Index>& coarse_order, const std::vector<Index>& group_of,
                             const std::vector<Index>& order) {
   std::vector<Index> next(coarse_order.size(), 0);  // first the sizes of groups, then their next free places
@@ -52,10 +52,10 @@ std::vector<Index> expanded(const std::vector<Index>& coarse_order, const std::v
   return result;
 }
 
-/// Replaces the order by one that is found on the coarser graph, where large parts move at once, and is then
+/// Replaces the order. A new order is found on the coarser graph, where large parts move at once, and then
 /// improved by moving single vertices. An order that is better on the coarser graph may be worse here, so
-/// this is done twice, the second time with groups that follow the new order. Keeps the better of the two,
-/// which may have a larger span than the order at the beginning.
+/// this is done twice, the second time with groups that follow the first new order. Keeps the better of the
+/// two new orders, even if its span is larger than that of the given order.
 void search(const ArrangementGraph& graph, TimeLimit limit, std::vector<Index>& order) {
   Offset least = std::numeric_limits<Offset>::max();
   for (int visit = 0; visit < kVisits; ++visit) {

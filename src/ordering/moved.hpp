@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// Returns `values`, with `width` for each place, moved to their new places. O(n · width) time and memory.
+/// Returns `values` moved to their new places; each place has `width` values. O(n · width) time and memory.
 ///
 /// @throws InvalidArgument if the sizes do not fit
 template <class T>

@@ -14,13 +14,13 @@
 
 namespace meshorder {
 
-/// The vertices of an update of a `Reorderer`, and which of them belong together.
+/// The vertices of an update of a `Reorderer`, and which of them should be near each other.
 class Neighbourhood : public Polymorphic {
  public:
   [[nodiscard]] virtual Index size() const = 0;
   /// Returns `Update::span_log2` of an order.
   ///
-  /// @param place_of  the new place of each vertex; empty: as they are
+  /// @param place_of  the new place of each vertex; empty: the present places
   [[nodiscard]] virtual double span_log2(std::span<const Index> place_of) const = 0;
   /// Returns the largest `span_log2` at which an order is still kept.
   [[nodiscard]] virtual double most_span(double fresh, double slack) const { return fresh * (1 + slack); }

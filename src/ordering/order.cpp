@@ -25,7 +25,8 @@ void append(std::vector<std::string>& notes, const std::vector<std::string>& mor
   notes.insert(notes.end(), more.begin(), more.end());
 }
 
-/// Returns the points. If the method uses them and they do not fit, adds a note; `auto` then gets none.
+/// Returns the points. If the method uses them and they do not fit the graph, adds a note; for `auto`, then
+/// returns no points.
 PointsView points_to_go_by(const PointsView& points, GraphRef graph, std::string_view method,
                            std::vector<std::string>& notes) {
   if (points.empty()) return points;

@@ -18,13 +18,15 @@ bool has_one_slot_class(const CellArrays& cells);
 /// class of each cell, 4 · block + dimension. O(cells).
 std::vector<Index> slot_classes(const CellArrays& cells);
 
-/// Gives the places of each class to its cells in the order in which `cells_in_order` lists them.
+/// Gives the places of each class to the cells of the class, in the order in which `cells_in_order` lists the
+/// cells.
 ///
 /// @throws InvalidArgument unless there are as many cells as classes
 Permutation permutation_within_classes(std::span<const Index> classes, std::vector<Index>&& cells_in_order);
 
-/// Orders all cells: those of the highest dimension by the method, the others by `lexmax` (under `original`
-/// they stay), each within the places of its slot class; `groups` stay together there, ascending.
+/// Orders all cells: cells of the highest dimension by the method, the others by `lexmax` (under `original`
+/// they do not move). A cell moves only to places of its slot class. Within a class, the cells of a group
+/// stay together, and the groups ascend.
 ///
 /// @param groups  a number for each cell, or none
 /// @throws as `order_incidence`, and InvalidArgument for another number of groups

@@ -64,7 +64,8 @@ std::vector<Index> inverted(std::span<const Index> map) {
       }
     });
     if (!bijection) return;
-    for_each_range(n, kEntries, [&](Offset begin, Offset end) {  // of several equal entries, all but one fail
+    // if several entries are equal, all but one fail
+    for_each_range(n, kEntries, [&](Offset begin, Offset end) {
       for (Offset i = begin; i < end; ++i) {
         if (inverse[map[i]] != i) {
           bijection = false;

@@ -83,7 +83,7 @@ void Permutation::move_bytes_in_place(void* rows, std::size_t row_bytes) const {
   with_row_size(row_bytes, [&](auto bytes) {
     for (std::size_t first = 0; first < n; ++first) {
       if (moved[first] || static_cast<std::size_t>(new_to_old_[first]) == first) continue;
-      // along the cycle every place gets the row that belongs there; the last one gets the row that was at
+      // along the cycle every place gets the row that belongs there; the last place gets the row that was at
       // the first
       std::memcpy(first_row.data(), base + first * bytes, bytes);
       std::size_t place = first;

@@ -42,7 +42,8 @@ void check_finite(const PointsView& points, std::size_t count, Check check) {
 bool points_fit(GraphRef graph, const PointsView& points) {
   constexpr Index kFewest = 256;
   constexpr int kSamples = 256;
-  // in meshes of 256 vertices neighbours are half as far apart as any two vertices, in larger ones nearer
+  // neighbours are half as far apart as any two vertices in meshes of 256 vertices, and nearer in larger
+  // meshes
   constexpr double kAsFar = 0.8;
   const Index n = graph.size();
   if (n < kFewest || points.empty() || graph.neighbours.empty()) return true;

@@ -14,8 +14,8 @@ void check_finite(const PointsView& points, std::size_t count, Check check);
 
 /// Returns whether neighbours are nearer to each other than random pairs of points, as in a mesh. False
 /// suggests that an array is transposed, or of another mesh. True for graphs of fewer than 256 vertices,
-/// without edges or without points, and if all points coincide. Samples 256 edges and as many pairs, the same
-/// ones in every call. O(log n).
+/// without edges or without points, and if all points coincide. Samples 256 edges and 256 pairs, the same in
+/// every call. O(log n).
 bool points_fit(GraphRef graph, const PointsView& points);
 
 }  // namespace meshorder

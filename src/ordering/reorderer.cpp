@@ -20,9 +20,9 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace {
 
-/// The tolerance of a warm order as a multiple of that of a fresh one. At this tolerance, the best
-/// combination of the last vector and those of coarser graphs brings neighbours as near, without an iteration
-/// on the whole graph.
+/// The tolerance of a warm order as a multiple of the tolerance of a fresh order. At this tolerance, the best
+/// combination of the last vector and the vectors of coarser graphs brings neighbours equally near, without
+/// an iteration on the whole graph.
 constexpr double kWarmTolerance = 30;
 
 /// Returns the start vector in the numbering of this update; 0 for new vertices.
@@ -195,8 +195,7 @@ class Reorderer::Inside {
       options.start = next.vector;
       options.tolerance *= kWarmTolerance;
     }
-    // `auto` judges the first order as it judges any; if it keeps the numbering, it judges the later ones
-    // too
+    // `auto` judges the first order as in any call; if it keeps the numbering, it judges later orders, too
     const std::string asked = is_first ? options_.method : next.method;
     Order order = hood.order_by(asked, options);
     last_seconds = stopwatch.seconds();

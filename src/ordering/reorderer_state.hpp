@@ -26,7 +26,7 @@ struct Observed {
     t += seconds;
     kt += number * seconds;
   }
-  /// Returns by how much a step takes longer than the one before; 0 if that is not known.
+  /// Returns by how much each step takes longer than the step before it; 0 if that is not known.
   [[nodiscard]] double slope() const {
     constexpr double kFewest = 5;
     const double spread = count * kk - k * k;
@@ -41,12 +41,12 @@ struct ReordererState {
   std::uint8_t begun = 0;
   Index count = 0;      ///< vertices of the last update
   Index since = 0;      ///< updates since the last new order
-  Index interval = 10;  ///< number of updates after which there is another one
+  Index interval = 10;  ///< number of updates after which another new order is computed
   double fresh_span = 0;
   double fresh_seconds = 0;  ///< of the last order computed without a start vector; 0: none
   double warm_seconds = 0;   ///< likewise with a start vector
   Observed observed;
-  std::string method;          ///< of later orders; "auto" if the first one was no better
+  std::string method;          ///< of later orders; "auto" if the first order was no better
   std::vector<double> vector;  ///< a start for the next Fiedler vector, by the places after the last update
 };
 

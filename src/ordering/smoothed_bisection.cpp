@@ -13,7 +13,7 @@ constexpr int kSmoothingSteps = 12;
 
 /// A connected part of a piece; its vertices are sorted_[begin … end − 1].
 struct Component {
-  float push;  ///< minus the mean pull of its vertices: the component with the largest pull comes first
+  float push;  ///< −(mean pull of its vertices): the component with the largest pull comes first
   Index begin;
   Index end;
 };
@@ -41,7 +41,8 @@ class Bisection {
   }
 
  private:
-  /// Orders the piece at [begin, end) of the sequence; its rows hold no neighbours outside the piece.
+  /// Orders the piece at [begin, end) of the sequence; the rows of its vertices hold no neighbours outside
+  /// the piece.
   void order(Index begin, Index end) {
     if (end - begin < 2) return;
     sort(begin, end);
@@ -90,8 +91,8 @@ class Bisection {
     components_.push_back({-pull / static_cast<float>(queue_.size()), begin, index_size(sorted_)});
   }
 
-  /// Searches the component of `start` breadth first, and puts it into the queue by rising distance. Each
-  /// search needs a larger mark than those before.
+  /// Searches the component of `start` breadth first, and puts its vertices into the queue by rising
+  /// distance. Each search needs a larger mark than all searches before it.
   void search(Index start, Index mark) {
     queue_.assign(1, start);
     reached_[start] = mark;

@@ -13,8 +13,8 @@
 
 namespace meshorder {
 
-/// Sorts values of which no two are equal. Runs are sorted and merged on all threads, with a poll between
-/// runs. O(n log n) time, a copy of the values.
+/// Sorts values that are all different. Ranges of the values are sorted and then merged on all threads, with
+/// a poll between ranges. O(n log n) time; memory for a copy of the values.
 template <class T>
 void sort_distinct(std::vector<T>& values) {
   constexpr Index kRun = 65536;
@@ -33,8 +33,8 @@ void sort_distinct(std::vector<T>& values) {
   }
 }
 
-/// Returns the items of all entries, bucket after bucket, by ascending key. On all threads.
-/// O(entries) and the sorts.
+/// Returns the items of all entries, bucket after bucket, by ascending key. Runs on all threads. O(entries)
+/// time, plus that of the sorts.
 ///
 /// @param key   the same as for the buckets
 /// @param sort  `sort(entries)` sorts the entries of one key, a `std::span<Entry>` of two or more
@@ -80,7 +80,8 @@ struct SortByValue {
 /// once. O(n log n) at worst, O(n) if values are evenly spread over the places.
 ///
 /// @param places    number of places for values
-/// @param place_of  `place_of(value)` returns the place of a value, 0 … places − 1, and never falls
+/// @param place_of  `place_of(value)` returns the place of a value, 0 … places − 1; a larger value must not
+///                  have a smaller place
 /// @param sort      `sort(entries)` sorts the entries of one place, a `std::span<ValuedItem>` of two or more
 template <class ValueOf, class PlaceOf, class Sort = SortByValue>
 Permutation sorted_by(Index n, const ValueOf& value_of, Index places, const PlaceOf& place_of,

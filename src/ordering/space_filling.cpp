@@ -111,7 +111,8 @@ std::uint64_t interleaved(const std::array<std::uint32_t, 3>& coordinates, int a
 
 namespace {
 
-/// How Hilbert's curve runs through a cube of the lattice: its axes, reflections and direction there.
+/// How Hilbert's curve runs through a cube of the lattice: the curve's axes, reflections and direction in the
+/// cube.
 struct CurveState {
   std::array<int, 3> axis{0, 1, 2};  ///< the lattice's axis for each axis of the curve
   unsigned reflected = 0;            ///< a bit for each axis of the curve
@@ -120,8 +121,8 @@ struct CurveState {
   constexpr bool operator==(const CurveState&) const = default;
 };
 
-/// A step into a part of a cube (a half, quarter or eighth, or a part of such a part): the part's number
-/// along the curve in the cube, and the number of its state.
+/// A step into a part of a cube: a half, quarter or eighth, or such a part of a part. It consists of the
+/// part's number along the curve in the cube, and the number of the part's state.
 class CurveStep {
  public:
   static constexpr unsigned kNumberBits = 9;
@@ -135,8 +136,9 @@ class CurveStep {
   std::uint16_t packed_ = 0;  // 16 bits take half of the memory, so that tables stay in the caches
 };
 
-/// Enters a part of a cube. `halves` names it by a bit for each axis of the lattice, the first axis the
-/// highest. Returns the part's number along the curve and its state: Skilling's transformation of one scale.
+/// Enters a part of a cube. `halves` gives the part by a bit for each axis of the lattice; the first axis has
+/// the highest bit. Returns the part's number along the curve and its state, by one scale of Skilling's
+/// transformation.
 template <int Axes>
 constexpr std::pair<unsigned, CurveState> enter(CurveState state, unsigned halves) {
   unsigned number = 0;
@@ -244,11 +246,11 @@ std::uint64_t hilbert_key(const std::array<std::uint32_t, 3>& x, int axes, int b
 
 namespace {
 
-constexpr int kFirstBits = 30;  // of a point's number along a curve; few points share them
+constexpr int kFirstBits = 30;  // leading bits of a point's number along a curve; few points share them all
 
-/// Sorts points by the number that `key(cell, axes, scales)` gives each along a curve, ties by place. Sorts
-/// by the number of the first scales first: only points that share it need the number of all scales. O(n) if
-/// few do.
+/// Sorts points by their number along a curve, which `key(cell, axes, scales)` returns; ties by place. Sorts
+/// first by the number that only the first scales give: only points that share it need the number of all
+/// scales. O(n) if few points share it.
 template <class Key>
 Permutation sorted_along(const PointsView& points, const Key& key) {
   using Entry = ValuedItem<std::uint32_t>;

@@ -13,7 +13,7 @@
 
 namespace meshorder {
 
-/// A box along the axes, at first without points. Adding another box extends it to enclose that one.
+/// A box along the axes, at first without points. Adding another box extends it to enclose that box.
 struct Box {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Point low{kInfinity, kInfinity, kInfinity};
@@ -28,15 +28,15 @@ struct Box {
   }
 };
 
-/// A lattice of cubes that covers a box, with 2^bits cells along the longest axis: 2^21 if the box extends
-/// along three axes, else 2^31. A cell number has at most 63 bits.
+/// A lattice of cubes that covers a box, with 2^bits cells along the longest axis of the box: 2^21 if the box
+/// extends along three axes, else 2^31. A cell number has at most 63 bits.
 class Lattice {
  public:
   /// @param low   least coordinates of the box, finite
-  /// @param high  largest ones; not below `low`
+  /// @param high  largest coordinates; not below `low`
   Lattice(const Point& low, const Point& high);
 
-  /// Returns the number of axes that the box extends along; the others are left out.
+  /// Returns the number of axes along which the box extends; other axes are left out.
   [[nodiscard]] int axes() const noexcept { return axes_; }
   /// Returns the bits of a coordinate; axes · bits ≤ 63.
   [[nodiscard]] int bits() const noexcept { return bits_; }
@@ -56,7 +56,7 @@ class Lattice {
 /// Throws InvalidArgument, naming `method`, unless there are `count` points.
 void check_points(const PointsView& points, std::size_t count, std::string_view method);
 
-/// Returns the `Lattice` of the points' bounding box; without points, one without axes. O(points).
+/// Returns the `Lattice` of the points' bounding box; without points, a lattice without axes. O(points).
 Lattice lattice_of(const PointsView& points);
 
 /// Returns the number of a cell along Morton's curve: one bit of each axis in turn, highest first.

@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 // Recursive spectral bisection (Pothen, Simon, Liou: Partitioning Sparse Matrices with Eigenvectors of
-// Graphs, 1990) as a linear order. Each cut takes the one of two directions that suits the neighbours
-// outside the piece (terminal propagation: Dunlop and Kernighan 1985).
+// Graphs, 1990) as a linear order. A cut can be taken in two directions; the one is taken that suits the
+// neighbours outside the piece (terminal propagation: Dunlop and Kernighan 1985).
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
 #include "graph/traversal.hpp"
@@ -26,11 +26,11 @@ constexpr double kThickness = 0.8;  // of slabs: thinner ones take less time, bu
 struct Piece {
   CsrGraph graph;
   std::vector<Index> names;  ///< the number of each of its vertices in the whole graph
-  std::vector<float> pull;   ///< for each vertex, its neighbours in earlier pieces minus those in later ones
+  std::vector<float> pull;   ///< of each vertex: neighbours in earlier pieces minus those in later pieces
 };
 
-/// Returns a component of the graph, whose vertices ascend, as a piece. `number` has an entry for each vertex
-/// of the graph; those of the component are changed. O(component).
+/// Returns a component of the graph as a piece. `component` lists its vertices, ascending. `number` has an
+/// entry for each vertex of the graph; the entries of the component's vertices are changed. O(component).
 Piece whole_component(const VertexInput& input, std::vector<Index> component, std::vector<Index>& number) {
   Piece piece;
   for (Index k = 0; k < index_size(component); ++k) number[component[k]] = k;
@@ -76,8 +76,8 @@ std::vector<Index> along_fiedler_vector(const Piece& piece, std::uint64_t seed) 
   return sequence;
 }
 
-/// Returns the mean, over all places of the sequence, of the number of vertices before the place with
-/// neighbours after it: the size of the piece's cross-section. At least 1.
+/// Counts for each place of the sequence the vertices before the place that have neighbours after it; returns
+/// the mean over all places. This is the size of the piece's cross-section. At least 1.
 double mean_front(GraphRef graph, const std::vector<Index>& sequence) {
   std::vector<Index> place(sequence.size());
   for (Index k = 0; k < graph.size(); ++k) place[sequence[k]] = k;
@@ -116,7 +116,8 @@ Slabs cut(GraphRef graph, std::vector<Index> sequence) {
   return slabs;
 }
 
-/// Returns a slab as a piece of its own, numbered along the sequence, which puts neighbours near each other.
+/// Returns a slab as a piece of its own. Its vertices are numbered along the sequence, so that neighbours are
+/// near each other.
 Piece piece_of(const Piece& whole, const Slabs& slabs, Index slab) {
   const std::span<const Index> vertices(slabs.sequence.data() + slabs.begin_of(slab),
                                         slabs.sequence.data() + slabs.begin_of(slab + 1));
@@ -157,8 +158,8 @@ void write_in_order(Piece piece, std::uint64_t seed, TimeLimit limit, Index* out
   });
 }
 
-/// Returns the components of the graph; if it is a part of a larger one, those with the largest mean pull
-/// first.
+/// Returns the components of the graph; if the graph is a part of a larger one, sorted by mean pull, the
+/// largest first.
 std::vector<std::vector<Index>> components_in_order(const VertexInput& input) {
   std::vector<std::vector<Index>> components = connected_components(input.graph);
   if (input.pull.empty() || components.size() < 2) return components;

@@ -92,14 +92,16 @@ class LoopLengths {
   Offset turns_ = 0;
 };
 
-/// Returns RunReuse::turns of a product with these rows. A constant added to all lengths changes nothing.
+/// Returns RunReuse::turns of a product with these rows. The diagonal entries are not counted: a constant
+/// added to all lengths changes nothing.
 Offset turns_of_product(GraphRef rows) {
   LoopLengths lengths;
   for (Index v = 0; v < rows.size(); ++v) lengths.add(rows.degree(v));
   return lengths.turns();
 }
 
-/// Returns RunReuse::turns of a kernel. Large meshes are sampled: every eighth stretch of elements.
+/// Returns RunReuse::turns of a kernel. Large meshes are sampled: of every eight ranges of elements, one is
+/// counted.
 Offset turns_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings) {
   if (kernel == Kernel::spmv) return turns_of_product(graph);
   LoopLengths lengths;
@@ -145,7 +147,7 @@ struct PolledSample {
 };
 
 Reuse followed(const AccessStream& stream, Kernel kernel, int halvings) {
-  // a product gathers from few lines and is fast to simulate: two halvings fewer
+  // a product gathers from few lines and is fast to simulate, so it takes two halvings fewer
   constexpr int kOfProduct = 2;
   ReuseSample reuse(stream.line_count(),
                     kernel == Kernel::spmv ? std::max(0, halvings - kOfProduct) : halvings);

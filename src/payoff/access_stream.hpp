@@ -19,7 +19,7 @@ namespace meshorder {
 /// matrix. Every array of the kernel begins at a line; lines are numbered array by array from 0. Accesses are
 /// - the first touch of each line of an array that is read or cleared from front to back: values and columns
 ///   of a product, elements, edges, results being cleared;
-/// - each touch of a line of a vertex that is gathered or added to;
+/// - each touch of a vertex's line when the vertex is gathered or added to;
 /// - each touch of a line of the matrix in which an element searches for an entry or adds to it.
 ///
 /// Not included: the stack, the code, and repeated touches within a few accesses.
@@ -34,8 +34,8 @@ class AccessStream {
 
   [[nodiscard]] Index line_count() const noexcept { return static_cast<Index>(lines_); }
 
-  /// Calls `touch(line, how)` for every access; `how` is an Access, streamed or gathered.
-  /// O(accesses), for assembly times the logarithm of a row's length.
+  /// Calls `touch(line, how)` for every access; `how` is an Access, streamed or gathered. O(accesses) time;
+  /// for assembly, O(accesses · log row length).
   template <class Touch>
   void visit(Touch touch) const {
     ToEveryLine<Touch> visitor{touch};
@@ -43,8 +43,8 @@ class AccessStream {
   }
 
   /// As visit, but calls `visitor.gather(line)` for a gathered line and `visitor.stream(first, end)` for
-  /// lines that are streamed one after another. May skip gathered accesses to the lines first … last where
-  /// `visitor.samples(first, last)` is false, which saves the look-up of their lines.
+  /// lines that are streamed one after another. May skip gathered accesses to the lines first … last if
+  /// `visitor.samples(first, last)` is false; this saves the look-up of these lines.
   template <class Visitor>
   void visit_some(Visitor& visitor) const {
     switch (kernel_) {
@@ -104,7 +104,7 @@ class AccessStream {
     Offset left_ = 0;  ///< bytes of the last touched line that are not read yet
   };
 
-  /// Gathers vertices from an array; skips those without a sampled line.
+  /// Gathers vertices from an array; skips vertices without a sampled line.
   class VertexGatherer {
    public:
     template <class Visitor>
@@ -210,7 +210,8 @@ class AccessStream {
     }
   }
 
-  /// Visits the start of row a and, for each corner, the columns searched and the value added to.
+  /// Visits the start of row a and, for each corner, the columns that are searched and the value that is
+  /// added to.
   template <class Visitor>
   void visit_row(Index a, std::span<const Index> element, Visitor& visitor) const {
     starts_.gather(kStartBytes * a, kStartBytes, visitor);
@@ -236,7 +237,7 @@ class AccessStream {
     return rows;
   }
 
-  /// Returns the corners of a simplex; those of the last simplex if the number is too large.
+  /// Returns the corners of a simplex; if the number is too large, the corners of the last simplex.
   [[nodiscard]] std::span<const Index> corners_of(Offset simplex) const {
     const Offset corners = simplices_.dimension + 1;
     return simplices_.vertices.subspan(corners * std::min(simplex, simplices_.size() - 1), corners);
@@ -278,23 +279,25 @@ struct RunReuse : Reuse {
   Kernel kernel = Kernel::spmv;
   int dimension = 0;  ///< of the simplices: 3 for tetrahedra
   /// Number of loops whose end a processor mispredicts: rows of a product, or searches of assembly in a row.
-  /// A loop counts if its length differs from the one that last followed the same eight lengths. 0 for other
-  /// kernels.
+  /// A loop counts if its length differs from the length that came after the same eight preceding lengths the
+  /// last time. 0 for other kernels.
   Offset turns = 0;
 
   bool operator==(const RunReuse&) const = default;
 };
 
-/// Returns the reuse of a repeated kernel: of every run but the first. O(accesses · log distance) time and
-/// about 13 bytes of memory for each line, a fifth of the kernel's own memory. With `halvings` > 0 the reuse
-/// is estimated from a share 2^-halvings of the lines (see ReuseSample), which is faster; products with a
-/// matrix use two halvings fewer. From four halvings on the turns of assembly are estimated, too.
+/// Returns the reuse of one run of a kernel that is repeated, any run but the first. O(accesses · log
+/// distance) time; about 13 bytes of memory for each line, a fifth of the kernel's own memory. With
+/// `halvings` > 0 the reuse is estimated from a share 2^-halvings of the lines (see ReuseSample), which is
+/// faster; products with a matrix use two halvings fewer. From four halvings on the turns of assembly are
+/// estimated, too.
 RunReuse reuse_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int halvings = 0);
 
 /// Returns the reuse of the product with a matrix that has these entries.
 RunReuse reuse_of_product(const EntryPattern& pattern, int halvings = 0);
 
-/// Places of the kernels in kKernels, slowest to simulate first: assembly adds to 16 entries per element.
+/// Places of the kernels in kKernels, sorted by how long they take to simulate, the slowest first: assembly
+/// adds to 16 entries per element.
 inline constexpr std::array<std::size_t, kKernels.size()> kLongestFirst{2, 0, 1, 3};
 
 /// Returns the `halvings` to pass to `reuse_of` for a mesh of so many simplices: 0 below 200,000, and up to

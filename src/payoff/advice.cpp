@@ -25,7 +25,7 @@
 namespace meshorder {
 namespace {
 
-/// The orders of all candidates, each once.
+/// The orders of all candidates, each order once.
 struct Orders {
   std::vector<KernelInput> all;            ///< the first one is the mesh as it is
   std::vector<std::size_t> of_candidates;  ///< the place in `all` of each candidate's order
@@ -44,7 +44,7 @@ RunReuse reuse_in(const KernelInput& order, Kernel kernel, int halvings) {
                            : reuse_of(kernel, order.graph(), order.simplices(), halvings);
 }
 
-/// Returns the predictions for all orders. Threads take the pairs of a kernel and an order in turns.
+/// Returns the predictions for all orders. Threads take turns at the pairs of a kernel and an order.
 std::vector<KernelMilliseconds> predictions(const std::vector<KernelInput>& orders,
                                             const AdviceOptions& options) {
   report("predict");
@@ -89,7 +89,7 @@ Timings raced(const std::vector<KernelInput>& orders, const AdviceOptions& optio
 }
 
 /// Returns the options of the orders to compute. Without `options.methods` these are `auto` for all kernels
-/// and, where `auto` chooses another method for springs, `auto` for springs.
+/// and, if `auto` chooses another method for springs, `auto` for springs.
 std::vector<ReorderOptions> asked_for(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options) {
   std::vector<ReorderOptions> result;
   for (const MeshMethods& methods : options.methods) {
@@ -113,7 +113,7 @@ bool are_one(const Candidate& a, const Candidate& b) {
 }
 
 /// Returns the logarithm of the time in an order divided by the time in the mesh's own order, averaged over
-/// the kernels of a workload. Throws InvalidArgument if it has none.
+/// the kernels of a workload. Throws InvalidArgument if the workload has no kernels.
 double cost_for(Workload workload, const Advice& advice, const OrderCosts& costs) {
   double sum = 0;
   int kernels = 0;
@@ -130,7 +130,7 @@ double cost_for(Workload workload, const Advice& advice, const OrderCosts& costs
   return sum / kernels;
 }
 
-/// Keeps the first candidate and the best others, `most` in all, without changing their sequence.
+/// Keeps the first candidate and the best of the others, `most` candidates in all, in their present sequence.
 void keep_best(Advice& advice, Orders& orders, Workload workload, std::size_t most) {
   std::vector<std::size_t> places(advice.candidates.size());
   std::iota(places.begin(), places.end(), 0);
@@ -202,7 +202,7 @@ void add_candidates(Advice& advice, Orders& orders, const Mesh& mesh, const Advi
   }
 }
 
-/// Adds spans and pictures of all orders.
+/// Adds the spans and patterns of all orders.
 void describe(Advice& advice, const Orders& orders) {
   std::vector<Candidate> described(orders.all.size());
   take_turns(index_size(orders.all), [&](Index i) {
@@ -243,7 +243,7 @@ double factor_for(Workload workload, const Advice& advice, std::size_t candidate
 
 std::optional<std::size_t> winner_for(Workload workload, const Advice& advice) {
   double best = 0;
-  double same = 0;  // sum over the kernels of the logarithms of same_time
+  double same = 0;  // Σ log(same_time) over the kernels
   int kernels = 0;
   for (const Candidate& candidate : advice.candidates) {
     best = std::min(best, cost_for(workload, advice, candidate.costs));

@@ -30,9 +30,9 @@ std::span<const Kernel> kernels_of(const Advice& advice);
 struct AdviceOptions {
   std::vector<MeshMethods> methods = {};  ///< as in `PayoffOptions`
   MachineChoice machine = choose_machine();
-  KernelSet kernels = KernelSet::plain;  ///< tuned ones are measured only
-  int threads = 1;     ///< share each run; predictions need as many as `machine.model.threads`
-  Caches caches = {};  ///< to predict for; empty: the machine's
+  KernelSet kernels = KernelSet::plain;  ///< tuned kernels can only be measured
+  int threads = 1;                       ///< that share each run; for predictions: `machine.model.threads`
+  Caches caches = {};                    ///< caches to predict for; empty: those of the machine
   OrderOptions ordering = {};
   double graph_seconds = 0;  ///< time that building the vertex graph took
   bool predict = true;
@@ -54,12 +54,13 @@ struct AdviceOptions {
 
 /// Computes the candidates, and the times of the kernels in each of them and in the mesh's own order. `graph`
 /// is the vertex graph of `mesh`. Throws InvalidArgument if nothing is to be predicted or measured, for a
-/// race without predictions, and for predictions of tuned kernels or by costs of another number of threads.
+/// race without predictions, for predictions of tuned kernels, and if the costs are those of another number
+/// of threads.
 Advice advise(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options = {});
 
 /// Returns the factor up to which two times of a kernel count as equal. It is 1.05 for measured times and for
 /// predictions by the machine's own calibration. By the costs of another machine it is 1.1, and 1.25 for
-/// SpMV: measurements did not confirm smaller predicted differences (docs/prediction.md). It is larger where
+/// SpMV: measurements did not confirm smaller predicted differences (docs/prediction.md). It is larger if
 /// repeated timings of one problem on this machine differ by more.
 double same_time(const Advice& advice, Kernel kernel);
 
@@ -67,14 +68,14 @@ double same_time(const Advice& advice, Kernel kernel);
 /// a mesh without cells, the factor is 1.
 std::array<KernelAdvice, kKernels.size()> kernel_advice(const Advice& advice);
 
-/// Returns the speedup of a candidate over the mesh's own order: of the kernel of the workload, or the
-/// geometric mean over all kernels.
+/// Returns the speedup of a candidate over the mesh's own order: that of the workload's kernel or, for all
+/// kernels, the geometric mean.
 double factor_for(Workload workload, const Advice& advice, std::size_t candidate);
 
 /// Returns the place of the candidate in which the kernels of a workload (one or all) run fastest; nothing if
-/// no candidate is faster than the mesh's own order by more than same_time. The first candidate wins if no
-/// other is faster than the first by more than that. For all kernels, geometric means are compared. Throws
-/// InvalidArgument for `bandwidth` and `fill`, which are not about times of kernels.
+/// no candidate is faster than the mesh's own order by more than same_time. The first candidate wins unless
+/// another candidate is faster than it by more than same_time. For all kernels, geometric means are compared.
+/// Throws InvalidArgument for `bandwidth` and `fill`, which are not about times of kernels.
 std::optional<std::size_t> winner_for(Workload workload, const Advice& advice);
 
 /// Returns the milliseconds that a candidate saves in each time step (see runs_in_time_step), negative if it
@@ -92,8 +93,8 @@ std::string command_for(const Candidate& candidate, bool is_matrix = false);
 /// gain.
 std::optional<std::size_t> advised(const Advice& advice);
 
-/// Returns the speedup, in the order of `advised`, of the kernel that can gain most; nothing if there is
-/// nothing to gain or the size of the gain is in doubt.
+/// Returns the speedup of the kernel that can gain most, in the order that `advised` returns; nothing if
+/// there is nothing to gain or the size of the gain is in doubt.
 std::optional<double> certain_gain(const Advice& advice);
 
 /// Returns the place in kKernels of the kernel that a workload is about; kKernels.size() if it is about all
@@ -105,7 +106,7 @@ inline bool is_told_by_kernels(Workload workload) {
   return workload == Workload::all || kernel_of(workload) < kKernels.size();
 }
 
-/// Returns the workload if it is that of one kernel of the advice, else `all`.
+/// Returns the workload if it is about one kernel of the advice, else `all`.
 Workload told_by_kernels(const Advice& advice, Workload workload);
 
 /// Returns the methods of a candidate: "hilbert", or "hilbert/original" if its elements are not in the
@@ -113,7 +114,7 @@ Workload told_by_kernels(const Advice& advice, Workload workload);
 std::string order_in_words(const Candidate& candidate, bool is_matrix = false);
 
 /// Returns a sentence that names the best measured candidate for a workload, its speedup and when it has paid
-/// for itself; or that says that none is better than the mesh's own order.
+/// for itself; or that says that no order is better than the mesh's own.
 std::string comparison_in_words(const Advice& advice, Workload workload);
 
 }  // namespace meshorder

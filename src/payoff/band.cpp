@@ -25,7 +25,8 @@ Index corner_vertices(SimplicesRef simplices, Index vertices) {
   return static_cast<Index>(std::count(seen.begin(), seen.end(), true));
 }
 
-/// Returns every choice of `dimension` of the numbers 1 … k: the corners' offsets from the first corner.
+/// Returns all ways to choose `dimension` of the numbers 1 … k. These are offsets of a simplex's corners from
+/// its first corner.
 std::vector<std::array<Index, 4>> stencils(int dimension, Index k) {
   std::vector<std::array<Index, 4>> result;
   std::array<Index, 4> offsets{0, 1, 2, 3};
@@ -69,7 +70,7 @@ Reaches needed(const Cells& cells, Index vertices) {
 }
 
 /// Raises the reaches of the first `joined` vertices level by level, until there are `edges` edges in all. If
-/// the last level needs fewer edges than it has vertices, they are spread evenly over these.
+/// the last level needs fewer edges than it has vertices, the edges are spread evenly over the vertices.
 void fill(Reaches& reaches, Index joined, Offset edges) {
   Offset missing = edges;
   for (const Index reach : reaches) missing -= reach;
@@ -80,7 +81,8 @@ void fill(Reaches& reaches, Index joined, Offset edges) {
     Offset place = 0;
     for (Index v = 0; v + level < joined; ++v) {
       if (reaches[v] >= level) continue;
-      // spreads `raised` of the `below` places evenly: those where place · raised / below increases
+      // chooses `raised` of the `below` places, evenly spread: the places where ⌊place · raised / below⌋
+      // increases
       if ((place + 1) * raised / below > place * raised / below) reaches[v] = level;
       ++place;
     }
@@ -104,7 +106,7 @@ CsrGraph joined_to_next(const Reaches& reaches) {
   return graph;
 }
 
-/// Returns points about one apart, such that no four consecutive ones lie in a plane.
+/// Returns points at distances of about 1, such that no four consecutive points lie in a plane.
 std::vector<Point> helix(Index n) {
   std::vector<Point> points(static_cast<std::size_t>(n));
   for (Index v = 0; v < n; ++v) points[v] = {std::cos(1.0 * v), std::sin(1.0 * v), 0.25 * v};

@@ -16,9 +16,9 @@ struct Band {
 
 /// Returns the ideal streaming problem of a mesh's size, with as many vertices, edges and simplices as the
 /// mesh. Vertex i is joined to i ± 1 … i ± k. Each simplex has its vertices among i … i + k, ascending; all
-/// combinations occur, so that simplices use every edge as those of a mesh do. Every kernel reads and writes
-/// memory front to back and finds reused data in the first cache. The problem is a reference: no order of a
-/// mesh of two or three dimensions can be as good.
+/// combinations occur, so that simplices use every edge, as in a mesh. Every kernel reads and writes memory
+/// front to back and finds reused data in the first cache. The problem is a reference: no order of a mesh of
+/// two or three dimensions can be as good.
 ///
 /// The counts are exact, except that a degenerate mesh gets the edges that its simplices need. The number of
 /// vertices without neighbours is that of the mesh; they come last. The points lie on a helix, so that no

@@ -39,13 +39,13 @@ struct Runs {
   std::vector<Steadiness> steadiness = {};  ///< of each measurement
 };
 
-/// The reuse of larger lattices is estimated, from more of their lines than the reuse of meshes.
+/// The reuse of larger lattices is estimated, from a larger share of their lines than for meshes.
 int halvings_for_lattice(SimplicesRef simplices) { return simplices.size() < 50'000 ? 0 : 3; }
 
 /// How long orders are timed.
 struct Rounds {
   double seconds = 0;
-  int least = 3;  ///< this many, however long they take
+  int least = 3;  ///< least number of rounds, however long they take
 };
 
 /// Orders of a lattice, prepared to be timed.
@@ -93,13 +93,14 @@ struct Prepared {
     for (std::size_t i = first; i < orders.size(); ++i) reuse[i] = reuse[place_of(i)];
   }
 
-  /// Shares the kernels' runs from now on among so many threads.
+  /// From now on, this many threads share each run of the kernels.
   void share(int threads) {
     for_each_chunk(index_size(benches), 1,
                    [&](Index i, Index /*begin*/, Index /*end*/) { benches[i]->share(threads); });
   }
 
-  /// Times all in interleaved rounds: on one thread by its processor time, on several by elapsed time.
+  /// Times all orders in interleaved rounds: on one thread by its processor time, on several threads by
+  /// elapsed time.
   [[nodiscard]] Timings timed(int threads, const Rounds& rounds) {
     std::vector<KernelBench*> pointers;
     for (const auto& bench : benches) pointers.push_back(bench.get());
@@ -111,7 +112,8 @@ struct Prepared {
   }
 };
 
-/// Times all orders of a lattice in interleaved rounds, on the threads of `runs`, and adds the times to it.
+/// Times all orders of a lattice in interleaved rounds, on the threads of `runs`, and adds the times to
+/// `runs`.
 Timings time_all(Prepared& prepared, int lattice, const Rounds& rounds, Runs& runs) {
   if (runs.threads > 1) prepared.share(runs.threads);
   Timings timings = prepared.timed(runs.threads, rounds);
@@ -144,8 +146,8 @@ Steadiness steadiness_of(std::span<const Steadiness> measurements) {
 /// Sizes that differ by less than this factor are taken for one cache.
 constexpr double kSameCache = 1.6;
 
-/// Returns the caches that costs belong to. A found one within that factor of a reported one gets the
-/// reported size, except the last one, which a thread shares with others.
+/// Returns the caches that costs belong to. A cache that was found and is within that factor of a reported
+/// cache gets the reported size. The last cache does not, because a thread shares it with others.
 Caches effective_caches(const FoundCaches& found, const Caches& reported) {
   Caches caches;
   for (std::size_t i = 0; i < found.levels.size(); ++i) {
@@ -185,7 +187,8 @@ void measure_memory(const CalibrationEffort& effort, Calibration& calibration) {
                                        : calibration.read_bandwidth;
 }
 
-/// Times all orders of a lattice in the same rounds. Times the last but one twice, at different addresses.
+/// Times all orders of a lattice in the same rounds. Times the second to last order twice, at different
+/// addresses.
 void time_small(const CalibrationLattice& lattice, int number, double seconds, std::span<Runs> runs) {
   const std::size_t twice = lattice.orders.size() - 2;
   std::vector<LatticeOrder> orders = lattice.orders;
@@ -203,8 +206,8 @@ void time_small(const CalibrationLattice& lattice, int number, double seconds, s
   }
 }
 
-/// Times the orders of a lattice one after another while there is time, but at least the best and the worst;
-/// times these two on all threads as well. `seconds` is on the stopwatch.
+/// Times the orders of a lattice one after another while there is time, but at least the best and the worst
+/// order; times these two on all threads as well. There is time until the stopwatch shows `seconds`.
 void time_large(CalibrationLattice lattice, int number, const Stopwatch& since_start, double seconds,
                 std::span<Runs> runs) {
   std::vector<LatticeOrder>& orders = lattice.orders;
@@ -294,8 +297,8 @@ FitQuality fit_all(const Runs& runs, const Latencies& latencies, CostModel& mode
 }
 
 /// As above, for runs on all threads, given the costs on one thread. The costs of products with the matrix
-/// are those on one thread times one factor: threads that share a product never wait for each other, and so
-/// few runs determine one factor better than ten costs.
+/// are the costs on one thread times one factor: threads that share a product never wait for each other, and
+/// the few runs determine one factor better than ten costs.
 FitQuality fit_all_threads(const Runs& runs, const Latencies& latencies, const CostModel& one_thread,
                            CostModel& model) {
   FitQuality quality = fit_all(runs, latencies, model, &one_thread);
@@ -332,13 +335,15 @@ Latencies latencies_behind(const FoundCaches& found, const Caches& caches) {
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies,
                       const KernelCosts* like) {
   const Rows shares = shares_of(runs, caches);
-  // Two more unknowns. The first: the share of its latency that a jump costs, in units of kShare. An
-  // equation for each jump, with an eightieth of the weight of a run, sets its cost to that share.
+  // There are two more unknowns. The first is the share of its latency that a jump costs, in units of kShare.
+  // An equation for each jump cost, with an eightieth of the weight of a run, says that the cost is that
+  // share of the latency.
   constexpr double kShare = 0.1;
   constexpr double kWeight = 0.0125;
   // The weight of the error that all runs of a lattice have in common.
   constexpr double kCommon = 0.5;
-  // The second: the ratio of all costs to those of `like`. An equation for each cost, of this weight.
+  // The second unknown is the ratio of all costs to the costs of `like`. It has an equation for each cost, of
+  // this weight.
   constexpr double kLike = 0.4;
   Rows rows{.columns = shares.columns + 2};
   std::vector<double> row(rows.columns);
@@ -426,10 +431,11 @@ Calibration measure_machine(const CalibrationEffort& effort) {
     return static_cast<Index>(std::clamp<Offset>(rows, 300, std::max<Offset>(300, largest / 4)));
   };
   const std::array<Offset, 4> sizes = sizes_that_cost(model.caches);
-  /// A lattice, and its share of the time. Some are also timed on all threads; the smallest is not, because
-  /// waking the threads takes as long as its run. A lattice with `streams` has a matrix that streams from
-  /// memory, and one more order: the rows of its window fill the second cache twice. As in a Fiedler order,
-  /// data to be gathered has left the first cache, and data to be added to has left the second.
+  /// A lattice, and its share of the time. Some lattices are also timed on all threads; the smallest is not,
+  /// because waking the threads takes as long as a run on it. A lattice with `streams` has a matrix that
+  /// streams from memory, and one more order, in which the rows of a window fill the second cache twice. As
+  /// in a Fiedler order, data to be gathered has left the first cache, and data to be added to has left the
+  /// second.
   struct Step {
     Index vertices;
     bool flat;

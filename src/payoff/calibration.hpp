@@ -17,8 +17,8 @@ struct FitQuality {
   std::array<double, kKernels.size()> condition{};  ///< of the fit's equations, see condition_number
   /// The median relative difference between predicted and measured times of the problems.
   std::array<double, kKernels.size()> error{};
-  /// The median relative difference of two timings of one problem at different addresses. A smaller
-  /// difference of two times means nothing.
+  /// The median relative difference of two timings of one problem at different addresses. Smaller differences
+  /// between times mean nothing.
   std::array<double, kKernels.size()> floor{};
 
   bool operator==(const FitQuality&) const = default;
@@ -27,16 +27,16 @@ struct FitQuality {
 /// The measurements of a machine from which times on it are predicted.
 struct Calibration {
   CostModel
-      model;  ///< on one thread; its caches are those found, with the reported sizes where these are close
+      model;  ///< on one thread; its caches are the caches found, with the reported sizes if these are close
   FitQuality quality;
-  CostModel all_threads;  ///< on `threads` threads; the same as `model` where that is one
+  CostModel all_threads;  ///< on `threads` threads; the same as `model` if `threads` is 1
   FitQuality all_threads_quality;
   std::string processor;
   std::string build;  ///< version, compiler and options of the program
   std::string date;   ///< "2026-11-22", in UTC
-  Caches reported;    ///< by the system; empty where it reports none
+  Caches reported;    ///< by the system; empty if it reports no caches
   FoundCaches found;
-  int threads = 1;            ///< with which `all_threads` was measured
+  int threads = 1;            ///< number of threads with which `all_threads` was measured
   double read_bandwidth = 0;  ///< GB/s, one thread
   double read_bandwidth_all = 0;
   Steadiness steadiness;
@@ -47,21 +47,21 @@ struct Calibration {
 
 /// How thoroughly a machine is measured.
 struct CalibrationEffort {
-  double seconds = 16;  ///< no repetition begins that is expected to end later; each step is done once
+  double seconds = 16;  ///< no repetition begins that is expected to end later; first, each step is done once
   Offset probed = Offset{256} << 20;  ///< largest buffer of loads, bytes
   Index vertices = 200'000;           ///< of the largest lattice
 };
 
-/// Returns the effort for so many seconds. With less than half of the usual time the lattices and buffers are
+/// Returns the effort for so many seconds. For less than half of the usual time, the lattices and buffers are
 /// smaller, so that the last cache and the memory are measured less well.
 CalibrationEffort effort_of(double seconds);
 
 /// Measures this machine: its caches, latencies and bandwidths, and the kernels themselves on small lattices.
-/// Their vertices are scrambled within windows of half of each cache, so that the misses of each level vary
-/// independently. Kernels run on the calling thread, timed by its processor time, and then on all threads,
-/// timed by elapsed time; the least of several rounds counts. Costs are fitted by non-negative least squares
-/// of relative errors. For products with the matrix, costs on all threads are those on one thread times one
-/// factor. Reports its progress and polls.
+/// The vertices of the lattices are scrambled within windows, of sizes that fill half of each cache, so that
+/// the misses of each level vary independently. Kernels run on the calling thread, timed by its processor
+/// time, and then on all threads, timed by elapsed time; the least of several rounds counts. Costs are fitted
+/// by non-negative least squares of relative errors. For products with the matrix, costs on all threads are
+/// the costs on one thread times one factor. Reports its progress and polls.
 Calibration measure_machine(const CalibrationEffort& effort = {});
 
 /// A run of a kernel: its reuse and its time. On several threads the time is divided by `times_computed`.
@@ -78,22 +78,23 @@ struct FittedCosts {
   double error = 0;  ///< see FitQuality
 };
 
-/// The extra latency of a load that waits for the one before, beyond each of the sizes that cost, ns.
+/// The extra latency, in ns, of a dependent load (one that waits for the load before it) beyond each of
+/// `sizes_that_cost`.
 using Latencies = std::array<double, 4>;
 
-/// Returns these latencies, at least 1 ns each. The last two are equal: each is half of the difference
-/// between a load from memory and a load beyond the second size.
+/// Returns the extra latencies of dependent loads, at least 1 ns each. The last two are equal: each is half
+/// of the difference between a load from memory and a load beyond the second size.
 Latencies latencies_behind(const FoundCaches& found, const Caches& caches);
 
 /// Fits the costs of a kernel on a machine with such caches. Loads overlap, so a jump costs only a share of
-/// its latency. An extra equation per jump, with an eightieth of the weight of a run, asks that all jumps
-/// cost the same share; it decides where the runs have too few jumps. The error that all runs of a lattice
-/// have in common has half the weight of each run's own error: costs serve to compare orders, and the rate
-/// of a memory that others use too changes from minute to minute.
+/// its latency. An extra equation for each jump cost, with an eightieth of the weight of a run, says that all
+/// jumps cost the same share. These equations decide if the runs have too few jumps. The error that all runs
+/// of a lattice have in common has half the weight of each run's own error: costs serve to compare orders,
+/// and the rate of a memory that other programs use, too, changes from minute to minute.
 ///
 /// @param like  for runs on all threads: costs of the same kernel on one thread, or null. An extra equation
-///              for each cost, with two fifths of the weight of a run, asks that it is the one-thread cost
-///              times a factor that all costs share
+///              for each cost, with two fifths of the weight of a run, says that the cost is the one-thread
+///              cost times a factor that all costs share
 FittedCosts fit_costs(std::span<const TimedReuse> runs, const Caches& caches, const Latencies& latencies,
                       const KernelCosts* like = nullptr);
 

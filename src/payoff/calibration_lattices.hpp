@@ -30,10 +30,11 @@ struct CalibrationLattice {
 };
 
 /// Makes a lattice of about so many vertices: cubes of six tetrahedra each or, if flat, squares of two
-/// triangles. Windows are so large that half of a cache holds the positions of a window's vertices, or their
-/// positions and forces, or their rows of the matrix. Other orders shuffle no vertex, all vertices, or all
-/// vertices and elements. So the orders differ in which cache they miss. At most `most` orders (at least
-/// three), evenly chosen with both extremes kept, and a breadth-first one, which comes second.
+/// triangles. The windows have sizes such that half of a cache holds data of a window's vertices: their
+/// positions, their positions and forces, or their rows of the matrix. Other orders shuffle no vertex, all
+/// vertices, or all vertices and elements. So the orders differ in which caches they miss. The lattice gets
+/// at most `most` of these orders (at least three), evenly chosen and including both extremes, and a
+/// breadth-first order, which comes second.
 CalibrationLattice make_calibration_lattice(Index vertices, bool flat, const Caches& caches,
                                             std::size_t most);
 

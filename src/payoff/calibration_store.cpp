@@ -27,7 +27,8 @@ constexpr const char* kSchema = "meshorder calibration 7";
 
 std::string sizes_text(const Caches& caches) { return caches.level_bytes.empty() ? "" : to_string(caches); }
 
-/// Returns the caches of the sizes in an array. Throws InvalidArgument unless they ascend in whole lines.
+/// Returns the caches of the sizes in an array. Throws InvalidArgument unless the sizes ascend and each is a
+/// multiple of the cache line size.
 Caches caches_from(const Json& sizes) {
   Caches caches;
   for (const Json& size : sizes) {
@@ -47,7 +48,7 @@ double number_from(const Json& json) {
   return number;
 }
 
-/// Returns null for an infinite condition, which JSON cannot hold.
+/// Returns the number; null if it is infinite, since JSON cannot hold that.
 Json finite_json(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
 double condition_from(const Json& json) {

@@ -12,7 +12,7 @@ namespace meshorder {
 /// What a calibration is valid for: a processor, its reported caches and a build of the program.
 struct CalibrationKey {
   std::string processor;
-  std::string caches;  ///< as reported, "48K,1M,32M"; empty where the system reports none
+  std::string caches;  ///< as reported, "48K,1M,32M"; empty if the system reports no caches
   std::string build;
 
   bool operator==(const CalibrationKey&) const = default;
@@ -35,18 +35,20 @@ struct StoredCalibration {
   std::string fault;
 };
 
-/// Reads the calibration stored for a key. A file that cannot be read, is no calibration or has another key
-/// is not used.
+/// Reads the calibration stored for a key. A file is not used if it cannot be read, is not a calibration or
+/// has another key.
 StoredCalibration load_calibration(const CalibrationKey& key);
 
 /// Stores a calibration for its key. Writes a temporary file and then replaces the old one, so that other
-/// processes see the old or the new one. Returns the file. Throws Error if that fails or there is no folder.
+/// processes see either the old file or the new one, complete. Returns the file. Throws Error if that fails
+/// or there is no folder.
 std::filesystem::path save_calibration(const Calibration& calibration);
 
 /// Returns the text of a calibration's file, JSON with the keys of docs/json.md.
 std::string to_json_text(const Calibration& calibration);
 
-/// Reads such a text. Throws InvalidArgument, with the end of a sentence ("is no JSON"), if it is invalid.
+/// Reads the text of a calibration's file. Throws InvalidArgument if it is invalid; the message is the end of
+/// a sentence ("is no JSON").
 Calibration parse_calibration(const std::string& text);
 
 }  // namespace meshorder

@@ -13,9 +13,10 @@ namespace meshorder {
 
 /// Nanoseconds (≥ 0) that a kernel spends on each access, each miss, each jump and each turn
 /// (RunReuse::turns). A jump is a miss that no hardware prefetcher predicts; its cost is added to that of the
-/// miss. Misses and jumps are those of four caches: the first level, the second, half of the last and all of
-/// it. A thread shares the last level, so misses begin to cost when half of it is full. Jumps of the whole
-/// last cache are first touches out of order; a sweep makes one for each line of its vectors.
+/// miss. Misses and jumps are counted for four caches: the first level, the second level, half of the last
+/// level and all of the last level. A thread shares the last level, so misses begin to cost when half of it
+/// is full. Jumps that miss the whole last cache are first touches out of order; a sweep makes at most one
+/// for each line of its vectors.
 struct KernelCosts {
   double access = 0.0;
   std::array<double, 4> miss{};
@@ -49,13 +50,13 @@ struct CostModel {
   bool operator==(const CostModel&) const = default;
 };
 
-/// Returns the sizes of the four caches that costs refer to. A single level also counts as the second; of two
-/// levels the second is also the last; of four or more only the first two and the last count. Throws
-/// InvalidArgument without caches.
+/// Returns the sizes of the four caches that costs refer to. If there is only one level, it is also used as
+/// the second; if there are two, the second is also the last; if there are four or more, only the first two
+/// and the last are used. Throws InvalidArgument without caches.
 std::array<Offset, 4> sizes_that_cost(const Caches& caches);
 
-/// Returns how often each cost occurs in a run, for caches of the sizes of sizes_that_cost. O(levels · bins
-/// of the histograms).
+/// Returns how often each cost occurs in a run; `sizes` as from sizes_that_cost. O(levels · bins of the
+/// histograms).
 CostRow counts_of(const RunReuse& reuse, const std::array<Offset, 4>& sizes);
 
 /// Returns costs that `meshorder calibrate` measured on a 2-core AMD EPYC of the Zen 3 family (32 KB L1,

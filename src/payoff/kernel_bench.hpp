@@ -53,16 +53,17 @@ class KernelBench : public Polymorphic {
   /// Returns the kernels that it runs, a prefix of kKernels.
   [[nodiscard]] virtual std::span<const Kernel> kernels() const { return kKernels; }
 
-  /// Shares the work of all later runs among so many threads, ≥ 1, by ranges of vertices. Each thread
-  /// computes the elements and springs that touch its range, and adds to no other range. The results have the
-  /// same bits as on one thread.
+  /// Shares the work of all later runs among `threads` ≥ 1 threads, by ranges of vertices. Each thread
+  /// computes the elements and springs that touch its range, and adds only to vertices of its range. The
+  /// results have the same bits as on one thread.
   virtual void share(int threads) = 0;
 
   /// Runs a kernel once; clears its results first.
   virtual void run(Kernel kernel) = 0;
 
   /// Returns the result of the kernel's last run, row by row: for spmv a product for each vertex, for
-  /// assembly the values of the matrix, else a force for each vertex. Elements and springs share the array.
+  /// assembly the values of the matrix, for elements and springs a force for each vertex. Elements and
+  /// springs share one array.
   [[nodiscard]] virtual std::span<const double> result(Kernel kernel) const = 0;
 
   /// Returns the bytes that one run moves if every array passes through the processor once. Divided by the
@@ -73,7 +74,7 @@ class KernelBench : public Polymorphic {
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 
   /// Returns the share of elements that are computed in addition, because threads overlap: 0 on one thread,
-  /// 0.02 if every fiftieth is computed twice.
+  /// 0.02 if every fiftieth element is computed twice.
   [[nodiscard]] virtual double redundancy() const = 0;
 };
 
@@ -88,11 +89,12 @@ inline std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const Mes
   return prepare_kernels(kernels, KernelInput(mesh, graph), threads);
 }
 
-/// Returns the mean number of threads that compute an element or edge of a kernel, when so many threads share
-/// a run: each computes all that touch a vertex that it owns (see KernelBench). 1 for products with the
-/// matrix and on one thread; 1.02 if every fiftieth lies between vertices of two threads; more in scrambled
-/// orders, up to the number of threads or corners. `graph` is the vertex graph of a mesh and `simplices` the
-/// result of `cut_into_simplices`, both in the order to be judged. O(entries · log threads).
+/// Returns the mean number of threads that compute an element or edge of a kernel when `threads` threads
+/// share a run. Each thread computes the elements or edges that touch a vertex that it owns (see
+/// KernelBench). 1 for products with the matrix and on one thread; 1.02 if every fiftieth element has
+/// vertices of two threads; more in scrambled orders, up to the number of threads or corners. `graph` is the
+/// vertex graph of a mesh and `simplices` the result of `cut_into_simplices`, both in the order to be judged.
+/// O(entries · log threads).
 double times_computed(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, int threads);
 
 /// Returns the points, moved along every axis by waves of 2 % of the mesh's size and stretched by 3 %:

@@ -28,7 +28,7 @@ double seconds_of_runs(KernelBench& bench, Kernel kernel, int repeats) {
 /// How a sample of a kernel is taken.
 struct Plan {
   int repeats = 1;
-  int warm_ups = 0;  ///< runs before it that do not count
+  int warm_ups = 0;  ///< number of runs before the sample, which are not timed
 };
 
 /// Takes a sample; returns the mean seconds of its runs.
@@ -46,7 +46,7 @@ Plan plan_samples(KernelBench& bench, Kernel kernel, double sample_seconds) {
   constexpr double kMostRepeats = 1e5;
   constexpr std::size_t kMostRuns = 12;
   // a kernel that runs longer than this many samples streams far more than the caches hold, so it needs no
-  // warm-up; a first run counts as long only beyond twice that, because first runs take longer
+  // warm-up; for a first run the limit is twice that, because first runs take longer
   constexpr double kLong = 5.0;
   std::vector<double> seconds;
   double best = std::numeric_limits<double>::infinity();
@@ -130,7 +130,7 @@ Timings time_orders(Index orders, const PrepareOrder& prepare, const TimingOptio
   const std::unique_ptr<KernelBench> reference = prepare(0);
   const std::size_t memory = options.memory_bytes > 0 ? options.memory_bytes : usable_memory() / 2;
   const std::size_t fitting = memory / std::max<std::size_t>(1, reference->bytes());
-  // number of benches that fit beside the reference
+  // number of benches that fit into memory together with the reference
   const Index group = static_cast<Index>(std::clamp<std::size_t>(fitting, 2, kMaxIndex)) - 1;
   const Index groups = std::max<Index>(1, (orders - 1 + group - 1) / group);
 

@@ -23,7 +23,7 @@ struct TimingOptions {
   /// Count the calling thread's processor time instead of elapsed time: for
   /// kernels on one thread.
   bool processor_time = false;
-  /// For time_orders: memory for all prepared orders together; 0: half of the machine's.
+  /// For time_orders: memory for all prepared orders together; 0: half of the machine's memory.
   std::size_t memory_bytes = 0;
 };
 
@@ -57,13 +57,14 @@ using PrepareOrder = std::function<std::unique_ptr<KernelBench>(Index)>;
 /// Times every kernel of the prepared orders, which must all run the same kernels, in interleaved rounds, so
 /// that changes of the machine's speed affect all orders alike. A round takes a sample of every kernel in
 /// every order, kernel by kernel; the next round begins with the next order. The first runs of a sample find
-/// another order's data in the caches and do not count: `runs_to_settle` of them, but none if a run takes
-/// longer than five samples. The first bench is the reference of the speedups.
+/// another order's data in the caches and are not counted; their number is `runs_to_settle`, but 0 if a run
+/// takes longer than five times `sample_seconds`. The first bench is the reference of the speedups.
 Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options = {});
 
 /// As above, for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0 is
-/// the reference. If not all of them fit into the memory allowed, they are timed in groups, each with the
-/// reference, and the groups share the budget. Two benches are always held, even beyond that memory.
+/// the reference. If not all benches fit into the allowed memory, orders are timed in groups, each together
+/// with the reference, and the groups share the budget. Two benches are always held at once, even if they
+/// exceed that memory.
 Timings time_orders(Index orders, const PrepareOrder& prepare, const TimingOptions& options = {});
 
 /// A function that times orders as `time_orders` does.

@@ -40,7 +40,7 @@ std::vector<double> scaled_gram(const Rows& a, const std::vector<double>& length
   return gram;
 }
 
-// a column depends on the others if the squared sine of its angle to their span is below this
+// a column counts as dependent on the others if the squared sine of its angle to their span is below this
 constexpr double kDependent = 1e-11;
 
 /// Solves the normal equations of the chosen unknowns by Cholesky's factorisation. Returns false if their
@@ -87,7 +87,7 @@ std::vector<double> non_negative_least_squares(const Rows& a, std::span<const do
   for (const double value : right) largest = std::max(largest, std::abs(value));
 
   std::vector<double> x(n, 0.0);
-  std::vector<bool> refused(n, false);  // the unknowns that depend on those chosen, until these change
+  std::vector<bool> refused(n, false);  // unknowns that depend on the chosen ones; reset by each choice
   std::vector<std::size_t> chosen;
   for (std::size_t step = 0; step < 10 * n; ++step) {
     // choose the unknown whose growth reduces the error fastest

@@ -20,14 +20,14 @@ struct Rows {
 };
 
 /// Returns x ≥ 0 that minimises ‖a x − b‖ (Lawson and Hanson 1974, Solving least squares problems, chapter
-/// 23). Columns may differ in scale by orders of magnitude. The unknowns of zero columns are 0; of columns
-/// that depend on each other, some are 0. O(rows · columns² + steps · columns³). Throws InvalidArgument
-/// unless `b` has an entry for each row.
+/// 23). Columns may differ in scale by orders of magnitude. The unknowns of zero columns are 0. If columns
+/// depend on each other, some of their unknowns are 0. O(rows · columns² + steps · columns³) time. Throws
+/// InvalidArgument unless `b` has an entry for each row.
 std::vector<double> non_negative_least_squares(const Rows& a, std::span<const double> b);
 
 /// Returns the ratio of the largest and the smallest singular value of `a`, with its columns scaled to length
 /// 1: the factor by which a relative error of the right side can grow in the solution. Zero columns are left
-/// out. Infinite if the others depend on each other, 1 if there are none.
+/// out. Infinite if the other columns depend on each other, 1 if there are no other columns.
 double condition_number(const Rows& a);
 
 }  // namespace meshorder

@@ -15,7 +15,8 @@
 namespace meshorder {
 namespace {
 
-/// Returns the caches of these sizes, rounded down to whole lines; skips sizes not above those before them.
+/// Returns the caches of these sizes, rounded down to whole lines; skips a size that is not larger than all
+/// before it.
 Caches ascending(const std::vector<Offset>& sizes) {
   Caches caches;
   Offset largest = 0;
@@ -55,8 +56,8 @@ Caches caches_in_sysconf() {
   return ascending(sizes);
 }
 
-/// Returns the hardware threads of a processor's core as the system lists them: the same text for all of
-/// them.
+/// Returns the hardware threads of a processor's core in the system's notation. The text is the same for all
+/// hardware threads of a core.
 std::string core_of(int processor) {
   std::ifstream in("/sys/devices/system/cpu/cpu" + std::to_string(processor) +
                    "/topology/thread_siblings_list");

@@ -20,14 +20,14 @@ struct ShippedMachine {
 /// Returns the shipped machines. The costs of the first one are used for a machine that is not calibrated.
 std::span<const ShippedMachine> shipped_machines();
 
-/// Returns " on 2 threads", nothing for one.
+/// Returns a text such as " on 2 threads"; an empty text for one thread.
 std::string on_threads(int threads);
 
 /// The machine that times are predicted for.
 struct MachineChoice {
   std::string name;        ///< name of a shipped machine, or "this"
   CostModel model;         ///< costs on one thread, or on all
-  std::string calibrated;  ///< "2026-11-22" if the costs were measured here; empty if they are shipped ones
+  std::string calibrated;  ///< date ("2026-11-22") if the costs were measured here, else empty
   /// True if this machine is not calibrated: `model` has shipped costs with this machine's reported caches.
   bool stands_in = false;
   /// By kernel, the relative difference of two timings of one problem; 0 if not known.
@@ -44,9 +44,10 @@ struct MachineChoice {
 /// MESHORDER_MACHINE, or "this" if it is not set. Throws InvalidArgument for an unknown name; the message
 /// suggests the nearest one.
 ///
-/// With `all_threads` the costs are those of kernels that all threads share. Only a calibration has them:
-/// throws InvalidArgument for a shipped machine on more than one thread, and if this machine was calibrated
-/// on another number of threads than there are now. Without a calibration the costs are of one thread.
+/// With `all_threads` the costs are those of kernels that all threads share. Only a calibration has such
+/// costs: throws InvalidArgument for a shipped machine on more than one thread, and if this machine was
+/// calibrated on another number of threads than there are now. Without a calibration, the costs are those of
+/// one thread.
 MachineChoice choose_machine(std::string_view name = {}, bool all_threads = false);
 
 /// Returns the result of choose_machine("this") on a machine that is not calibrated.

@@ -23,14 +23,14 @@ constexpr Offset kKilobyte = Offset{1} << 10;
 constexpr Offset kSmallest = 8 * kKilobyte;
 constexpr std::uint64_t kLineWords = kLineBytes / sizeof(std::uint64_t);
 
-/// Makes `steps` loads, each of which waits for the one before, at random lines among the first `lines` of
-/// a buffer of zeros. Without `Load` it does only the arithmetic between the loads.
+/// Makes `steps` loads, each of which waits for the load before it, at random lines among the first `lines`
+/// of a buffer of zeros. Without `Load` it does only the arithmetic between the loads.
 template <bool Load>
 std::uint64_t follow(const std::uint64_t* buffer, std::uint64_t lines, int steps, std::uint64_t state) {
   for (int step = 0; step < steps; ++step) {
     state = state * 6364136223846793005U + 1442695040888963407U;
     const std::uint64_t line = ((state >> 32) * lines) >> 32;
-    std::uint64_t value = line >> 63;  // 0, which the compiler cannot know
+    std::uint64_t value = line >> 63;  // this is 0, but the compiler cannot know that
     if constexpr (Load) value = buffer[line * kLineWords];
     asm volatile("" : "+r"(value));
     state += value;
@@ -46,7 +46,7 @@ double seconds_of(const std::uint64_t* buffer, std::uint64_t lines, int steps, s
   return stopwatch.seconds() / steps;
 }
 
-/// Reads one word of each line of the last `most` bytes (or of all, if there are fewer), twice.
+/// Reads one word of each line of the last `most` bytes (or of all bytes, if there are fewer), twice.
 void fill_caches(std::span<const std::uint64_t> words, std::size_t most) {
   const std::size_t skipped = words.size() - std::min(words.size(), most / sizeof(std::uint64_t));
   for (int pass = 0; pass < 2; ++pass) {
@@ -94,7 +94,8 @@ bool has_steps(const Explanation& explanation) {
   return true;
 }
 
-/// Returns the best explanation by that many levels; its error is infinite if none passes has_steps.
+/// Returns the best explanation by that many levels; its error is infinite if no explanation passes
+/// has_steps.
 Explanation best_explanation(std::span<const ProbePoint> points, std::size_t levels) {
   Explanation best;
   std::vector<std::size_t> sizes(levels);
@@ -132,7 +133,7 @@ std::vector<Offset> probe_sizes(Offset largest) {
 std::vector<ProbePoint> probe_latencies(std::span<const Offset> sizes, int rounds,
                                         const std::function<void(double)>& tell) {
   if (sizes.empty()) return {};
-  // few, so that most runs are not interrupted by another program
+  // few steps, so that other programs do not interrupt most runs
   constexpr int kSteps = 20'000;
   constexpr std::size_t kMostFilled = std::size_t{64} << 20;
   const auto largest = static_cast<std::size_t>(*std::max_element(sizes.begin(), sizes.end()));
@@ -185,7 +186,7 @@ FoundCaches find_caches(std::span<const ProbePoint> points, std::size_t most) {
 }
 
 double read_bandwidth(std::size_t buffer_bytes, int passes, int threads) {
-  // integers, since the compiler may sum them in vectors
+  // integers, because the compiler may use vector instructions to sum them
   const AlignedVector<std::uint64_t> buffer(std::max<std::size_t>(1, buffer_bytes / sizeof(std::uint64_t)),
                                             1);
   const auto parts = static_cast<std::size_t>(std::max(1, threads));

@@ -10,7 +10,8 @@
 
 namespace meshorder {
 
-/// The latency of dependent loads (each waits for the one before) at random lines within the first `bytes`.
+/// The latency of dependent loads (each waits for the load before it) at random lines within the first
+/// `bytes` bytes.
 struct ProbePoint {
   Offset bytes = 0;
   double nanoseconds = 0;
@@ -39,22 +40,22 @@ std::vector<Offset> probe_sizes(Offset largest);
 
 /// Measures the time of dependent loads at random lines within the first `sizes[i]` bytes of a buffer, for
 /// each i. Returns the least of `rounds` runs at each size. Each round runs over all sizes, so that a short
-/// disturbance does not fall on one size only. The buffer is on large pages where the system has them.
-/// `tell` receives the share of the work that is done, 0 … 1.
+/// disturbance does not fall on one size only. The buffer is on large pages if the system has them. `tell`
+/// receives the share of the work that is done, 0 … 1.
 std::vector<ProbePoint> probe_latencies(std::span<const Offset> sizes, int rounds,
                                         const std::function<void(double)>& tell = {});
 
 /// Finds the caches from latencies at ascending sizes. A share 1 − c/s of random loads within s bytes misses
 /// a cache of c < s bytes. So the latency is a + Σ d · max(0, 1 − c/s), summed over levels of c bytes whose
-/// miss costs d more than a hit. Returns the choice of at most `most` of the points' sizes with the least
-/// squares of relative errors (a, d ≥ 0), in whole KiB. One more level must reduce that error by more than a
-/// quarter. Returns at least one level: the largest size if latencies do not rise. O(n^(most+1)) for n
-/// points. Throws InvalidArgument without points.
+/// miss costs d more than a hit. Chooses at most `most` of the points' sizes as levels, such that the sum of
+/// squared relative errors is least (a, d ≥ 0). Sizes are returned in whole KiB. One more level must reduce
+/// that error by more than a quarter. Returns at least one level: the largest size if latencies do not rise.
+/// O(n^(most+1)) for n points. Throws InvalidArgument without points.
 FoundCaches find_caches(std::span<const ProbePoint> points, std::size_t most = 3);
 
-/// Measures the rate in GB/s (10⁹ bytes) at which the threads together read memory: best of several passes
-/// over a buffer, as STREAM does (McCalpin 1995, Memory bandwidth and machine balance in current high
-/// performance computers). The buffer should be several times the last-level cache.
+/// Measures the rate, in GB/s (10⁹ bytes), at which the threads together read memory. Returns the best of
+/// several passes over a buffer, as STREAM does (McCalpin 1995, Memory bandwidth and machine balance in
+/// current high performance computers). The buffer should be several times the last-level cache.
 /// KernelBench::streamed_bytes divided by this is a lower bound on a kernel's time.
 double read_bandwidth(std::size_t buffer_bytes = std::size_t{512} << 20, int passes = 8, int threads = 1);
 

@@ -25,7 +25,7 @@ struct MeshComparisonOptions {
   int threads = 1;  ///< the kernels run on one thread and, if there are more, on all of them
   double budget_seconds = TimingOptions{}.budget_seconds;  ///< for all runs of kernels
   bool reuse = false;           ///< compute `reuse` if the mesh has at most two million simplices
-  bool reuse_of_large = false;  ///< compute it for larger meshes, too
+  bool reuse_of_large = false;  ///< compute `reuse` for larger meshes, too
   bool iterations = false;      ///< where `reuse` is computed, compute `iterations`, too
   /// Called at the beginning of a stage; the stage is the share `from` … `to` of the whole.
   std::function<void(const std::string& stage, double from, double to)> begins = {};
@@ -63,13 +63,14 @@ struct MeshComparison {
   [[nodiscard]] bool is_matrix() const noexcept { return kernels_run.size() < kKernels.size(); }
 };
 
-/// Computes the mesh's own order and others, each once. Times the kernels in all of them and on the band, in
-/// interleaved rounds. Cuts the mesh into simplices once, and builds its graph once.
+/// Computes the mesh's own order and the other orders, each once. Times the kernels in all orders and on the
+/// band, in interleaved rounds. Cuts the mesh into simplices once, and builds its graph once.
 ///
 /// @throws as `compute_reordering` and `prepare_kernels`
 MeshComparison compare_orders(const Mesh& mesh, const MeshComparisonOptions& options);
 
-/// Returns advice on the mesh from the times on most threads; the other orders are candidates.
+/// Returns advice on the mesh from the times on the largest number of threads; the other orders are the
+/// candidates.
 Advice advice_of(const MeshComparison& comparison);
 
 }  // namespace meshorder

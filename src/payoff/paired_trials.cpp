@@ -70,7 +70,7 @@ TimeRatio time_ratio_of(std::vector<double> log_ratios) {
   const auto last = log_ratios.end() - cut;
   const auto kept = static_cast<double>(last - first);
   const double mean = std::accumulate(first, last, 0.0) / kept;
-  std::fill(log_ratios.begin(), first, *first);  // winsorise: the variance is that of the values clamped
+  std::fill(log_ratios.begin(), first, *first);  // winsorise: the variance is computed from clamped values
   std::fill(last, log_ratios.end(), *(last - 1));
   const double middle =
       std::accumulate(log_ratios.begin(), log_ratios.end(), 0.0) / static_cast<double>(log_ratios.size());

@@ -13,7 +13,7 @@ namespace meshorder {
 inline constexpr double kTie = 0.015;
 
 /// The speed of a program in an order, relative to the file's own order, with an interval that contains the
-/// true ratio in 95 of 100 trials although it is checked repeatedly.
+/// true ratio in 95 of 100 trials, even though it is checked repeatedly during a trial.
 struct TimeRatio {
   double ratio = 1;
   double low = 0;
@@ -29,7 +29,8 @@ double student_quantile(double tail, int degrees);
 
 /// Returns the speedup from logarithms of the ratios of paired times (own order / this order): their mean
 /// without the largest and the smallest fifth (Yuen, "The two-sample trimmed t for unequal population
-/// variances", 1974; here for one sample of differences). Fewer than six: the median, without an interval.
+/// variances", 1974; here for one sample of differences). For fewer than six logarithms, returns their
+/// median, without an interval.
 TimeRatio time_ratio_of(std::vector<double> log_ratios);
 
 /// Decides by paired runs in which of several orders a program runs faster than in the file's own.
@@ -37,20 +38,22 @@ TimeRatio time_ratio_of(std::vector<double> log_ratios);
 /// The program runs in rounds, once in the file's own order and once in each order that is left; the sequence
 /// of the runs rotates. From round 3 on, each round drops the orders that are slower than the best one by
 /// more than twice the standard error. At most half of the candidates are left after round 3, a quarter after
-/// round 4, an eighth after round 6 …. Once one is left, the file's own order and this one run in turns.
-/// After 6, 7, 8, 9, 10, 12, 14 … pairs their interval is checked. It decides if it lies within a tie, or if
-/// it is at least 0.001 away from 1 and the ratio is no tie.
+/// round 4, an eighth after round 6 …. When only one candidate is left, the program runs in the file's own
+/// order and in that candidate by turns. After 6, 7, 8, 9, 10, 12, 14 … pairs of runs, the interval of the
+/// ratio is checked. The trial ends if the whole interval is within a tie, or if it is at least 0.001 away
+/// from 1 and the ratio is not a tie.
 ///
-/// Simulated trials, 4,000 of each kind, had log-normal times, one in twenty disturbed by up to a half. Of
-/// five equal orders at most 5 % of the trials found one faster or slower, at spreads up to 5 % and budgets
-/// up to 120 runs. One order of five that saves 5 % was found within 40 runs in 98, 90 and 72 % of
-/// the trials at spreads of 1, 1.5 and 2 %, and within 120 runs in 97 % at 2 %
-/// (tests/payoff/paired_trials_test.cpp).
+/// This was tested by simulated trials, 4,000 of each kind (tests/payoff/paired_trials_test.cpp). Times were
+/// log-normal, and one in twenty was longer by up to a half.
+/// - With five equal orders, spreads up to 5 % and budgets up to 120 runs, at most 5 % of the trials found an
+///   order faster or slower.
+/// - With one order of five that saves 5 %, 98, 90 and 72 % of the trials found it within 40 runs at spreads
+///   of 1, 1.5 and 2 %; within 120 runs, 97 % found it at a spread of 2 %.
 class PairedTrials {
  public:
   explicit PairedTrials(std::size_t candidates);
 
-  /// Returns the orders to run next, in sequence: 0 is the file's own order, i the i-th candidate. Empty when
+  /// Returns the orders to run next, in sequence: 0 is the file's own order, i the i-th candidate. Empty if
   /// the trial has ended.
   [[nodiscard]] std::vector<std::size_t> next_round() const;
 
@@ -60,11 +63,12 @@ class PairedTrials {
   /// Excludes a candidate (≥ 1) that cannot run.
   void exclude(std::size_t candidate);
 
-  /// Returns the best candidate so far: the only one that is left, or the one with the best median.
-  /// Nothing if all are excluded.
+  /// Returns the best candidate so far: the only one that is left, or the one with the best median. Nothing
+  /// if all candidates are excluded.
   [[nodiscard]] std::optional<std::size_t> best() const;
 
-  /// Returns the verdict on the best candidate; undecided until it alone is left and its interval decides.
+  /// Returns the verdict on the best candidate; undecided until no other candidate is left and the interval
+  /// decides.
   [[nodiscard]] TrialVerdict verdict() const { return verdict_; }
 
   [[nodiscard]] TimeRatio speedup(std::size_t candidate) const;

@@ -12,7 +12,8 @@
 namespace meshorder {
 namespace {
 
-/// Calls `keep(first)` for each group of `size` vertices, beginning at `first`, that has an owned vertex.
+/// Calls `keep(first)` for each group of `size` vertices that has an owned vertex; `first` is the place of
+/// the group's first vertex.
 template <class Keep>
 void for_each_owned(std::span<const Index> vertices, std::size_t size, const plain::VertexRange& owned,
                     Keep keep) {

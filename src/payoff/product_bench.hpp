@@ -9,7 +9,7 @@
 namespace meshorder {
 
 /// The product with a matrix of exactly this pattern, in the storage of `PlainBench` (one number per entry).
-/// All values are 1 and vector component i is i + 1; times do not depend on these.
+/// All values of the matrix are 1, and entry i of the vector is i + 1; times do not depend on these numbers.
 class ProductBench final : public KernelBench {
  public:
   explicit ProductBench(EntryPattern pattern);

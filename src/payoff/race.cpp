@@ -9,11 +9,11 @@
 namespace meshorder {
 namespace {
 
-/// Number of orders that are timed beside the mesh's own.
+/// Number of orders that are timed besides the mesh's own.
 constexpr std::size_t kInRace = 3;
 
 /// Returns the methods that take part, `auto` first. Entries of a matrix keep their order; methods that need
-/// coordinates take part only if there are any.
+/// coordinates take part only if there are coordinates.
 std::vector<MeshMethods> contenders(const Mesh& mesh) {
   const bool is_matrix = stored_matrix(mesh) != nullptr;
   const std::string elements = is_matrix ? "original" : "lexmax";

@@ -16,14 +16,14 @@ namespace meshorder {
 struct RaceOptions {
   OrderOptions ordering = {};                ///< the race is for `ordering.workload`
   double graph_seconds = 0;                  ///< time that building the vertex graph took
-  MachineChoice machine = choose_machine();  ///< its predictions choose the orders to time, on its threads
+  MachineChoice machine = choose_machine();  ///< its predictions and threads are used
   OrderTimer timer = time_orders;            ///< empty: predictions decide
 };
 
 /// The result of timing or predicting several orders of a mesh.
 struct Race {
-  Advice advice;                      ///< its candidates are the orders that were timed, or predicted best
-  std::vector<double> factors;        ///< as `factor_for` returns them, by candidate
+  Advice advice;                ///< candidates: the orders that were timed, or were predicted to be best
+  std::vector<double> factors;  ///< as `factor_for` returns them, by candidate
   std::optional<std::size_t> winner;  ///< place of a candidate; nothing: the mesh's own order
   std::string reason;                 ///< why the winner won, a sentence
 
@@ -31,10 +31,10 @@ struct Race {
   [[nodiscard]] MeshMethods methods() const;
 };
 
-/// Times the kernels in a mesh's own order, in that of `auto` and in the two of five others with the best
-/// predictions, for half a second each, and finds the fastest. Without a timer, predicted times decide.
-/// `graph` is the vertex graph of `mesh`. Throws InvalidArgument for `bandwidth` and `fill`, which are not
-/// about times of kernels.
+/// Times the kernels for half a second each in the mesh's own order, in the order of `auto`, and in two of
+/// five other orders, those with the best predictions. Finds the fastest order. Without a timer, predicted
+/// times decide. `graph` is the vertex graph of `mesh`. Throws InvalidArgument for `bandwidth` and `fill`,
+/// which are not about times of kernels.
 Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options = {});
 
 /// Sets the reasons of an order that was computed by the methods of a race.

@@ -18,8 +18,7 @@ namespace {
 constexpr double kMostWaiting = 0.05;
 constexpr double kMostPace = 0.1;
 constexpr double kMostRepeat = 0.05;
-/// Returns the most seconds that a run of a settled kernel may take: 5 % more than the fastest of these
-/// runs.
+/// Returns the most seconds that a run of a settled kernel may take: 5 % more than the fastest run.
 double most_when_settled(const std::vector<double>& seconds) {
   constexpr double kSettled = 1.05;
   return kSettled * *std::min_element(seconds.begin(), seconds.end());

@@ -6,7 +6,8 @@
 
 namespace meshorder {
 
-/// How steadily the machine computed while kernels were timed. All 0 where nothing disturbed them.
+/// How steadily the machine computed while kernels were timed. All numbers are 0 if nothing disturbed the
+/// kernels.
 struct Steadiness {
   double waiting = 0;  ///< share of the time in which the timed thread did not run
   double pace = 0;     ///< median / least time of a fixed piece of arithmetic, minus 1
@@ -15,19 +16,19 @@ struct Steadiness {
   bool operator==(const Steadiness&) const = default;
 };
 
-/// Returns a sentence that says why the times are unreliable; empty if they can be trusted. They can if the
-/// timed thread waited for at most 5 % of the time, arithmetic took at most 10 % longer than at best, and
-/// repeated timings differ by at most 5 % (from this difference on, measured orders count as different).
+/// Returns a sentence that says why the times are unreliable; empty if they are reliable. They are reliable
+/// if the timed thread waited for at most 5 % of the time, arithmetic took at most 10 % longer than at best,
+/// and repeated timings differ by at most 5 % (from this difference on, measured orders count as different).
 std::string reason_to_doubt(const Steadiness& steadiness);
 
-/// Returns the relative difference of the best even-numbered and the best odd-numbered sample; 0 for fewer
-/// than two samples.
+/// Returns the relative difference between the best even-numbered and the best odd-numbered sample; 0 for
+/// fewer than two samples.
 double repeat_difference(const std::vector<double>& samples);
 
-/// Returns the number of runs, one after another, before a kernel has settled in the caches: the next run
-/// takes at most 5 % longer than the fastest of these. At least 1. If the last cache keeps only a part of
-/// what the second level evicts, it takes up to ten runs to hold the data that is reused; the second run may
-/// be slower than the first.
+/// Returns how many successive runs a kernel needs to settle in the caches: the next run takes at most 5 %
+/// longer than the fastest of `seconds`. At least 1. If the last cache keeps only a part of what the second
+/// level evicts, it holds the reused data only after up to ten runs; the second run may be slower than the
+/// first.
 int runs_to_settle(const std::vector<double>& seconds);
 
 /// Returns whether a kernel has settled: it ran at least four times, and each of the last three runs took at

@@ -66,7 +66,7 @@ void TunedBench::run_shared(Kernel kernel) {
     const Share& share = shares_[part];
     const Index begin = share.elements.begin;
     const Index end = share.elements.end;
-    // each thread clears what it owns
+    // each thread clears the values of its own range
     const auto clear = [](AlignedVector<double>& values, Offset first, Offset last) {
       std::fill(values.begin() + first, values.begin() + last, 0.0);
     };

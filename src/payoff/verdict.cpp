@@ -87,8 +87,8 @@ std::string runs_of(const Advice& advice, Workload workload) {
   return k < kKernels.size() ? fmt::format("the {} kernel runs", kKernelTitles[k]) : "the kernels run";
 }
 
-/// Returns the verdict if the size of the gain is in doubt. It says only which order is faster, by the words
-/// `slower`, "products take longer", and `than`, "they could".
+/// Returns the verdict if the size of the gain is in doubt. It says only which order is faster. `slower` is a
+/// text such as "products take longer", `than` a text such as "they could".
 std::string in_doubt(const std::string& slower, const std::string& on, const char* than,
                      const std::string& command) {
   return fmt::format(
@@ -123,7 +123,7 @@ std::optional<std::size_t> advised(const Advice& advice) {
   const std::size_t k = worst(advice.kernels);
   if (advice.kernels[k].factor <= 1) return std::nullopt;
   if (advice.is_matrix) return advice.kernels[k].candidate;
-  // the order for all kernels, unless only another one makes this kernel faster
+  // the order for all kernels, unless it does not make this kernel faster
   const double with_first =
       advice.as_is.costs.best_known()[k] / advice.candidates.front().costs.best_known()[k];
   return with_first >= same_time(advice, kKernels[k]) ? 0 : advice.kernels[k].candidate;
@@ -156,7 +156,7 @@ std::string comparison_in_words(const Advice& advice, Workload workload) {
   const std::optional<std::size_t> best = winner_for(told, advice);
   if (!best) {
     const std::size_t k = worst(advice.kernels);
-    // require twice the margin: the best of many orders for one kernel exceeds 1 by chance, too
+    // require twice the margin: with many orders, the best factor for one kernel also exceeds 1 by chance
     if (is_mean && advice.kernels[k].factor > 1 + 2 * (same_time(advice, kKernels[k]) - 1)) {
       return fmt::format("no order is better for all kernels; best for the {} kernel is {}", kKernelTitles[k],
                          order_in_words(advice.candidates[advice.kernels[k].candidate]));

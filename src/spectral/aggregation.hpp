@@ -13,7 +13,7 @@ namespace meshorder {
 /// of rows are numbered together, chunk after chunk.
 struct Aggregation {
   std::vector<Index> aggregate_of;       ///< n entries in 0 … count−1
-  std::vector<Index> first_of_chunk{0};  ///< the first aggregate of each chunk, and their number at the end
+  std::vector<Index> first_of_chunk{0};  ///< the first aggregate of each chunk, then the number of aggregates
 
   Index alone = 0;  ///< number of aggregates of one vertex, without a strong neighbour in its chunk
   std::vector<Index> founders = {};  ///< one for each aggregate
@@ -24,24 +24,25 @@ struct Aggregation {
 };
 
 /// Aggregates greedily (Vaněk, Mandel, Brezina 1996) within each chunk of rows, all chunks at the same time:
-/// each vertex whose strong neighbours are all free founds an aggregate with them; the others join the
+/// each vertex whose strong neighbours are all free founds an aggregate with them; other vertices join the
 /// aggregate of their strongest neighbour. A neighbour is strong if its weight is at least `strength` times
-/// the largest of the row. O(n + edges), in index order, the same for any number of threads.
+/// the largest weight of the row. Vertices are visited in index order. O(n + edges); the result is the same
+/// for any number of threads.
 ///
-/// Every vertex joins its aggregate through an edge, to the founder or to a founding member. The slack of
-/// an aggregate is the largest mass that depends on such an edge, divided by the edge's weight. A vector of
-/// Rayleigh quotient λ is nearly constant on an aggregate if λ · slack is much less than 1. Otherwise the
-/// aggregate may hide a vector: for example, an aggregate of two cliques joined by a bridge has a large
-/// mass that depends on the bridge. See hiding.hpp.
+/// Every vertex joins its aggregate through one edge, which leads to the founder or to a founding member. The
+/// slack of an aggregate is the largest mass that depends on such an edge, divided by the edge's weight. A
+/// vector of Rayleigh quotient λ is nearly constant on an aggregate if λ · slack is much less than 1.
+/// Otherwise the aggregate may hide a vector: for example, an aggregate of two cliques joined by a bridge has
+/// a large mass that depends on the bridge. See hiding.hpp.
 ///
-/// @param masses  of the vertices; empty: all 1
+/// @param masses  of the vertices; empty if all are 1
 Aggregation aggregate(const Laplacian& laplacian, const RowChunks& chunks, double strength,
                       std::span<const double> masses = {});
 
 /// Returns the least weight of a strong neighbour of v. O(neighbours of v).
 double strong_weight(const Laplacian& laplacian, Index v, double strength);
 
-/// The vertices of aggregates: those of a are `members[starts[a]] … members[starts[a + 1] − 1]`, ascending.
+/// The vertices of aggregates: aggregate a has `members[starts[a]] … members[starts[a + 1] − 1]`, ascending.
 struct Members {
   std::vector<Index> starts;
   std::vector<Index> members;

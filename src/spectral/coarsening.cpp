@@ -9,9 +9,9 @@
 namespace meshorder {
 namespace {
 
-constexpr double kSmoothing = 2.0 / 3.0;  // 4/3 divided by 2, a bound of the spectral radius of D⁻¹L
+constexpr double kSmoothing = 2.0 / 3.0;  // 4/3 divided by 2, an upper bound on the spectral radius of D⁻¹L
 
-/// Adds up the entries of one row by column. Used for one row after another.
+/// Adds up the entries of a row that have the same column. The object is used for one row after another.
 class RowSum {
  public:
   explicit RowSum(Index columns)

@@ -9,7 +9,7 @@
 
 namespace meshorder {
 
-/// A sparse matrix by rows. The columns of a row are in no particular order; none occurs twice.
+/// A sparse matrix by rows. The columns of a row are in no particular order; no column occurs twice in a row.
 struct SparseRows {
   Index columns_count = 0;
   std::vector<Offset> offsets{0};  ///< rows + 1
@@ -26,10 +26,10 @@ SparseRows transposed(const SparseRows& a);
 /// is the sum of all weights between two aggregates. O(n + edges), on all threads.
 Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggregation& aggregation);
 
-/// Does the same for some rows of a larger graph, whose other vertices are numbered after those of the rows.
+/// Does the same for some rows of a larger graph. The vertices of these rows have the first numbers.
 ///
 /// @param aggregation  of the rows; `aggregate_of` has the other vertices too
-/// @param columns      number of all aggregates; those of other vertices come after those of the rows
+/// @param columns      number of all aggregates; aggregates of the rows come before those of other vertices
 Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggregation& aggregation,
                     Index columns);
 
@@ -37,8 +37,9 @@ Laplacian collapsed(const Laplacian& fine, const RowChunks& chunks, const Aggreg
 /// 1, like those of P₀. O(n + edges).
 SparseRows smoothed_prolongation(const Laplacian& fine, const Aggregation& aggregation);
 
-/// Returns Pᵀ L P; nothing if it has more entries than `most`, as it may with a vertex of very many
-/// neighbours. O(multiplications); with no result, O(most + n) for each thread beside the rows that fit.
+/// Returns Pᵀ L P; nothing if it has more entries than `most`, which can happen if a vertex has very many
+/// neighbours. O(multiplications) time. Memory: O(most) entries and, for each thread, O(n), even if there is
+/// no result.
 std::optional<Laplacian> galerkin_product(const Laplacian& fine, const SparseRows& prolongation, Offset most);
 
 }  // namespace meshorder

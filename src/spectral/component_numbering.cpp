@@ -18,7 +18,7 @@ constexpr Index kUnseen = -1;
 constexpr Index kFound = -2;    // seen, not numbered yet
 constexpr Index kBatch = 256;   // vertices whose discoveries are sorted together
 constexpr Index kWave = 8;      // with at least so many batches, threads share them
-constexpr Index kDegrees = 64;  // larger degrees are rare and sorted as this one
+constexpr Index kDegrees = 64;  // larger degrees are rare, and are sorted as if they were this
 
 /// Numbers the components one after another.
 class Search {
@@ -89,8 +89,8 @@ void Search::go_through_batch() {
   tail_ += index_size(found);
 }
 
-/// Reads several batches at once, with the result of reading one after another: a vertex belongs to the first
-/// row that contains it. Its mark is kFound minus that row's place, counted from head_.
+/// Reads several batches at once; the result is the same as if they were read one after another. A vertex
+/// belongs to the first row that contains it; its mark is kFound minus that row's place, counted from head_.
 void Search::go_through_wave(Index batches) {
   if (index_size(found_) < batches) {
     found_.resize(batches);
@@ -112,9 +112,10 @@ void Search::go_through_wave(Index batches) {
   tail_ = tails.back();
 }
 
-/// Marks the vertices in the rows from order[head_ + begin] on that have no number and no mark of an earlier
-/// row. If two threads mark a vertex at once, the later mark stays; both have the vertex among their claims
-/// (see `settle_claims`). An atomic exchange would let the processor wait for one vertex at a time.
+/// Visits the rows from order[head_ + begin] on, and marks their vertices that have no number and no mark of
+/// an earlier row. If two threads mark a vertex at once, the mark that is written later stays; both threads
+/// have the vertex among their claims (see `settle_claims`). An atomic exchange would make the processor wait
+/// for one vertex at a time.
 void Search::claim_neighbours(Index batch, Index begin, Index end) {
   const std::span<const Index> order(numbering_.order.data() + head_, end);
   claims_[batch].clear();
@@ -131,7 +132,7 @@ void Search::claim_neighbours(Index batch, Index begin, Index end) {
   }
 }
 
-/// Restores the mark of the earliest row where a later row's mark has replaced it.
+/// Restores the mark of the earliest row if a later row's mark has replaced it.
 void Search::settle_claims(Index batch) {
   for (const auto& [u, mark] : claims_[batch]) {
     const std::atomic_ref<Index> number(numbering_.number[u]);
@@ -141,8 +142,8 @@ void Search::settle_claims(Index batch) {
   }
 }
 
-/// Puts the vertices in the order from order[tail] on by rising degree, in their given order within a degree,
-/// and numbers them.
+/// Puts the vertices into the order, from order[tail] on, and numbers them. They are sorted by rising degree;
+/// vertices of the same degree keep their given sequence.
 void Search::put_by_degree(const std::vector<Index>& found, Index tail) {
   const auto degree = [&](Index v) { return std::min(graph_.degree(v), kDegrees); };
   std::array<Index, std::size_t{kDegrees} + 2> place{};

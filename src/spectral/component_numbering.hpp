@@ -9,8 +9,8 @@
 
 namespace meshorder {
 
-/// A numbering of each component's vertices that makes passes over the graph fast, whatever the numbering of
-/// the graph.
+/// A numbering of each component's vertices that makes passes over the graph fast, however the graph itself
+/// is numbered.
 ///
 /// The numbering is breadth first, so that neighbours are close, and the vertices that a batch finds are
 /// sorted by degree: consecutive rows then have the same length, and the processor predicts where their

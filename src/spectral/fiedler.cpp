@@ -59,8 +59,8 @@ FiedlerComponent solve_component(Laplacian laplacian, std::span<const Index> ver
   return {index_size(x), solved.eigenvalue, solved.residual, solved.iterations, solved.converged};
 }
 
-/// Scales to norm 1 and to the sign that FiedlerVectors promises. `vertices` are the component's,
-/// ascending.
+/// Scales the vector of a component to norm 1, with the sign that FiedlerVectors promises. `vertices` are the
+/// vertices of the component, ascending.
 void normalise(std::vector<double>& values, const std::vector<Index>& vertices) {
   double norm_squared = 0;
   double largest = 0;
@@ -135,8 +135,8 @@ void check_input(GraphRef graph, std::span<const double> weights, RealView start
   }
 }
 
-/// Returns the exponent of the power of two that weights are multiplied by, so that no sum or square of them
-/// leaves the range of doubles; 0 if none is near its ends.
+/// Returns the exponent of the power of two by which weights are multiplied, so that no sum or square of
+/// weights leaves the range of doubles; 0 if no weight is near the ends of that range.
 int exponent_of_scale(std::span<const double> weights) {
   constexpr int kOrdinary = 300;
   if (weights.empty()) return 0;
@@ -144,7 +144,8 @@ int exponent_of_scale(std::span<const double> weights) {
   return std::abs(exponent) <= kOrdinary ? 0 : -exponent;
 }
 
-/// Returns the weights times a power of two; those that would be too small become the smallest normal number.
+/// Returns the weights times a power of two; weights that would be too small become the smallest normal
+/// number.
 std::vector<double> scaled(std::span<const double> weights, int exponent) {
   std::vector<double> result(weights.size());
   std::transform(weights.begin(), weights.end(), result.begin(), [&](double weight) {
@@ -153,7 +154,7 @@ std::vector<double> scaled(std::span<const double> weights, int exponent) {
   return result;
 }
 
-/// Converts a result for scaled weights to the given ones; at most the largest double.
+/// Converts a result for scaled weights to the result for the given weights; at most the largest double.
 double scaled_back(double figure, int exponent) {
   return std::min(std::ldexp(figure, -exponent), std::numeric_limits<double>::max());
 }

@@ -14,15 +14,16 @@ struct FiedlerOptions {
   double tolerance = 0.1;  ///< residual ‖L x − λ x‖ / ‖x‖ relative to λ₂; 0.1 suffices for orders
   int max_iterations = 500;  ///< limit on the iterations of LOBPCG on the whole graph
   std::uint64_t seed = 0;    ///< for the start vector, if one is needed
-  RealView start = {};       ///< n numbers near the Fiedler vector, or none
+  RealView start = {};       ///< an estimate of the Fiedler vector: n numbers, or none
 };
 
 /// Returns the options of the eigensolver that the options of an order give.
 FiedlerOptions solver_options(const OrderOptions& options);
 
 struct FiedlerVectors {
-  /// For each vertex its entry in the Fiedler vector of its component, which has norm 1 and sums to 0. The
-  /// first vertex, by number, whose entry reaches half the largest magnitude is negative.
+  /// For each vertex its entry in the Fiedler vector of its component, which has norm 1 and sums to 0. Among
+  /// the entries with at least half the largest magnitude, that of the vertex with the smallest number is
+  /// negative.
   std::vector<double> values;
   std::vector<std::vector<Index>> component_vertices;  ///< largest first, see connected_components
   std::vector<FiedlerComponent> components;            ///< in the same order
@@ -32,10 +33,11 @@ struct FiedlerVectors {
 /// Computes the Fiedler vector of every connected component, as the public `fiedler_vector` describes it, for
 /// a clean graph.
 ///
-/// Components of up to 60 vertices go to a dense eigensolver. Larger ones are numbered for speed (see
-/// ComponentNumbering) and coarsened into a `Hierarchy`. The start is exact on a coarsest graph of up to 60
-/// vertices, else random. `lobpcg`, preconditioned with the hierarchy's cycle, improves it from graph to
-/// finer graph. A start vector replaces the vectors of the coarser graphs.
+/// Components of up to 60 vertices go to a dense eigensolver. Larger components are numbered for speed (see
+/// ComponentNumbering) and coarsened into a `Hierarchy`. The first vectors are exact on a coarsest graph of
+/// up to 60 vertices, else random. `lobpcg`, preconditioned with the hierarchy's cycle, improves them on one
+/// graph after the other, from coarse to fine. If a start vector is given, it replaces the vectors of the
+/// coarser graphs.
 ///
 /// @param weights  one for each neighbour, > 0 and finite, the same in both rows of an edge; or none
 /// @throws InvalidArgument for another number of weights or of start entries, for a weight that is not

@@ -19,7 +19,7 @@ class PartOfGraph {
  public:
   /// @param part_of   the part of each vertex of the graph
   /// @param vertices  the vertices of this part, ascending
-  /// @param local     has a number for each vertex of the graph; those of `vertices` are written
+  /// @param local     has a number for each vertex of the graph; the numbers of `vertices` are written
   PartOfGraph(const Laplacian& laplacian, std::span<const Index> part_of, std::span<const double> masses,
               std::span<const Index> vertices, std::span<Index> local)
       : laplacian_(laplacian), of_(part_of), masses_(masses), vertices_(vertices), local_(local) {
@@ -48,7 +48,8 @@ class PartOfGraph {
   std::span<Index> local_;
 };
 
-/// Returns an aggregate's slack if joining vertices spread their mass over all edges to founding members.
+/// Returns an aggregate's slack, computed as if each joining vertex spread its mass over all its edges to
+/// founding members.
 ///
 /// @param least  weight of a founding member's edge to the founder
 double spread_slack(const PartOfGraph& part, Index founder, double least) {
@@ -76,7 +77,8 @@ double spread_slack(const PartOfGraph& part, Index founder, double least) {
   return slack;
 }
 
-/// Returns whether more than one pivot of a symmetric matrix is negative, or the sign of one is uncertain.
+/// Returns whether more than one pivot of a symmetric matrix is negative, or the sign of a pivot is
+/// uncertain.
 ///
 /// @param rows  its lower triangle, `size` entries a row; overwritten
 bool has_two_negative_pivots(std::vector<double>& rows, Index size) {

@@ -9,18 +9,18 @@ namespace meshorder {
 
 constexpr double kDoubtful = 0.25;  ///< share of an eigenvector's norm² that may vary within aggregates
 
-/// Returns whether an aggregate may hide a vector of a smaller Rayleigh quotient than `eigenvalue`, so that
-/// coarser graphs do not show it. If false, every such vector is constant on all aggregates except for at
-/// most half of its squared norm.
+/// Returns whether an aggregate may hide a vector whose Rayleigh quotient is smaller than `eigenvalue`:
+/// coarser graphs then do not show it. If false, every such vector is nearly constant on all aggregates: its
+/// part that varies within aggregates has at most half of its squared norm.
 ///
 /// An aggregate hides nothing in three cases:
 /// - its slack is small, see `aggregate`;
-/// - its slack is small if joining vertices spread their mass over all edges to founding members;
+/// - its slack would be small if each joining vertex spread its mass over all its edges to founding members;
 /// - the second eigenvalue of L x = μ M x on the aggregate, cut out of the graph, is at least `eigenvalue` /
 ///   `kDoubtful`, as the signs of pivots show (Sylvester's law of inertia). The pivots of more than 300
 ///   vertices are not computed: such aggregates may hide a vector.
 ///
-/// O(n + edges) and the cube of the vertices of doubtful aggregates; on all threads.
+/// O(n + edges + Σ size³) time, summed over the doubtful aggregates; on all threads.
 ///
 /// @param laplacian  columns beyond the rows belong to no aggregate
 /// @param masses     of the rows; empty: all 1
@@ -28,7 +28,7 @@ bool may_hide(const Laplacian& laplacian, const Aggregation& aggregation, std::s
               double eigenvalue);
 
 /// Returns whether L x = μ M x has more than one eigenvalue below `bound`; the first one is 0, of constants.
-/// Decided by the signs of pivots; true if one is uncertain. O(n³).
+/// Decides by the signs of pivots; true if a sign is uncertain. O(n³).
 ///
 /// @param masses  as above
 bool has_two_below(const Laplacian& laplacian, std::span<const double> masses, double bound);

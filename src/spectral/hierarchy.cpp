@@ -15,13 +15,14 @@
 namespace meshorder {
 namespace {
 
-constexpr Index kDenseSize = 60;     // a dense eigensolver takes half a millisecond there
-constexpr Index kSmallGraph = 1024;  // a search takes less than a millisecond there
-constexpr Index kExactSize = 128;    // counting eigenvalues by pivots takes a tenth of a millisecond there
+constexpr Index kDenseSize = 60;     // a dense eigensolver takes half a millisecond at this size
+constexpr Index kSmallGraph = 1024;  // a search takes less than a millisecond up to this size
+constexpr Index kExactSize = 128;    // counting eigenvalues by pivots takes 0.1 ms at this size
 
-/// Makes the next coarser level of `fine`, and in `fine` the transfer to it; returns false if not worthwhile.
+/// Makes the next coarser level of `fine`, and stores the transfer to it in `fine`. Returns false if that is
+/// not worthwhile.
 bool coarsen(Level& fine, bool smoothed, Level& coarse) {
-  constexpr Index kFewAlone = 50;  // one in so many
+  constexpr Index kFewAlone = 50;  // at most one vertex in so many may be alone
   const Index n = fine.laplacian.size();
   Aggregation aggregation = aggregate(fine.laplacian, fine.chunks, kStrength, fine.masses);
   if (aggregation.alone > n / kFewAlone && fine.chunks.count() > 1) {
@@ -67,7 +68,7 @@ Eigen::MatrixXd dense(const Laplacian& laplacian) {
   return 0.5 * (matrix + matrix.transpose());
 }
 
-/// Returns the inverse of L on the vectors that sum to 0.
+/// Returns the inverse of L on the space of vectors whose entries sum to 0.
 Eigen::MatrixXd dense_inverse(const Laplacian& laplacian) {
   const Index n = laplacian.size();
   Eigen::MatrixXd shifted = dense(laplacian);

@@ -53,7 +53,7 @@ struct SearchSpace {
       : x(std::move(start)), w(x.vectors.size()), p(x.vectors.size()), companions(std::move(fixed)) {}
 };
 
-/// Returns row v of all vectors of the space (or of their images) side by side.
+/// Returns row v of all vectors of the space (or of the images of all), side by side.
 template <int M, int C, class Part>
 std::array<double, SearchSpace<M, C>::kSize> row(const SearchSpace<M, C>& s, Index v, Part part) {
   std::array<double, SearchSpace<M, C>::kSize> result;
@@ -78,7 +78,7 @@ void gram_matrices(const SearchSpace<M, C>& s, const EigenProblem& problem, Eige
   using Squares = Sums<std::size_t{2} * N * N>;
   auto sums = sum_over_chunks<Squares>(problem.size(), kRows, [&](Index begin, Index end) {
     Squares part;
-    // in two loops: the sums of both at once do not fit in registers
+    // in two loops: the sums of both matrices do not fit in registers at once
     for (Index v = begin; v < end; ++v) {
       const auto vectors = row(s, v, kVectors);
       for (int i = 0; i < N; ++i) {
@@ -113,7 +113,7 @@ struct Ritz {
 };
 
 /// Returns the `wanted` Ritz vectors with the smallest Ritz values. Directions of the basis that nearly
-/// depend on others are left out; Ritz vectors that do not exist are 0.
+/// depend on others are left out. If there are fewer Ritz vectors than `wanted`, the missing ones are 0.
 Ritz rayleigh_ritz(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& energy, int wanted) {
   constexpr double kDependent = 1e-12;
   const Eigen::Index size = gram.rows();
@@ -139,7 +139,7 @@ Ritz rayleigh_ritz(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& energy, i
   return ritz;
 }
 
-/// ‖r‖² of each column, then ‖x‖² of each.
+/// ‖r‖² of each column, then ‖x‖² of each column.
 template <int M>
 using Norms = Sums<std::size_t{2} * M>;
 
@@ -151,7 +151,7 @@ std::array<double, M> residuals_of(Norms<M>& norms) {
   return result;
 }
 
-/// Computes r = L x − λ B x in row v, and adds its part of the norms.
+/// Computes r = L x − λ B x in row v, and adds the row's part to the norms.
 template <int M>
 void residual_of_row(const WithImage<M>& x, const std::array<double, M>& values, double mass, Index v,
                      VectorBlock<M>& r, Norms<M>& norms) {
@@ -162,7 +162,12 @@ void residual_of_row(const WithImage<M>& x, const std::array<double, M>& values,
   }
 }
 
-/// Sets x ← S c, p ← the part of S c that does not come from x, their images likewise, and r = L x − λ B x.
+/// Computes, for the search space S and the coefficients c:
+/// - x ← S c;
+/// - p ← the part of S c that does not come from x;
+/// - the images of x and p, in the same way;
+/// - r = L x − λ B x.
+///
 /// Returns ‖r‖ / ‖x‖ of each column.
 template <int M, int C, int N = SearchSpace<M, C>::kSize>
 std::array<double, M> update(SearchSpace<M, C>& s, const Eigen::MatrixXd& coefficients,
@@ -196,8 +201,8 @@ std::array<double, M> update(SearchSpace<M, C>& s, const Eigen::MatrixXd& coeffi
   return residuals_of<M>(norms);
 }
 
-/// Computes L x anew, since images that are updated with x drift by rounding, and from it the Rayleigh
-/// quotients and r. Returns ‖r‖ / ‖x‖ of each column.
+/// Computes L x anew, because rounding errors accumulate in images that are updated together with x. Then
+/// computes the Rayleigh quotients and r from it. Returns ‖r‖ / ‖x‖ of each column.
 template <int M>
 std::array<double, M> refresh(WithImage<M>& x, const EigenProblem& problem, std::array<double, M>& values,
                               VectorBlock<M>& r) {
@@ -273,7 +278,7 @@ LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorB
   if constexpr (Companions > 0) prepare(problem, total_mass[0], s.companions);
   LobpcgResult result;
   std::array<double, M> residuals = search();
-  int calm = 0;  // iterations in a row that hardly changed a Ritz value
+  int calm = 0;  // number of successive iterations that hardly changed a Ritz value
   const auto converged = [&] { return residuals[0] <= options.tolerance * values[0]; };
   const auto settled = [&] {
     for (int m = 0; m < M; ++m) {

@@ -12,7 +12,7 @@ namespace meshorder {
 
 struct LobpcgOptions {
   double tolerance = 0.1;    ///< on ‖L x − λ B x‖ / (λ ‖x‖) of the first column
-  int max_iterations = 500;  ///< the result says whether it converged by then
+  int max_iterations = 500;  ///< the result reports whether the iteration converged
   TimeLimit limit = {};      ///< ends the iteration, like max_iterations
   bool until_calm = false;   ///< ends when all columns have settled, whatever the tolerance
 };
@@ -25,11 +25,11 @@ struct LobpcgResult {
 };
 
 /// A problem L x = λ B x in the form that `lobpcg` needs: L has the constants in its null space and B is
-/// diagonal. This process has some of the rows, or all.
+/// diagonal. This process has some of the rows, or all rows.
 class EigenProblem : public Polymorphic {
  public:
   /// @param size    rows of this process
-  /// @param masses  the diagonal of B in these rows; empty: all 1. Outlives this object
+  /// @param masses  the diagonal of B in these rows; empty if all are 1. Must outlive this object
   EigenProblem(Index size, std::span<const double> masses) : size_(size), masses_(masses) {}
 
   [[nodiscard]] Index size() const noexcept { return size_; }
@@ -41,10 +41,10 @@ class EigenProblem : public Polymorphic {
   /// Computes w ≈ L⁺ r.
   virtual void precondition(const VectorBlock<1>& r, VectorBlock<1>& w) = 0;
   virtual void precondition(const VectorBlock<2>& r, VectorBlock<2>& w) = 0;
-  /// Returns whether `precondition`, and so the vectors of coarser graphs, may hide an eigenvector with a
-  /// smaller eigenvalue than this. The same on all processes.
+  /// Returns whether the coarser graphs, on which `precondition` is based, may hide an eigenvector whose
+  /// eigenvalue is smaller than `eigenvalue`. The result is the same on all processes.
   [[nodiscard]] virtual bool may_hide(double eigenvalue) const = 0;
-  /// Adds up the sums of all processes, in place; all of them get the same result.
+  /// Adds up the sums of all processes, in place; all processes get the same result.
   virtual void add_up(std::span<double> sums) const = 0;
 
  private:
@@ -55,7 +55,7 @@ class EigenProblem : public Polymorphic {
 /// The problem on a level of a hierarchy, preconditioned by the hierarchy's cycle; B has the level's masses.
 class LevelProblem : public EigenProblem {
  public:
-  /// @param hierarchy  outlives this object
+  /// @param hierarchy  must outlive this object
   LevelProblem(const Hierarchy& hierarchy, int level)
       : EigenProblem(hierarchy.levels()[level].laplacian.size(), hierarchy.levels()[level].masses),
         hierarchy_(hierarchy),
@@ -89,10 +89,10 @@ class LevelProblem : public EigenProblem {
 /// Locally optimal block preconditioned conjugate gradients (Knyazev 2001): each iteration minimises the
 /// Rayleigh quotient over the span of x, the preconditioned residuals, the previous directions, and
 /// `companions`, all kept orthogonal to constants. Companions are rough guesses of the next eigenvectors. A
-/// single column converges slowly if λ₃ is close to λ₂; with a companion it can remove its part along the
-/// next eigenvector, which costs far less than a second column. Columns end in ascending order of their
-/// eigenvalues, ‖x‖_B = 1. Columns of x that depend on others or are constant are replaced by the
-/// search itself. O(graph) an iteration.
+/// single column converges slowly if λ₃ is close to λ₂. With a companion, the column can lose its part along
+/// the next eigenvector; that costs far less than a second column. At the end, the columns are sorted by
+/// their eigenvalues, ascending, and ‖x‖_B = 1. If a column of x is constant or depends on other columns, the
+/// iteration replaces it by other vectors of the search space. O(graph) time for each iteration.
 template <int M, int Companions>
 LobpcgResult lobpcg(EigenProblem& problem, const LobpcgOptions& options, VectorBlock<M>& x,
                     VectorBlock<Companions> companions);

@@ -9,10 +9,10 @@ namespace meshorder {
 
 constexpr int kSearchIterations = 40;  ///< limit on the iterations of `find_lower`; about six are needed
 
-/// Looks for an eigenvalue below `least`: iterates column 0 of `x` beside a random vector until neither
-/// changes. The random vector grows towards lower eigenvectors, even if symmetry keeps column 0 orthogonal to
-/// them. Returns the number of iterations and puts the result in `x`; returns 0 and leaves `x` unchanged if
-/// none is found. O(graph) an iteration.
+/// Looks for an eigenvalue below `least`: iterates column 0 of `x` together with a random vector until
+/// neither changes. The random vector grows towards lower eigenvectors, even if symmetry keeps column 0
+/// orthogonal to them. Returns the number of iterations and puts the result in `x`; if it finds no such
+/// eigenvalue, returns 0 and leaves `x` unchanged. O(graph) time for each iteration.
 ///
 /// @param options  only max_iterations and limit are used
 int find_lower(EigenProblem& problem, double least, const LobpcgOptions& options, std::uint64_t seed,
@@ -21,10 +21,11 @@ int find_lower(EigenProblem& problem, double least, const LobpcgOptions& options
 /// Improves `x` by `lobpcg` towards the eigenvector of the smallest eigenvalue after that of the constant
 /// vector, and checks for a smaller one if that is in doubt.
 ///
-/// A small residual shows that λ is near some eigenvalue, not which: if most eigenvalues are about equal, as
-/// those of cliques, even random vectors have a small one. Coarse graphs find the right eigenvalue unless an
-/// aggregate hides it, see `EigenProblem::may_hide`. Then `find_lower` searches, and the solution continues
-/// from its result. That takes about as long as the solution; in other cases the cost is small.
+/// A small residual shows that λ is near an eigenvalue, but not near which one: if most eigenvalues are about
+/// equal, as for cliques, even random vectors have a small residual. Coarse graphs find the right eigenvalue
+/// unless an aggregate hides it (see `EigenProblem::may_hide`). If that is possible, `find_lower` searches,
+/// and the iteration continues from its result. The search takes about as long as the iteration; in other
+/// cases the cost is small.
 ///
 /// @param seed   of the random vectors
 /// @return iterations: the number made on x

@@ -12,10 +12,10 @@ namespace meshorder {
 
 namespace {
 
-constexpr Index kFewVertices = 300;          // vertices on which a search takes a third of a millisecond
-constexpr Index kSmallShare = 50;            // one in so many: a search there costs little beside the rest
+constexpr Index kFewVertices = 300;          // a search on this many vertices takes a third of a millisecond
+constexpr Index kSmallShare = 50;            // one vertex in so many: a search on these costs little
 constexpr double kSmoothedHides = 1.0 / 16;  // share of the eigenvalue: smoothed coarsening hides less
-constexpr double kNearlyEqual = 0.9;         // above this share of an eigenvalue it counts as the same
+constexpr double kNearlyEqual = 0.9;         // values above this share of an eigenvalue count as equal to it
 
 }  // namespace
 

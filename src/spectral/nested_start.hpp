@@ -13,12 +13,13 @@ namespace meshorder {
 constexpr int kStartColumns = 2;
 using StartBlock = VectorBlock<kStartColumns>;
 
-/// Returns how far vectors on a coarse graph are improved: on the next finer graph, prolongation limits their
-/// accuracy anyway.
+/// Returns options that limit how far vectors on a coarse graph are improved: on the next finer graph,
+/// prolongation limits their accuracy anyway.
 [[nodiscard]] LobpcgOptions coarse_search(TimeLimit limit);
 
-/// Returns start vectors on the finest graph: exact on the coarsest, improved on every graph between.
-/// Random if the coarsest graph is too large for a dense solver. O(graph).
+/// Returns start vectors on the finest graph. They begin as exact eigenvectors of the coarsest graph, or as
+/// random vectors if that graph is too large for a dense solver, and are improved on every graph in between.
+/// O(graph).
 [[nodiscard]] StartBlock nested_start(const Hierarchy& hierarchy, std::uint64_t seed, TimeLimit limit);
 
 /// Sets the columns of a block from `first_column` on to random entries between −1/2 and 1/2.

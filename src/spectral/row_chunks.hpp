@@ -37,8 +37,8 @@ auto in_falling_pieces(Work work) {
 }
 
 /// The rows of a Laplacian in contiguous chunks for threads, coloured so that no edge joins two chunks of one
-/// colour: a sweep colour by colour gives the same numbers on any number of threads. If the graph is
-/// numbered breadth first, each chunk has edges only to adjacent ones, and two colours suffice.
+/// colour: a sweep colour by colour gives the same numbers on any number of threads. If the graph is numbered
+/// breadth first, each chunk has edges only to adjacent chunks, and two colours suffice.
 class RowChunks {
  public:
   static constexpr Index kLeastRows = 8192;  ///< a chunk should take longer than starting a thread's task
@@ -46,7 +46,8 @@ class RowChunks {
   RowChunks() = default;
 
   /// Chunks the rows of a graph: up to 16 chunks of at least `least_rows` rows, whatever the number of
-  /// threads; one chunk of all rows if too many chunks touch each other for threads to gain. O(edges).
+  /// threads; one chunk of all rows if so many chunks touch each other that threads would gain nothing.
+  /// O(edges).
   explicit RowChunks(const Laplacian& laplacian, Index least_rows = kLeastRows);
 
   /// Returns one chunk of all rows.
@@ -74,7 +75,8 @@ class RowChunks {
     for_each([rise = in_rising_pieces(work)](Index, Index begin, Index end) { rise(begin, end); });
   }
 
-  /// Calls `work(begin, end)` for every chunk: colour after colour, those of one colour at the same time.
+  /// Calls `work(begin, end)` for every chunk, colour after colour; the chunks of one colour run at the same
+  /// time.
   template <class Work>
   void for_each_forwards(Work work) const {
     for (const std::vector<Index>& chunks : colours_) run(chunks, work);

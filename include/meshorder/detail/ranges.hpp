@@ -34,7 +34,7 @@ namespace meshorder {
 inline namespace v0_3 {
 namespace detail {
 
-/// The number type and the count of numbers of a range's values, which are T or std::array<T, width>.
+/// Describes a value of a range, which is a number T or an std::array<T, width> of numbers.
 template <class T>
 struct Row {
   using Number = T;

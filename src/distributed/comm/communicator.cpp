@@ -46,7 +46,7 @@ std::string name_of_mpi() {
   std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
   int length = 0;
   MPI_Get_library_version(text.data(), &length);
-  // cut off the packager and date, or lines of settings
+  // cut off what follows the version: the packager and date, or lines of settings
   const std::string name(text.data(), static_cast<std::size_t>(length));
   return name.substr(0, name.find_first_of(",\n"));
 }

@@ -55,8 +55,8 @@ struct Parcels {
   }
 };
 
-/// Returns values in parcels, one for each rank, which keep the sequence of the values. O(values + ranks),
-/// besides the functions.
+/// Returns values in parcels, one for each rank. Within a parcel the values keep their sequence. O(values +
+/// ranks) time, plus that of the two functions.
 ///
 /// @param rank_of   returns the rank of value k; called twice for each value
 /// @param value_of  returns value k
@@ -131,7 +131,7 @@ class Communicator {
   /// Throws as `exchange`.
   ///
   /// @param at_root  ignored on other ranks
-  /// @param starts   ranks + 1, ascending; on other ranks only the size counts
+  /// @param starts   ranks + 1, ascending; on other ranks only its size is used
   template <class T>
   [[nodiscard]] std::vector<T> scattered_from_root(const std::vector<T>& at_root,
                                                    const std::vector<Offset>& starts) const {
@@ -229,8 +229,9 @@ class Communicator {
   Offset chunk_limit_ = Offset{1} << 30;
 };
 
-/// Extends a checksum, the same on all ranks, by the data that the ranks add one after another, in rank
-/// order: each calls `add()`, which must not throw. Every rank has to call it; ranks wait for each other.
+/// Extends a checksum, which is the same on all ranks, by data of all ranks. The ranks call `add()` one after
+/// another, in rank order, and wait for each other. `add` must not throw. Every rank has to call this
+/// function.
 template <class Add>
 void add_in_rank_order(const Communicator& communicator, Checksum& checksum, const Add& add) {
   for (int turn = 0; turn < communicator.size(); ++turn) {

@@ -26,7 +26,7 @@ class Halo {
 
   /// Returns the numbers that this rank needs, ascending, each once.
   [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return wanted_.numbers(); }
-  /// Returns this rank's own numbers that ranks need, grouped by rank; some perhaps several times.
+  /// Returns the own numbers that each rank needs, rank by rank; a number may occur several times.
   [[nodiscard]] const std::vector<GlobalIndex>& asked_of_this_rank() const noexcept { return asked_.values; }
   /// Returns the place of a number in `numbers()`. O(1) or O(log numbers), as `NumberSet`.
   [[nodiscard]] std::size_t position(GlobalIndex number) const { return wanted_.position(number); }
@@ -61,7 +61,7 @@ class Halo {
   const Communicator& communicator_;
   GlobalIndex first_;  ///< this rank's first own number
   NumberSet wanted_;
-  Parcels<GlobalIndex> asked_;  ///< own numbers that each rank needs
+  Parcels<GlobalIndex> asked_;  ///< this rank's own numbers that each rank needs
 };
 
 /// The values of a rank's own numbers and of a halo's numbers.

@@ -22,7 +22,8 @@ class RowMover {
   /// @throws as `Communicator::exchange`
   RowMover(const Communicator& communicator, const Layout& layout, std::span<const GlobalIndex> places);
 
-  /// Returns the rows of this rank's places, in sequence. Every rank has to call it. O(bytes).
+  /// Returns the rows that move to this rank's places, in the sequence of the places. Every rank has to call
+  /// it. O(bytes).
   ///
   /// @param rows   `width` bytes for each own row
   /// @param width  the same on all ranks

@@ -13,13 +13,14 @@ namespace meshorder::distributed {
 /// A set of global numbers that maps each to its place in ascending sequence.
 class NumberSet {
  public:
-  /// Takes numbers in any order, some perhaps several times. O(numbers) if their range is at most about 64
-  /// times their count, as in a mesh; else O(numbers · log numbers).
+  /// Takes numbers in any order; a number may occur several times. O(numbers) if their range is at most about
+  /// 64 times their count, as in a mesh; else O(numbers · log numbers).
   explicit NumberSet(std::span<const GlobalIndex> numbers);
 
   /// Returns the numbers, ascending.
   [[nodiscard]] const std::vector<GlobalIndex>& numbers() const noexcept { return numbers_; }
-  /// Returns the place of a number of the set in `numbers()`. O(1), or O(log numbers) if they are far apart.
+  /// Returns the place of a number of the set in `numbers()`. O(1), or O(log numbers) if the numbers are far
+  /// apart.
   [[nodiscard]] std::size_t position(GlobalIndex number) const;
 
  private:

@@ -11,7 +11,8 @@
 #include <variant>
 #include <vector>
 
-/// Bytes of numbers whose type is known only at run time, as the index of an alternative of `Values`.
+/// Bytes of numbers whose type is known only at run time. The index of an alternative of `Values` gives the
+/// type.
 namespace meshorder::distributed {
 
 /// Calls `work` with a zero of a number type; does nothing for texts.

@@ -31,9 +31,9 @@ struct Dispatch {
   Offset row;
 };
 
-/// Sends copies of rows to ranks, one for each dispatch, and returns the rows that this rank receives: by
-/// sending rank, then in the sequence of its dispatches. Every rank has to call it.
-/// O(entries + dispatches).
+/// Sends a copy of a row for each dispatch. Returns the rows that this rank receives, sorted by sending rank;
+/// rows of one rank are in the sequence of its dispatches. Every rank has to call it. O(entries +
+/// dispatches).
 ///
 /// @param rows        freed early, since the rows sent and the rows received are two more copies
 /// @param dispatches  freed early

@@ -19,8 +19,8 @@ struct SortEntry {
 };
 
 /// Sorts the entries of all ranks. Each rank gets a range of the result, in rank order; with many entries the
-/// ranges have about the same size. Every rank has to call it. O(n log n) for n entries of a rank, and the
-/// samples at the root.
+/// ranges have about the same size. Every rank has to call it. O(n log n) time for n entries of a rank, plus
+/// the sorting of the samples at the root.
 ///
 /// Regular sampling: Shi and Schaeffer, Parallel Sorting by Regular Sampling (1992).
 ///

@@ -58,7 +58,7 @@ std::vector<std::uint64_t> AppendedArrays::words(const vtk::VtuElement& element,
   return result;
 }
 
-/// Finds the bytes of an uncompressed array by the word before them; returns their number.
+/// Finds the bytes of an uncompressed array; the word before them is their number. Returns that number.
 std::uint64_t AppendedArrays::place_bytes(const vtk::VtuElement& element, const std::string& what,
                                           FilePart& part) {
   const std::uint64_t size = words(element, what, 1).front();
@@ -71,9 +71,13 @@ std::uint64_t AppendedArrays::place_bytes(const vtk::VtuElement& element, const 
   return size;
 }
 
-/// Finds the blocks of a compressed array. The words before them are: the number of blocks, the bytes of a
-/// block, those of the last one if they differ, and the compressed bytes of each. Returns the uncompressed
-/// size.
+/// Finds the blocks of a compressed array. Before the blocks there are words with these numbers:
+/// - the number of blocks;
+/// - the uncompressed bytes of a block;
+/// - the uncompressed bytes of the last block if they differ;
+/// - the compressed bytes of each block.
+///
+/// Returns the uncompressed size of the array.
 std::uint64_t AppendedArrays::place_blocks(const vtk::VtuElement& element, const std::string& what,
                                            FilePart& part, std::vector<Offset>& bounds) {
   const std::vector<std::uint64_t> head = words(element, what, 3);
@@ -95,7 +99,7 @@ std::uint64_t AppendedArrays::place_blocks(const vtk::VtuElement& element, const
     size += bytes;
     bounds.push_back(bounds.back() + static_cast<Offset>(compressed[b]));
   }
-  // claim the memory that a rank needs: its share of the array, and one block that it needs in part
+  // claim the memory that a rank needs: its share of the array, and one block of which it needs only a part
   document_.claim(element, size / static_cast<std::uint64_t>(ranks_) + std::min(head[1], size));
   part.stored = bounds.back() - part.at;
   part.blocks = std::ssize(compressed);

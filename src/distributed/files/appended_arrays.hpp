@@ -22,7 +22,8 @@ class AppendedArrays {
   /// @throws InputError if the file cannot be opened
   AppendedArrays(const std::string& path, const vtk::VtuDocument& document, Offset first_byte, int ranks);
 
-  /// Sets the place and the blocks of the array of an element; returns its bytes, uncompressed. O(blocks).
+  /// Sets the place and the blocks of the array that an XML element describes. Returns the uncompressed size
+  /// of the array, in bytes. O(blocks) time.
   ///
   /// @param bounds  receives the first byte of each compressed block, then the end of the last
   /// @throws InputError for an array beyond the end of the file, and for blocks whose sizes are impossible

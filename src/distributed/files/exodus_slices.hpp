@@ -14,12 +14,17 @@
 namespace meshorder::distributed {
 
 /// An Exodus II file that all ranks read at once: each rank opens it by libnetcdf, which needs no MPI
-/// support, and reads a range of the nodes, a range of the elements, and their part of every variable.
+/// support, and reads a range of the nodes, a range of the elements, and the values of every variable for
+/// these.
 class ExodusSlices {
  public:
-  /// Opens a file; every rank has to call it. Returns nothing for a file of another format, compressed as a
-  /// whole, without vertices or elements, or with elements that VTK cannot hold, and in a build without
-  /// netCDF. O(size of the header) at the root.
+  /// Opens a file; every rank has to call it. Returns nothing in a build without netCDF, and for a file
+  /// - of another format,
+  /// - that is compressed as a whole,
+  /// - without vertices or elements,
+  /// - with elements that VTK cannot hold.
+  ///
+  /// O(size of the header) at the root.
   ///
   /// @throws SharedError for an Exodus II file that is damaged
   [[nodiscard]] static std::optional<ExodusSlices> open(const Communicator& communicator,

@@ -16,7 +16,7 @@ namespace meshorder::distributed {
 
 /// Facts on a .vtu, .vtkhdf or .xdmf file that all ranks have.
 struct FileFacts : FileSizes {
-  /// A .vtkhdf file is an HDF5 file, an .xdmf file names one. No words come before their arrays.
+  /// A .vtkhdf file is an HDF5 file, an .xdmf file names one. In these files no words come before an array.
   enum class Kind : std::uint8_t { vtu, vtkhdf, xdmf };
 
   Kind kind = Kind::vtu;
@@ -42,12 +42,12 @@ struct FileHead {
 /// Returns whether the file name ends in .xdmf or .xmf.
 [[nodiscard]] bool is_xdmf(const std::string& path);
 
-/// Reads the head of a file whose arrays can be read directly. Returns nothing for a file of any other kind
-/// than these:
+/// Reads the head of a file whose arrays can be read directly. Returns nothing unless the file is one of
+/// these:
 /// - a .vtu file of one piece with raw appended data in this machine's byte order, with a compression that
 ///   this build supports. O(size of the XML + blocks);
-/// - a .vtkhdf file of one partition, without chunks, another byte order, texts on points or cells, or more
-///   than the format allows. O(datasets + size of the fields);
+/// - a .vtkhdf file of one partition, without chunks, another byte order, texts on points or cells, or
+///   objects that the format does not define. O(datasets + size of the fields);
 /// - an .xdmf file: see `xdmf::find_raw`. O(size of the XML + datasets).
 ///
 /// @param ranks  number of ranks that share the memory of uncompressed arrays
@@ -58,7 +58,7 @@ struct FileHead {
 /// As `read_head`, for .vtu files.
 [[nodiscard]] std::optional<FileHead> read_vtu_head(const std::string& path, int ranks);
 
-/// Sorts parts by their first bytes. Returns whether all of them lie within a file of `bytes` bytes and none
+/// Sorts parts by their first bytes. Returns whether all parts lie within a file of `bytes` bytes and no two
 /// overlap. O(n log n).
 [[nodiscard]] bool sort_by_bytes(std::vector<FilePart>& parts, Offset bytes);
 

@@ -31,7 +31,7 @@ struct BlockRange {
 /// Returns the blocks that have bytes begin … end − 1 of an array.
 BlockRange blocks_with(const FilePart& array, Offset begin, Offset end) {
   if (begin == end) return {};
-  // the last one may be longer than the others
+  // the last block may be longer than the others
   const auto block_of = [&](Offset byte) { return std::min(byte / array.block, array.blocks - 1); };
   return {block_of(begin), block_of(end - 1) + 1};
 }
@@ -53,7 +53,7 @@ std::vector<Offset> own_starts(const Communicator& communicator, const std::vect
   return communicator.exchange(sent).values;
 }
 
-/// Moves bytes between ranks: each block ends up whole on the rank that has its first byte.
+/// Moves bytes between ranks, so that each block is whole on the rank that had its first byte.
 std::vector<std::byte> in_whole_blocks(const Communicator& communicator, const Layout& bytes,
                                        std::vector<std::byte> own, Offset block) {
   const GlobalIndex begin = bytes.begin(communicator.rank());
@@ -111,7 +111,7 @@ std::vector<std::byte> read_values(const Communicator& communicator, const Share
   }();
   communicator.together([&] {
     const vtk::VtuCompressor codec(compressor);
-    std::vector<std::byte> whole;  // of a block that is wanted in part
+    std::vector<std::byte> whole;  // of a block of which only a part is wanted
     for (Offset b = range.first; b < range.end; ++b) {
       const Offset block_begin = b * array.block;
       const Offset block_end = b + 1 == array.blocks ? array.size() : block_begin + array.block;

@@ -14,14 +14,15 @@
 
 namespace meshorder::distributed {
 
-/// A part of a file as messages name it.
+/// The names of a part and of its file in messages.
 struct PartName {
   const std::string& file;
   const std::string& part;
 };
 
-/// Reads bytes begin … end − 1 of the values of an array; each rank has its own range. Of a compressed array,
-/// reads whole blocks. Every rank has to call it. O(bytes + size of a block), O(blocks) at the root.
+/// Reads bytes begin … end − 1 of the values of an array; each rank has its own range. If the array is
+/// compressed, reads whole blocks. Every rank has to call it. O(bytes + size of a block) time; at the root
+/// also O(blocks).
 ///
 /// @param blocks  at the root: first byte of each block in the file, then the end of the last. Ignored on
 ///                other ranks and if the file is not compressed

@@ -60,8 +60,8 @@ class NewPlaces {
   std::vector<std::pair<Offset, Offset>> moves_;  ///< ascending
 };
 
-/// Returns, on all ranks, the checksum that both files of XDMF contain; the writer of whole meshes computes
-/// the same.
+/// Returns, on all ranks, the checksum that both files of an XDMF mesh contain. It equals the checksum that
+/// the writer of whole meshes computes.
 std::uint64_t checksum_of_xdmf(const Communicator& communicator, GlobalIndex vertices, const FilePart& part,
                                const std::vector<std::byte>& points, const Rows& cells) {
   Checksum sum;
@@ -148,7 +148,7 @@ std::vector<GlobalIndex> FileSlices::write(const Communicator& communicator, con
   MovedFile moved(communicator, path_, head_, order);
   const SharedFile& in = moved.reader().file();
 
-  // the XML comes last: it has the offsets of arrays whose compressed sizes are not known yet
+  // write the XML last: it has the offsets of arrays whose compressed sizes are not known yet
   const bool is_vtkhdf = head_.facts.kind == FileFacts::Kind::vtkhdf;
   const bool is_raw = head_.facts.encoding.compressor == VtuEncoding::Compressor::none;
   Offset from = head_.facts.first_byte;

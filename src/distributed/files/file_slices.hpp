@@ -21,29 +21,32 @@ struct SliceFile {
   std::string data;  ///< temporary path of the HDF5 file that belongs to an .xdmf file
 };
 
-/// A file that all ranks read and write at once, array after array, each rank its range of the rows. The file
-/// is a .vtu file of one piece with its arrays in appended data, raw or in compressed blocks; or a .vtkhdf
-/// file of one partition or an .xdmf file of one mesh of one cell type, whose datasets are neither chunked
-/// nor compressed. The new file is the old one with the rows of its arrays in their new places; everything
-/// else is copied byte by byte, except the offsets of arrays after compressed ones. A new .xdmf file and its
-/// HDF5 file are the same as those of the serial writer. Rank 0 finds the datasets by libhdf5; the other
-/// ranks do not need this library.
+/// A file that all ranks read and write at once, array after array; each rank handles its range of the rows.
+/// The file is one of these:
+/// - a .vtu file of one piece with its arrays in appended data, raw or in compressed blocks;
+/// - a .vtkhdf file of one partition, whose datasets are neither chunked nor compressed;
+/// - an .xdmf file of one mesh of one cell type, with such datasets.
+///
+/// The new file is the old one with the rows of its arrays in their new places; everything else is copied
+/// byte by byte, except the offsets of arrays that follow a compressed array. A new .xdmf file and its HDF5
+/// file are the same as those of the serial writer. Rank 0 finds the datasets by libhdf5; the other ranks do
+/// not need this library.
 ///
 /// Formats: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, and
 /// "VTKHDF File Format".
 class FileSlices {
  public:
   /// Opens a file; every rank has to call it. Returns nothing for a file of another kind: with several pieces
-  /// or partitions, with text, base64, chunks, the other byte order, or compression that this build lacks.
-  /// O(size of its XML + blocks) at the root.
+  /// or partitions, with text, base64, chunks or the other byte order, or with a compression that this build
+  /// lacks. O(size of its XML + blocks) at the root.
   ///
   /// @throws SharedError for a file of this kind that is damaged: bad XML, counts that differ, arrays beyond
   ///         its end, blocks whose sizes are impossible
   [[nodiscard]] static std::optional<FileSlices> open(const Communicator& communicator,
                                                       const std::string& path);
 
-  /// Returns whether the nodes of all cells have the same sequence in the file as in a Mesh; the checksums of
-  /// both are then equal. Every rank has to call it. O(cells).
+  /// Returns whether the nodes of each cell have the same sequence in the file as in a Mesh; if so, file and
+  /// Mesh have the same checksum. Every rank has to call it. O(cells).
   ///
   /// @throws SharedError if a rank cannot read
   [[nodiscard]] bool has_nodes_as_a_mesh(const Communicator& communicator) const;

@@ -19,18 +19,18 @@ struct GridRows {
   Layout vertices;
   Layout cells;
   Rows cell_vertices;  ///< of the own cells: new numbers, in VTK's order
-  /// Returns the own rows of the k-th array of the piece in `xml`; for texts, 32-bit places in `texts`. Not
-  /// for the connectivity and the offsets of cells. Every rank has to call it.
+  /// Returns the own rows of the k-th array of the piece in `xml`; for texts, their 32-bit places in `texts`.
+  /// Must not be called for the connectivity and the offsets of cells. Every rank has to call it.
   std::function<std::vector<std::byte>(std::size_t k)> rows;
 
   // only at the root
   std::string xml;     ///< a .vtu file of one piece, of which only the arrays' elements are used
-  std::string fields;  ///< its <FieldData> with all values inline; empty if `xml` has them inline
+  std::string fields;  ///< its <FieldData> with all values inline; empty if they are inline in `xml`
   std::vector<std::string> texts;
 };
 
-/// Distributes a mesh at the root that is in its new order; VTK must be able to hold its cells. Every rank
-/// has to call it. O(size of the mesh) at the root.
+/// Distributes a mesh that the root has, in its new order; VTK must be able to hold its cells. Every rank has
+/// to call it. O(size of the mesh) at the root.
 ///
 /// @param mesh   at the root, where it must outlive the result; ignored on other ranks
 /// @param notes  receives, at the root, notes on data that VTK's files store in another form

@@ -35,7 +35,7 @@ Incidence items_of_parts(Index parts, Index items, const ForParts& for_parts) {
   return result;
 }
 
-/// Returns the place of each part's first vertex among those that a rank has, followed by the end of the last
+/// Returns the place of each part's first vertex among the vertices that a rank has, then the end of the last
 /// part.
 std::vector<GlobalIndex> local_starts(const std::vector<GlobalIndex>& vertices,
                                       const std::vector<GlobalIndex>& part_starts) {
@@ -102,8 +102,9 @@ void MeshParts::find_own(const Mesh& mesh, const std::vector<GlobalIndex>& part_
   }
 }
 
-/// Adds the parts of other ranks that have a vertex. All ranks send to the owner of a vertex's number which
-/// of their parts have it; if there are several, the owner sends the list to the ranks of these parts.
+/// Adds the parts of other ranks that have a vertex. For each vertex, every rank tells the owner of the
+/// vertex's number which of its own parts have the vertex. If several parts have it, the owner sends the list
+/// of them to the ranks of these parts.
 void MeshParts::find_sharing_parts(const Communicator& communicator, const ShareNumbers& numbers) {
   if (communicator.size() == 1) return;
   struct Letter {

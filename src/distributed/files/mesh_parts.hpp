@@ -13,9 +13,9 @@
 namespace meshorder::distributed {
 
 /// The cells and vertices of the parts of a mesh, without ghost cells. A cell is in the part of its largest
-/// vertex. A vertex is in each part whose cells use it or, if no cell does, in the part of its number. A rank
-/// has the cells of its own parts only, and knows which other parts share their vertices. Vertices and cells
-/// are numbered as in the rank's share of the mesh.
+/// vertex. A vertex is in each part whose cells use it. If no cell uses it, it is in the part to which its
+/// number belongs. A rank has the cells of its own parts only, and knows which other parts share their
+/// vertices. Vertices and cells are numbered as in the rank's share of the mesh.
 class MeshParts {
  public:
   /// Every rank has to call it. O(entries · log parts).
@@ -30,8 +30,8 @@ class MeshParts {
   [[nodiscard]] Index size() const noexcept { return cells_.size(); }
   /// Returns the cells of a part, ascending.
   [[nodiscard]] std::span<const Index> cells(Index part) const { return cells_[part]; }
-  /// Returns the vertices of a part: the own ones, ascending, then those of other parts, ascending and so
-  /// grouped by part.
+  /// Returns the vertices of a part: first its own vertices, then vertices of other parts. Both lists ascend,
+  /// so that the second is grouped by part.
   [[nodiscard]] std::span<const Index> vertices(Index part) const { return vertices_[part]; }
   /// Returns the parts that have a vertex, on any rank, ascending.
   [[nodiscard]] std::span<const Index> parts_with(Index vertex) const { return parts_of_vertices_[vertex]; }
@@ -54,9 +54,9 @@ class PartCutter {
   /// Both must outlive this object. O(rows of arrays on some vertices or cells + members of sets).
   PartCutter(const Mesh& mesh, const MeshParts& parts);
 
-  /// Returns a part: its vertices and cells in the order of `MeshParts`, without `cell_blocks`, and the same
-  /// metadata. Keeps sets without members in the part; drops arrays on some vertices
-  /// or cells that have no rows in it. O(size of the part).
+  /// Returns a part: its vertices and cells in the order of `MeshParts`, without `cell_blocks`, with the
+  /// metadata of the mesh. Keeps sets even if they have no members in the part. Drops an array on only some
+  /// vertices or cells if it has no rows in the part. O(size of the part).
   [[nodiscard]] Mesh cut(Index part);
 
  private:
@@ -68,7 +68,7 @@ class PartCutter {
 
   const Mesh& mesh_;
   const MeshParts& parts_;
-  std::vector<Incidence> rows_;       ///< of each part, by array; empty for arrays with a row for everything
+  std::vector<Incidence> rows_;       ///< of each part, by array; empty for dense arrays
   std::vector<Incidence> members_;    ///< of each part, by set: places in the set's list of members
   std::vector<Index> vertex_places_;  ///< places in the part being cut; stale for vertices not in it
   std::vector<Index> cell_places_;

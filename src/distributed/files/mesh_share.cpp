@@ -88,7 +88,7 @@ class ShareMaker {
     return send_rows(communicator_, std::move(vertices), std::move(dispatches));
   }
 
-  /// Finds the vertices of the cells, and those of the own parts that no cell of any rank uses.
+  /// Finds the vertices of the cells, and the vertices of the own parts that no cell of any rank uses.
   void number_vertices(const Rows& cells) {
     const Layout& layout = share_.numbers.layout;
     const std::vector<GlobalIndex> used =
@@ -127,7 +127,8 @@ class ShareMaker {
     }
   }
 
-  /// Takes a number for each vertex or cell of the part; returns the numbers of those of the share.
+  /// Takes a number for each vertex or cell of the part; returns the number of each vertex or cell of the
+  /// share.
   template <class Number>
   [[nodiscard]] std::vector<Number> fetched(Association of, const std::vector<Number>& numbers,
                                             std::size_t type) const {
@@ -139,7 +140,7 @@ class ShareMaker {
 
   /// Returns the vertices or cells of the share that are in a list of the file, in the sequence of the list.
   ///
-  /// @param members  of the list that are in the part
+  /// @param members  members of the list that are in the part
   /// @param entries  their places in the list, ascending; empty if the sequence does not matter
   [[nodiscard]] std::vector<Index> listed(Association of, const std::vector<Index>& members,
                                           const std::vector<Index>& entries) const {
@@ -190,7 +191,7 @@ class ShareMaker {
                                 listed(of_part.association, of_part.members, moved_.part().sets[s].entries)});
   }
 
-  /// Adds the ids of the share; returns whether the mesh has any.
+  /// Adds the ids of the share; returns whether the mesh has ids.
   bool add_ids(Association of, std::vector<std::int64_t>& ids) {
     if (moved_.ids(of) == nullptr) return false;
     const std::vector<std::byte> own =

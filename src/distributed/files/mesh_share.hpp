@@ -16,15 +16,16 @@ struct ShareNumbers {
   std::vector<GlobalIndex> vertices;  ///< ascending
   std::vector<GlobalIndex> cells;     ///< ascending
 
-  /// Returns the numbers of a mesh that one rank has as a whole.
+  /// Returns the numbers of a mesh if one rank has the whole mesh.
   [[nodiscard]] static ShareNumbers of_whole(const Mesh& mesh);
 };
 
 /// A rank's share of a mesh that is written in pieces: the cells of its parts, their vertices, the unused
 /// vertices of these parts, and their arrays, sets and ids.
 struct MeshShare {
-  /// Vertices and cells are in the order of their numbers. All sets are kept, perhaps without members; arrays
-  /// on some vertices or cells are dropped if they have no rows here. Rows and members keep the file's order.
+  /// Vertices and cells are in the order of their numbers. All sets are kept, even without members. An array
+  /// on only some vertices or cells is dropped if it has no rows here. Rows and members keep the file's
+  /// order.
   Mesh mesh;
   ShareNumbers numbers;
   bool has_vertex_ids = false;  ///< on any rank

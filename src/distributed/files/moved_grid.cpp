@@ -102,7 +102,8 @@ void MovedGrid::list_arrays() {
   }
 }
 
-/// Returns the mark of each vertex or cell of the part for a set: its place or 1; 0 if it is no member.
+/// Returns for each vertex or cell of the part its mark for a set: its place in the set or 1; 0 if it is not
+/// a member.
 std::vector<std::byte> MovedGrid::marks_of_set(const Array& array) const {
   const std::vector<std::int32_t>& ranks = set_ranks_[array.number];
   const std::vector<Index>& members = moved_.part().mesh.sets[array.number].members;

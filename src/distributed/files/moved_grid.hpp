@@ -13,15 +13,16 @@
 
 namespace meshorder::distributed {
 
-/// A moved mesh in the form of a .vtu file: the same that `scattered_grid` makes of the whole mesh in its new
-/// order. The types of labels and ids fit the values of all ranks; the marks of a set follow the order of all
-/// its members.
+/// A moved mesh in the form of a .vtu file: equal to what `scattered_grid` makes from the whole mesh in its
+/// new order. The types of labels and ids fit the values of all ranks; the marks of a set follow the order of
+/// all its members.
 class MovedGrid {
  public:
   /// Every rank has to call it. O(size of the part).
   ///
   /// @param communicator  must outlive this object
-  /// @param moved  must outlive this object, and have only cells that VTK can hold; `rows` takes its cells
+  /// @param moved  must outlive this object, and have only cells that VTK can hold; `rows` moves its cells
+  ///               out of it
   MovedGrid(const Communicator& communicator, MovedPart& moved);
 
   /// Returns the mesh, valid as long as this object. Call it only once. Every rank has to call it.

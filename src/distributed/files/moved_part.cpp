@@ -36,7 +36,7 @@ std::size_t common_type(std::size_t a, std::size_t b) {
   return are_integers ? kWide : kReal;
 }
 
-/// Converts an array to a type and to a number of components, at least as many as it has.
+/// Converts an array to a type and to a number of components, which is at least its present number.
 void give_form(DataArray& array, const ArrayForm& form) {
   if (array.values.index() == form.type && array.components == form.components) return;
   Values result = values_of_type(form.type);
@@ -111,8 +111,9 @@ void MovedPart::unify_arrays() {
   }
 }
 
-/// Finds whether there are ids other than the places, and the new place of each id: ids ascend along vertices
-/// and along the cells of each dimension or block. If the order moves nothing, ids keep their places.
+/// Finds whether there are ids that differ from the places, and the new place of each id. In the new order,
+/// ids ascend along the vertices and along the cells of each dimension or block. If the order moves nothing,
+/// ids keep their places.
 void MovedPart::settle_ids(Entities& owner, std::vector<std::int64_t>& ids, const std::string& name,
                            Notes& notes) {
   if (name.empty() || are_places(communicator_, owner.layout, ids)) return ids.clear();

@@ -26,8 +26,8 @@ class MovedPart {
   /// Every rank has to call it. O(size of the part).
   ///
   /// @param communicator  must outlive this object
-  /// @param part        of this rank: an even range of the vertices and one of the cells. Arrays must have
-  ///                    the same names on all ranks
+  /// @param part        of this rank: an equal share of the vertices and of the cells. Arrays must have the
+  ///                    same names on all ranks
   /// @param order       the mesh's new order
   /// @param block_ends  as in `places_by_block`; empty: cells keep the places of their dimension
   /// @param notes       receives, at the root, notes on members and numbers that the file gives twice
@@ -59,7 +59,7 @@ class MovedPart {
   /// Every rank has to call it. O(bytes).
   [[nodiscard]] std::vector<std::byte> moved(Association association, std::span<const std::byte> rows,
                                              Offset width) const;
-  /// As above, for the k-th array of the mesh; NaN or 0 where it has no row.
+  /// As above, for the k-th array of the mesh; NaN or 0 for a vertex or cell without a row.
   [[nodiscard]] std::vector<std::byte> moved_array(std::size_t k) const;
   /// Returns the ids of this rank's places in a number type; there must be ids. Every rank has to call it.
   [[nodiscard]] std::vector<std::byte> moved_ids(Association association, std::size_t type) const;
@@ -71,7 +71,7 @@ class MovedPart {
   /// The vertices or the cells.
   struct Entities {
     Layout layout;
-    std::vector<GlobalIndex> places;  ///< new place of each one of the part
+    std::vector<GlobalIndex> places;  ///< new place of each vertex or cell of the part
     std::optional<RowMover> mover;
     bool has_ids = false;
     std::optional<RowMover> ids_mover;  ///< moves ids to their places

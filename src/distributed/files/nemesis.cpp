@@ -52,7 +52,8 @@ const ExodusMetadata* exodus_metadata(const Mesh& mesh) {
 
 // ---- the whole mesh as an Exodus II file
 
-/// Returns whether the metadata name all sets of the mesh, and the mesh has all sets and arrays they name.
+/// Returns whether the metadata name all sets of the mesh, and the mesh has all sets and arrays that they
+/// name.
 bool knows_all(const Mesh& mesh, const ExodusMetadata& metadata) {
   const NamedParts parts(mesh);
   const auto has_set = [&](const SetRecord& record, Association association) {
@@ -91,7 +92,7 @@ std::string bytes_of_numbers(const std::vector<std::int64_t>& values) {
   return bytes;
 }
 
-/// Adds a dimension unless its length is 0, which netCDF takes for an unlimited one.
+/// Adds a dimension unless its length is 0: netCDF would make that an unlimited dimension.
 void add_dimension(ExodusMetadata& metadata, std::string_view name, std::size_t length) {
   if (length > 0) metadata.dimensions.push_back({std::string(name), length});
 }
@@ -116,7 +117,8 @@ constexpr std::string_view kFiles = "num_procs_file";
 
 std::vector<std::int64_t> status_of(std::size_t count) { return {count > 0 ? 1 : 0}; }
 
-/// Names of variables and dimensions for nodes or elements inside a part and at its border.
+/// Names of the variables and dimensions that list the nodes, or the elements, inside a part and at its
+/// border.
 struct Names {
   std::string_view internal_status;
   std::string_view border_status;
@@ -128,7 +130,7 @@ struct Names {
 
 /// Names of variables and dimensions of communication maps.
 struct MapNames {
-  std::string kind;  ///< "n" or "e", with which the other variables' names begin
+  std::string kind;  ///< "n" or "e", the first letter of the other variables' names
   std::string_view maps;
   std::string_view entries;
   std::string_view numbers;
@@ -234,8 +236,8 @@ struct Blocks {
   std::vector<GlobalIndex> ends;  ///< number of the first cell after each
 };
 
-/// Returns the blocks of a whole mesh; none if its cells are not in blocks of the metadata or not in their
-/// order.
+/// Returns the blocks of a whole mesh; no blocks if the cells are not in blocks of the metadata or not in the
+/// order of these blocks.
 Blocks blocks_of(const Mesh& mesh, const ExodusMetadata& metadata) {
   Blocks blocks;
   const CellDivision division = exodus::divide(mesh);
@@ -294,7 +296,7 @@ class NemesisPieces {
   /// Writes the files of this rank's parts. Every rank has to call it. O(size of the parts · log).
   ///
   /// @return number of vertices of all pieces minus that of the mesh
-  /// @throws SharedError if one cannot be written
+  /// @throws SharedError if a file cannot be written
   GlobalIndex write(const std::vector<std::string>& paths, const std::vector<std::string>& names);
 
  private:
@@ -399,12 +401,12 @@ void NemesisPieces::write_piece(Index part, const exodus::UnfinishedFile& file) 
   add_node_maps(part, metadata);
   add_element_maps(part, metadata);
   piece.format_metadata = std::make_shared<const ExodusMetadata>(std::move(metadata));
-  Notes ignored;  // the same as for the whole mesh
+  Notes ignored;  // they repeat the notes on the whole mesh
   exodus::write(piece, file, ignored);
 }
 
-/// Sets the ids of nodes and elements to their numbers in the whole mesh. If the mesh has other ids, keeps
-/// them as a map.
+/// Sets the ids of nodes and elements to their numbers in the whole mesh. If the mesh has ids, keeps these as
+/// a map.
 void NemesisPieces::add_numbers(Index part, Mesh& piece) const {
   const auto number = [&](Association association, bool has_ids, std::vector<std::int64_t>& ids,
                           std::span<const Index> own, const std::vector<GlobalIndex>& numbers) {
@@ -466,8 +468,9 @@ void NemesisPieces::add_load_balance(Index part, ExodusMetadata& metadata) const
       {"int_e_stat", "bor_e_stat", "elem_mapi", "num_int_elem", "elem_mapb", "num_bor_elem"});
 }
 
-/// Adds the communication maps of nodes, one for each part that shares some. A map has places in the piece,
-/// sorted by the nodes' numbers in the whole mesh, so that the maps of both parts match.
+/// Adds the communication maps of nodes, one for each part that shares nodes with this one. A map lists
+/// places of nodes in the piece, sorted by the nodes' numbers in the whole mesh, so that the maps of both
+/// parts match.
 void NemesisPieces::add_node_maps(Index part, ExodusMetadata& metadata) const {
   const auto vertices = parts_.vertices(part);
   std::vector<Index> ascending = index_range(0, index_size(vertices));
@@ -481,7 +484,7 @@ void NemesisPieces::add_node_maps(Index part, ExodusMetadata& metadata) const {
   add_maps(metadata, {"n", "num_n_cmaps", "ncnt_cmap", "n_comm_nids"}, maps);
 }
 
-/// Adds the communication maps of elements, one for each part that shares a side with some.
+/// Adds the communication maps of elements, one for each part that shares a side with elements of this one.
 void NemesisPieces::add_element_maps(Index part, ExodusMetadata& metadata) const {
   const auto cells = parts_.cells(part);
   std::map<Index, std::vector<std::int64_t>> maps;

@@ -15,10 +15,10 @@
 
 namespace meshorder::distributed {
 
-/// Writes the parts of a mesh that is on one rank as a whole, as Nemesis files: Exodus II files that also
-/// hold the numbers in the whole mesh, and the vertices and facets shared with other parts. A mesh that did
-/// not come from an Exodus II file, or is not in the order of one, is first written to memory as such a file
-/// and read from there. O(size of the mesh · log).
+/// Writes the parts of a mesh as Nemesis files; one rank has the whole mesh. Nemesis files are Exodus II
+/// files that also hold the numbers in the whole mesh, and the vertices and facets shared with other parts. A
+/// mesh that did not come from an Exodus II file, or is not in the order of such a file, is first written to
+/// memory as an Exodus II file and read from there. O(size of the mesh · log) time.
 ///
 /// Format: Hennigan, Shadid, "NEMESIS I: A Set of Functions for Describing Unstructured Finite-Element Data
 /// on Parallel Computers" (Sandia, 1998), and the names of dimensions and variables in exodusII_int.h of
@@ -35,7 +35,7 @@ GlobalIndex write_nemesis_pieces(const Mesh& mesh, const std::vector<GlobalIndex
                                  const std::vector<std::string>& paths, const std::vector<std::string>& names,
                                  Notes& notes);
 
-/// A rank's share of the mesh of an Exodus II file whose pieces all ranks write.
+/// A rank's share of a mesh from an Exodus II file. All ranks write pieces of the mesh.
 struct NemesisShare {
   MeshShare share;
   std::vector<GlobalIndex> block_ends;   ///< as in `places_by_block`

@@ -80,8 +80,8 @@ void for_pairs(std::vector<Candidate>& facets, const Take& take) {
   }
 }
 
-/// Sends values to ranks, and returns those that this rank receives: by sending rank, then in the sequence
-/// there.
+/// Sends values to ranks. Returns the values that this rank receives, sorted by sending rank; values of one
+/// rank keep their sequence.
 template <class T, class RankOf>
 std::vector<T> sent_to_ranks(const Communicator& communicator, const std::vector<T>& values,
                              const RankOf& rank_of) {

@@ -20,9 +20,9 @@ struct BorderFacet {
 };
 
 /// Finds the facets that cells of two parts share: facets of volumes and surfaces with the same corners. The
-/// lists of two parts match: the k-th facet that part a shares with part b in a's list is the k-th that b
-/// shares with a in b's list. A facet of more than two cells counts once for each pair. Every rank has to
-/// call it. O(entries + facets between parts · log of these).
+/// lists of two parts a and b match: the k-th facet in a's list that b shares is also the k-th facet in b's
+/// list that a shares. A facet of more than two cells counts once for each pair. Every rank has to call it.
+/// O(entries + f log f) time for f facets between parts.
 ///
 /// @param mesh     this rank's share of the mesh, as in `MeshShare`
 /// @param numbers  of its vertices and cells

@@ -13,11 +13,12 @@ namespace meshorder::distributed {
 /// The contents of a part's piece: the part's vertices and cells, and ghosts, which belong to other parts.
 struct PieceContents {
   Index part = 0;
-  /// New numbers: the own ones, ascending, then those of other parts that the cells use, ascending and so
-  /// grouped by part.
+  /// New numbers of the part's own vertices, ascending, then of the vertices of other parts that the cells
+  /// use, ascending and therefore grouped by part.
   std::vector<GlobalIndex> vertices;
   GlobalIndex own_vertices = 0;
-  /// New numbers: the own ones, ascending, then those of other parts, sorted by part, then by number.
+  /// New numbers of the part's own cells, ascending, then of the cells of other parts, sorted by part, then
+  /// by number.
   std::vector<GlobalIndex> cells;
   GlobalIndex own_cells = 0;
   std::vector<Index> cell_parts;  ///< part of each cell

@@ -35,7 +35,7 @@ std::size_t section_of(const PieceArray& array) {
   return (array.role == Role::data ? 0U : 2U) + (array.is_on_vertices() ? 0U : 1U);
 }
 
-/// Returns the attributes of an element, except some, in the form of a tag.
+/// Returns the attributes of an element, except those in `left_out`, as text for a tag.
 template <std::size_t N>
 std::string attributes_without(const vtk::VtuElement& element,
                                const std::array<std::string_view, N>& left_out) {
@@ -63,7 +63,7 @@ PieceArray added(Association association, Source source, std::string_view type, 
           {}};
 }
 
-/// Returns the k-th array of the mesh, in a section, as an array of the pieces.
+/// Returns the k-th array of the mesh, which is in a section of its file, as an array of the pieces.
 PieceArray taken(const vtk::VtuDocument& file, const vtk::VtuElement& element, std::size_t section,
                  std::size_t k) {
   constexpr std::array<std::string_view, 5> kOfValues{"format", "offset", "RangeMin", "RangeMax",

@@ -18,9 +18,9 @@ struct VtuElement;
 
 namespace meshorder::distributed {
 
-/// An array of the pieces: a part whose place in each piece is not known yet. For rows and texts, `number` is
-/// the place among the arrays of the mesh's file. For texts, `type` is that of their places in the list of
-/// texts.
+/// An array of the pieces: a part whose place in each piece is not known yet. If the source is `rows` or
+/// `texts`, `number` is the place among the arrays of the mesh's file. If it is `texts`, `type` is the type
+/// of places in the list of texts.
 struct PieceArray : FilePart {
   enum class Source : std::uint8_t {
     rows,          ///< an array of numbers of the mesh
@@ -55,8 +55,8 @@ class PieceSchema {
   [[nodiscard]] const std::vector<vtk::ArrayRole>& roles() const noexcept { return roles_; }
   /// Returns whether the nodes of higher-order hexahedra are in the order of VTK 9.
   [[nodiscard]] bool has_order_of_vtk_9() const noexcept { return has_order_of_vtk_9_; }
-  /// Returns "on points 'part'" and so on: the arrays of the mesh that the pieces replace by their own arrays
-  /// of the same names.
+  /// Returns the arrays of the mesh that the pieces replace by their own arrays of the same names, in the
+  /// form "on points 'part'".
   [[nodiscard]] const std::vector<std::string>& replaced() const noexcept { return replaced_; }
 
   /// Returns the XML of a piece up to its appended data.

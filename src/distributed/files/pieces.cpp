@@ -32,7 +32,7 @@ namespace {
 
 using Source = PieceArray::Source;
 
-/// Returns the rows of these numbers; `rows` are those of the halo's numbers.
+/// Returns the rows of the given numbers; `rows` holds a row for each of the halo's numbers.
 std::vector<std::byte> rows_of(const std::vector<std::byte>& rows, Offset width, const Halo& halo,
                                const std::vector<GlobalIndex>& numbers) {
   std::vector<std::byte> result(numbers.size() * static_cast<std::size_t>(width));
@@ -272,7 +272,7 @@ std::vector<PieceArray> arrays_in_vtkhdf(const PieceSchema& schema,
   return arrays;
 }
 
-/// Throws InputError if there are higher-order hexahedra with the node order of VTK before version 9.
+/// Throws InputError if there are higher-order hexahedra whose node order is that of VTK before version 9.
 void refuse_old_hexahedra(const Communicator& communicator, const GridRows& grid, const PieceSchema& schema,
                           const std::string& name) {
   if (schema.has_order_of_vtk_9()) return;

@@ -25,9 +25,9 @@ struct PiecesReport {
 [[nodiscard]] PieceSchema schema_of_pieces(const Communicator& communicator, const GridRows& grid,
                                            int ghosts);
 
-/// Writes a .vtu file for each part, to files that exist and are empty; each rank writes those of its parts.
-/// Every rank has to call it. O(size of the mesh of a rank · log); takes memory for the cells of a rank's
-/// pieces and for one of their arrays at a time.
+/// Writes a .vtu file for each part, to files that exist and are empty; each rank writes the files of its
+/// parts. Every rank has to call it. O(size of the mesh of a rank · log); takes memory for the cells of a
+/// rank's pieces and for one of their arrays at a time.
 ///
 /// Format: "VTK File Formats", https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
 ///

@@ -27,7 +27,7 @@ constexpr std::size_t kLongestHead = std::size_t{1} << 26;
 constexpr Offset kMostComponents = Offset{1} << 24;
 constexpr std::string_view kAppended = "<AppendedData";
 
-/// Returns the file up to the underscore before its appended data; nothing if it has none.
+/// Returns the file up to the underscore before its appended data; nothing if it has no appended data.
 std::string head_of(const FilePath& path) {
   for (std::size_t most = std::size_t{1} << 16; most <= kLongestHead; most *= 8) {
     const std::string text = path.read_first(most);
@@ -150,11 +150,11 @@ class HeadReader {
     return true;
   }
 
-  /// Returns whether an array that is no part begins inside a part.
+  /// Returns whether an array that is not a part of `head_` begins inside such a part.
   [[nodiscard]] bool begins_within() const {
     const std::vector<Offset> offsets = head_.xml.offsets();
     return std::any_of(offsets.begin(), offsets.end(), [&](Offset offset) {
-      if (offset > head_.facts.bytes) return false;  // an error of its own when the array is read
+      if (offset > head_.facts.bytes) return false;  // reported when the array is read
       const Offset at = head_.facts.first_byte + offset;
       return std::any_of(head_.parts.begin(), head_.parts.end(),
                          [&](const FilePart& part) { return part.at < at && at < part.at + part.stored; });

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::string_view kEndOfHead = "</AppendedData></VTKFile>";
 
-/// Returns an array of a file's appended data, after the word with its size, as base64.
+/// Returns an array of a file's appended data as base64, beginning with a word that gives its size.
 std::string as_text(const std::string& path, const vtk::VtuDocument& document, Offset first_byte,
                     const vtk::VtuElement& element) {
   constexpr std::uint8_t kByte = 3;  // number type

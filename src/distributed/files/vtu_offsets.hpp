@@ -27,8 +27,8 @@ class VtuXml {
   /// Returns the offsets, in the sequence of the text.
   [[nodiscard]] std::vector<Offset> offsets() const;
 
-  /// Returns the most bytes that the text can have with other offsets. A text that `with_offsets` padded to
-  /// this size returns the same number.
+  /// Returns the most bytes that the text can have with other offsets. The number stays the same for a text
+  /// that `with_offsets` has padded to this size.
   [[nodiscard]] Offset most_bytes() const;
 
   /// Returns the text with other offsets, padded with blanks before the underscore.

@@ -9,7 +9,8 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Returns the graph without the edges between pieces. A piece is identified by its first part.
+/// Returns the graph without the edges between pieces. A piece will be cut into several parts; its number is
+/// that of the first of them.
 GlobalGraph within_pieces(const GlobalGraph& graph, const HaloValues<Index>& piece_of) {
   GlobalGraph within{graph.layout, {}};
   for (Offset row = 0; row < graph.rows.size(); ++row) {
@@ -56,7 +57,7 @@ std::vector<Index> bisected(const Communicator& communicator, const GlobalGraph&
   const bool is_weighted = communicator.sum(static_cast<GlobalIndex>(weights.size())) > 0;
   const std::vector<GlobalIndex> of_vertices = is_weighted ? weights : std::vector<GlobalIndex>(own_count, 1);
   std::vector<Index> piece_of(own_count, 0);
-  // for each part, the number of parts of the piece that begins with it; 0 if no piece does
+  // for each part: if a piece begins with it, the number of parts of that piece, else 0
   std::vector<Index> parts_of(static_cast<std::size_t>(parts), 0);
   parts_of[0] = parts;
   while (*std::max_element(parts_of.begin(), parts_of.end()) > 1) {

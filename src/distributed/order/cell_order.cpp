@@ -38,8 +38,8 @@ NumberSet vertices_in(const Rows& rows) {
   return NumberSet(vertices);
 }
 
-/// Returns the numbers of the cells in such rows, sorted by `lexmax`. The cells' numbers must ascend.
-/// Vertices are renumbered 0, 1, … within these rows, which keeps their sequence.
+/// Returns the numbers of the cells in such rows, sorted by `lexmax`. The cells' numbers must ascend. The
+/// vertices of these rows are renumbered 0, 1, …, in the same sequence.
 std::vector<GlobalIndex> sorted_by_lexmax(Rows rows) {
   Incidence cells;
   std::vector<GlobalIndex> numbers;

@@ -55,7 +55,7 @@ std::vector<Link> links_of(const GlobalGraph& graph, const HaloValues<GlobalInde
   return links;
 }
 
-/// Returns for each piece the smallest number of a piece in its component (union–find).
+/// Returns for each piece the smallest piece number in its component (union–find).
 std::vector<GlobalIndex> smallest_pieces(std::size_t count, const std::vector<Link>& links) {
   std::vector<GlobalIndex> parent(count);
   std::iota(parent.begin(), parent.end(), GlobalIndex{0});
@@ -85,7 +85,7 @@ struct Found {
 Found joined_pieces(const std::vector<GlobalIndex>& sizes, const std::vector<Link>& links,
                     const Layout& pieces, GlobalIndex alone) {
   const std::vector<GlobalIndex> first_piece = smallest_pieces(sizes.size(), links);
-  std::vector<GlobalIndex> size_of(sizes.size(), 0);  // size of the component whose first piece it is
+  std::vector<GlobalIndex> size_of(sizes.size(), 0);  // by first piece: the size of its component
   std::vector<char> is_shared(sizes.size(), 0);
   for (std::size_t piece = 0; piece < sizes.size(); ++piece) {
     const auto first = static_cast<std::size_t>(first_piece[piece]);

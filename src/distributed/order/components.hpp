@@ -15,7 +15,7 @@ struct Component {
   GlobalIndex place;  ///< 0 … components − 1: the largest first, ties by their smallest vertices
   GlobalIndex start;  ///< number of vertices of the components before it
   GlobalIndex size;   ///< number of vertices, ≥ 1
-  int solver;         ///< the rank that solves it alone, or `kAllRanks`
+  int solver;         ///< the only rank that solves it, or `kAllRanks`
 };
 
 constexpr int kAllRanks = -1;
@@ -24,7 +24,7 @@ constexpr int kAllRanks = -1;
 struct Components {
   ComponentNumbering pieces;            ///< components of the subgraph of the own vertices
   std::vector<Component> of_piece;      ///< the component of each piece
-  std::vector<Component> of_all_ranks;  ///< components that all ranks solve together; the same on all
+  std::vector<Component> of_all_ranks;  ///< components that all ranks solve; the same on all ranks
 };
 
 /// Finds the components of a graph. A component on several ranks with more than `alone` vertices is solved by

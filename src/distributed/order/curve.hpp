@@ -9,8 +9,9 @@
 
 namespace meshorder::distributed {
 
-/// The numbers of a mesh's vertices along a Hilbert curve, ties by their numbers in the file; unused vertices
-/// come last, in the order of the file. The numbers are the same on any number of ranks.
+/// The numbers of a mesh's vertices along a Hilbert curve. Vertices with the same place on the curve are
+/// sorted by their numbers in the file; unused vertices come last, in the order of the file. The numbers are
+/// the same on any number of ranks.
 struct Curve {
   Layout layout;                            ///< of the numbers of used vertices: equal shares
   std::vector<GlobalIndex> number_of;       ///< number along the curve of each vertex of the slice

@@ -27,7 +27,7 @@ namespace {
 // neighbours.
 enum VertexEntry : std::size_t { kNumber, kInFile, kPlace, kStart, kFirstNeighbour };
 
-/// New numbers of vertices of any owners, as this rank has found them, and reports on components.
+/// The new numbers that this rank has found, of vertices that any ranks own, and reports on components.
 struct Places {
   struct Report {
     GlobalIndex place;
@@ -38,8 +38,8 @@ struct Places {
   std::vector<Report> reports;
 };
 
-/// The vertex that decides the sign of a vector: of those with at least half of the largest magnitude, the
-/// first in the file.
+/// The vertex that decides the sign of a vector: the first in the file whose entry has at least half of the
+/// largest magnitude.
 struct Sign {
   GlobalIndex first = std::numeric_limits<GlobalIndex>::max();
   bool is_positive = false;
@@ -255,7 +255,7 @@ SharedFiedlerOrder fiedler_order(const Communicator& communicator, const GlobalG
                                  const std::vector<GlobalIndex>& number_in_file, const OrderOptions& options,
                                  SharedSizes sizes) {
   FiedlerOptions for_solver = communicator.together([&] { return solver_options(options); });
-  for_solver.start = {};  // a start vector is for a graph on one process
+  for_solver.start = {};  // start vectors are supported only for a graph on one process
   const GlobalIndex few = std::max(sizes.few, graph.layout.size() / communicator.size());
   const Components components = components_of(communicator, graph, halo, sizes.alone);
   Places places;

@@ -14,7 +14,7 @@ namespace meshorder::distributed {
 /// Problem sizes up to which one rank works alone.
 struct SharedSizes {
   GlobalIndex alone = 50'000;  ///< most vertices of a component on several ranks that one rank solves
-  GlobalIndex few = 50'000;    ///< most coarse vertices that go to the root; n / ranks if that is more
+  GlobalIndex few = 50'000;    ///< most coarse vertices that go to the root; n / ranks if that is larger
 };
 
 /// The order by the Fiedler vector of a distributed graph.
@@ -27,12 +27,14 @@ struct SharedFiedlerOrder {
 /// smallest vertices. Within a component the entries of its Fiedler vector ascend, ties by number. Every rank
 /// has to call it. O(entries · iterations).
 ///
-/// A large component on several ranks is solved by all ranks, another one by the rank of its smallest vertex.
-/// The same order for the same graph and number of ranks, for any number of threads.
+/// All ranks solve a large component that is on several ranks; the rank of the smallest vertex solves any
+/// other component. The order depends only on the graph and the number of ranks, not on the number of
+/// threads.
 ///
 /// @param halo            of the graph's ghosts
-/// @param number_in_file  of each own vertex. Fixes the sign as in the serial order: of the entries with at
-///                        least half of the largest magnitude, the first in the file is negative
+/// @param number_in_file  of each own vertex. The numbers fix the sign as in the serial order: among the
+///                        entries with at least half of the largest magnitude, the first in the file is
+///                        negative
 /// @param options         tolerance, max_iterations and seed
 /// @throws SharedError if the tolerance or the number of iterations is not positive; as
 ///         `Communicator::exchange`

@@ -10,11 +10,12 @@
 
 namespace meshorder::distributed {
 
-/// The rows that a rank owns of an undirected graph: ascending global numbers of neighbours, without loops
-/// and repeats. Every edge is in the rows of both its ends. PT-Scotch takes these arrays as they are.
+/// A rank's own rows of an undirected graph. A row has the ascending global numbers of the neighbours,
+/// without loops and repeats. Every edge is in the rows of both its ends. PT-Scotch takes these arrays as
+/// they are.
 struct GlobalGraph {
   Layout layout;  ///< of the vertices
-  Rows rows;      ///< the neighbours of the own ones
+  Rows rows;      ///< the neighbours of the own vertices
 };
 
 /// Builds the graph that joins any two vertices of a common element. Elements may be on any rank. Every rank

@@ -16,7 +16,7 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Methods whose order is as good reversed.
+/// Methods whose order is equally good in reverse.
 constexpr std::array<std::string_view, 4> kReversible{"fiedler", "minla", "hilbert", "morton"};
 
 // A vertex as it is sent to the rank of its part: a row of these entries, followed by its neighbours in the
@@ -27,7 +27,7 @@ enum Entry : std::size_t { kVertex, kPart, kPull, kIsInterface, kX, kY, kZ, kNei
 struct Departure {
   Rows rows;
   std::vector<Dispatch> dispatches;
-  GlobalIndex ghosts = 0;  ///< number of other parts next to a vertex, summed over the vertices
+  GlobalIndex ghosts = 0;  ///< number of other parts with neighbours of a vertex, summed over the vertices
 };
 
 Departure departing(const GlobalGraph& graph, const Curve& curve, const HaloValues<Index>& place_of,
@@ -93,7 +93,8 @@ LocalPart part_of_rows(const Rows& rows, std::span<const Offset> members) {
   return part;
 }
 
-/// Returns whether an order should be reversed: the vertices that edges pull to the front are at its end.
+/// Returns whether an order should be reversed: whether the vertices that edges pull to the front are at its
+/// end.
 bool is_the_wrong_way_round(std::span<const Index> places, const std::vector<float>& pull) {
   const double middle = 0.5 * (static_cast<double>(places.size()) - 1);
   double along = 0;

@@ -23,7 +23,8 @@ struct PartOrders {
 
 /// Orders each part by a method, on the rank of that part. In `spectral`, edges to earlier and later parts
 /// pull vertices forward or back. The orders of `fiedler`, `minla`, `hilbert` and `morton` are reversed if
-/// that brings the ends of edges between parts nearer. Every rank has to call it. Costs O(entries) + method.
+/// that brings the two ends of edges between parts nearer to each other. Every rank has to call it. Costs
+/// O(entries) + method.
 ///
 /// @param graph     numbered along `curve`; a part's vertices go to the method in that order
 /// @param place_of  of each vertex, the place of its part in the order of the parts

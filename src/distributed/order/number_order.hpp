@@ -12,11 +12,12 @@ namespace meshorder::distributed {
 
 /// Vertices or cells sorted by the numbers (ids) that their file gives them.
 struct NumberOrder {
-  std::vector<GlobalIndex> sorted;    ///< places in the file, by number: this rank's range of them
+  std::vector<GlobalIndex> sorted;    ///< places in the file, sorted by number: this rank's range of the list
   std::optional<std::int64_t> twice;  ///< the smallest number that occurs twice
 };
 
-/// Sorts the numbers of vertices or cells. Every rank has to call it. O(n log n) for n of a rank.
+/// Sorts the numbers of vertices or cells. Every rank has to call it. O(n log n) time for n numbers of a
+/// rank.
 ///
 /// @param layout   the owners of the vertices or cells
 /// @param numbers  of the own ones
@@ -24,7 +25,8 @@ struct NumberOrder {
 [[nodiscard]] NumberOrder order_of_numbers(const Communicator& communicator, const Layout& layout,
                                            const std::vector<std::int64_t>& numbers);
 
-/// Returns whether the numbers are 1, 2, … along all ranks. Every rank has to call it. O(numbers).
+/// Returns whether the numbers of all ranks, one rank after another, are 1, 2, …. Every rank has to call it.
+/// O(numbers).
 [[nodiscard]] bool are_places(const Communicator& communicator, const Layout& layout,
                               const std::vector<std::int64_t>& numbers);
 

@@ -23,7 +23,8 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Methods without meaning within a part: they choose by the whole mesh or depend on the order in the file.
+/// Methods that make no sense for a single part: they choose by the whole mesh or depend on the order in the
+/// file.
 constexpr std::array<std::string_view, 3> kNotInParts{"auto", "original", "scrambled"};
 
 /// Records the time of each stage; a stage begins where the one before ended.
@@ -59,7 +60,7 @@ Rows elements_of(const Communicator& communicator, const MeshSlice& slice) {
   });
 }
 
-/// Replaces each vertex in the rows by its value; `values` are those of the halo's numbers.
+/// Replaces each vertex in the rows by its value; `values` has the value of each of the halo's numbers.
 void renumber(Rows& rows, const Halo& halo, const std::vector<GlobalIndex>& values) {
   for (GlobalIndex& vertex : rows.entries) vertex = values[halo.position(vertex)];
 }
@@ -139,8 +140,8 @@ void check_one_order(const DistributedOptions& options) {
     throw InvalidArgument("the partition 'order' leaves interfaces at their places in the order" + remedy);
 }
 
-/// Throws InvalidArgument for more than a million parts, more than there are vertices: tables of parts take
-/// memory.
+/// Throws InvalidArgument for more than a million parts if these are more than the vertices: tables of parts
+/// take memory.
 void check_parts(Index parts, GlobalIndex vertices) {
   constexpr Index kOfAnyMesh = 1'000'000;
   if (parts <= kOfAnyMesh || parts <= vertices) return;

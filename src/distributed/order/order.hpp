@@ -35,9 +35,9 @@ void check_options(const DistributedOptions& options);
 /// Figures on an order.
 struct DistributedReport {
   Index parts = 0;
-  Partitioner partitioner = Partitioner::ptscotch;  ///< the one that made the parts
-  std::string partition_reason;                     ///< why it is not the requested one; empty if it is
-  double imbalance = 1;  ///< largest part / mean part, in the balanced quantity: vertices or cells
+  Partitioner partitioner = Partitioner::ptscotch;  ///< the partitioner that made the parts
+  std::string partition_reason;  ///< why the requested partitioner was not used; else empty
+  double imbalance = 1;          ///< largest part / mean part, in the balanced quantity: vertices or cells
   GlobalIndex edges = 0;
   GlobalIndex cut = 0;                   ///< number of edges between parts
   GlobalIndex ghosts = 0;                ///< number of neighbours outside each part, summed over the parts
@@ -53,7 +53,7 @@ struct DistributedReport {
 /// A rank's share of the order of a mesh.
 struct DistributedOrder {
   std::vector<GlobalIndex> new_vertices;  ///< new number of each vertex of the slice
-  std::vector<GlobalIndex> cells;  ///< old numbers of cells in their new order: this rank's range of it
+  std::vector<GlobalIndex> cells;         ///< old numbers of cells in their new order: this rank's range
   DistributedReport report;
 };
 

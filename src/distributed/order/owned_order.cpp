@@ -16,7 +16,8 @@
 namespace meshorder::distributed {
 namespace {
 
-/// Returns the cells with their vertices renumbered; `new_numbers` are those of this rank's own vertices.
+/// Returns the cells with their vertices renumbered; `new_numbers` has the new numbers of this rank's own
+/// vertices.
 Rows renumbered(const Communicator& communicator, const Layout& vertices, const Rows& cells,
                 const std::vector<GlobalIndex>& new_numbers) {
   const Halo halo(communicator, vertices, cells.entries);

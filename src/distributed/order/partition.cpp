@@ -9,8 +9,8 @@
 namespace meshorder::distributed {
 namespace {
 
-// PT-Scotch fails, or does not end, if ranks have few vertices; and parts of a few vertices cannot be cut
-// well.
+// PT-Scotch fails, or does not end, if a rank has few vertices. It also cannot cut well if the parts have few
+// vertices.
 constexpr GlobalIndex kLeastPerRank = 100;
 constexpr GlobalIndex kLeastPerPart = 16;
 // Graphs of at most this many vertices are cut twice; that takes some tenths of a second.
@@ -29,8 +29,8 @@ std::vector<Index> cut_by_numbers(const Communicator& communicator, const Global
   });
 }
 
-/// Returns the parts that are ranges of numbers of equal weight. The middle of a vertex's weight decides its
-/// part.
+/// Returns parts that are ranges of the vertices' numbers with about equal weights. The middle of a vertex's
+/// weight decides which part the vertex belongs to.
 std::vector<Index> cut_by_weights(const Communicator& communicator, const std::vector<GlobalIndex>& weights,
                                   Index parts) {
   const std::vector<GlobalIndex> of_ranks =
@@ -51,7 +51,7 @@ std::vector<Index> cut_by_weights(const Communicator& communicator, const std::v
   });
 }
 
-/// Returns why the graph is too small for PT-Scotch; empty if it is not.
+/// Returns why the graph is too small for PT-Scotch; empty if it is large enough.
 std::string too_small(const GlobalGraph& graph, Index parts) {
   const GlobalIndex n = graph.layout.size();
   if (n < kLeastPerRank * graph.layout.ranks())

@@ -21,12 +21,13 @@ namespace meshorder::distributed {
 /// Methods of cutting a graph into parts.
 enum class Partitioner : std::uint8_t {
   ptscotch,  ///< few edges between parts; the same parts for the same graph on the same number of ranks
-  hilbert,   ///< ranges of equal weight of the graph's own order; the same parts on any number of ranks
+  hilbert,   ///< ranges of the graph's own order with equal weights; the same on any number of ranks
   rsb,       ///< recursive spectral bisection, see `bisected`
   order,     ///< equal ranges of one order of the whole graph; parts are not ordered separately
 };
 
-/// Where a part's interface is in its order: the vertices that share an element with vertices of other parts.
+/// The place of a part's interface in the order of the part. The interface is the set of vertices that share
+/// an element with vertices of other parts.
 enum class InterfacePlace : std::uint8_t {
   mixed,  ///< anywhere, as the method orders them
   last,   ///< after the other vertices of the part; both keep the order that the method gives them
@@ -59,8 +60,8 @@ namespace meshorder::distributed {
 /// Parts of a graph.
 struct Partition {
   std::vector<Index> part_of;  ///< of each own vertex, 0 … parts − 1
-  Partitioner by;              ///< the partitioner that made them
-  std::string reason;          ///< why it is not the requested one; empty if it is
+  Partitioner by;              ///< the partitioner that made the parts
+  std::string reason;          ///< why the requested partitioner was not used; empty if it was
 };
 
 /// Cuts a graph into parts of about the same weight. `ptscotch` cuts graphs of up to 100,000 vertices by two
@@ -92,8 +93,8 @@ enum class ScotchStrategy : std::uint8_t { speed, quality };
                                    const std::vector<GlobalIndex>& weights, ScotchStrategy strategy,
                                    std::vector<Index>& part_of);
 
-/// Returns the part of a vertex by its new number. Vertices that no element uses come after the last part and
-/// are counted in it. O(log parts).
+/// Returns the part of a vertex by its new number. Vertices that no element uses come after the last part;
+/// they count as vertices of that part. O(log parts).
 ///
 /// @param starts  first new number of each part, then the end of the last part
 [[nodiscard]] inline Index part_of(GlobalIndex vertex, const std::vector<GlobalIndex>& starts) {
@@ -115,8 +116,8 @@ struct Quotient {
 };
 
 /// Orders the parts by the Fiedler vector of their quotient graph, whose weights are the numbers of edges
-/// between parts, and then moves single parts while that brings strongly joined parts nearer. Every rank has
-/// to call it; the root solves. O(entries + cut · log cut).
+/// between parts. Then moves single parts while that brings strongly joined parts nearer. Every rank has to
+/// call it; the root computes the order. O(entries + cut · log cut) time.
 ///
 /// @param part_of  part of each vertex in the graph's rows, 0 … parts − 1
 /// @throws as `Communicator::exchange`

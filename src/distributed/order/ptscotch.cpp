@@ -36,8 +36,8 @@ using Context = std::unique_ptr<SCOTCH_Context, End<SCOTCH_Context, SCOTCH_conte
 using Strategy = std::unique_ptr<SCOTCH_Strat, End<SCOTCH_Strat, SCOTCH_stratExit>>;
 using Graph = std::unique_ptr<SCOTCH_Dgraph, End<SCOTCH_Dgraph, SCOTCH_dgraphExit>>;
 
-/// Sets up `context` for repeatable results: a fixed seed, its own random numbers, which do not depend on
-/// earlier calls, and one thread. Returns whether that succeeded.
+/// Sets up `context` for repeatable results: a fixed seed, one thread, and random numbers of its own, so that
+/// they do not depend on earlier calls. Returns whether that succeeded.
 bool make_deterministic(SCOTCH_Context* context) {
   return SCOTCH_contextOptionSetNum(context, SCOTCH_OPTIONNUMDETERMINISTIC, 1) == 0 &&
          SCOTCH_contextOptionSetNum(context, SCOTCH_OPTIONNUMRANDOMFIXEDSEED, 1) == 0 &&

@@ -12,7 +12,7 @@ namespace meshorder::distributed {
 namespace {
 
 constexpr double kTolerance = 1e-6;  // of the Fiedler vector, which is cheap for a graph this small
-constexpr int kPasses = 20;          // most passes over all parts; usually a few suffice until none moves
+constexpr int kPasses = 20;          // most passes over all parts; usually no part moves after a few
 
 /// The number of edges between two parts, a < b.
 struct Border {
@@ -23,7 +23,7 @@ struct Border {
 
 bool have_same_parts(const Border& x, const Border& y) { return x.a == y.a && x.b == y.b; }
 
-/// Returns the borders with those between the same parts added up.
+/// Returns the borders, with the edges of all borders between the same two parts added up.
 std::vector<Border> merged(std::vector<Border> borders) {
   std::sort(borders.begin(), borders.end(),
             [](const Border& x, const Border& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
@@ -40,7 +40,7 @@ std::vector<Border> merged(std::vector<Border> borders) {
 
 /// Returns the borders on this rank. An edge is counted once, at its vertex in the part of smaller number.
 std::vector<Border> borders_of(const GlobalGraph& graph, const HaloValues<Index>& part_of) {
-  constexpr std::size_t kEnough = 1 << 20;  // number of borders from which on they are merged
+  constexpr std::size_t kEnough = 1 << 20;  // borders are merged when there are this many
   std::vector<Border> borders;
   std::size_t limit = kEnough;
   for (Offset row = 0; row < graph.rows.size(); ++row) {

@@ -20,7 +20,7 @@ namespace meshorder::distributed {
 struct SharedLevel {
   Layout layout;                    ///< of the rows' numbers
   Halo halo;                        ///< of the neighbours on other ranks
-  Laplacian laplacian;              ///< own rows; columns: first the own rows, then the halo's numbers
+  Laplacian laplacian;              ///< own rows; columns: the own rows, then the halo's numbers
   std::vector<double> masses = {};  ///< of the own rows, as in `Level`
   Aggregation aggregation = {};     ///< of the own rows
 
@@ -35,8 +35,8 @@ struct SharedLevel {
 /// sweep. This still lowers the energy of the error, since 2 D − L is positive semi-definite for any graph.
 class SharedHierarchy {
  public:
-  /// @param few  most coarse vertices of all ranks together that go to the root; more go there only if a step
-  ///             of coarsening leaves most of them
+  /// @param few  coarse vertices go to the root when all ranks together have at most this many. More of them
+  ///             go there only if a step of coarsening leaves most vertices
   /// @throws SharedError if a rank lacks memory
   SharedHierarchy(const Communicator& communicator, SharedLevel finest, GlobalIndex few);
 
