@@ -8,7 +8,7 @@ A matrix or graph, and data of its rows::
     order = meshorder.order(matrix)                      # a SciPy matrix, (indptr, indices) or a networkx graph
     faster, b = order.permutation.move(matrix), order.permutation.move(b)
 
-A mesh with its data and sets; `advise` predicts what a new order gains, before the mesh is changed::
+A mesh with its data and sets; `advise` says how much a new order gains, before the mesh is changed::
 
     mesh = meshorder.read("dragon.msh")                  # or a mesh of meshio, PyVista, VTK, scikit-fem, trimesh, Gmsh
     print(meshorder.advise(mesh))
