@@ -1,6 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
-// Reorders a triangle mesh that Eigen holds as libigl does, and its Laplacian.
+// Reorders a triangle mesh and its Laplacian. The mesh is in matrices of Eigen, as in libigl.
 #include <meshorder/eigen.hpp>
 #include <meshorder/error.hpp>
 #include <meshorder/meshorder.hpp>

@@ -80,7 +80,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
                                                unsigned seed) {
   constexpr unsigned kOneIn = 2;  // one mutation in so many knows the structure
-  // libraries crash on some damaged files, also in a `mutate` that calls the library
+  // Libraries crash on some damaged files. A `mutate` that calls the library gets none, since it would crash.
   const bool knows = chosen->by_library ? keeps_files_whole : seed % kOneIn == 0;
   if (chosen->mutate != nullptr && knows) {
     const std::string result = changed({data, data + size}, static_cast<std::uint32_t>(std::mt19937(seed)()));

@@ -111,8 +111,8 @@ void check_same_format(const Mesh& mesh, std::string_view format, const std::str
   // cells that alternate between entities of Gmsh make no blocks; if the order has made the cells of an
   // entity adjacent, the mesh that is read back has blocks
   if (format == "gmsh" && mesh.cell_blocks.empty()) again.cell_blocks.clear();
-  // ids that count from 0 or 1 after the move are read back as mere positions from Vega's files, and from
-  // TetGen's if they do so in each file
+  // Ids that run from 0 or 1 in the moved mesh are positions, which Vega's reader does not keep as ids; nor
+  // does TetGen's, if the ids of each file run so.
   if (format == "tetgen" || format == "vega") {
     if (again.vertex_ids.empty() && is_run(mesh.vertex_ids)) again.vertex_ids = mesh.vertex_ids;
     if (again.cell_ids.empty() && cells_run(mesh)) again.cell_ids = mesh.cell_ids;

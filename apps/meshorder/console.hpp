@@ -36,7 +36,8 @@ class Console {
     if (!quiet_) print_list(format, std::forward<Args>(args)...);
   }
 
-  /// Prints a line of a list, the only output of some subcommands, unless JSON is wanted; also if quiet.
+  /// Prints a line of a list, also with --quiet: some subcommands print nothing else. Prints nothing with
+  /// --json.
   template <class... Args>
   void print_list(fmt::format_string<Args...> format, Args&&... args) const {
     if (!json_) write_stdout(visible(fmt::format(format, std::forward<Args>(args)...), "\n") + "\n");

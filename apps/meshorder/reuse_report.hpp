@@ -22,7 +22,7 @@ inline constexpr std::string_view kReuseLegend =
     "log2: mean log2 of the reuse distances; a cache's size: its misses; jumps: misses of the last\n"
     "level that hardware prefetchers do not predict";
 
-/// Name, in rows of tables, of the product with a matrix: the only kernel of a matrix.
+/// How tables name the product with a matrix, the only kernel that matrices have.
 inline constexpr std::string_view kProduct = "product";
 
 /// Returns the heads of the columns of reuse_cells: "log2", the caches, "jumps".

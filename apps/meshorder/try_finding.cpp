@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// runs of the best order (a first run, rounds that choose among the orders, pairs), and of each other order
+// expected number of runs: of the best order (a first run, the rounds of selection, the compared pairs), and
+// of each other order
 constexpr double kRunsOfBest = 15;
 constexpr double kRunsOfEach = 3;
 

@@ -40,8 +40,8 @@ namespace {
 
 constexpr std::string_view kSkin = "-skin";
 
-/// Returns the triangles that belong to only one tetrahedron, in the order of the tetrahedra, on their
-/// vertices in the order of the mesh.
+/// Returns the surface: the triangles that belong to only one tetrahedron, in the order of the tetrahedra.
+/// The vertices of the surface keep their order in the mesh.
 mo::Mesh skin(const mo::Mesh& mesh) {
   const auto for_each_face = [&](const auto& visit) {
     for (mo::Index cell = 0; cell < mesh.cell_count(); ++cell) {

@@ -39,8 +39,8 @@ struct Motion {
   std::vector<std::vector<std::array<float, 3>>> frames;  ///< of each frame, the positions of all vertices
 };
 
-/// Reads a motion. Throws Error, with the byte, for a file that is not such an array, is truncated or holds a
-/// number that is not finite. O(size of the file).
+/// Reads a motion. Throws Error, which names the byte, for a file that is not an array of this form, is
+/// truncated or holds a number that is not finite. O(size of the file).
 Motion read_motion(const FilePath& path);
 
 /// Timings and iteration counts of a step, and the body's shape after it. Its warnings are in

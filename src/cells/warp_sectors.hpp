@@ -37,7 +37,7 @@ GpuCost requests_and_floor(Index elements, int width, GpuLayout layout);
 /// @param ascending  different vertices in ascending order
 GpuCost additions_to(std::span<const Index> ascending, GpuLayout layout);
 
-/// What loops over lists load, with one thread for each list or several.
+/// Memory that loops over lists load, with one thread or several threads for each list.
 struct ListLoads {
   Offset requests = 0;  ///< steps of a warp
   Offset lists = 0;     ///< sectors of an array that has 4 bytes for each entry of the lists

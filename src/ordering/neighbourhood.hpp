@@ -38,7 +38,7 @@ class Neighbourhood : public Polymorphic {
   [[nodiscard]] virtual bool is_read_forward() { return false; }
 };
 
-/// The vertices of a graph. Refers to it.
+/// The vertices of a graph, which must outlive this object.
 class GraphNeighbourhood : public Neighbourhood {
  public:
   GraphNeighbourhood(const GraphArrays& graph, const PointsView& points) : graph_(graph), points_(points) {}

@@ -17,8 +17,8 @@ struct TimingOptions {
   double budget_seconds = 12.0;
   int min_rounds = 3;  ///< even beyond the budget
   int max_rounds = 25;
-  /// A faster kernel is repeated until one sample takes this long: solvers repeat it too, and find the data
-  /// of the last run in the caches.
+  /// Least length of a sample. A kernel that takes less is repeated, as in a solver, and finds the data of
+  /// its last run in the caches.
   double sample_seconds = 0.02;
   /// Count the calling thread's processor time instead of elapsed time: for
   /// kernels on one thread.

@@ -140,7 +140,7 @@ def assert_pieces_of(whole, pieces):
         for element in piece.elements:
             assert piece.cells[element] == whole.cells[element] and piece.blocks[element] == whole.blocks[element]
             assert piece.of_elements[element] == whole.of_elements[element]
-        # nodes are in the sets of all pieces that have them
+        # a node is in the node sets of every piece that has this node
         for member, count in piece.of_sets.items():
             found[member] = count if member[0] == "ns" else found[member] + count
         assert piece.common() == whole.common()

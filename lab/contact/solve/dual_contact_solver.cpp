@@ -16,10 +16,10 @@ namespace {
 
 // softness as a share of the tolerance: small enough not to affect the result
 constexpr double kSoftness = 0.01;
-// rounds of tangential bounds without progress before the last one
+// after so many rounds of tangential bounds without progress the next round is the last
 constexpr int kMaxFailures = 3;
-// an eighth of the multiplications is reserved for the last round; each earlier round takes half of those
-// left
+// An eighth of the multiplications is reserved for the last round. Each earlier round takes half of the
+// multiplications that are left.
 constexpr int kPartOfLast = 8;
 
 /// The operator S = C A⁻¹Cᵀ of the contacts of one call.

@@ -37,14 +37,14 @@ struct ContactSolveReport {
 ///
 /// `tolerance` bounds the norm of the projected gradient relative to that of the depths g > 0: about the
 /// error of the contacts' positions relative to the depth without forces. Where contacts contradict or repeat
-/// each other, each gives way by tolerance / 100 of the distance by which its force moves its own vertex.
+/// each other, each may stay as deep as tolerance / 100 of the distance by which its force moves its vertex.
 /// Then repeated contacts share the force. For contradicting contacts, the solution lies between them,
 /// `converged` is false, and `violation` is the remaining depth.
 ///
 /// With friction the bounds of tangential forces follow from the last round's normal forces (Tresca's fixed
-/// point; Haslinger 1983), until the forces meet `tolerance` with their own bounds. If the rounds do not
-/// converge (a body may jam), the last bounds are kept: tangential forces may then lie outside their cones,
-/// and `converged` is false.
+/// point; Haslinger 1983), until the forces meet `tolerance` with the bounds that follow from them. If the
+/// rounds do not converge (a body may jam), the last bounds are kept: tangential forces may then lie outside
+/// their cones, and `converged` is false.
 template <class Real>
 class DualContactSolver : public Polymorphic {
  public:

@@ -114,11 +114,11 @@ struct Vertices {
     MESHORDER_UNROLL
     for (int i = 0; i < One::kParts; ++i) scatter(Tag(), part[i], x + One::kLanes * i, places);
   }
-  /// Subtracts of[i] · factors[i] from vertex i. Reads 16 bytes of factors.
-  HWY_INLINE void subtract_products(const Real* factors, const Vertices& of) {
+  /// Subtracts others[i] · factors[i] from vertex i. Reads 16 bytes from `factors`.
+  HWY_INLINE void subtract_products(const Real* factors, const Vertices& others) {
     const auto spread = spread_out(Tag(), factors);
     MESHORDER_UNROLL
-    for (int i = 0; i < One::kParts; ++i) part[i] = hn::NegMulAdd(spread, of.part[i], part[i]);
+    for (int i = 0; i < One::kParts; ++i) part[i] = hn::NegMulAdd(spread, others.part[i], part[i]);
   }
   [[nodiscard]] HWY_INLINE One sum() const {
     One result;

@@ -370,8 +370,8 @@ class MeshReader {
   std::vector<Index> cell_;
 };
 
-/// Makes a block of each range of boundary elements that the file lists: the range stays a range in a new
-/// order.
+/// Makes a block of each listed range of boundary elements: its elements then stay together in a new order,
+/// so that the range can be written as a range.
 void keep_ranges(Reading& reading) {
   Mesh& mesh = reading.mesh;
   std::vector<Index> starts = mesh.cell_blocks;

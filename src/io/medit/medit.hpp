@@ -143,7 +143,7 @@ struct MeditMetadata final : FormatMetadata {
     std::string text;  ///< verbatim, from the keyword on
     bool before_vertices;
   };
-  /// A section of a RowKind, or of a table that has a position twice.
+  /// A section of a RowKind, or a table in which two rows are of the same item.
   struct Rows {
     std::string keyword;
     std::string columns;

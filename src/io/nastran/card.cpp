@@ -259,7 +259,7 @@ bool append_edited(std::string& out, std::string_view card, const CardFields& fi
     if (!at_left) out.append(blanks, ' ');
     out.append(text);
     if (at_left && field.length == field.width) out.append(blanks, ' ');
-    // no blanks are written after a number at the left of its field if the line ends within that field
+    // a number at the left of its field is not padded if the line ends within this field
   }
   out.append(card.substr(done));
   return true;

@@ -88,8 +88,8 @@ class Scanner {
   double real(std::string_view what);
   /// Takes the next word as a finite real number.
   double finite(std::string_view what);
-  /// Takes a number of items, 0 … kMaxIndex. Fails if the rest of the file is too short for them at
-  /// `min_bytes` each: a wrong count cannot cause a huge allocation.
+  /// Takes the next word as a count of items, 0 … kMaxIndex. Fails if the rest of the file is too short for
+  /// these items at `min_bytes` each: a wrong count cannot cause a huge allocation.
   Index count(std::string_view what, std::int64_t min_bytes);
   /// Checks a count that was read already.
   [[nodiscard]] Index checked_count(std::int64_t number, std::string_view what, std::int64_t min_bytes) const;

@@ -19,7 +19,7 @@ std::string_view without_byte_order_mark(std::string_view text);
 /// Returns, verbatim, the lines up to the last comment before the first word; empty if there is none.
 std::string comments_before(std::string_view text, char comment);
 
-/// Returns, verbatim, the lines from the first comment after the last line with a word.
+/// Returns the comments at the end of a text, verbatim: all lines from the first comment after the data.
 std::string comments_after(std::string_view text, char comment);
 
 /// Notes a missing final newline: the last number may be truncated.

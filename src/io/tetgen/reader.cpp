@@ -226,8 +226,9 @@ void read_points(Scanner& in, ReadContext& to) {
   }
   ends.note_columns_left_out(kNode, to.notes);
 
-  // As in TetGen, the first number decides whether numbers begin at 0 or at 1. If they are not consecutive, a
-  // 0 at any place decides: the points that cells name then do not depend on the order of the points.
+  // As in TetGen, numbers begin at 0 if the first one is 0, else at 1. If they are not consecutive, they
+  // begin at 0 if any of them is 0: so another order of the points does not change the points that cells
+  // name.
   to.metadata->base = to.points.id(0) == 0 ? 0 : 1;
   mesh.vertex_ids = to.points.ids_unless_from(to.metadata->base);
   if (std::find(mesh.vertex_ids.begin(), mesh.vertex_ids.end(), 0) != mesh.vertex_ids.end())
