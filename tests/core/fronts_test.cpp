@@ -127,7 +127,7 @@ TEST(JumpShare, IsWhatItIsDefinedToBe) {
 }
 
 TEST(JumpShare, CanBeSampled) {
-  const CsrGraph graph = test::grid(50, 50, 60);
+  const CsrGraph graph = test::grid(40, 40, 50);
   for (const char* const method : {"bfs", "rcm", "spectral", "scrambled"}) {
     const Permutation order = test::order_of(graph, method);
     EXPECT_NEAR(sampled_jump_share(graph, order), jump_share(graph, order), 0.04) << method;

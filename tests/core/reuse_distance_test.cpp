@@ -161,8 +161,8 @@ TEST(ReuseDistance, JumpsWhereNoStreamLeads) {
 }
 
 TEST(ReuseDistance, WhenRepeatedJumpsAsInEveryLaterRun) {
-  const Index lines = 20000;
-  const std::vector<Index> stream = wandering(lines, 60000, 12);
+  const Index lines = 16000;
+  const std::vector<Index> stream = wandering(lines, 40000, 12);
   Stack stack;
   for (const Index line : stream) stack.access(line);
   const ReuseHistogram later = jumps_by_stack(stream, stack);

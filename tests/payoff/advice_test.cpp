@@ -21,7 +21,7 @@ constexpr std::size_t kElement = 1;
 constexpr std::size_t kAssembly = 2;
 
 Mesh grid_in_order(const std::string& vertices, const std::string& elements) {
-  Mesh mesh = make_grid({.size = 24});
+  Mesh mesh = make_grid({.size = 20});
   reorder(mesh, {.methods = {vertices, elements}});
   return mesh;
 }

@@ -30,7 +30,7 @@ Mesh scrambled_grid(Index size) {
 }
 
 TEST(PublicAdvise, TellsWhatAScrambledGridCouldGain) {
-  const Mesh mesh = scrambled_grid(32);
+  const Mesh mesh = scrambled_grid(26);
   const Advice advice = advise(view(mesh));
   EXPECT_EQ(advice.as_is.vertices.name, "original");
   EXPECT_EQ(advice.as_is.order_seconds, 0);
@@ -89,7 +89,7 @@ struct ScrambledMatrix {
 };
 
 TEST(PublicAdvise, JudgesAMatrixByItsOwnProductAlone) {
-  const ScrambledMatrix matrix(250);
+  const ScrambledMatrix matrix(200);
   const Advice advice = advise(matrix.view(), {.machine = "zen3"});
   EXPECT_TRUE(advice.is_matrix);
   const KernelMilliseconds& times = *advice.as_is.costs.predicted;
@@ -127,7 +127,7 @@ TEST(PublicAdvise, RefusesFaultyMatrices) {
 }
 
 TEST(PublicAdvise, PredictsTheSameOnAnyNumberOfThreads) {
-  const Mesh mesh = scrambled_grid(24);
+  const Mesh mesh = scrambled_grid(18);
   const Advice one = advise(view(mesh), {.order = {.run = {.threads = 1}}});
   const Advice two = advise(view(mesh), {.order = {.run = {.threads = 2}}});
   ASSERT_EQ(one.candidates.size(), two.candidates.size());
