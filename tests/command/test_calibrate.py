@@ -186,4 +186,4 @@ def test_a_machine_that_moved_is_noticed(here, stored):
 
 
 def test_nothing_to_recheck_is_said(here):
-    assert "is not calibrated; `meshorder calibrate` does it" in here.fails("calibrate", "--recheck")
+    assert "is not calibrated; `meshorder calibrate` calibrates it" in here.fails("calibrate", "--recheck")

@@ -573,7 +573,7 @@ BROKEN = {
                         'Name="facet_tags" AttributeType="Scalar" Center="Face"'),
     "a spatial collection holds several meshes": ('"Temporal"', '"Spatial"'),
     "the XML is malformed": ("</Domain>", ""),
-    "behind '/elsewhere', a link to another file": ("a.h5:/Mesh/mesh/geometry", "a.h5:/elsewhere/mesh/geometry"),
+    "reached through '/elsewhere', a link to another file": ("a.h5:/Mesh/mesh/geometry", "a.h5:/elsewhere/mesh/geometry"),
     "claims 1000000000000 values": ('Dimensions="27 3" NumberType="Float" Precision="8" Format="HDF">a.h5:/Mesh/mesh/geometry',
                                     'Dimensions="1000000000000" Format="HDF">a.h5:/huge'),
     "does not hold plain numbers": ("a.h5:/Mesh/mesh/topology", "a.h5:/notes/text"),
