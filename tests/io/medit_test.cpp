@@ -261,7 +261,7 @@ TEST(Medit, NotesSolutionsBesideTheMesh) {
   (void)folder.file("m.sol", "MeshVersionFormatted 2\n");
   Notes notes;
   const Mesh mesh = read_mesh(path, {.notes = &notes});
-  EXPECT_THAT(notes, ElementsAre(AllOf(HasSubstr("m.sol"), HasSubstr("original order"))));
+  EXPECT_THAT(notes, Contains(AllOf(HasSubstr("m.sol"), HasSubstr("original order"))));
   notes.clear();
   write_mesh(mesh, path, &notes);
   EXPECT_THAT(notes, ElementsAre(AllOf(HasSubstr("m.sol"), HasSubstr("does not fit"))));

@@ -152,7 +152,11 @@ TEST(Obj, TakesNegativeIndicesContinuedLinesAndIndicesAhead) {
 TEST(Obj, KeepsVertexColors) {
   expect_order_and_back_to("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0 0 1\nv 0 1 0 0.25 0 0\nf 1 2 3\n");
   expect_order_and_back_to("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0.5\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 4 3\n");
-  expect_order_and_back_to("a.obj", "v 0 0 0 nan nan nan\nv 1 0 0 0 0 1\nv 0 1 0 0.25 0 0\nf 1 2 3\n");
+  expect_order_and_back_to("a.obj", "v 0 0 0 inf 0 -inf\nv 1 0 0 0 0 1\nv 0 1 0 0.25 0 0\nf 1 2 3\n");
+  const TemporaryFolder folder;
+  const std::string nan = "v 0 0 0 nan nan nan\nv 1 0 0 0 0 1\nv 0 1 0 0.25 0 0\nf 1 2 3\n";
+  write_mesh(read_mesh(folder.file("a.obj", nan)), folder.path() / "b.obj");
+  EXPECT_EQ(test::content_of(folder.path() / "b.obj"), nan);
 }
 
 TEST(Obj, KeepsNamesThatNoCellHas) {

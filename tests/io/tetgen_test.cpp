@@ -207,7 +207,7 @@ TEST(TetGen, LeavesOutColumnsThatTheHeaderDoesNotGive) {
               ElementsAre(".node: columns after those that its header gives are left out (1 in each line)",
                           ".ele: columns after those that its header gives are left out (1 in each line)"));
   write_mesh(mesh, folder.path() / "n.node");
-  EXPECT_THAT(test::content_of(folder.path() / "n.ele"), HasSubstr("2 4 0\n1 1 2 3 4\n2 2 3 4 5\n"));
+  EXPECT_THAT(test::content_of(folder.path() / "n.ele"), HasSubstr("2  4  0\n1 1 2 3 4\n2 2 3 4 5\n"));
 }
 
 TEST(TetGen, KeepsFilesWithoutCells) {

@@ -89,7 +89,7 @@ struct ScrambledMatrix {
 };
 
 TEST(PublicAdvise, JudgesAMatrixByItsOwnProductAlone) {
-  const ScrambledMatrix matrix(200);
+  const ScrambledMatrix matrix(250);
   const Advice advice = advise(matrix.view(), {.machine = "zen3"});
   EXPECT_TRUE(advice.is_matrix);
   const KernelMilliseconds& times = *advice.as_is.costs.predicted;
