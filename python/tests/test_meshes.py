@@ -202,7 +202,7 @@ def test_a_matrix_is_judged_by_its_own_product(tmp_path):
     ):
         with pytest.raises(InvalidArgument, match=words):
             meshorder.advise(refused)
-    with pytest.raises(InvalidArgument, match="points"):
+    with pytest.raises(InvalidArgument, match="needs coordinates"):
         meshorder.compare(matrix, ["hilbert"])
 
 
