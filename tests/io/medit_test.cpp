@@ -255,6 +255,25 @@ TEST(Medit, AcceptsAFileWithoutEndAndSaysSo) {
   EXPECT_THAT(notes, ElementsAre(HasSubstr("has no End")));
 }
 
+TEST(Medit, NotesCommentsOfLongSections) {
+  std::string text = "# kept\nMeshVersionFormatted 2\nDimension 3\nVertices\n200000\n";
+  const std::string begin = text;
+  for (int k = 0; k < 200000; ++k) text += "0.25 0.5 0.75 1\n";
+  const std::string end = "Tetrahedra\n1\n1 2 3 4 0\nEnd\n# kept, too\n";
+  Notes notes;
+  (void)read(text + end, &notes);
+  EXPECT_THAT(notes, IsEmpty());
+  // in a line, and as a line, within and at the ends of the parts that threads read
+  for (const std::size_t line : {0, 70000, 199999}) {
+    const std::size_t at = begin.size() + 16 * line + 15;
+    for (const char* const comment : {" # in a line", "\n# a line", "\n\n  # after a blank line"}) {
+      notes.clear();
+      (void)read(std::string(text).insert(at, comment) + end, &notes);
+      EXPECT_THAT(notes, ElementsAre(HasSubstr("comments between the data are left out"))) << line << comment;
+    }
+  }
+}
+
 TEST(Medit, NotesSolutionsBesideTheMesh) {
   const TemporaryFolder folder;
   const fs::path path = folder.file("m.mesh", kFile);

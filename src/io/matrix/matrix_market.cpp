@@ -92,7 +92,7 @@ class MatrixReader {
     const auto begin_of_entries = static_cast<std::size_t>(in_.byte());
     read_entries();
     if (!in_.at_end()) in_.fail("more entries than the count says", "the count is wrong");
-    if (in_.all().find('%', begin_of_entries) != std::string_view::npos)
+    if (in_.last_comment() > begin_of_entries)
       notes_.push_back(in_.file() + ": comments between the entries are left out");
     note_missing_line_end(in_, '%', notes_);
     if (!metadata_->is_half && !is_pattern_symmetric()) {

@@ -468,6 +468,7 @@ class Reader {
 
   /// Notes comments that are neither at the beginning nor in a section that is kept as it is.
   void note_comments_left_out() {
+    if (in_.last_comment() <= metadata_->comments_before.size()) return;
     const auto marks_in = [](std::string_view text) { return std::ranges::count(text, kComment); };
     const std::string_view until_here = in_.all().substr(0, static_cast<std::size_t>(in_.byte()));
     auto left_out = marks_in(until_here) - marks_in(metadata_->comments_before);

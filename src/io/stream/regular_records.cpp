@@ -95,8 +95,11 @@ Index read_regular_records(Scanner& in, Index count, const std::function<bool(Sc
           const std::int64_t own_line = at.line();
           if (!read(at, static_cast<Index>(r)) || at.line() != own_line || !at.at_line_end()) return;
         }
-        ends[static_cast<std::size_t>(k)] =
-            last < count ? in.at(static_cast<std::int64_t>(part.end), part.first_line + part.lines) : at;
+        if (last < count) {
+          (void)at.at_end();  // skips the comments after the last record
+          at = at.at(static_cast<std::int64_t>(part.end), part.first_line + part.lines);
+        }
+        ends[static_cast<std::size_t>(k)] = at;
         part.is_regular = true;
       } catch (const Error&) {  // the caller finds it again
       }

@@ -50,6 +50,7 @@ Scanner Scanner::of_all_bytes() const {
 void Scanner::move_to(const Scanner& other) {
   position_ = other.position_;
   line_ = other.line_;
+  last_comment_ = std::max(last_comment_, other.last_comment_);
 }
 
 void Scanner::seek(std::int64_t byte) {
@@ -80,6 +81,7 @@ bool Scanner::at_break() const { return position_ >= text_.size() || is_line_end
 void Scanner::skip_blanks() {
   while (position_ < text_.size() && is_blank(text_[position_])) ++position_;
   if (comment_ != '\0' && position_ < text_.size() && text_[position_] == comment_) {
+    last_comment_ = std::max(last_comment_, position_ + 1);
     while (!at_break()) ++position_;
   }
 }
@@ -169,7 +171,7 @@ std::string_view Scanner::rest_of_line() {
   const std::size_t begin = position_;
   while (!at_break() && (comment_ == '\0' || text_[position_] != comment_)) ++position_;
   std::string_view result = text_.substr(begin, position_ - begin);
-  while (!at_break()) ++position_;
+  skip_blanks();
   next_line();
   while (!result.empty() && is_blank(result.back())) result.remove_suffix(1);
   while (!result.empty() && is_blank(result.front())) result.remove_prefix(1);

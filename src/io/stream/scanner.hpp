@@ -37,7 +37,7 @@ class Scanner {
   /// Returns a scanner of all bytes of the file from the first one on. A scanner skips three bytes that look
   /// like a byte order mark, but in a binary file they may be data.
   [[nodiscard]] Scanner of_all_bytes() const;
-  /// Moves to where another scanner of the same text is. O(1).
+  /// Moves to where another scanner of the same text is, which may have skipped comments. O(1).
   void move_to(const Scanner& other);
 
   // ---- position
@@ -51,6 +51,9 @@ class Scanner {
   [[nodiscard]] std::string_view all() const noexcept { return text_; }
   /// Returns the character that begins a comment, \0 for none.
   [[nodiscard]] char comment() const noexcept { return comment_; }
+  /// Returns the byte after the beginning of the last comment that was skipped, 0 if there was none. A
+  /// comment that `raw_line` returned was not skipped.
+  [[nodiscard]] std::size_t last_comment() const noexcept { return last_comment_; }
   /// Moves to that byte. O(bytes moved).
   void seek(std::int64_t byte);
   /// Moves on by `bytes` bytes of this line. O(1).
@@ -140,6 +143,7 @@ class Scanner {
   std::string_view text_;                     ///< part of the text; a zero byte follows it
   std::size_t position_ = 0;
   std::int64_t line_ = 1;
+  std::size_t last_comment_ = 0;
   char comment_;
 };
 
