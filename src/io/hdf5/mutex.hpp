@@ -9,7 +9,7 @@ namespace meshorder::hdf5 {
 using LibraryLock = std::unique_lock<std::recursive_mutex>;
 
 /// Function that the first thread calls once, just before it enters the library. Set it before that.
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): of the process, like the library's state
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): as the library has its state
 inline void (*at_first_entry)() = nullptr;
 
 /// Returns the lock that a thread must hold while it is in libhdf5, or in libnetcdf, which calls libhdf5: two
