@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -25,6 +26,7 @@ namespace {
 
 using nastran::real_of;
 using nastran::real_text;
+using test::expect_order_and_back_to;
 using test::TemporaryFolder;
 using test::with;
 using testing::ElementsAre;
@@ -121,6 +123,68 @@ TEST(NastranField, WritesRealNumbersInSixteenCharacters) {
     EXPECT_NEAR(*back / value, 1, 1e-8) << text;
   }
   EXPECT_TRUE(real_text(-1.0 / 3).is_rounded);
+}
+
+/// The cards of a part of the text, and whether each is an orphan.
+std::vector<std::pair<std::string, bool>> cards_of(std::string_view text, nastran::Piece part) {
+  std::vector<std::pair<std::string, bool>> result;
+  nastran::Cards cards(text, part);
+  while (cards.next()) result.emplace_back(cards.lines(), cards.is_orphan());
+  return result;
+}
+
+TEST(NastranCard, IsFoundHoweverTheTextIsDivided) {
+  const std::string unix_lines =
+      "+,1\nGRID,1,,0.,\n$ within\n+,0.,0.\n\n$ between\n  GRID,2\nGRID*   3\n*       0.\n      \nSPC,1\n\n";
+  std::string dos_lines = unix_lines;
+  for (std::size_t at = 0; (at = dos_lines.find('\n', at)) != std::string::npos; at += 2) {
+    dos_lines.insert(at, 1, '\r');
+  }
+  std::string old_lines = unix_lines;
+  std::replace(old_lines.begin(), old_lines.end(), '\n', '\r');
+  for (const std::string& text : {unix_lines, dos_lines, old_lines, unix_lines + "GRID,4"}) {
+    const nastran::Piece whole{0, text.size()};
+    const auto expected = cards_of(text, whole);
+    EXPECT_GE(expected.size(), 5U);
+    for (std::size_t bytes = 1; bytes <= text.size(); ++bytes) {
+      std::vector<std::pair<std::string, bool>> found;
+      std::size_t begin = 0;
+      for (const nastran::Piece part : nastran::parts_of_cards(text, whole, bytes)) {
+        EXPECT_EQ(part.begin, begin);
+        for (const auto& card : cards_of(text, part)) found.push_back(card);
+        begin = part.end;
+      }
+      EXPECT_EQ(begin, text.size());
+      EXPECT_EQ(found, expected) << bytes;
+    }
+  }
+}
+
+/// A deck of as many nodes in a row and of bars between them, with other cards among them.
+std::string deck_of_row(int nodes) {
+  std::string deck = "CEND\nBEGIN BULK\n";
+  for (int k = 1; k <= nodes; ++k) {
+    deck += fmt::format("GRID    {:8}        {:8.1f}{:8.1f}{:8.1f}\n", k, k / 8.0, 0.5, 1.0);
+    if (k % 1000 == 0) deck += fmt::format("$ node\nSPC     {:8}{:8}{:8}\n", 1, k, 123);
+  }
+  for (int k = 1; k < nodes; ++k) {
+    deck += fmt::format("CROD    {:8}{:8}{:8}{:8}\n", k, 1 + k % 2, k, k + 1);
+    if (k == nodes / 2) deck += fmt::format("$\n{}", std::string(5000, '$') + "\n");
+  }
+  return deck + "ENDDATA\n";
+}
+
+TEST(Nastran, OrdersManyCardsAndBack) { expect_order_and_back_to("a.bdf", deck_of_row(20000)); }
+
+TEST(Nastran, FindsTheFirstFaultOfManyCards) {
+  const TemporaryFolder folder;
+  const std::string deck = deck_of_row(20000);
+  // lines 1 and 2 are before the nodes, and two lines follow each thousandth node
+  const std::string fault = with(deck, "GRID       19990", "GRID       1999x");
+  EXPECT_THAT(test::read_error(folder.file("a.bdf", fault)),
+              HasSubstr("a.bdf:20030: the number of a node is '1999x'"));
+  EXPECT_THAT(test::read_error(folder.file("a.bdf", with(fault, "GRID       15000", "GRID       14999"))),
+              HasSubstr("a.bdf:15030: node 14999 is given twice"));
 }
 
 TEST(Nastran, ReadsNodesElementsPropertiesAndSets) {

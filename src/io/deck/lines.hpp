@@ -41,6 +41,10 @@ class DeckLines {
   Index take_regular(Index most, const std::function<bool(std::string_view, std::int64_t, Index)>& parse);
   /// Returns the rest of the present file, from the next line on. Valid until the next call.
   [[nodiscard]] std::string_view rest() { return at().all().substr(static_cast<std::size_t>(at().byte())); }
+  /// Moves on within the present file by whole lines, which the caller has taken from `rest`. O(1).
+  void move_on(std::size_t bytes, std::int64_t lines) {
+    at().move_to(at().at(at().byte() + static_cast<std::int64_t>(bytes), at().line() + lines));
+  }
   /// Continues with the lines of the file `name`. Fails, with `line` of the present file as the place, if the
   /// deck may not include that file, if it does not exist or includes itself, or if there are too many files.
   void include(const std::string& name, std::int64_t line);

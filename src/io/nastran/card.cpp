@@ -24,7 +24,12 @@ constexpr std::size_t kLargeFields = 4;
 
 /// Returns the end of the line that begins there, its line end included.
 std::size_t end_of_line(std::string_view text, std::size_t begin) {
-  // a plain loop: find_first_of takes several times as long
+  constexpr std::size_t kUsual = 128;  // so that a text without line feeds is not searched for each line
+  const std::string_view ahead = text.substr(begin, kUsual);
+  const std::size_t feed = ahead.find('\n');
+  std::string_view line = ahead.substr(0, feed);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  if (feed != std::string_view::npos && line.find('\r') == std::string_view::npos) return begin + feed + 1;
   std::size_t end = begin;
   while (end < text.size() && text[end] != '\n' && text[end] != '\r') ++end;
   if (end == text.size()) return end;
@@ -34,10 +39,11 @@ std::size_t end_of_line(std::string_view text, std::size_t begin) {
 
 /// Returns a line without its end and comment.
 std::string_view without_comment(std::string_view line) {
-  std::size_t end = 0;
-  while (end < line.size() && line[end] != '$' && line[end] != '\n' && line[end] != '\r') ++end;
-  return line.substr(0, end);
+  while (line.ends_with('\n') || line.ends_with('\r')) line.remove_suffix(1);
+  return line.substr(0, line.find('$'));
 }
+
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 
 bool is_free(std::string_view line) { return line.find(',') != std::string_view::npos; }
 
@@ -120,10 +126,12 @@ class Splitter {
 
   void add_fixed(std::size_t begin, std::string_view line, bool large) {
     const std::size_t width = large ? kLargeWidth : kSmallWidth;
-    for (std::size_t column = kNameWidth; column < kDataEnd; column += width) {
+    std::size_t field = result_.fields.size();
+    result_.fields.resize(field + (kDataEnd - kNameWidth) / width);
+    for (std::size_t column = kNameWidth; column < kDataEnd; column += width, ++field) {
       const std::size_t at = std::min(column, line.size());
       const std::string_view bytes = line.substr(at, width);
-      result_.fields.push_back({begin + at, bytes.size(), width, trimmed_blanks(bytes)});
+      result_.fields[field] = {begin + at, bytes.size(), width, trimmed_blanks(bytes)};
     }
     next_name_ = line.size() > kDataEnd ? trimmed(line.substr(kDataEnd, kNameWidth)) : "";
   }
@@ -169,8 +177,7 @@ bool Cards::next() {
   }
   for (std::size_t at = at_; at < end_ && card_.begin < card_.end;) {
     const std::size_t begin = at;
-    const char first = text_[begin];
-    if (std::isalpha(static_cast<unsigned char>(first)) != 0) break;
+    if (is_letter(text_[begin])) break;
     at = end_of_line(text_, begin);
     const std::string_view line = without_comment(text_.substr(begin, at - begin));
     if (is_blank_line(line)) continue;
@@ -178,6 +185,20 @@ bool Cards::next() {
     card_.end = at_ = at;
   }
   return card_.begin < card_.end;
+}
+
+std::vector<Piece> parts_of_cards(std::string_view text, Piece whole, std::size_t bytes) {
+  std::vector<Piece> parts;
+  for (std::size_t begin = whole.begin; begin < whole.end;) {
+    std::size_t end = begin + bytes;
+    while (end < whole.end && !(text[end - 1] == '\n' && is_letter(text[end]))) {
+      end = std::min(text.find('\n', end), whole.end - 1) + 1;
+    }
+    end = std::min(end, whole.end);
+    parts.push_back({begin, end});
+    begin = end;
+  }
+  return parts;
 }
 
 void split_card(std::string_view card, CardFields& result) { Splitter(card, result).split(); }
@@ -194,6 +215,11 @@ std::string name_of(const CardFields& card) {
 std::optional<std::int64_t> integer_of(std::string_view field) {
   if (field.size() > 1 && field.front() == '+' && field[1] != '-') field.remove_prefix(1);
   std::int64_t value = 0;
+  if (field.size() < kLargeWidth && !field.empty()) {  // usually some digits, and nothing else
+    const auto* at = field.begin();
+    for (; at != field.end() && *at >= '0' && *at <= '9'; ++at) value = 10 * value + (*at - '0');
+    if (at == field.end()) return value;
+  }
   const auto [after, code] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (code != std::errc{} || after != field.data() + field.size()) return {};
   return value;
@@ -319,7 +345,8 @@ RealText real_text(double value) {
   RealText result{shortest(value), false};
   if (result.text.size() <= kLargeWidth) return result;
   std::string best;
-  for (int digits = 16; digits > 0 && best.empty(); --digits) {
+  // one digit more would give all digits of the value
+  for (int digits = 15; digits > 0 && best.empty(); --digits) {
     std::array<char, 40> buffer{};
     char* const begin = buffer.data();
     char* const end =

@@ -44,6 +44,10 @@ class Cards {
   bool is_orphan_ = false;
 };
 
+/// Divides a text of whole lines, or a part of it, into parts of `bytes` or more that contain whole cards.
+/// Lines that begin with a letter begin a card, so each part begins there. O(parts) time if most lines do.
+std::vector<Piece> parts_of_cards(std::string_view text, Piece whole, std::size_t bytes);
+
 /// A field of a card.
 struct Field {
   std::size_t begin = 0;   ///< first byte in the card

@@ -42,6 +42,19 @@ bool has_begin_bulk(std::string_view text) {
   return false;
 }
 
+/// Returns whether a line of bulk data is taken as it is, whatever precedes it. False also for some lines for
+/// which that is true.
+bool is_plain(std::string_view line) {
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  if (line.find('\t') != std::string_view::npos || line.find('\r') != std::string_view::npos) return false;
+  const std::size_t at = std::min(line.find_first_not_of(' '), line.size());
+  const std::string_view word = line.substr(at, 2);
+  if (word.empty()) return true;
+  constexpr std::string_view kFirst = "BbEeIi";  // BEGIN, ENDDATA, INCLUDE
+  if (word.front() != 'C' && word.front() != 'c') return kFirst.find(word.front()) == std::string_view::npos;
+  return word.size() == 2 && word.back() != 'E' && word.back() != 'e';  // not CEND
+}
+
 void append_without_tabs(std::string& out, std::string_view line) {
   std::size_t column = 0;
   for (const char c : line) {
@@ -76,12 +89,31 @@ void DeckText::read() {
       file_ = &lines_.at();
       origins_.push_back({text_.size(), file_->file(), file_->line()});
     }
+    if (section_ == DeckSection::bulk && take_plain_lines()) continue;
     if (section_ != DeckSection::end && begins_with(line, "INCLUDE")) {
       include();
     } else {
       take_line(line);
     }
   }
+}
+
+/// Takes the next lines, up to one that is long or not plain, faster than `take_line`; returns false if there
+/// are none. Most lines of a mesh are short and plain.
+bool DeckText::take_plain_lines() {
+  const std::string_view rest = lines_.rest();
+  std::size_t bytes = 0;
+  std::int64_t lines = 0;
+  constexpr std::size_t kLongest = 256;
+  for (;; ++lines) {
+    const std::string_view ahead = rest.substr(bytes, kLongest);
+    const std::size_t end = ahead.find('\n');
+    if (end == std::string_view::npos || !is_plain(ahead.substr(0, end))) break;
+    bytes += end + 1;
+  }
+  text_ += rest.substr(0, bytes);
+  lines_.move_on(bytes, lines);
+  return lines > 0;
 }
 
 /// Takes the next line. `line` is the same line without the blanks around it.

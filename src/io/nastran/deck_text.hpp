@@ -46,6 +46,7 @@ class DeckText {
   enum class DeckSection : std::uint8_t { control, bulk, end };
 
   void read();
+  bool take_plain_lines();
   void take_line(std::string_view line);
   void include();
   std::string quoted_name(std::string_view line);

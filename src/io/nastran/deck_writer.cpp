@@ -4,12 +4,15 @@
 #include "io/nastran/nastran.hpp"
 #include "io/nastran/references.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/text_rows.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <exception>
+#include <mutex>
 #include <utility>
 
 namespace meshorder::nastran {
@@ -35,62 +38,62 @@ std::vector<Index> items_at(const FileNumbers& numbers) {
   return items;
 }
 
-class BulkWriter {
+/// What all cards are written from.
+struct Source {
+  const Mesh& mesh;
+  const Deck& deck;
+  FileNumbers nodes;
+  FileNumbers elements;
+  Labels labels;
+  std::string target;         ///< path of the file that is written
+  bool same_numbers = false;  ///< whether all nodes and elements keep the numbers of the deck
+
+  [[nodiscard]] const FileNumbers& numbers_of(Association association) const {
+    return association == Association::vertices ? nodes : elements;
+  }
+};
+
+/// What could not be written as the mesh has it.
+struct Losses {
+  std::int64_t rounded = 0;  ///< coordinates
+  bool has_labels = false;   ///< labels that are not numbers of properties
+};
+
+/// Makes the text of cards with the present coordinates and numbers.
+class CardWriter {
  public:
-  BulkWriter(const Mesh& mesh, const BulkMetadata& own, const FilePath& path, Notes& notes)
-      : mesh_(mesh),
-        deck_(*own.deck),
-        nodes_(deck_.node_numbers, own.vertex_of, mesh.vertex_ids),
-        elements_(deck_.element_numbers, own.cell_of, mesh.cell_ids),
-        labels_(labels_of(mesh, Association::cells)),
-        notes_(notes),
-        file_(path),
-        same_numbers_(keep_numbers(nodes_, elements_, kLargestNumber, deck_.unknown, path)) {}
+  explicit CardWriter(const Source& source)
+      : source_(source),
+        mesh_(source.mesh),
+        deck_(source.deck),
+        nodes_(source.nodes),
+        elements_(source.elements) {}
 
-  void write() {
-    const std::vector<Index> nodes = items_at(nodes_);
-    const std::vector<Index> elements = items_at(elements_);
-    std::size_t done = 0;  // bytes of the text
-    Index v = 0;
-    Index c = 0;
-    while (v < index_size(nodes) || c < index_size(elements)) {
-      // the mesh's next node or element replaces the text's next card of a node or element
-      const bool is_node = v < index_size(nodes) && (c == index_size(elements) ||
-                                                     deck_.nodes[v].begin < deck_.elements[c].place.begin);
-      const Piece place = is_node ? deck_.nodes[v] : deck_.elements[c].place;
-      write_text({done, place.begin});
-      done = place.end;
-      if (is_node) {
-        write_node(nodes[v], v);
-        ++v;
-      } else {
-        write_element(deck_.elements[elements[c]], c);
-        ++c;
-      }
-      flush();
+  /// Returns the text made since the last call.
+  [[nodiscard]] std::string take_text() { return std::exchange(out_, {}); }
+  [[nodiscard]] const Losses& losses() const { return losses_; }
+
+  /// Adds a text between nodes and elements.
+  void write_text(Piece part) {
+    const std::string_view text = deck_.text;
+    if (source_.same_numbers || part.begin == part.end) {
+      out_.append(part.of(text));
+      return;
     }
-    write_text({done, deck_.bulk.end});
-    write_new_sets();
-    file_.write(std::string_view(deck_.text).substr(deck_.bulk.end));
-    file_.commit();
-    note_losses();
+    std::size_t done = part.begin;
+    const Piece bulk{std::max(part.begin, deck_.bulk.begin), std::min(part.end, deck_.bulk.end)};
+    if (bulk.begin < bulk.end) {
+      Cards cards(text, bulk);
+      while (cards.next()) {
+        out_.append(text.substr(done, cards.place().begin - done));
+        write_card(cards.lines());
+        done = cards.place().end;
+      }
+    }
+    out_.append(text.substr(done, part.end - done));
   }
 
- private:
-  void flush() {
-    file_.write(out_);
-    out_.clear();
-  }
-
-  void append_edited_card(std::string_view card) {
-    if (append_edited(out_, card, fields_, edits_)) return;
-    throw InputError(file_.target().string(),
-                     fmt::format("a number of {} is wider than its field", name_of(fields_)),
-                     "keep the numbers: --ids keep");
-  }
-
-  // ---- nodes
-
+  /// Adds the node `item` of the deck, which is vertex v now.
   void write_node(Index item, Index v) {
     const std::string_view card = deck_.nodes[item].of(deck_.text);
     const bool moved = mesh_.points[v] != deck_.points[item];
@@ -104,33 +107,7 @@ class BulkWriter {
     append_edited_card(card);
   }
 
-  /// Writes a node in the basic system because its coordinates differ from the file.
-  void write_moved_node(Index v) {
-    std::vector<std::string> texts{std::to_string(nodes_.at(v)), deck_.has_default_system ? "0" : ""};
-    for (const double x : mesh_.points[v]) {
-      RealText real = real_text(x);
-      if (real.is_rounded) ++rounded_;
-      texts.push_back(std::move(real.text));
-    }
-    for (std::size_t field = 6; field < fields_.fields.size(); ++field) {
-      texts.emplace_back(fields_.text(field));
-    }
-    while (texts.back().empty()) texts.pop_back();
-    append_checked("GRID", texts);
-  }
-
-  void append_checked(std::string_view name, const std::vector<std::string>& texts) {
-    const bool fits = std::all_of(texts.begin(), texts.end(),
-                                  [](const std::string& text) { return text.size() <= kWidestField; });
-    if (!fits) {
-      throw InputError(file_.target().string(),
-                       fmt::format("a field of {} has more than 16 characters", name), "shorten it");
-    }
-    append_card(out_, name, texts, deck_.line_end);
-  }
-
-  // ---- elements
-
+  /// Adds an element of the deck, which is cell c now.
   void write_element(const ElementCard& element, Index c) {
     const std::string_view card = element.place.of(deck_.text);
     split_card(card, fields_);
@@ -150,6 +127,47 @@ class BulkWriter {
     append_edited_card(card);
   }
 
+  /// Adds a set as SET3, with a comment.
+  void write_set(std::int64_t number, const EntitySet& set, Notes& notes) {
+    std::vector<std::int64_t> members;
+    for (const Index member : set.members) {
+      members.push_back(source_.numbers_of(set.association).at(member));
+    }
+    append_set(out_, number, set, members, deck_.line_end, notes);
+  }
+
+ private:
+  void append_edited_card(std::string_view card) {
+    if (append_edited(out_, card, fields_, edits_)) return;
+    throw InputError(source_.target, fmt::format("a number of {} is wider than its field", name_of(fields_)),
+                     "keep the numbers: --ids keep");
+  }
+
+  /// Writes a node in the basic system because its coordinates differ from the file.
+  void write_moved_node(Index v) {
+    std::vector<std::string> texts{std::to_string(nodes_.at(v)), deck_.has_default_system ? "0" : ""};
+    for (const double x : mesh_.points[v]) {
+      RealText real = real_text(x);
+      if (real.is_rounded) ++losses_.rounded;
+      texts.push_back(std::move(real.text));
+    }
+    for (std::size_t field = 6; field < fields_.fields.size(); ++field) {
+      texts.emplace_back(fields_.text(field));
+    }
+    while (texts.back().empty()) texts.pop_back();
+    append_checked("GRID", texts);
+  }
+
+  void append_checked(std::string_view name, const std::vector<std::string>& texts) {
+    const bool fits = std::all_of(texts.begin(), texts.end(),
+                                  [](const std::string& text) { return text.size() <= kWidestField; });
+    if (!fits) {
+      throw InputError(source_.target, fmt::format("a field of {} has more than 16 characters", name),
+                       "shorten it");
+    }
+    append_card(out_, name, texts, deck_.line_end);
+  }
+
   /// Plans to write a number into a field, unless the field has it already.
   void edit(std::size_t field, std::int64_t number) {
     if (number_of(fields_.text(field)) != number) edits_.push_back({field, number});
@@ -163,11 +181,11 @@ class BulkWriter {
 
   void edit_property(const ElementType& type, Index c) {
     const std::int64_t before = number_of(fields_.text(2));
-    const bool given = labels_.any() && labels_.given[c];
-    const std::int64_t label = given ? labels_.values[c] : before;
+    const bool given = source_.labels.any() && source_.labels.given[c];
+    const std::int64_t label = given ? source_.labels.values[c] : before;
     if (label == 0 && integer_of(fields_.text(2)) == 0) return;  // an element that has no property yet
     if (label < 1 || label > kLargestNumber) {
-      lost_labels_ = lost_labels_ || given;
+      losses_.has_labels = losses_.has_labels || given;
       return;
     }
     // a blank field stays if it still means the label: the property of BAROR, or the element's own number
@@ -187,25 +205,6 @@ class BulkWriter {
       edit_node(kWarpingA);
       edit_node(kWarpingB);
     }
-  }
-
-  // ---- other cards
-
-  void write_text(Piece part) {
-    const std::string_view text = deck_.text;
-    if (same_numbers_ || part.begin == part.end) return file_.write(part.of(text));
-    std::size_t done = part.begin;
-    const Piece bulk{std::max(part.begin, deck_.bulk.begin), std::min(part.end, deck_.bulk.end)};
-    if (bulk.begin < bulk.end) {
-      Cards cards(text, bulk);
-      while (cards.next()) {
-        out_.append(text.substr(done, cards.place().begin - done));
-        write_card(cards.lines());
-        done = cards.place().end;
-        flush();
-      }
-    }
-    file_.write(text.substr(done, part.end - done));
   }
 
   /// Writes a card with the present numbers of the nodes and elements that it names.
@@ -232,11 +231,7 @@ class BulkWriter {
   }
 
   [[nodiscard]] std::int64_t now(Association association, std::int64_t number) const {
-    return numbers_of(association).now(number);
-  }
-
-  [[nodiscard]] const FileNumbers& numbers_of(Association association) const {
-    return association == Association::vertices ? nodes_ : elements_;
+    return source_.numbers_of(association).now(number);
   }
 
   /// Writes a card with ranges of numbers. If the ranges no longer hold the same items, writes a list
@@ -250,7 +245,7 @@ class BulkWriter {
       ranges = ranges_of(fields_, found.list).value_or(ranges);
     }
     const bool of_nodes = found.of_list == Association::vertices;
-    const FileNumbers& numbers = numbers_of(found.of_list);
+    const FileNumbers& numbers = source_.numbers_of(found.of_list);
     std::vector<Index> items;
     const std::vector<std::int64_t> others = numbers_in_list(
         ranges, numbers.of_file(), of_nodes ? deck_.other_points : deck_.other_elements, items);
@@ -293,35 +288,169 @@ class BulkWriter {
     }
   }
 
+  const Source& source_;
+  const Mesh& mesh_;
+  const Deck& deck_;
+  const FileNumbers& nodes_;
+  const FileNumbers& elements_;
+  std::string out_;
+  CardFields fields_;
+  std::vector<Edit> edits_;
+  Losses losses_;
+};
+
+class BulkWriter {
+ public:
+  BulkWriter(const Mesh& mesh, const BulkMetadata& own, const FilePath& path, Notes& notes)
+      : source_{mesh,
+                *own.deck,
+                {own.deck->node_numbers, own.vertex_of, mesh.vertex_ids},
+                {own.deck->element_numbers, own.cell_of, mesh.cell_ids},
+                labels_of(mesh, Association::cells),
+                {}},
+        notes_(notes),
+        file_(path),
+        writer_(source_) {
+    source_.target = file_.target().string();
+    source_.same_numbers =
+        keep_numbers(source_.nodes, source_.elements, kLargestNumber, source_.deck.unknown, path);
+    find_items();
+  }
+
+  void write() {
+    const Deck& deck = source_.deck;
+    std::size_t done = 0;  // bytes of the text
+    for (Index k = 0; k < index_size(items_);) {
+      write_text({done, place(k).begin});
+      Index end = k + 1;
+      while (end < index_size(items_) && place(end).begin - place(end - 1).end <= kBetween) ++end;
+      write_items(k, end);
+      done = place(end - 1).end;
+      k = end;
+    }
+    write_text({done, deck.bulk.end});
+    write_new_sets();
+    file_.write(std::string_view(deck.text).substr(deck.bulk.end));
+    file_.commit();
+    note_losses();
+  }
+
+ private:
+  /// Most bytes between two nodes or elements that are written together.
+  static constexpr std::size_t kBetween = 4096;
+  static constexpr Index kAhead = 8;      // items whose text is prefetched
+  static constexpr Index kFarAhead = 16;  // items whose place in the text is
+
+  /// A node or an element in the order of the text; the mesh's next one replaces it.
+  struct Item {
+    bool is_node;
+    Index next;  ///< vertex or cell
+  };
+
+  void find_items() {
+    const Deck& deck = source_.deck;
+    const Index nodes = index_size(deck.nodes);
+    const Index elements = index_size(deck.elements);
+    items_.reserve(deck.nodes.size() + deck.elements.size());
+    for (Index v = 0, c = 0; v < nodes || c < elements;) {
+      const bool is_node = v < nodes && (c == elements || deck.nodes[v].begin < deck.elements[c].place.begin);
+      items_.push_back({is_node, is_node ? v++ : c++});
+    }
+  }
+
+  /// Returns the place in the text that the k-th node or element gets.
+  [[nodiscard]] Piece place(Index k) const {
+    const Item item = items_[k];
+    return item.is_node ? source_.deck.nodes[item.next] : source_.deck.elements[item.next].place;
+  }
+
+  void write_text(Piece part) {
+    if (source_.same_numbers) return file_.write(part.of(source_.deck.text));
+    writer_.write_text(part);
+    file_.write(writer_.take_text());
+  }
+
+  /// Writes nodes and elements, and the texts between them.
+  void write_items(Index first, Index last) {
+    write_row_ranges(file_, last - first, [&](Text& text, Index begin, Index end) {
+      CardWriter writer(source_);
+      try {
+        for (Index k = first + begin; k < first + end; ++k) {
+          if (k + kFarAhead < last) __builtin_prefetch(old_place(items_[k + kFarAhead]));
+          if (k + kAhead < last) prefetch(*old_place(items_[k + kAhead]));
+          if (k > first) writer.write_text({place(k - 1).end, place(k).begin});
+          write_item(writer, items_[k]);
+        }
+      } catch (const InputError&) {
+        keep_error(first + begin);
+      }
+      text.write(writer.take_text());
+      add_losses(writer.losses());
+    });
+    if (error_) std::rethrow_exception(error_);
+  }
+
+  /// Returns where the deck says where the item was that is written.
+  [[nodiscard]] const Piece* old_place(Item item) const {
+    return item.is_node ? &source_.deck.nodes[node_at_[item.next]]
+                        : &source_.deck.elements[element_at_[item.next]].place;
+  }
+
+  void prefetch(Piece card) const {
+    constexpr std::size_t kLine = 64;
+    for (std::size_t at = card.begin; at < card.end; at += kLine) {
+      __builtin_prefetch(source_.deck.text.data() + at);
+    }
+  }
+
+  void write_item(CardWriter& writer, Item item) const {
+    if (item.is_node) {
+      writer.write_node(node_at_[item.next], item.next);
+    } else {
+      writer.write_element(source_.deck.elements[element_at_[item.next]], item.next);
+    }
+  }
+
+  /// Keeps the error that is being handled, unless an item before has one.
+  void keep_error(Index item) {
+    const std::scoped_lock lock(mutex_);
+    if (item >= first_with_error_) return;
+    first_with_error_ = item;
+    error_ = std::current_exception();
+  }
+
+  void add_losses(const Losses& losses) {
+    const std::scoped_lock lock(mutex_);
+    losses_.rounded += losses.rounded;
+    losses_.has_labels = losses_.has_labels || losses.has_labels;
+  }
+
   void write_new_sets() {
-    std::int64_t number = deck_.last_set;
-    for (const EntitySet& set : sets_beside(deck_.sets, mesh_.sets, nodes_, elements_, notes_)) {
-      std::vector<std::int64_t> members;
-      for (const Index member : set.members) members.push_back(numbers_of(set.association).at(member));
-      append_set(out_, ++number, set, members, deck_.line_end, notes_);
-      flush();
+    std::int64_t number = source_.deck.last_set;
+    for (const EntitySet& set :
+         sets_beside(source_.deck.sets, source_.mesh.sets, source_.nodes, source_.elements, notes_)) {
+      writer_.write_set(++number, set, notes_);
+      file_.write(writer_.take_text());
     }
   }
 
   void note_losses() const {
-    if (rounded_ > 0) notes_.push_back(rounded_note(rounded_));
-    if (lost_labels_) notes_.emplace_back("labels that are not property numbers are not written");
-    note_arrays_beside_cell_labels(mesh_, "Nastran", notes_);
+    if (losses_.rounded > 0) notes_.push_back(rounded_note(losses_.rounded));
+    if (losses_.has_labels) notes_.emplace_back("labels that are not property numbers are not written");
+    note_arrays_beside_cell_labels(source_.mesh, "Nastran", notes_);
   }
 
-  const Mesh& mesh_;
-  const Deck& deck_;
-  FileNumbers nodes_;
-  FileNumbers elements_;
-  Labels labels_;
+  Source source_;
   Notes& notes_;
   OutputFile file_;
-  bool same_numbers_;
-  std::string out_;  // not written yet
-  CardFields fields_;
-  std::vector<Edit> edits_;
-  std::int64_t rounded_ = 0;
-  bool lost_labels_ = false;
+  CardWriter writer_;                                           // of texts and sets
+  std::vector<Index> node_at_ = items_at(source_.nodes);        // node of the deck at each vertex
+  std::vector<Index> element_at_ = items_at(source_.elements);  // element of the deck at each cell
+  std::vector<Item> items_;
+  std::mutex mutex_;  // of the members below
+  Losses losses_;
+  std::exception_ptr error_;
+  Index first_with_error_ = kMaxIndex;
 };
 
 }  // namespace

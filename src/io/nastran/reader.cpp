@@ -1,9 +1,11 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 //
 // Nastran's bulk data: MSC Nastran Quick Reference Guide, "Bulk Data Entries".
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
+#include "io/nastran/card_parser.hpp"
 #include "io/nastran/deck_text.hpp"
 #include "io/nastran/nastran.hpp"
 #include "io/nastran/references.hpp"
@@ -16,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -48,128 +51,110 @@ class DeckReader {
   }
 
   Mesh read() {
-    Cards cards(file_.text(), file_.bulk());
-    while (cards.next()) {
-      card_ = cards.place();
-      if (cards.is_orphan()) fail("expected a card such as GRID, found a line that continues one", "add it");
-      split_card(cards.lines(), fields_);
-      read_card();
+    try {
+      read_cards();
+    } catch (const Fault& fault) {
+      file_.fail(fault.byte, fault.what, fault.remedy);
     }
     finish();
     return std::move(mesh_);
   }
 
  private:
+  /// The cards of a part of the bulk data, up to the first one with a fault.
+  struct PartCards {
+    std::vector<Card> cards;
+    std::optional<Fault> fault;
+  };
+
+  /// Parses cards on all threads, some parts of the text at a time; adds them to the mesh one by one.
+  void read_cards() {
+    constexpr std::size_t kPartBytes = std::size_t{1} << 18;
+    const std::vector<Piece> parts = parts_of_cards(file_.text(), file_.bulk(), kPartBytes);
+    const Index at_once = 4 * thread_count();
+    for (Index first = 0; first < index_size(parts); first += at_once) {
+      std::vector<PartCards> read(static_cast<std::size_t>(std::min(at_once, index_size(parts) - first)));
+      parallel_loop(index_size(read), [&](Index k) { read[k] = cards_of(parts[first + k]); });
+      for (const PartCards& part : read) {
+        for (const Card& card : part.cards) add(card);
+        if (part.fault) throw Fault(*part.fault);
+      }
+    }
+  }
+
+  [[nodiscard]] PartCards cards_of(Piece part) const {
+    constexpr std::size_t kCardBytes = 64;
+    PartCards result;
+    result.cards.reserve((part.end - part.begin) / kCardBytes);
+    Cards cards(file_.text(), part);
+    CardParser parser;
+    try {
+      while (cards.next()) result.cards.push_back(parser.parse(cards));
+    } catch (const Fault& fault) {
+      result.fault = fault;
+    }
+    return result;
+  }
+
+  void add(const Card& card) {
+    card_ = card.place;
+    switch (card.kind) {
+      case Card::Kind::node:
+        return add_node(card);
+      case Card::Kind::element:
+        return add_element(card);
+      case Card::Kind::other:
+        break;
+    }
+    split_card(card.place.of(file_.text()), fields_);
+    read_other(name_of(fields_));
+  }
+
   [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
     file_.fail(card_.begin, what, remedy);
   }
 
-  void read_card() {
-    const std::string name = name_of(fields_);
-    if (name == "GRID") return read_node();
-    if (const ElementType* const type = element_type(name); type != nullptr && read_element(*type)) return;
-    read_other(name);
-  }
-
-  void check_lines() const {
-    if (!fields_.fault.empty()) {
-      fail(std::string(fields_.fault),
-           "write it in fields of 8 or 16 columns, its lines one after the other");
-    }
-  }
-
-  /// Returns the number of a node, element or property in a field; throws if the field holds no such number.
   [[nodiscard]] std::int64_t number(std::size_t field, std::string_view what) const {
-    const std::int64_t result = number_of(fields_.text(field));
-    if (result == 0 || result > kMaxIndex) fail_at_number(field, what);
-    return result;
-  }
-
-  [[noreturn]] void fail_at_number(std::size_t field, std::string_view what) const {
-    fail(fmt::format("{} is '{}'", what, shown(fields_.text(field))),
-         "a number from 1 to 2147483647 is needed");
+    return number_in(fields_, field, what, card_);
   }
 
   // ---- nodes
 
-  void read_node() {
-    check_lines();
-    const std::int64_t id = number(1, "the number of a node");
-    if (!deck_->node_numbers.add(id)) fail(fmt::format("node {} is given twice", id), "numbers must differ");
-    const std::string_view system = fields_.text(2);
-    const bool is_basic = system.empty() || system == "0";
-    system_of_.push_back(system.empty() ? kDefault : is_basic ? 0 : number(2, "the system of a node"));
-    has_systems_ = has_systems_ || !is_basic;
-    Point point{0, 0, 0};
-    for (std::size_t k = 0; k < point.size(); ++k) {
-      const std::string_view text = fields_.text(3 + k);
-      if (text.empty()) continue;
-      const auto value = real_of(text);
-      if (!value) {
-        fail(fmt::format("a coordinate of node {} is '{}'", id, shown(text)), "a finite number is needed");
-      }
-      point[k] = *value;
+  void add_node(const Card& card) {
+    if (!deck_->node_numbers.add(card.number)) {
+      fail(fmt::format("node {} is given twice", card.number), "numbers must differ");
     }
-    for (std::size_t field = 6; field < fields_.fields.size(); ++field) {
-      has_more_in_nodes_ = has_more_in_nodes_ || !fields_.text(field).empty();
-    }
-    mesh_.points.push_back(point);
-    deck_->nodes.push_back(card_);
+    system_of_.push_back(card.group);
+    has_systems_ = has_systems_ || card.group > 0;
+    has_more_in_nodes_ = has_more_in_nodes_ || card.has_more;
+    mesh_.points.push_back(card.point);
+    deck_->nodes.push_back(card.place);
   }
 
   // ---- elements
 
-  /// Reads an element that is a cell; returns false for a CBUSH to the ground, which is not a cell.
-  bool read_element(const ElementType& type) {
-    check_lines();
-    const std::size_t first = type.first_node();
-    if (type.name == "CBUSH" && (fields_.text(first).empty() || number_of(fields_.text(first + 1)) == 0)) {
-      return false;
+  void add_element(const Card& card) {
+    if (!deck_->element_numbers.add(card.number)) {
+      fail(fmt::format("element {} is given twice", card.number), "numbers must differ");
     }
-    const std::int64_t id = number(1, "the number of an element");
-    if (!deck_->element_numbers.add(id)) {
-      fail(fmt::format("element {} is given twice", id), "numbers must differ");
-    }
-    const int nodes = nodes_of(type, id);
     std::array<Index, kMostNodes> cell{};
     const Offset entry = mesh_.cells.offsets.back();
-    for (std::size_t k = 0; k < static_cast<std::size_t>(nodes); ++k) {
-      const std::size_t place = node_place(type.shape, nodes, k);
-      const std::int64_t node = number_of(fields_.text(first + place));
-      if (node == 0 || node > kMaxIndex) {
-        fail_at_number(first + place, fmt::format("a node of element {}", id));
-      }
-      cell[k] = deck_->node_numbers.find(node);
-      if (cell[k] < 0) {
-        cell[k] = 0;
-        missing_.push_back({entry + static_cast<Offset>(k), node, card_.begin});
-      }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(card.nodes); ++k) {
+      cell[k] = deck_->node_numbers.find(card.cell[k]);
+      if (cell[k] >= 0) continue;
+      cell[k] = 0;
+      missing_.push_back({entry + static_cast<Offset>(k), card.cell[k], card.place.begin});
     }
     begin_block();
-    mesh_.cells.push_back(type.shape, {cell.data(), static_cast<std::size_t>(nodes)});
-    deck_->elements.push_back({card_, &type, nodes});
-    add_property(type);
-    note_other_fields(type);
-    return true;
-  }
-
-  /// Returns the number of vertices that the cell gets.
-  int nodes_of(const ElementType& type, std::int64_t id) {
-    int given = 0;
-    int last = 0;
-    for (int k = 0; k < type.most; ++k) {
-      const std::string_view text = fields_.text(type.first_node() + static_cast<std::size_t>(k));
-      if (text.empty() || text == "0") continue;
-      ++given;
-      last = k + 1;
+    const ElementType& type = *card.type;
+    mesh_.cells.push_back(type.shape, {cell.data(), static_cast<std::size_t>(card.nodes)});
+    deck_->elements.push_back({card.place, &type, card.nodes});
+    if (type.has_property) {
+      labels_.push_back(card.group);  // if none is named, resolved when all cards are known
+      labelled_.push_back(mesh_.cell_count() - 1);
     }
-    if (last < type.corners) {
-      fail(fmt::format("element {} has {} of the {} nodes of {}", id, last, type.corners, type.name),
-           "fields or lines are missing");
-    }
-    if (given == last && has_size(type, given)) return given;
-    ++without_some_;
-    return type.corners;
+    if (card.lacks_nodes) ++without_some_;
+    if (card.has_more) with_more_.add(std::string(type.name));
   }
 
   /// Begins a block of cells at the first element and after each card of another kind: elements stay in their
@@ -178,27 +163,6 @@ class DeckReader {
     const bool first = deck_->elements.empty();
     if (first || other_since_) mesh_.cell_blocks.push_back(mesh_.cell_count());
     other_since_ = false;
-  }
-
-  void add_property(const ElementType& type) {
-    if (!type.has_property) return;
-    const std::string_view text = fields_.text(2);
-    if (text.empty()) {
-      labels_.push_back(kBlank);  // resolved when all cards are known
-    } else {
-      labels_.push_back(integer_of(text) == 0 ? 0 : number(2, "the property of an element"));
-    }
-    labelled_.push_back(mesh_.cell_count() - 1);
-  }
-
-  /// Records the type of an element with fields after its nodes, which other formats lose.
-  void note_other_fields(const ElementType& type) {
-    const std::size_t end = type.first_node() + static_cast<std::size_t>(type.most);
-    for (std::size_t field = end; field < fields_.fields.size(); ++field) {
-      if (fields_.text(field).empty()) continue;
-      with_more_.add(std::string(type.name));
-      return;
-    }
   }
 
   // ---- other cards
@@ -307,7 +271,7 @@ class DeckReader {
   /// Converts the coordinates of nodes from their own systems to the basic system.
   void place_nodes() {
     if (!has_systems_) return;
-    std::replace(system_of_.begin(), system_of_.end(), kDefault, default_system_);
+    std::replace(system_of_.begin(), system_of_.end(), Card::kBlank, default_system_);
     const std::vector<Point> given = mesh_.points;
     const CoordinateSystems::NodePosition in_basic = [&](std::int64_t node, std::size_t byte) {
       const Index v = deck_->node_numbers.find(node);
@@ -322,7 +286,7 @@ class DeckReader {
   /// Gives elements without a property the property of BAROR or BEAMOR, else their own number.
   void complete_properties() {
     for (std::size_t k = 0; k < labels_.size(); ++k) {
-      if (labels_[k] != kBlank) continue;
+      if (labels_[k] != Card::kBlank) continue;
       const Index c = labelled_[k];
       const auto found = deck_->default_properties.find(deck_->elements[c].type->name);
       const bool has_default = found != deck_->default_properties.end();
@@ -473,11 +437,9 @@ class DeckReader {
   Notes& notes_;
   Mesh mesh_;
   std::shared_ptr<Deck> deck_ = std::make_shared<Deck>();
-  Piece card_;  // that is being read
+  Piece card_;  // that is being added
   CardFields fields_;
   CoordinateSystems systems_{file_};
-  static constexpr std::int64_t kDefault = -1;  // of a node that names no system
-  static constexpr std::int64_t kBlank = -1;    // of an element that names no property
   std::int64_t default_system_ = 0;
   std::vector<std::int64_t> system_of_;  // system of each node
   bool has_systems_ = false;             // whether any is not the basic one

@@ -5,12 +5,17 @@
 #include "io/names.hpp"
 #include "io/nastran/nastran.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <array>
+#include <atomic>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace meshorder::nastran {
 namespace {
@@ -33,8 +38,8 @@ class PlainBulkWriter {
 
   void write() {
     file_.write("CEND\nBEGIN BULK\n");
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) write_node(v);
-    for (Index c = 0; c < mesh_.cell_count(); ++c) write_element(c);
+    write_rows(file_, mesh_.vertex_count(), [this](Text& text, Index v) { write_node(text, v); });
+    write_rows(file_, mesh_.cell_count(), [this](Text& text, Index c) { write_element(text, c); });
     write_sets();
     file_.write("ENDDATA\n");
     file_.commit();
@@ -42,17 +47,17 @@ class PlainBulkWriter {
   }
 
  private:
-  void write_node(Index v) {
+  void write_node(Text& out, Index v) {
     std::array<RealText, 3> reals;
     for (std::size_t k = 0; k < reals.size(); ++k) {
       reals[k] = real_text(mesh_.points[v][k]);
       if (reals[k].is_rounded) ++rounded_;
     }
-    file_.print("GRID*   {:>16}                {:>16}{:>16}\n*       {:>16}\n", vertices_.of(v),
-                reals[0].text, reals[1].text, reals[2].text);
+    out.print("GRID*   {:>16}                {:>16}{:>16}\n*       {:>16}\n", vertices_.of(v), reals[0].text,
+              reals[1].text, reals[2].text);
   }
 
-  void write_element(Index c) {
+  void write_element(Text& out, Index c) {
     const auto cell = mesh_.cells[c];
     const Shape shape = mesh_.cells.shapes[c];
     const int nodes = static_cast<int>(cell.size());
@@ -60,16 +65,18 @@ class PlainBulkWriter {
     for (std::size_t k = 0; k < cell.size(); ++k) {
       numbers[2 + node_place(shape, nodes, k)] = vertices_.of(cell[k]);
     }
-    line_.clear();
     constexpr std::size_t kOnLine = 8;
-    line_.append(card_of(shape, nodes));
-    line_.resize(kOnLine, ' ');
+    constexpr std::string_view kBlanks = "        ";
+    const std::string_view card = card_of(shape, nodes);
+    out.write(card);
+    out.write(kBlanks.substr(card.size()));
     for (std::size_t k = 0; k < 2 + cell.size(); ++k) {
-      if (k > 0 && k % kOnLine == 0) line_ += "+\n+       ";
+      if (k > 0 && k % kOnLine == 0) out.write("+\n+       ");
       const fmt::format_int digits(numbers[k]);
-      line_.append(8 - digits.size(), ' ').append(digits.data(), digits.size());
+      out.write(kBlanks.substr(digits.size()));
+      out.write({digits.data(), digits.size()});
     }
-    file_.write(line_ += '\n');
+    out.write("\n");
   }
 
   /// Returns the property of a cell: its label if that is a valid number, else 1.
@@ -89,17 +96,17 @@ class PlainBulkWriter {
       for (const Index member : set.members) {
         members.push_back(of_nodes ? vertices_.of(member) : cells_.of(member));
       }
-      line_.clear();
-      append_set(line_, ++number, set, members, "\n", notes_);
-      file_.write(line_);
+      std::string card;
+      append_set(card, ++number, set, members, "\n", notes_);
+      file_.write(card);
     }
   }
 
   void note_losses() {
     if (rounded_ > 0) notes_.push_back(rounded_note(rounded_));
     if (lost_labels_ > 0) {
-      notes_.push_back(
-          fmt::format("{} cells whose labels are not from 1 to 99999999 have the property 1", lost_labels_));
+      notes_.push_back(fmt::format("{} cells whose labels are not from 1 to 99999999 have the property 1",
+                                   lost_labels_.load()));
     }
     note_arrays_beside_cell_labels(mesh_, "Nastran", notes_);
     note_unfit_ids(mesh_, "Nastran", kLargestNumber, notes_);
@@ -110,9 +117,8 @@ class PlainBulkWriter {
   Notes& notes_;
   OutputFile file_;
   Labels labels_;
-  std::string line_;
-  std::int64_t rounded_ = 0;
-  std::int64_t lost_labels_ = 0;
+  std::atomic<std::int64_t> rounded_ = 0;
+  std::atomic<std::int64_t> lost_labels_ = 0;
   NewNumbers vertices_;
   NewNumbers cells_;
 };
