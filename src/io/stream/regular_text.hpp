@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/index.hpp"
+#include "io/stream/id_map.hpp"
 #include "io/stream/scanner.hpp"
 
 #include <cstddef>
@@ -81,5 +82,21 @@ std::size_t count_words(std::string_view text);
 /// @note O(bytes); memory: a few numbers for each part.
 Index read_regular_records(Scanner& in, Index count, const std::function<bool(Scanner&, Index)>& read,
                            std::size_t part_bytes = std::size_t{1} << 20);
+
+/// Reads records as `read_regular_records` does; a record is regular only if it begins with a number that is
+/// one more than that of the last record. Adds the numbers to `numbering`, which is empty before.
+template <class Read>
+Index read_numbered_records(Scanner& in, Index count, IdMap& numbering, const Read& read) {
+  constexpr std::int64_t kFarthest = std::int64_t{1} << 40;
+  std::int64_t first = 0;
+  Scanner ahead = in;
+  if (!ahead.take_number(first) || first < -kFarthest || first > kFarthest) return 0;
+  const Index regular = read_regular_records(in, count, [&](Scanner& part, Index record) {
+    std::int64_t number = 0;
+    return part.take_number(number) && number == first + record && read(part, record);
+  });
+  if (regular > 0) numbering.add_run(first, regular);
+  return regular;
+}
 
 }  // namespace meshorder

@@ -144,22 +144,6 @@ bool take_all(Scanner& in, std::span<double> values) {
   return std::ranges::all_of(values, [&](double& value) { return in.take_number(value); });
 }
 
-/// Reads records as `read_regular_records` does; a record is regular only if its number follows that of the
-/// last record.
-template <class Read>
-Index read_numbered(Scanner& in, Index count, IdMap& numbering, const Read& read) {
-  constexpr std::int64_t kFarthest = std::int64_t{1} << 40;
-  std::int64_t first = 0;
-  Scanner ahead = in;
-  if (!ahead.take_number(first) || first < -kFarthest || first > kFarthest) return 0;
-  const Index regular = read_regular_records(in, count, [&](Scanner& part, Index record) {
-    std::int64_t number = 0;
-    return part.take_number(number) && number == first + record && read(part, record);
-  });
-  if (regular > 0) numbering.add_run(first, regular);
-  return regular;
-}
-
 /// Removes the mark of a mesh's files from `comments`, the comments at the end of a file. Returns the mark;
 /// an empty text if there is none.
 std::string take_mark(std::string& comments) {
@@ -205,7 +189,7 @@ void read_points(Scanner& in, ReadContext& to) {
     return std::span(values).subspan(static_cast<std::size_t>(v * attributes),
                                      static_cast<std::size_t>(attributes));
   };
-  const Index regular = read_numbered(in, count, to.points, [&](Scanner& part, Index v) {
+  const Index regular = read_numbered_records(in, count, to.points, [&](Scanner& part, Index v) {
     for (int k = 0; k < mesh.dimension; ++k) {
       if (!part.take_finite(mesh.points[v][k])) return false;
     }
@@ -274,7 +258,7 @@ void read_cells(Scanner& in, File file, Shape shape, int nodes, bool marked, Rea
     return std::span(part.attributes)
         .subspan(Offset{c} * part.attributes_per_cell, static_cast<std::size_t>(part.attributes_per_cell));
   };
-  const Index regular = read_numbered(in, part.count, part.numbering, [&](Scanner& records, Index c) {
+  const Index regular = read_numbered_records(in, part.count, part.numbering, [&](Scanner& records, Index c) {
     std::int64_t number = 0;
     const std::span<Index> cell = cells[first + c];
     std::array<Index, 10> as_given{};

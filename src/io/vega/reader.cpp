@@ -2,6 +2,7 @@
 #include "base/text.hpp"
 #include "io/named_parts.hpp"
 #include "io/stream/id_map.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/vega/lines.hpp"
 #include "io/vega/parts.hpp"
 #include <meshorder/error.hpp>
@@ -14,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 
 namespace meshorder::vega {
 namespace {
@@ -158,9 +160,10 @@ class Reader {
 
   static std::string_view trimmed_all(std::string_view line) { return next_word(line, kSeparators); }
 
-  /// Returns how many items to reserve: no more than the rest of this file can hold.
-  std::size_t reservable(Index count) {
-    return static_cast<std::size_t>(std::min<std::int64_t>(count, lines_.at().bytes_left() / 8));
+  /// Returns how many items of `width` numbers to reserve: no more than the rest of this file can hold.
+  std::size_t reservable(Index count, int width) {
+    return static_cast<std::size_t>(
+        std::min<std::int64_t>(count, lines_.at().bytes_left() / (2 * width + 2)));
   }
 
   void add_id(IdMap& numbering, std::int64_t id, const std::string& what) {
@@ -180,8 +183,8 @@ class Reader {
     metadata_->vertex_markers = header.columns[1] == 1;
     std::vector<double> attributes;
     std::vector<std::int32_t> markers;
-    mesh_.points.reserve(reservable(header.count));
-    for (Index v = 0; v < header.count; ++v) {
+    mesh_.points.reserve(reservable(header.count, 3));
+    for (Index v = read_plain_vertices(header); v < header.count; ++v) {
       std::string_view line = data_line("vertex", v, header.count);
       add_id(vertices_, integer(line, "the number of a vertex"), "vertex");
       Point point;
@@ -200,6 +203,51 @@ class Reader {
     if (!markers.empty()) {
       mesh_.data.push_back({std::string(kLabel), Association::vertices, 1, std::move(markers), {}, {}});
     }
+  }
+
+  /// Returns whether the lines have no attributes, and numbers that are not negative. A Scanner skips form
+  /// feeds and vertical tabs, which are errors here.
+  bool is_plain(const Header& header) {
+    const bool has_columns = header.columns != decltype(header.columns){};
+    const std::string_view text = lines_.at().all();
+    return !has_columns && !lines_.at().peek_word().starts_with('-') &&
+           text.find('\f') == std::string_view::npos && text.find('\v') == std::string_view::npos;
+  }
+
+  /// Reads vertices on all threads, up to the first one that is not numbered on or has more than numbers.
+  /// Returns how many it read.
+  Index read_plain_vertices(const Header& header) {
+    if (!is_plain(header)) return 0;
+    mesh_.points.resize(reservable(header.count, 3));
+    const Index count =
+        read_numbered_records(lines_.at(), index_size(mesh_.points), vertices_, [&](Scanner& in, Index v) {
+          return std::ranges::all_of(mesh_.points[v], [&](double& x) { return in.take_finite(x); });
+        });
+    mesh_.points.resize(static_cast<std::size_t>(count));
+    return count;
+  }
+
+  /// As `read_plain_vertices`, for elements; also stops at an element with an unknown vertex.
+  Index read_plain_elements(const Header& header, bool tets) {
+    const auto width = static_cast<std::size_t>(tets ? 4 : 8);
+    if (!is_plain(header)) return 0;
+    std::vector<Index>& corners = mesh_.cells.vertices;
+    const auto most = static_cast<Index>(reservable(header.count, tets ? 4 : 8));
+    corners.resize(width * static_cast<std::size_t>(most));
+    const Index count = read_numbered_records(lines_.at(), most, elements_, [&](Scanner& in, Index e) {
+      return std::ranges::all_of(std::span(corners).subspan(width * e, width), [&](Index& corner) {
+        std::int64_t number = 0;
+        if (!in.take_number(number)) return false;
+        corner = vertices_.find(number);
+        return corner >= 0;
+      });
+    });
+    corners.resize(width * static_cast<std::size_t>(count));
+    mesh_.cells.shapes.assign(static_cast<std::size_t>(count), tets ? Shape::tetrahedron : Shape::hexahedron);
+    for (Index e = 0; e < count; ++e) {
+      mesh_.cells.offsets.push_back(mesh_.cells.offsets.back() + static_cast<Offset>(width));
+    }
+    return count;
   }
 
   void add_attributes(Association association, std::vector<double> values) {
@@ -226,10 +274,10 @@ class Reader {
     const Header header = read_header("elements", width);
     metadata_->element_attributes = static_cast<int>(header.columns[0]);
     std::vector<double> attributes;
-    mesh_.cells.reserve(static_cast<Offset>(reservable(header.count)),
-                        static_cast<Offset>(reservable(header.count)) * width);
+    const auto cells = static_cast<Offset>(reservable(header.count, width));
+    mesh_.cells.reserve(cells, cells * width);
     std::vector<Index> corners(width);
-    for (Index e = 0; e < header.count; ++e) {
+    for (Index e = read_plain_elements(header, tets); e < header.count; ++e) {
       std::string_view line = data_line("element", e, header.count);
       add_id(elements_, integer(line, "the number of an element"), "element");
       for (Index& corner : corners)
