@@ -10,11 +10,18 @@ namespace meshorder {
 // Loops over vertices visit rows that are anywhere in memory, and search them with unpredictable results.
 // These functions prefetch rows a few steps ahead, and search without branches.
 
+/// Prefetches the first two cache lines of a row, which hold at least 17 entries.
+inline void prefetch_entries(const Index* row) {
+  constexpr Offset kLine = 64 / sizeof(Index);
+  __builtin_prefetch(row);
+  __builtin_prefetch(row + kLine);
+}
+
 /// Prefetches the row of the vertex that comes a few places after `k` in the order.
 inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {
   constexpr Index kAhead = 8;
   if (k + kAhead < index_size(order)) {
-    __builtin_prefetch(graph.neighbours.data() + graph.offsets[order[k + kAhead]]);
+    prefetch_entries(graph.neighbours.data() + graph.offsets[order[k + kAhead]]);
   }
 }
 
@@ -23,16 +30,11 @@ inline void prefetch_offsets(std::span<const Offset> offsets, std::span<const In
   for (const Index row : rows) __builtin_prefetch(offsets.data() + row);
 }
 
-/// Prefetches the first two cache lines of the rows, which hold at least 17 entries.
+/// Prefetches the rows as `prefetch_entries` does.
 inline void prefetch_rows(std::span<const Offset> offsets, std::span<const Index> entries,
                           std::span<const Index> rows) {
   if (entries.empty()) return;
-  constexpr Offset kLine = 64 / sizeof(Index);
-  for (const Index row : rows) {
-    const Index* const first = entries.data() + offsets[row];
-    __builtin_prefetch(first);
-    __builtin_prefetch(first + kLine);
-  }
+  for (const Index row : rows) prefetch_entries(entries.data() + offsets[row]);
 }
 
 /// Returns the number of entries of a rising row that are less than `value`: std::lower_bound without
