@@ -169,8 +169,7 @@ BreadthFirstCopy copy_on_threads(GraphRef graph) {
 
 BreadthFirstCopy breadth_first_copy(GraphRef graph) {
   constexpr Index kSmall = 1 << 15;
-  // two threads would save no more time than reading the rows twice costs
-  const bool is_shared = thread_count() > 2 && graph.size() >= kSmall;
+  const bool is_shared = thread_count() > 1 && graph.size() >= kSmall;
   BreadthFirstCopy copy = is_shared ? copy_on_threads(graph) : copy_in_one_pass(graph);
   std::stable_sort(copy.components.begin(), copy.components.end(),
                    [](const auto& a, const auto& b) { return a.end - a.first > b.end - b.first; });

@@ -17,38 +17,48 @@ constexpr Index kWindow = 4096;       // rows
 constexpr Index kWindowsForOne = 16;  // step between windows of small graphs
 constexpr Index kWindows = 8;         // number of windows of large graphs; sometimes there is one more
 
-/// Counts, window by window, the first touches of lines, and those first touches that are jumps.
+struct Touches {
+  Index lines = 0;  ///< that were touched for the first time
+  Index jumps = 0;  ///< lines of these that were jumped to
+
+  Touches& operator+=(const Touches& other) {
+    lines += other.lines;
+    jumps += other.jumps;
+    return *this;
+  }
+  [[nodiscard]] double jump_share() const { return lines > 0 ? static_cast<double>(jumps) / lines : 0; }
+};
+
+/// Counts the first touches of lines in a window of rows, and those first touches that are jumps.
 class FirstTouches {
  public:
   FirstTouches(GraphRef graph, const Permutation& order)
       : graph_(graph), order_(order), touched_((std::size_t(graph.size()) + 7) / kEntriesInLine, -1) {}
 
-  void sweep(Index begin, Index end) {
-    const Index before = time_;  // lines that were touched by rows before the window get this time
-    time_ += kRecent + 1;
+  Touches sweep(Index begin, Index end) {
+    Touches result;
     for (Index row = begin; row < end; ++row) {
       poll_in_loop(row);
       prefetch_row(graph_, order_.new_to_old(), row);
       found_.assign(1, row / kEntriesInLine);
       for (const Index u : graph_[order_.new_to_old()[row]]) {
         const Index line = order_.old_to_new()[u] / kEntriesInLine;
-        if (touched_[line] < before) found_.push_back(line);
+        if (touched_[line] < 0) found_.push_back(line);
       }
       std::sort(found_.begin(), found_.end());
       for (const Index line : found_) {
-        if (touched_[line] >= before) continue;
+        if (touched_[line] >= 0) continue;
         if (is_read_before(line, begin)) {
-          touched_[line] = before;
+          touched_[line] = 0;
           continue;
         }
-        jumps_ += is_jump(line) ? 1 : 0;
-        ++lines_;
+        result.jumps += is_jump(line) ? 1 : 0;
+        ++result.lines;
         touched_[line] = time_++;
       }
     }
+    return result;
   }
-
-  [[nodiscard]] double share() const { return lines_ > 0 ? static_cast<double>(jumps_) / lines_ : 0; }
 
  private:
   /// Returns whether a row before `begin` reads a line.
@@ -72,30 +82,29 @@ class FirstTouches {
 
   GraphRef graph_;
   const Permutation& order_;
-  std::vector<Index> touched_;  ///< time when each line was first touched, −1 for never
-  Index time_ = 0;
-  Index lines_ = 0;
-  Index jumps_ = 0;
+  std::vector<Index> touched_;  ///< time when each line was first touched, −1 for never, 0 before the window
+  Index time_ = kRecent + 1;
   std::vector<Index> found_;
 };
 
 }  // namespace
 
 double jump_share(GraphRef graph, const Permutation& order) {
-  FirstTouches touches(graph, order);
-  touches.sweep(0, graph.size());
-  return touches.share();
+  return FirstTouches(graph, order).sweep(0, graph.size()).jump_share();
 }
 
 double sampled_jump_share(GraphRef graph, const Permutation& order) {
-  FirstTouches touches(graph, order);
   const Offset apart =
       Offset{kWindow} * std::max(kWindowsForOne, chunk_count(graph.size(), kWindow) / kWindows);
-  for (Offset begin = 0; begin < graph.size(); begin += apart) {
-    const auto first = static_cast<Index>(begin);
-    touches.sweep(first, first + std::min(kWindow, graph.size() - first));
-  }
-  return touches.share();
+  const auto windows = static_cast<Index>((graph.size() + apart - 1) / apart);
+  return sum_over_chunks<Touches>(windows, 1,
+                                  [&](Index window, Index /*end*/) {
+                                    const auto begin = static_cast<Index>(window * apart);
+                                    FirstTouches touches(graph, order);
+                                    return touches.sweep(begin,
+                                                         begin + std::min(kWindow, graph.size() - begin));
+                                  })
+      .jump_share();
 }
 
 }  // namespace meshorder

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <numeric>
 #include <utility>
 
 namespace meshorder {
@@ -167,7 +168,10 @@ Laplacian component_laplacian(GraphRef graph, std::span<const double> weights,
   const auto n = index_size(vertices);
   Laplacian result;
   result.offsets.resize(Offset{n} + 1);
-  for (Index k = 0; k < n; ++k) result.offsets[k + 1] = result.offsets[k] + graph.degree(vertices[k]);
+  for_each_chunk(n, kRows, [&](Index, Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) result.offsets[k + 1] = graph.degree(vertices[k]);
+  });
+  std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
   result.diagonal.resize(n);
   resize_large(result.neighbours, result.offsets[n]);
   if (!weights.empty()) result.weights.resize(result.offsets[n]);
