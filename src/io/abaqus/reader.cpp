@@ -44,7 +44,7 @@ void skip_blanks(std::string_view& line) {
 /// Takes the next field of a data line if it is a plain number of type T; otherwise returns false and leaves
 /// the line as it is. Faster than `next_field` and a parser, which read each byte several times.
 template <class T>
-bool take_plain(std::string_view& line, T& value) {
+[[gnu::always_inline]] inline bool take_plain(std::string_view& line, T& value) {
   std::string_view rest = line;
   skip_blanks(rest);
   if constexpr (std::is_integral_v<T>) {
@@ -67,7 +67,7 @@ bool take_plain(std::string_view& line, T& value) {
 }
 
 /// Takes the next field if it is a plain number that a node or element can have, 1 to kMaxIndex.
-bool take_plain_number(std::string_view& line, Index& number) {
+[[gnu::always_inline]] inline bool take_plain_number(std::string_view& line, Index& number) {
   std::int64_t value = 0;
   if (!take_plain(line, value) || value < 1 || value > kMaxIndex) return false;
   number = static_cast<Index>(value);
@@ -383,6 +383,7 @@ class DeckReader {
     const auto cell_of = [&](Index k) {
       return std::span(element_nodes_).subspan(nodes * static_cast<std::size_t>(k), nodes);
     };
+    const std::size_t bytes_before = lines_.rest().size();
     const Index count = lines_.take_regular(most, [&](std::string_view line, std::int64_t at, Index k) {
       ElementLine& element = element_lines_[static_cast<std::size_t>(k)];
       element.line = at;
@@ -396,12 +397,31 @@ class DeckReader {
       }
       return line.find_first_not_of(" \t,") == std::string_view::npos;
     });
-    for (Index k = 0; k < count; ++k) {
-      const ElementLine& element = element_lines_[static_cast<std::size_t>(k)];
+    reserve_cells(count, nodes, bytes_before);
+    const std::span read(element_lines_.data(), static_cast<std::size_t>(count));
+    for (const ElementLine& element : read)
       add_number(deck_->elements, element.number, element.line, "element");
-      mesh_.cells.push_back(kind.shape, cell_of(k));
-    }
+    Cells& cells = mesh_.cells;
+    cells.vertices.insert(cells.vertices.end(), element_nodes_.data(),
+                          element_nodes_.data() + nodes * read.size());
+    cells.shapes.insert(cells.shapes.end(), read.size(), kind.shape);
+    for (Index k = 0; k < count; ++k)
+      cells.offsets.push_back(cells.offsets.back() + static_cast<Offset>(nodes));
     return count > 0;
+  }
+
+  /// Reserves memory for `count` elements that were just read, and for as many more as the rest of the file
+  /// can hold.
+  ///
+  /// @param bytes_before  bytes of the file that were left before these elements
+  void reserve_cells(Index count, std::size_t nodes, std::size_t bytes_before) {
+    const std::size_t left = lines_.rest().size();
+    const std::size_t bytes =
+        (bytes_before - left) / std::max<std::size_t>(static_cast<std::size_t>(count), 1);
+    const std::size_t cells = mesh_.cells.shapes.size() + static_cast<std::size_t>(count);
+    if (cells <= mesh_.cells.shapes.capacity()) return;
+    const std::size_t all = cells + left / std::max<std::size_t>(bytes, 1);
+    mesh_.cells.reserve(static_cast<Offset>(all), static_cast<Offset>(all * nodes));
   }
 
   /// Reads an element from as many lines as its nodes need, and takes these lines.

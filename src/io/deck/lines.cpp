@@ -23,8 +23,7 @@ bool is_space(char c) { return c == ' ' || c == '\t'; }
 DeckLines::OpenFile::OpenFile(const FilePath& file)
     : path(file),
       scanner(std::make_unique<Scanner>(file)),
-      has_other_blanks(scanner->all().find('\f') != std::string_view::npos ||
-                       scanner->all().find('\v') != std::string_view::npos) {}
+      has_other_blanks(has_any_of(scanner->all(), "\f\v")) {}
 
 DeckLines::DeckLines(const FilePath& path) : main_(path) {
   files_.emplace_back(path);

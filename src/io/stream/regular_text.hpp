@@ -61,6 +61,9 @@ std::size_t read_regular_numbers(Scanner& in, std::span<Number> values) {
   return read.count;
 }
 
+/// Returns whether a text has any of these bytes; looks on all threads. O(bytes).
+bool has_any_of(std::string_view text, std::string_view bytes);
+
 /// Counts the words of a text on all threads. All bytes up to the space separate words.
 std::size_t count_words(std::string_view text);
 

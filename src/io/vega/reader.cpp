@@ -209,9 +209,8 @@ class Reader {
   /// feeds and vertical tabs, which are errors here.
   bool is_plain(const Header& header) {
     const bool has_columns = header.columns != decltype(header.columns){};
-    const std::string_view text = lines_.at().all();
     return !has_columns && !lines_.at().peek_word().starts_with('-') &&
-           text.find('\f') == std::string_view::npos && text.find('\v') == std::string_view::npos;
+           !has_any_of(lines_.at().all(), "\f\v");
   }
 
   /// Reads vertices on all threads, up to the first one that is not numbered on or has more than numbers.
