@@ -37,6 +37,12 @@ int Descriptor::sync() const noexcept {
   return errno;
 }
 
+void Descriptor::begin_sync() const noexcept {
+#ifdef SYNC_FILE_RANGE_WRITE
+  (void)::sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE);
+#endif
+}
+
 int Descriptor::close() noexcept {
   const int descriptor = std::exchange(descriptor_, -1);
   // the descriptor is closed even after EINTR

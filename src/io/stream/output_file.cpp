@@ -22,9 +22,10 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kFlushAt = std::size_t{1} << 20;
-constexpr std::size_t kAtOnce = std::size_t{1} << 16;  // so many bytes or more are written without a copy
-constexpr mode_t kMode = 0666;                         // the umask or the folder's default ACL removes bits
-constexpr mode_t kPrivateMode = 0600;                  // until the new file gets the mode of the old file
+constexpr std::size_t kAtOnce = std::size_t{1} << 16;   // so many bytes or more are written without a copy
+constexpr std::size_t kSyncAt = std::size_t{32} << 20;  // bytes after which they begin to go to the disk
+constexpr mode_t kMode = 0666;                          // the umask or the folder's default ACL removes bits
+constexpr mode_t kPrivateMode = 0600;                   // until the new file gets the mode of the old file
 
 }  // namespace
 
@@ -33,6 +34,16 @@ struct OutputFile::Stream {
   OutputPlace place;
   std::optional<Scratch> scratch;  ///< empty if the text is the whole file
   Descriptor file;
+  std::size_t since_sync = 0;  ///< bytes
+
+  [[nodiscard]] int put(std::string_view bytes) {
+    const int error = file.write(bytes);
+    since_sync += bytes.size();
+    if (since_sync < kSyncAt) return error;
+    since_sync = 0;
+    file.begin_sync();
+    return error;
+  }
 };
 
 OutputFile::OutputFile(FilePath target) : target_(std::move(target)), stream_(std::make_unique<Stream>()) {
@@ -71,10 +82,10 @@ void OutputFile::flush_if_full() {
 }
 
 void OutputFile::write(std::string_view bytes) {
-  auto& [text, place, scratch, file] = *stream_;
+  auto& [text, place, scratch, file, since_sync] = *stream_;
   if (scratch && bytes.size() >= kAtOnce) {
     flush();
-    check_written(file.write(bytes));
+    check_written(stream_->put(bytes));
     return;
   }
   text.write(bytes);
@@ -99,7 +110,7 @@ void OutputFile::written(const char* end) {
 }
 
 void OutputFile::write_over_start(std::string_view bytes) {
-  auto& [text, place, scratch, file] = *stream_;
+  auto& [text, place, scratch, file, since_sync] = *stream_;
   if (!scratch) {
     std::copy(bytes.begin(), bytes.end(), text.data());
     return;
@@ -112,7 +123,7 @@ void OutputFile::write_over_start(std::string_view bytes) {
 
 void OutputFile::flush() {
   if (!stream_->scratch) return;
-  const int error = stream_->file.write(stream_->text.view());
+  const int error = stream_->put(stream_->text.view());
   stream_->text.clear();
   check_written(error);
 }
@@ -136,7 +147,7 @@ void OutputFile::close() {
 }
 
 void OutputFile::write_directly() {
-  const auto& [text, place, scratch, file] = *stream_;
+  const auto& [text, place, scratch, file, since_sync] = *stream_;
   if (FileStore* const store = target_.store()) return store->write(target(), std::string(text.view()));
   if (!place.is_through) return;
   Descriptor out =
