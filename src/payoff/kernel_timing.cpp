@@ -19,44 +19,80 @@ using Samples = std::array<std::vector<double>, kKernels.size()>;
 
 std::vector<double>& of(Samples& samples, Kernel kernel) { return samples[static_cast<std::size_t>(kernel)]; }
 
-double seconds_of_runs(KernelBench& bench, Kernel kernel, int repeats) {
+/// Seconds of some runs.
+struct RunTime {
+  double elapsed = 0;
+  double on_thread = 0;  ///< processor time of this thread
+
+  [[nodiscard]] double by(const TimingOptions& options) const {
+    return options.processor_time ? on_thread : elapsed;
+  }
+};
+
+RunTime time_of_runs(KernelBench& bench, Kernel kernel, int repeats) {
+  const ThreadStopwatch thread;
   const Stopwatch stopwatch;
   for (int i = 0; i < repeats; ++i) bench.run(kernel);
-  return stopwatch.seconds();
+  return {stopwatch.seconds(), thread.seconds()};
 }
 
-/// How a sample of a kernel is taken.
+/// How samples of a kernel are taken.
 struct Plan {
-  int repeats = 1;
-  int warm_ups = 0;  ///< number of runs before the sample, which are not timed
+  int repeats = 1;     ///< 0: no samples are taken
+  int warm_ups = 0;    ///< number of runs before the sample, which are not timed
+  double seconds = 0;  ///< of the fastest run so far
 };
 
 /// Takes a sample; returns the mean seconds of its runs.
-double sample(KernelBench& bench, Kernel kernel, const Plan& plan, bool processor_time,
+double sample(KernelBench& bench, Kernel kernel, const Plan& plan, const TimingOptions& options,
               SteadinessWatch& watch) {
   for (int i = 0; i < plan.warm_ups; ++i) bench.run(kernel);
-  const ThreadStopwatch thread;
-  const double seconds = seconds_of_runs(bench, kernel, plan.repeats);
-  const double thread_seconds = thread.seconds();
-  watch.add_sample(seconds, thread_seconds);
-  return (processor_time ? thread_seconds : seconds) / plan.repeats;
+  const RunTime time = time_of_runs(bench, kernel, plan.repeats);
+  watch.add_sample(time.elapsed, time.on_thread);
+  return time.by(options) / plan.repeats;
 }
 
-Plan plan_samples(KernelBench& bench, Kernel kernel, double sample_seconds) {
+Plan plan_samples(KernelBench& bench, Kernel kernel, const TimingOptions& options) {
   constexpr double kMostRepeats = 1e5;
   constexpr std::size_t kMostRuns = 12;
   // a kernel that runs longer than this many samples streams far more than the caches hold, so it needs no
   // warm-up; for a first run the limit is twice that, because first runs take longer
   constexpr double kLong = 5.0;
+  const double least = options.sample_seconds;
+  Plan plan{.seconds = std::numeric_limits<double>::infinity()};
   std::vector<double> seconds;
   double best = std::numeric_limits<double>::infinity();
-  while (seconds.empty() || (seconds.size() < 2 && best < 2 * kLong * sample_seconds) ||
-         (best < kLong * sample_seconds && seconds.size() < kMostRuns && !is_steady(seconds))) {
-    seconds.push_back(std::max(seconds_of_runs(bench, kernel, 1), 1e-9));
+  while (seconds.empty() || (seconds.size() < 2 && best < 2 * kLong * least) ||
+         (best < kLong * least && seconds.size() < kMostRuns && !is_steady(seconds))) {
+    const RunTime time = time_of_runs(bench, kernel, 1);
+    seconds.push_back(std::max(time.elapsed, 1e-9));
     best = std::min(best, seconds.back());
+    plan.seconds = std::min(plan.seconds, time.by(options));
   }
-  return {.repeats = static_cast<int>(std::clamp(std::ceil(sample_seconds / best), 1.0, kMostRepeats)),
-          .warm_ups = best < kLong * sample_seconds ? runs_to_settle(seconds) : 0};
+  plan.repeats = static_cast<int>(std::clamp(std::ceil(least / best), 1.0, kMostRepeats));
+  plan.warm_ups = best < kLong * least ? runs_to_settle(seconds) : 0;
+  return plan;
+}
+
+/// The plans of each order, by kernel.
+using Plans = std::vector<std::array<Plan, kKernels.size()>>;
+
+/// Takes the run that made the plan as the only sample of orders that are plainly slow: their runs are long,
+/// and take several times as long as in the fastest order. They would take most of the time, and cannot be
+/// the best.
+void end_plainly_slow(Plans& plans, std::vector<Samples>& samples, std::size_t kernels) {
+  constexpr double kSlow = 3.0;
+  constexpr double kLongRun = 0.1;  // seconds; a shorter run may have been disturbed
+  for (std::size_t k = 0; k < kernels; ++k) {
+    double fastest = std::numeric_limits<double>::infinity();
+    for (const auto& of_order : plans) fastest = std::min(fastest, of_order[k].seconds);
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      Plan& plan = plans[i][k];
+      if (plan.seconds < kLongRun || plan.seconds < kSlow * fastest) continue;
+      samples[i][k].push_back(plan.seconds);
+      plan.repeats = 0;
+    }
+  }
 }
 
 std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options,
@@ -64,31 +100,35 @@ std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, c
   const std::size_t orders = benches.size();
   const std::span<const Kernel> kernels =
       benches.empty() ? std::span<const Kernel>() : benches.front()->kernels();
-  std::vector<std::array<Plan, kKernels.size()>> plans(orders);
+  Plans plans(orders);
+  const Stopwatch stopwatch;
   for (std::size_t i = 0; i < orders; ++i) {
     for (std::size_t k = 0; k < kernels.size(); ++k) {
       poll();
-      plans[i][k] = plan_samples(*benches[i], kernels[k], options.sample_seconds);
+      plans[i][k] = plan_samples(*benches[i], kernels[k], options);
     }
   }
   std::vector<Samples> samples(orders);
-  const Stopwatch stopwatch;
+  if (orders > 0) end_plainly_slow(plans, samples, kernels.size());
+  const double planned = stopwatch.seconds();
   for (int round = 0; round < options.max_rounds; ++round) {
     const double seconds = stopwatch.seconds();
-    if (round >= options.min_rounds && seconds + seconds / round > budget_seconds) break;
+    if (round >= options.min_rounds && seconds + (seconds - planned) / round > budget_seconds) break;
     for (std::size_t k = 0; k < kernels.size(); ++k) {
       watch.tick();
       for (std::size_t i = 0; i < orders; ++i) {
         const std::size_t order = (i + static_cast<std::size_t>(round)) % orders;
         poll();
-        samples[order][k].push_back(
-            sample(*benches[order], kernels[k], plans[order][k], options.processor_time, watch));
+        if (plans[order][k].repeats == 0) continue;
+        samples[order][k].push_back(sample(*benches[order], kernels[k], plans[order][k], options, watch));
       }
     }
   }
   for (const Samples& of_order : samples) {
-    for (const Kernel kernel : kernels)
-      watch.add_repeat(repeat_difference(of_order[static_cast<std::size_t>(kernel)]));
+    for (const Kernel kernel : kernels) {
+      const std::vector<double>& taken = of_order[static_cast<std::size_t>(kernel)];
+      if (taken.size() > 1) watch.add_repeat(repeat_difference(taken));
+    }
   }
   return samples;
 }

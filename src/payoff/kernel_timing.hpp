@@ -13,7 +13,8 @@ namespace meshorder {
 
 /// How long and how often kernels run.
 struct TimingOptions {
-  /// No round begins that is expected to end later than this; preparing the orders is not counted.
+  /// No round begins that is expected to end later than this. First runs, which plan the samples, are
+  /// counted; preparing the orders is not.
   double budget_seconds = 12.0;
   int min_rounds = 3;  ///< even beyond the budget
   int max_rounds = 25;
@@ -58,7 +59,9 @@ using PrepareOrder = std::function<std::unique_ptr<KernelBench>(Index)>;
 /// that changes of the machine's speed affect all orders alike. A round takes a sample of every kernel in
 /// every order, kernel by kernel; the next round begins with the next order. The first runs of a sample find
 /// another order's data in the caches and are not counted; their number is `runs_to_settle`, but 0 if a run
-/// takes longer than five times `sample_seconds`. The first bench is the reference of the speedups.
+/// takes longer than five times `sample_seconds`. If a kernel takes 0.1 s or more in an order, and three
+/// times as long as in the fastest order, its first run is its only sample there. The first bench is the
+/// reference of the speedups.
 Timings time_interleaved(std::span<KernelBench* const> benches, const TimingOptions& options = {});
 
 /// As above, for orders that are prepared when needed: `prepare(i)` returns the bench of order i; order 0 is

@@ -10,9 +10,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <thread>
 
 namespace meshorder {
 namespace {
@@ -158,6 +160,41 @@ TEST(TimeInterleaved, TimesEveryKernelInEveryOrder) {
     // ten times the work: slower, whatever else the machine does
     EXPECT_LT(times[1][kernel].speedup, 0.6);
   }
+}
+
+/// Runs that take a given time.
+class SleepingBench final : public KernelBench {
+ public:
+  explicit SleepingBench(std::chrono::milliseconds time) : time_(time) {}
+
+  [[nodiscard]] std::span<const Kernel> kernels() const override { return kProductsAlone; }
+  void share(int /*threads*/) override {}
+  void run(Kernel /*kernel*/) override {
+    ++runs;
+    std::this_thread::sleep_for(time_);
+  }
+  [[nodiscard]] std::span<const double> result(Kernel /*kernel*/) const override { return {}; }
+  [[nodiscard]] double streamed_bytes(Kernel /*kernel*/) const override { return 0; }
+  [[nodiscard]] std::size_t bytes() const override { return 0; }
+  [[nodiscard]] double redundancy() const override { return 0; }
+
+  int runs = 0;
+
+ private:
+  std::chrono::milliseconds time_;
+};
+
+TEST(TimeInterleaved, RunsAPlainlySlowOrderOnce) {
+  using std::chrono_literals::operator""ms;
+  SleepingBench slow(400ms);
+  SleepingBench fast(20ms);
+  const std::vector<KernelBench*> benches{&slow, &fast};
+  const std::vector<OrderTimes> times = time_interleaved(benches, quick()).orders;
+  EXPECT_EQ(slow.runs, 1);
+  EXPECT_EQ(times[0][Kernel::spmv].samples, 1);
+  EXPECT_GE(times[0][Kernel::spmv].best_ms, 400.0);
+  EXPECT_EQ(times[1][Kernel::spmv].samples, 4);
+  EXPECT_GT(times[1][Kernel::spmv].speedup, 3.0);
 }
 
 TEST(TimeInterleaved, StopsAtTheMostRounds) {

@@ -156,9 +156,9 @@ RegularNumbers read_parts(
 }  // namespace
 
 bool has_any_of(std::string_view text, std::string_view bytes) {
-  constexpr Offset kAtOnce = Offset{1} << 18;  // bytes, which a cache holds
+  constexpr Offset kInCache = Offset{1} << 18;  // bytes
   std::atomic<bool> found = false;
-  for_each_range(static_cast<Offset>(text.size()), kAtOnce, [&](Offset begin, Offset end) {
+  for_each_range(static_cast<Offset>(text.size()), kInCache, [&](Offset begin, Offset end) {
     const std::string_view part =
         text.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
     for (const char byte : bytes) {
