@@ -415,12 +415,11 @@ class DeckReader {
   ///
   /// @param bytes_before  bytes of the file that were left before these elements
   void reserve_cells(Index count, std::size_t nodes, std::size_t bytes_before) {
-    const std::size_t left = lines_.rest().size();
-    const std::size_t bytes =
-        (bytes_before - left) / std::max<std::size_t>(static_cast<std::size_t>(count), 1);
     const std::size_t cells = mesh_.cells.shapes.size() + static_cast<std::size_t>(count);
     if (cells <= mesh_.cells.shapes.capacity()) return;
-    const std::size_t all = cells + left / std::max<std::size_t>(bytes, 1);
+    const std::size_t left = lines_.rest().size();
+    const std::size_t bytes_of_one = (bytes_before - left) / static_cast<std::size_t>(count);
+    const std::size_t all = cells + left / bytes_of_one;
     mesh_.cells.reserve(static_cast<Offset>(all), static_cast<Offset>(all * nodes));
   }
 
