@@ -22,12 +22,12 @@ def rows(text, begin):
 def test_runs_are_measured_and_predict_larger_ones(tmp_path):
     environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     done = subprocess.run(
-        ["/usr/bin/python3", ROOT / "benchmarks" / "ranks.py", MESHORDER, "--sizes", "4000", "16000", "--ranks", "1", "2",
+        ["/usr/bin/python3", ROOT / "benchmarks" / "ranks.py", MESHORDER, "--sizes", "32000", "64000", "--ranks", "1", "2",
          "--vertices", "spectral", "--rounds", "1", "--mpirun", "mpirun --oversubscribe --bind-to none", "--folder", tmp_path,
          "--json", tmp_path / "runs.json", "--model"],
         env=environment, capture_output=True, text=True, timeout=120, check=True)
     runs = json.loads((tmp_path / "runs.json").read_text())
-    assert [(run["vertices"], run["ranks"]) for run in runs] == [(4096, 1), (8000, 2), (15625, 1), (32768, 2)]
+    assert [(run["vertices"], run["ranks"]) for run in runs] == [(32768, 1), (64000, 2), (64000, 1), (125000, 2)]
     for run in runs:
         several = run["ranks"] > 1
         assert set(run["stages"]) == (STAGES if several else {"read", "order", "write"})
@@ -36,7 +36,7 @@ def test_runs_are_measured_and_predict_larger_ones(tmp_path):
         assert len(run.get("sent", [])) == (2 if several else 0)
         assert all(sent > 0 and messages > 0 for sent, messages in run.get("sent", []))
     # tables of weak scaling and of the model
-    assert len(rows(done.stdout, "| 32,768 | 2 |")) == 2
+    assert len(rows(done.stdout, "| 125,000 | 2 |")) == 2
     assert len(rows(done.stdout, "| 1,000,000,000 | 1,024 |")) == 1
     # the size of the files depends only on the number of vertices
     files = [line.split(" | ")[12] for line in rows(done.stdout, "| 100,000,000 |")]
