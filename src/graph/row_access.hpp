@@ -20,7 +20,7 @@ inline void prefetch_entries(const Index* row) {
 /// Prefetches the row of the vertex that comes a few places after `k` in the order.
 inline void prefetch_row(GraphRef graph, std::span<const Index> order, Index k) {
   constexpr Index kAhead = 8;
-  if (k + kAhead < index_size(order)) {
+  if (k + kAhead < index_size(order) && !graph.neighbours.empty()) {
     prefetch_entries(graph.neighbours.data() + graph.offsets[order[k + kAhead]]);
   }
 }
