@@ -19,6 +19,11 @@ struct SimplicesRef {
   [[nodiscard]] Offset size() const noexcept {
     return static_cast<Offset>(vertices.size()) / (dimension + 1);
   }
+  /// Returns the vertices of a simplex.
+  [[nodiscard]] std::span<const Index> operator[](Offset simplex) const {
+    const Offset corners = dimension + 1;
+    return vertices.subspan(corners * simplex, corners);
+  }
 };
 
 /// Simplices of one dimension in the form of SimplicesRef, and the cells that they come from.

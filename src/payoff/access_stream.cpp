@@ -108,15 +108,18 @@ Offset turns_of(Kernel kernel, const CsrGraph& graph, SimplicesRef simplices, in
   if (kernel != Kernel::assembly || simplices.dimension == 0) return 0;
   constexpr int kSampledFrom = 4;
   constexpr Offset kStretch = 4096;
+  constexpr Offset kAhead = 12;  // simplices between a prefetch and its use
   const Offset stride = halvings < kSampledFrom ? kStretch : 8 * kStretch;
-  const Offset corners = simplices.dimension + 1;
+  const auto later = [&](Offset s) { return simplices[std::min(s, simplices.size() - 1)]; };
   Offset counted = 0;
   for (Offset begin = 0; begin < simplices.size(); begin += stride) {
     poll();
     const Offset end = std::min(begin + kStretch, simplices.size());
     counted += end - begin;
     for (Offset s = begin; s < end; ++s) {
-      const std::span<const Index> element = simplices.vertices.subspan(corners * s, corners);
+      prefetch_offsets(graph.offsets, later(s + 2 * kAhead));
+      prefetch_rows(graph.offsets, graph.neighbours, later(s + kAhead));
+      const std::span<const Index> element = simplices[s];
       for (const Index a : element) {
         for (const Index b : element) lengths.add(entries_below(graph[a], b) + (b > a ? 1 : 0));
       }

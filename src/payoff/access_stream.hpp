@@ -189,32 +189,32 @@ class AccessStream {
     const Index n = graph_.size();
     const VertexGatherer positions(positions_, kPointBytes, n, visitor);
     const VertexGatherer forces(forces_, kPointBytes, assembly ? 0 : n, visitor);
+    const VertexGatherer starts(starts_, kStartBytes, assembly ? n : 0, visitor);
     const std::vector<bool> rows = assembly ? sampled_rows(visitor) : std::vector<bool>();
     (assembly ? values_ : forces_).clear(visitor);
     Reader elements(elements_);
     for (Offset s = 0; s < simplices_.size(); ++s) {
-      const std::span<const Index> element = corners_of(s);
+      const std::span<const Index> element = simplices_[s];
       elements.read(corners * kColumnBytes, visitor);
       positions.gather(element, visitor);
       if (!assembly) {
         forces.gather(element, visitor);
         continue;
       }
-      prefetch_offsets(graph_.offsets, corners_of(s + 2 * kAhead));
-      for (const Index& v : corners_of(s + kAhead)) {
+      prefetch_offsets(graph_.offsets, later(s + 2 * kAhead));
+      for (const Index& v : later(s + kAhead)) {
         if (rows[v]) prefetch_rows(graph_.offsets, graph_.neighbours, {&v, 1});
       }
       for (const Index a : element) {
+        starts.gather(a, visitor);
         if (rows[a]) visit_row(a, element, visitor);
       }
     }
   }
 
-  /// Visits the start of row a and, for each corner, the columns that are searched and the value that is
-  /// added to.
+  /// Visits, for each corner, the columns of row a that are searched and the value that is added to.
   template <class Visitor>
   void visit_row(Index a, std::span<const Index> element, Visitor& visitor) const {
-    starts_.gather(kStartBytes * a, kStartBytes, visitor);
     const Offset begin = row_begin(a);
     for (const Index b : element) {
       const Offset k = entry(a, b);
@@ -223,24 +223,22 @@ class AccessStream {
     }
   }
 
-  /// Marks the rows of the matrix that have a sampled line.
+  /// Marks the rows of the matrix whose columns or values have a sampled line.
   template <class Visitor>
   [[nodiscard]] std::vector<bool> sampled_rows(const Visitor& visitor) const {
     std::vector<bool> rows(static_cast<std::size_t>(graph_.size()));
     for (Index a = 0; a < graph_.size(); ++a) {
       const Offset begin = row_begin(a);
       const Offset count = row_begin(a + 1) - begin;
-      rows[a] = starts_.is_sampled(kStartBytes * a, kStartBytes, visitor) ||
-                columns_.is_sampled(kColumnBytes * begin, kColumnBytes * count, visitor) ||
+      rows[a] = columns_.is_sampled(kColumnBytes * begin, kColumnBytes * count, visitor) ||
                 values_.is_sampled(kEntryBytes * begin, kEntryBytes * count, visitor);
     }
     return rows;
   }
 
-  /// Returns the corners of a simplex; if the number is too large, the corners of the last simplex.
-  [[nodiscard]] std::span<const Index> corners_of(Offset simplex) const {
-    const Offset corners = simplices_.dimension + 1;
-    return simplices_.vertices.subspan(corners * std::min(simplex, simplices_.size() - 1), corners);
+  /// Returns the corners of a simplex, or of the last if the number is too large.
+  [[nodiscard]] std::span<const Index> later(Offset simplex) const {
+    return simplices_[std::min(simplex, simplices_.size() - 1)];
   }
 
   template <class Visitor>
