@@ -49,6 +49,14 @@ std::span<const Kernel> kernels_of(const Mesh& mesh) {
   return kKernels;
 }
 
+void KernelBench::run(Kernel kernel) {
+  if (kernel == Kernel::spmv && !assembled_ && std::ranges::count(kernels(), Kernel::assembly) > 0) {
+    run(Kernel::assembly);
+  }
+  compute(kernel);
+  assembled_ = assembled_ || kernel == Kernel::assembly;
+}
+
 std::unique_ptr<KernelBench> prepare_kernels(KernelSet kernels, const KernelInput& input, int threads) {
   std::unique_ptr<KernelBench> bench;
   if (input.is_matrix()) {

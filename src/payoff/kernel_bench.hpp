@@ -58,8 +58,9 @@ class KernelBench : public Polymorphic {
   /// results have the same bits as on one thread.
   virtual void share(int threads) = 0;
 
-  /// Runs a kernel once; clears its results first.
-  virtual void run(Kernel kernel) = 0;
+  /// Runs a kernel once; clears its results first. A product multiplies with the matrix of the last assembly;
+  /// if there was none, it assembles first.
+  void run(Kernel kernel);
 
   /// Returns the result of the kernel's last run, row by row: for spmv a product for each vertex, for
   /// assembly the values of the matrix, for elements and springs a force for each vertex. Elements and
@@ -76,6 +77,11 @@ class KernelBench : public Polymorphic {
   /// Returns the share of elements that are computed in addition, because threads overlap: 0 on one thread,
   /// 0.02 if every fiftieth element is computed twice.
   [[nodiscard]] virtual double redundancy() const = 0;
+
+ private:
+  virtual void compute(Kernel kernel) = 0;
+
+  bool assembled_ = false;
 };
 
 /// Prepares the kernels of a mesh (see kernels_of); for a matrix, the product with exactly its entries. Keeps

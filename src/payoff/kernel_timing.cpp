@@ -103,7 +103,8 @@ std::vector<Samples> sample_interleaved(std::span<KernelBench* const> benches, c
   Plans plans(orders);
   const Stopwatch stopwatch;
   for (std::size_t i = 0; i < orders; ++i) {
-    for (std::size_t k = 0; k < kernels.size(); ++k) {
+    // the last kernels first: the first assembly computes the matrix of the product
+    for (std::size_t k = kernels.size(); k-- > 0;) {
       poll();
       plans[i][k] = plan_samples(*benches[i], kernels[k], options);
     }

@@ -2,10 +2,11 @@
 #include "payoff/plain_bench.hpp"
 
 #include "base/parallel.hpp"
+#include "base/point.hpp"
 #include "kernels/owned_batches.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <span>
 #include <type_traits>
 
@@ -23,15 +24,6 @@ void for_each_owned(std::span<const Index> vertices, std::size_t size, const pla
   }
 }
 
-double distance(std::span<const double> positions, Index a, Index b) {
-  double square = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double difference = positions[3 * std::size_t(b) + c] - positions[3 * std::size_t(a) + c];
-    square += difference * difference;
-  }
-  return std::sqrt(square);
-}
-
 std::vector<double> coordinates(std::span<const Point> points) {
   std::vector<double> result;
   result.reserve(3 * points.size());
@@ -41,18 +33,16 @@ std::vector<double> coordinates(std::span<const Point> points) {
 
 }  // namespace
 
-PlainBench::PlainBench(const KernelInput& input)
-    : corners_(input.simplices().dimension + 1), positions_(coordinates(input.points())) {
+PlainBench::PlainBench(const KernelInput& input) : corners_(input.simplices().dimension + 1) {
+  const std::array prepare{&PlainBench::prepare_matrix, &PlainBench::prepare_edges,
+                           &PlainBench::prepare_vertices};
+  take_turns(index_size(prepare), [&](Index turn) { (this->*prepare[turn])(input); });
+}
+
+void PlainBench::prepare_matrix(const KernelInput& input) {
   const CsrGraph& graph = input.graph();
-  const std::span<const Point> points = input.points();
-  const std::span<const Index> simplices = input.simplices().vertices;
-  all_.owned = {0, graph.size()};
-  if (corners_ > 1) all_.simplices.assign(simplices.begin(), simplices.end());
   starts_.reserve(static_cast<std::size_t>(graph.size()) + 1);
   columns_.reserve(graph.neighbours.size() + static_cast<std::size_t>(graph.size()));
-  all_.ends.reserve(graph.neighbours.size());
-  all_.lengths.reserve(graph.neighbours.size() / 2);
-  x_.reserve(points.size());
   starts_.push_back(0);
   for (Index v = 0; v < graph.size(); ++v) {
     const std::span<const Index> row = graph[v];
@@ -61,18 +51,34 @@ PlainBench::PlainBench(const KernelInput& input)
     columns_.push_back(v);
     columns_.insert(columns_.end(), larger, row.end());
     starts_.push_back(static_cast<Offset>(columns_.size()));
-    for (auto u = larger; u != row.end(); ++u) {
-      all_.ends.insert(all_.ends.end(), {v, *u});
-      all_.lengths.push_back(distance(positions_, v, *u));
-    }
   }
   values_.resize(columns_.size());
+}
+
+void PlainBench::prepare_edges(const KernelInput& input) {
+  const CsrGraph& graph = input.graph();
+  const std::span<const Point> points = input.points();
+  all_.ends.reserve(graph.neighbours.size());
+  all_.lengths.reserve(graph.neighbours.size() / 2);
+  for (Index v = 0; v < graph.size(); ++v) {
+    const std::span<const Index> row = graph[v];
+    for (auto u = std::upper_bound(row.begin(), row.end(), v); u != row.end(); ++u) {
+      all_.ends.insert(all_.ends.end(), {v, *u});
+      all_.lengths.push_back(norm(minus(points[*u], points[v])));
+    }
+  }
+}
+
+void PlainBench::prepare_vertices(const KernelInput& input) {
+  const std::span<const Point> points = input.points();
+  const std::span<const Index> simplices = input.simplices().vertices;
+  all_.owned = {0, index_size(points)};
+  if (corners_ > 1) all_.simplices.assign(simplices.begin(), simplices.end());
   positions_ = coordinates(displaced(points));
   forces_.resize(positions_.size());
+  x_.reserve(points.size());
   for (std::size_t v = 0; v < points.size(); ++v) x_.push_back(positions_[3 * v] - points[v][0]);
   y_.resize(x_.size());
-  // computes the matrix for spmv
-  run(Kernel::assembly);
 }
 
 void PlainBench::share(int threads) {
@@ -129,7 +135,7 @@ void PlainBench::run_part(Kernel kernel, const Owned& owned, const Share& share)
   }
 }
 
-void PlainBench::run(Kernel kernel) {
+void PlainBench::compute(Kernel kernel) {
   if (shares_.empty()) return run_part(kernel, plain::AllVertices{}, all_);
   for_each_part(index_size(shares_),
                 [&](Index part) { run_part(kernel, shares_[part].owned, shares_[part]); });

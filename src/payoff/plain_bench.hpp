@@ -16,13 +16,13 @@ class PlainBench final : public KernelBench {
   explicit PlainBench(const KernelInput& input);
 
   void share(int threads) override;
-  void run(Kernel kernel) override;
   [[nodiscard]] std::span<const double> result(Kernel kernel) const override;
   [[nodiscard]] double streamed_bytes(Kernel kernel) const override;
   [[nodiscard]] std::size_t bytes() const override;
   [[nodiscard]] double redundancy() const override;
 
  private:
+  void compute(Kernel kernel) override;
   /// The elements and edges that one thread computes; it adds only to the vertices `owned`.
   struct Share {
     plain::VertexRange owned;
@@ -30,6 +30,10 @@ class PlainBench final : public KernelBench {
     std::vector<Index> ends;
     std::vector<double> lengths;
   };
+
+  void prepare_matrix(const KernelInput& input);
+  void prepare_edges(const KernelInput& input);
+  void prepare_vertices(const KernelInput& input);
 
   template <class Owned>
   void run_part(Kernel kernel, const Owned& owned, const Share& share);

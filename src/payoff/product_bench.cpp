@@ -33,7 +33,7 @@ void ProductBench::run_rows(Index begin, Index end) {
                   std::span(y_).subspan(begin, static_cast<std::size_t>(end) - begin));
 }
 
-void ProductBench::run(Kernel kernel) {
+void ProductBench::compute(Kernel kernel) {
   if (kernel != Kernel::spmv) {
     throw InvalidArgument("kernels: a matrix has no kernel '" + std::string(to_string(kernel)) + "'");
   }

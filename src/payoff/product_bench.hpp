@@ -16,14 +16,14 @@ class ProductBench final : public KernelBench {
 
   [[nodiscard]] std::span<const Kernel> kernels() const override;
   void share(int threads) override;
-  /// Throws InvalidArgument for other kernels than spmv.
-  void run(Kernel kernel) override;
   [[nodiscard]] std::span<const double> result(Kernel kernel) const override;
   [[nodiscard]] double streamed_bytes(Kernel kernel) const override;
   [[nodiscard]] std::size_t bytes() const override;
   [[nodiscard]] double redundancy() const override { return 0; }
 
  private:
+  /// Throws InvalidArgument for other kernels than spmv.
+  void compute(Kernel kernel) override;
   void run_rows(Index begin, Index end);
 
   EntryPattern pattern_;

@@ -32,8 +32,6 @@ TunedBench::TunedBench(const KernelInput& input)
   for (std::size_t v = 0; v < moved.size(); ++v) {
     for (std::size_t c = 0; c < 3; ++c) x_[3 * v + c] = moved[v][c] - input.points()[v][c];
   }
-  // computes the matrix for spmv
-  run(Kernel::assembly);
 }
 
 void TunedBench::share(int threads) {
@@ -97,7 +95,7 @@ double TunedBench::redundancy() const {
   return static_cast<double>(computed - rest_.batches()) / static_cast<double>(rest_.batches());
 }
 
-void TunedBench::run(Kernel kernel) {
+void TunedBench::compute(Kernel kernel) {
   if (!shares_.empty()) return run_shared(kernel);
   const Stiffness stiffness{map_, matrix_};
   switch (kernel) {

@@ -16,13 +16,13 @@ class TunedBench final : public KernelBench {
   explicit TunedBench(const KernelInput& input);
 
   void share(int threads) override;
-  void run(Kernel kernel) override;
   [[nodiscard]] std::span<const double> result(Kernel kernel) const override;
   [[nodiscard]] double streamed_bytes(Kernel kernel) const override;
   [[nodiscard]] std::size_t bytes() const override;
   [[nodiscard]] double redundancy() const override;
 
  private:
+  void compute(Kernel kernel) override;
   /// The work of one thread.
   struct Share {
     OwnedBatches elements;
