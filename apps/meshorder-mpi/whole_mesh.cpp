@@ -64,7 +64,7 @@ void move_at_root(const Communicator& communicator, WholeMesh& whole,
                   whole.mesh,
                   permutation_within_classes(slot_classes(cell_arrays(whole.mesh)), narrowed(cells)), to);
     apply_reordering(whole.mesh, whole.maps.vertices, places, ids);
-    whole.maps.cells = whole.arranged.then(places);
+    whole.maps.cells = whole.arranged ? whole.arranged->then(places) : places;
     if (to.settle_cells != nullptr) whole.maps.cells = whole.maps.cells.then(to.settle_cells(whole.mesh));
     if (!files.maps.empty()) note_parts(whole.mesh, order.report.part_starts, whole.maps);
   });

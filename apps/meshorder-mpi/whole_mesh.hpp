@@ -12,7 +12,7 @@ namespace meshorder::command {
 
 /// A mesh that rank 0 reads, moves and writes, with its cells in the order that the output's format needs.
 struct WholeMesh : MeshToOrder {
-  Permutation arranged;  ///< from the cells as they were read to this order
+  std::optional<Permutation> arranged;  ///< from the cells as they were read to this order, if they moved
 };
 
 /// Reads a mesh into the memory of the root. Every rank has to call it.

@@ -124,13 +124,24 @@ class Ordering {
     std::optional<CsrGraph> graph = vertex_graph(mesh);
     times_.end("graph");
     if (is_race(arguments_)) run_race(*graph);
-    order_ = reorder(mesh, options_, graph);
-    if (raced_) give_reasons(*raced_, order_);
+    order_ =
+        reorder(mesh, options_, std::move(graph), [&](const CsrGraph& before, const Permutation& vertices) {
+          times_.end("order");
+          judge(before, vertices);
+          times_.end("spans");
+        });
+    if (!arguments_.maps.empty()) {
+      job_.maps.vertices = order_.vertices.permutation;
+      job_.maps.cells = order_.cells.permutation;
+    }
     times_.end("move");
-    times_.split_last("order", order_.vertices.seconds + order_.cells.seconds);
-    job_.maps.vertices = order_.vertices.permutation;
-    job_.maps.cells = order_.cells.permutation;
-    judge(*graph);
+    if (raced_) {
+      give_reasons(*raced_, order_);
+    } else {
+      note_no_better(mesh, options_, order_.cells.permutation, notes_);
+    }
+    note_convergence(order_.vertices.fiedler, "the vertices", notes_);
+    note_convergence(order_.cells.fiedler, "the elements", notes_);
     times_.end("spans");
   }
 
@@ -183,15 +194,10 @@ class Ordering {
     times_.end("race");
   }
 
-  /// Compares the order with the file's own. `graph` is the graph before the mesh moved.
-  void judge(const CsrGraph& graph) {
-    spans_ = {quick_edge_span(graph, {}), quick_edge_span(graph, job_.maps.vertices.old_to_new())};
-    if (!raced_) {
-      note_no_better(graph, options_, job_.maps.vertices, notes_);
-      note_no_better(job_.mesh, options_, job_.maps.cells, notes_);
-    }
-    note_convergence(order_.vertices.fiedler, "the vertices", notes_);
-    note_convergence(order_.cells.fiedler, "the elements", notes_);
+  /// Compares the order of vertices with the file's own. `graph` is the graph before the mesh moves.
+  void judge(const CsrGraph& graph, const Permutation& vertices) {
+    spans_ = {quick_edge_span(graph, {}), quick_edge_span(graph, vertices.old_to_new())};
+    if (!raced_) note_no_better(graph, options_, vertices, notes_);
   }
 
   [[nodiscard]] nlohmann::ordered_json to_json() const {

@@ -15,15 +15,13 @@ namespace meshorder::command {
 
 void StageTimes::end(std::string stage) {
   const double now = since_start_.seconds();
-  stages_.push_back({std::move(stage), now - ended_});
+  const auto known = std::ranges::find(stages_, stage, &Stage::name);
+  if (known == stages_.end()) {
+    stages_.push_back({std::move(stage), now - ended_});
+  } else {
+    known->seconds += now - ended_;
+  }
   ended_ = now;
-}
-
-void StageTimes::split_last(std::string stage, double seconds) {
-  Stage& last = stages_.back();
-  seconds = std::min(seconds, last.seconds);
-  last.seconds -= seconds;
-  stages_.insert(stages_.end() - 1, {std::move(stage), seconds});
 }
 
 void StageTimes::set_bytes(const std::string& stage, std::uint64_t bytes) {
@@ -33,9 +31,8 @@ void StageTimes::set_bytes(const std::string& stage, std::uint64_t bytes) {
 }
 
 double StageTimes::seconds(const std::string& stage) const {
-  double sum = 0;
-  for (const Stage& s : stages_) sum += s.name == stage ? s.seconds : 0;
-  return sum;
+  const auto known = std::ranges::find(stages_, stage, &Stage::name);
+  return known == stages_.end() ? 0 : known->seconds;
 }
 
 void StageTimes::print(const Console& console) const {

@@ -16,11 +16,8 @@ namespace meshorder::command {
 /// Measures the wall-clock time of a command, stage by stage.
 class StageTimes {
  public:
-  /// Adds the time since the last call, or since the object was made, as a stage of that name.
+  /// Adds the time since the last call, or since the object was made, to the stage of that name.
   void end(std::string stage);
-
-  /// Moves `seconds` of the last stage to a new stage of that name before it.
-  void split_last(std::string stage, double seconds);
 
   /// Sets how many bytes a stage read or wrote.
   void set_bytes(const std::string& stage, std::uint64_t bytes);

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -81,9 +82,9 @@ const Format* format_of_bytes(std::string_view bytes);
 /// Arranges the cells of a mesh as a file of the format `to` has them, before reordering and writing. A mesh
 /// that came from `to` stays as it is. Otherwise cells are sorted by `to.places`, which also gives the
 /// blocks. If `to.places` is null, the mesh loses its blocks. If the format then groups cells by type, cells
-/// are sorted by type, and each type becomes a block. Returns the applied permutation of cells. A reordering
-/// that is computed afterwards refers to the cells in the order of the file.
-Permutation arrange_cells(Mesh& mesh, const Format& to);
+/// are sorted by type, and each type becomes a block. Returns the applied permutation of cells, or nothing if
+/// they stay. A reordering that is computed afterwards refers to the cells in the order of the file.
+std::optional<Permutation> arrange_cells(Mesh& mesh, const Format& to);
 
 /// Returns an order of cells that puts the cells of each group of `to.together` together, except cells that
 /// cannot change places. O(cells · log cells).
@@ -105,12 +106,15 @@ void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, 
 Mesh read_mesh_from(const FilePath& path, const ReadOptions& options = {});
 
 /// As the public `write_mesh`, for a valid mesh; if `path` belongs to an OutputSet, its commit puts the files
-/// in place.
-Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options);
+/// in place. Returns nothing if the cells stay in their places.
+std::optional<Permutation> write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options);
 
-/// As the public function, for a valid mesh. `graph`: the vertex graph before reordering; if empty, it is
-/// computed and stored there.
-MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph>& graph);
+/// As the public function, for a valid mesh.
+///
+/// @param graph    the vertex graph; computed if there is none
+/// @param ordered  called with the graph and the new order of vertices, before the mesh moves
+MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph> graph,
+                  const std::function<void(const CsrGraph&, const Permutation&)>& ordered);
 
 // Chooses between the two formats of the extension .inp, Abaqus decks and AVS UCD; says which formats have
 // numbers.

@@ -151,7 +151,7 @@ bool has_places_of(const Format& format, const Mesh& mesh) {
   if (mesh.format == format.key()) return true;
   std::vector<Index> blocks;
   if (format.places != nullptr) return format.places(mesh, blocks).is_identity();
-  return !format.groups_cells_by_type || places_by_type(mesh.cells).is_identity();
+  return !format.groups_cells_by_type || !places_by_type(mesh.cells);
 }
 
 /// Writes the mesh to memory and throws InputError if anything is lost.
@@ -163,9 +163,9 @@ void refuse_losses(const Mesh& mesh, const FilePath& path, const Format& format)
     throw InputError(path.string(), lost.front(), "file not written: --strict forbids data loss");
 }
 
-/// Writes a valid mesh.
-Permutation write_valid(const Mesh& mesh, const FilePath& path, const Format& format,
-                        const WriteOptions& options) {
+/// Writes a valid mesh. Returns the new places of its cells, or nothing if they stay.
+std::optional<Permutation> write_valid(const Mesh& mesh, const FilePath& path, const Format& format,
+                                       const WriteOptions& options) {
   Notes ignored;
   Notes& notes = options.notes != nullptr ? *options.notes : ignored;
   Notes left_out;
@@ -182,18 +182,20 @@ Permutation write_valid(const Mesh& mesh, const FilePath& path, const Format& fo
   };
   if (index_size(kept) == mesh.cell_count() && has_places_of(format, mesh)) {
     write(mesh);
-    return Permutation::identity(mesh.cell_count());
+    return {};
   }
   Mesh arranged = mesh;
   keep_cells_at(arranged, kept, left_out);
-  const Permutation of_kept = arrange_cells(arranged, format);
+  const Permutation of_kept =
+      arrange_cells(arranged, format).value_or(Permutation::identity(arranged.cell_count()));
   write(arranged);
   return places_of(kept, of_kept, mesh.cell_count());
 }
 
 }  // namespace
 
-Permutation write_mesh_to(const Mesh& mesh, const FilePath& path, const WriteOptions& options) {
+std::optional<Permutation> write_mesh_to(const Mesh& mesh, const FilePath& path,
+                                         const WriteOptions& options) {
   return write_valid(mesh, path, output_format_of(path.path(), mesh.format), options);
 }
 
@@ -227,7 +229,7 @@ Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path, Note
 
 Permutation write_mesh(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options) {
   check_mesh(mesh);
-  return write_mesh_to(mesh, path, options);
+  return write_mesh_to(mesh, path, options).value_or(Permutation::identity(mesh.cell_count()));
 }
 
 Permutation write_mesh(const Mesh& mesh, std::ostream& stream, std::string_view format, Notes* notes) {
@@ -247,8 +249,9 @@ MemoryFiles write_mesh_to_memory(const Mesh& mesh, std::string_view format, std:
                                  Notes* notes) {
   check_mesh(mesh);
   MemoryStore store;
-  Permutation cells = write_valid(mesh, {std::string(name), store}, format_named(format), {.notes = notes});
-  return {std::move(store).files(), std::move(cells)};
+  const std::optional<Permutation> cells =
+      write_valid(mesh, {std::string(name), store}, format_named(format), {.notes = notes});
+  return {std::move(store).files(), cells ? *cells : Permutation::identity(mesh.cell_count())};
 }
 
 }  // namespace v0_3

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -76,8 +77,8 @@ std::vector<std::int64_t> in_new_order(const IndexView& numbers, const Permutati
 
 }  // namespace
 
-Permutation arrange_cells(Mesh& mesh, const Format& to) {
-  if (mesh.format == to.key()) return Permutation::identity(mesh.cell_count());
+std::optional<Permutation> arrange_cells(Mesh& mesh, const Format& to) {
+  if (mesh.format == to.key()) return {};
   if (to.places != nullptr) {
     std::vector<Index> blocks;
     Permutation places = to.places(mesh, blocks);
@@ -85,7 +86,8 @@ Permutation arrange_cells(Mesh& mesh, const Format& to) {
     return places;
   }
   mesh.cell_blocks.clear();
-  return to.groups_cells_by_type ? group_cells_by_type(mesh) : Permutation::identity(mesh.cell_count());
+  if (!to.groups_cells_by_type) return {};
+  return group_cells_by_type(mesh);
 }
 
 Permutation with_groups_together(const Mesh& mesh, Permutation cells, const Format& to) {
@@ -104,8 +106,8 @@ void check_holds_ids(const Format& format, Ids ids) {
 
 void apply_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, const Permutation& cells,
                       Ids ids) {
-  const Permutation arranged = arrange_cells(mesh, to);
-  apply_reordering(mesh, vertices, arranged.inverse().then(cells), ids);
+  const std::optional<Permutation> arranged = arrange_cells(mesh, to);
+  apply_reordering(mesh, vertices, arranged ? arranged->inverse().then(cells) : cells, ids);
   if (to.settle_cells != nullptr) (void)to.settle_cells(mesh);
 }
 
@@ -119,18 +121,19 @@ void undo_reordering(Mesh& mesh, const Format& to, const Permutation& vertices, 
   if (to.settle_cells != nullptr) (void)to.settle_cells(mesh);
 }
 
-MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph>& graph) {
+MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGraph> graph,
+                  const std::function<void(const CsrGraph&, const Permutation&)>& ordered) {
   return in_call(options.order.run, [&] {
     if (!options.format.empty()) check_holds_ids(format_named(options.format), options.ids);
     const std::vector<Index> blocks = mesh.cell_blocks;
-    const Permutation arranged = options.format.empty() ? Permutation::identity(mesh.cell_count())
-                                                        : arrange_cells(mesh, format_named(options.format));
+    std::optional<Permutation> arranged;
+    if (!options.format.empty()) arranged = arrange_cells(mesh, format_named(options.format));
     try {
       if (!graph) graph = vertex_graph(mesh);
       ReorderOptions of_arranged = options;
       std::vector<std::int64_t> groups;
-      if (options.order.cell_groups.size() == mesh.cells.shapes.size()) {
-        groups = in_new_order(options.order.cell_groups, arranged);
+      if (arranged && options.order.cell_groups.size() == mesh.cells.shapes.size()) {
+        groups = in_new_order(options.order.cell_groups, *arranged);
         of_arranged.order.cell_groups = groups;
       }
       MeshOrder order = compute_reordering(mesh, *graph, of_arranged);
@@ -140,13 +143,16 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGr
           to != nullptr && mesh.format == to->key() && order.cells.method.name == "original";
       if (to != nullptr && !has_groups && !is_as_in_file)
         order.cells.permutation = with_groups_together(mesh, std::move(order.cells.permutation), *to);
+      if (ordered) ordered(*graph, order.vertices.permutation);
+      graph.reset();  // its memory serves the moved arrays
       move_with_ids(mesh, order.vertices.permutation, order.cells.permutation, options.ids);
-      order.cells.permutation = arranged.then(order.cells.permutation);
+      if (arranged) order.cells.permutation = arranged->then(order.cells.permutation);
       if (to != nullptr && to->settle_cells != nullptr)
         order.cells.permutation = order.cells.permutation.then(to->settle_cells(mesh));
       return order;
     } catch (...) {
-      restore_cells(mesh, arranged, blocks);
+      if (arranged) restore_cells(mesh, *arranged, {});
+      mesh.cell_blocks = blocks;
       throw;
     }
   });
@@ -156,8 +162,7 @@ inline namespace v0_3 {
 
 MeshOrder reorder(Mesh& mesh, const ReorderOptions& options) {
   if (options.order.check != Check::none) in_arena(options.order.run, [&] { check_mesh(mesh); });
-  std::optional<CsrGraph> graph;
-  return reorder(mesh, options, graph);
+  return reorder(mesh, options, {}, {});
 }
 
 void apply_reordering(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids) {

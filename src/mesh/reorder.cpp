@@ -23,7 +23,8 @@ namespace {
 
 Index class_count(const Mesh& mesh) { return 4 * std::max<Index>(1, index_size(mesh.cell_blocks)); }
 
-Cells reordered(const Cells& cells, const Permutation& vertices, const Permutation& order) {
+/// Returns the cells in a new order, with new numbers of vertices.
+Cells reordered(Cells&& cells, const Permutation& vertices, const Permutation& order) {
   constexpr Index kCellsAtOnce = 65536;
   constexpr Index kAhead = 16;  // cells lie anywhere in memory: prefetch them early
   const std::span<const Index> new_to_old = order.new_to_old();
@@ -37,8 +38,9 @@ Cells reordered(const Cells& cells, const Permutation& vertices, const Permutati
   const auto begin_of = [&](Index cell) { return size > 0 ? size * cell : cells.offsets[cell]; };
   Cells result;
   result.shapes = moved(order, cells.shapes);
+  resize_large(result.vertices, cells.vertices.size());
   if (size > 0) {
-    result.offsets = cells.offsets;
+    result.offsets = std::move(cells.offsets);
   } else {
     result.offsets.resize(cells.offsets.size());
     for_cells([&](Index c, Index old, Index ahead) {
@@ -47,7 +49,6 @@ Cells reordered(const Cells& cells, const Permutation& vertices, const Permutati
     });
     std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
   }
-  resize_large(result.vertices, cells.vertices.size());
   for_cells([&](Index c, Index old, Index ahead) {
     __builtin_prefetch(cells.vertices.data() + begin_of(ahead));
     const Index* const from = cells.vertices.data() + begin_of(old);
@@ -79,7 +80,7 @@ void sort_ids_within_classes(std::vector<std::int64_t>& ids, const std::vector<I
 /// Moves vertices and cells with their arrays and sets, but not ids and blocks.
 void move_all(Mesh& mesh, const Permutation& vertices, const Permutation& cells) {
   mesh.points = moved(vertices, mesh.points);
-  mesh.cells = reordered(mesh.cells, vertices, cells);
+  mesh.cells = reordered(std::move(mesh.cells), vertices, cells);
   for (DataArray& array : mesh.data)
     reorder_data(array, array.association == Association::vertices ? vertices : cells);
   for (EntitySet& set : mesh.sets) {
@@ -188,6 +189,10 @@ std::array<int, 3> type_of(const Cells& cells, Index c) {
   return {-dimension(shape), static_cast<int>(shape), cells.vertex_count(c)};
 }
 
+bool have_one_type(const Cells& cells, Index a, Index b) {
+  return cells.shapes[a] == cells.shapes[b] && cells.vertex_count(a) == cells.vertex_count(b);
+}
+
 /// Moves the cells with their arrays, sets and ids, across blocks too.
 void move_cells(Mesh& mesh, const Permutation& places) {
   if (places.is_identity()) return;
@@ -197,7 +202,13 @@ void move_cells(Mesh& mesh, const Permutation& places) {
 
 }  // namespace
 
-Permutation places_by_type(const Cells& cells) {
+std::optional<Permutation> places_by_type(const Cells& cells) {
+  Index sorted = 1;
+  while (sorted < cells.size() &&
+         (have_one_type(cells, sorted - 1, sorted) || type_of(cells, sorted - 1) < type_of(cells, sorted))) {
+    ++sorted;
+  }
+  if (sorted >= cells.size()) return {};
   std::vector<Index> new_to_old(cells.shapes.size());
   std::iota(new_to_old.begin(), new_to_old.end(), Index{0});
   std::stable_sort(new_to_old.begin(), new_to_old.end(),
@@ -205,12 +216,12 @@ Permutation places_by_type(const Cells& cells) {
   return Permutation::from_new_to_old(std::move(new_to_old));
 }
 
-Permutation group_cells_by_type(Mesh& mesh) {
-  Permutation places = places_by_type(mesh.cells);
-  move_cells(mesh, places);
+std::optional<Permutation> group_cells_by_type(Mesh& mesh) {
+  std::optional<Permutation> places = places_by_type(mesh.cells);
+  if (places) move_cells(mesh, *places);
   mesh.cell_blocks.clear();
   for (Index c = 0; c < mesh.cell_count(); ++c) {
-    if (c == 0 || type_of(mesh.cells, c) != type_of(mesh.cells, c - 1)) mesh.cell_blocks.push_back(c);
+    if (c == 0 || !have_one_type(mesh.cells, c - 1, c)) mesh.cell_blocks.push_back(c);
   }
   return places;
 }

@@ -6,6 +6,7 @@
 #include <meshorder/mesh.hpp>
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -31,12 +32,12 @@ void apply_reordering(Mesh& mesh, const MeshOrder& order, Ids ids = Ids::renumbe
 void move_mesh(Mesh& mesh, const Permutation& vertices, const Permutation& cells, Ids ids);
 
 /// Returns the places of cells sorted by dimension, highest first, then by type, in their old order within a
-/// type. For formats that keep the cells of a type together. O(cells).
-Permutation places_by_type(const Cells& cells);
+/// type; nothing if they are sorted so. For formats that keep the cells of a type together. O(cells).
+std::optional<Permutation> places_by_type(const Cells& cells);
 
-/// Moves the cells to `places_by_type`, makes each type a block, and returns the applied permutation. O(size
-/// of the mesh).
-Permutation group_cells_by_type(Mesh& mesh);
+/// Moves the cells to `places_by_type`, makes each type a block, and returns the applied permutation, or
+/// nothing if no cell moves. O(size of the mesh).
+std::optional<Permutation> group_cells_by_type(Mesh& mesh);
 
 /// Undoes a permutation of cells and gives the mesh its old blocks. O(size of the mesh).
 void restore_cells(Mesh& mesh, const Permutation& arranged, std::vector<Index> blocks);

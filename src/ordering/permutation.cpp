@@ -99,7 +99,8 @@ Permutation Permutation::identity(Index n) {
   if (n < 0) throw InvalidArgument("permutation: the size " + std::to_string(n) + " is negative");
   std::vector<Index> map(static_cast<std::size_t>(n));
   std::iota(map.begin(), map.end(), Index{0});
-  return {map, map};
+  std::vector<Index> inverse = map;
+  return {std::move(map), std::move(inverse)};
 }
 
 Permutation Permutation::from_old_to_new(IndexView map) { return from_old_to_new(copied(map)); }

@@ -77,7 +77,7 @@ def test_order_says_what_each_stage_takes(command, tmp_path):
     meshes.write_tetgen(tmp_path)
     result = json.loads(command.run("order", "mesh.node", "-o", "a.node", "--json").stdout)
     stages = {stage["stage"]: stage for stage in result["timings"]}
-    assert list(stages) == ["read", "graph", "order", "move", "spans", "write", "sync"]
+    assert list(stages) == ["read", "graph", "order", "spans", "move", "write", "sync"]
     assert all(stage["seconds"] >= 0 for stage in stages.values())
     for stage, name in (("read", "mesh"), ("write", "a"), ("sync", "a")):
         files = [tmp_path / f"{name}{extension}" for extension in (".node", ".ele", ".face", ".edge")]
@@ -89,10 +89,10 @@ def test_order_says_what_each_stage_takes(command, tmp_path):
 
     raced = json.loads(command.ok("order", "mesh.node", "-o", "b.vtu", "--predict", "--machine", "zen3", "--json").stdout)
     names = [stage["stage"] for stage in raced["timings"]]
-    assert names == ["read", "calibrate", "graph", "race", "order", "move", "spans", "write", "sync"]
+    assert names == ["read", "calibrate", "graph", "race", "order", "spans", "move", "write", "sync"]
     printed = command.run("order", "mesh.node", "-o", "a.vtu", "--timings").stdout
     lines = printed[printed.index("time "):].splitlines()
-    assert [line[11:].split()[0] for line in lines] == ["read", "graph", "order", "move", "spans", "write", "sync", "all"]
+    assert [line[11:].split()[0] for line in lines] == ["read", "graph", "order", "spans", "move", "write", "sync", "all"]
     assert lines[0].endswith(" MB/s") and lines[1].endswith(" s")
     assert "time " not in command.run("order", "mesh.node", "-o", "a.vtu").stdout
 

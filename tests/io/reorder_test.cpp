@@ -102,7 +102,7 @@ TEST(PermutationWithinBlocks, KeepsTheGivenOrderInEachBlock) {
 TEST(GroupCellsByType, PutsTypesTogetherHighestDimensionFirst) {
   Mesh mesh = test::mixed_mesh();
   const Mesh before = mesh;
-  const Permutation order = group_cells_by_type(mesh);
+  const Permutation order = group_cells_by_type(mesh).value();
   check_mesh(mesh);
   for (Index c = 1; c < mesh.cell_count(); ++c) {
     EXPECT_GE(dimension(mesh.cells.shapes[c - 1]), dimension(mesh.cells.shapes[c]));

@@ -515,7 +515,8 @@ Held held(const Mesh& mesh, Notes& notes) {
   {
     Mesh arranged = mesh;
     arranged.format.clear();  // its cells may be in the order of another file
-    const Permutation places = arrange_cells(arranged, format_named("exodus"));
+    const Permutation places = arrange_cells(arranged, format_named("exodus"))
+                                   .value_or(Permutation::identity(arranged.cell_count()));
     given_cells.assign(places.new_to_old().begin(), places.new_to_old().end());
     exodus::write(arranged, FilePath("the pieces", store), notes);
   }

@@ -371,22 +371,27 @@ class VtuReader {
     }
   }
 
-  /// Appends `checked(i, number)` for every number of an array.
+  /// Appends `checked(i, number)` for every number of an array. The first array of the target's type becomes
+  /// the target, without a copy.
   template <class Number, class Checked>
   void append_integers(const VtuElement& array, std::int64_t count, std::vector<Number>& target,
                        const Checked& checked) {
     if (components_of(array) != 1)
       throw file_->error(array, "the array has several components", "1 is needed");
-    const Values values = file_->values(array, count);
+    Values values = file_->values(array, count);
     std::visit(
-        [&](const auto& numbers) {
+        [&](auto& numbers) {
           using Stored = typename std::decay_t<decltype(numbers)>::value_type;
           if constexpr (std::is_integral_v<Stored>) {
+            const std::span<const Stored> from = numbers;
             const std::size_t first = target.size();
-            resize_large(target, first + numbers.size());
+            if constexpr (std::is_same_v<Stored, Number>) {
+              if (target.empty()) target.swap(numbers);
+            }
+            resize_large(target, first + from.size());
             std::int64_t i = 0;
-            Number* place = target.data() + first;
-            for (const Stored number : numbers) *place++ = checked(i++, number);
+            std::transform(from.begin(), from.end(), target.begin() + static_cast<std::ptrdiff_t>(first),
+                           [&](Stored number) { return checked(i++, number); });
           } else {
             throw file_->error(array, "the array does not hold integers", "Int32 or Int64 is usual");
           }
