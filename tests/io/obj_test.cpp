@@ -166,6 +166,12 @@ TEST(Obj, KeepsNamesThatNoCellHas) {
       "f 1 2 3\nf 3 2 1\n");
 }
 
+TEST(Obj, KeepsTheOrderOfTheNamesOfGroups) {
+  expect_order_and_back_to("a.obj",
+                           "v 0 0 0\nv 1 0 0\nv 0 1 0\ng front cube\nf 1 2 3\ng back cube\nf 3 2 1\n"
+                           "g cube lid\nf 2 3 1\ng front cube\nf 2 1 3\n");
+}
+
 TEST(Obj, NumbersMaterialsByTheirNamesWhereThoseAreNumbers) {
   const TemporaryFolder folder;
   const std::string lists = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";

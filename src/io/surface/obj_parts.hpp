@@ -49,6 +49,9 @@ struct ObjMetadata : FormatMetadata {
   std::string texture;    ///< the lines vt
   std::string normals;    ///< the lines vn
   std::array<std::map<std::int32_t, std::string>, kStates.size()> names;
+  /// Names of groups in a statement g in alphabetical order, with spaces between; the same as in the file.
+  /// Only statements whose names are not in alphabetical order.
+  std::map<std::string, std::string> group_statements;
 
   [[nodiscard]] std::vector<std::string> contents() const override {
     std::vector<std::string> result;

@@ -363,6 +363,8 @@ class Reader {
       std::string_view names = groups_.names[k];
       std::set<std::string> different;
       for (auto name = next_word(names); !name.empty(); name = next_word(names)) different.emplace(name);
+      const std::string sorted = fmt::to_string(fmt::join(different, " "));
+      if (sorted != groups_.names[k]) metadata_->group_statements.try_emplace(sorted, groups_.names[k]);
       for (const std::string& name : different) of_statement[k + 1].push_back(&members[name]);
     }
     for (Index c = 0; c < index_size(groups_.of_cell); ++c) {

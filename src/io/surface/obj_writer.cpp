@@ -239,19 +239,24 @@ class ObjWriter {
     }
   }
 
+  /// Returns the names of groups, as a statement of the file that the mesh came from has them.
+  [[nodiscard]] std::string names_in_statement(std::span<const Index> groups) const {
+    std::string names;
+    Index previous = -1;  // a set may hold a cell twice
+    for (const Index s : groups) {
+      if (s != previous) names.append(names.empty() ? "" : " ").append(group_names_[s]);
+      previous = s;
+    }
+    if (!native_) return names;
+    const auto found = native_->group_statements.find(names);
+    return found != native_->group_statements.end() ? found->second : names;
+  }
+
   void write_changes(Index cell) {
     const auto groups = groups_of(cell);
     const bool same =
         cell > 0 ? std::ranges::equal(groups, groups_of(cell - 1)) : groups.empty() && !in_group_;
-    if (!same) {
-      out_.write("g");
-      Index previous = -1;  // a set may hold a cell twice
-      for (const Index s : groups) {
-        if (s != previous) out_.print(" {}", group_names_[s]);
-        previous = s;
-      }
-      out_.write("\n");
-    }
+    if (!same) out_.print("g{}{}\n", groups.empty() ? "" : " ", names_in_statement(groups));
     for (std::size_t i = 0; i < kStates.size(); ++i) {
       if (states_[i].empty()) continue;
       const bool changes =
