@@ -3,6 +3,7 @@
 
 #include "cells/cell_arrays.hpp"
 #include "graph/incidence.hpp"
+#include "io/format.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/reorder.hpp"
 #include "mesh/stored_matrix.hpp"
@@ -171,7 +172,7 @@ bool GpuReport::keeps() const {
 
 GpuReport gpu_report(const Mesh& mesh, const CsrGraph& graph, const GpuCard* card) {
   GpuReport report;
-  report.order = compute_reordering(mesh, graph, {.order = {.workload = Workload::gpu}});
+  report.order = compute_order_in_file(mesh, graph, {.order = {.workload = Workload::gpu}});
   report.additions = counted_additions(mesh, report.order, card);
   report.products = counted_products(graph, report.order);
   report.card = card;

@@ -186,6 +186,7 @@ class Ordering {
   void run_race(const CsrGraph& graph) {
     raced_ = race(job_.mesh, graph,
                   {.ordering = options_.order,
+                   .format = options_.format,
                    .graph_seconds = times_.seconds("graph"),
                    .machine = *std::move(machine_),
                    .timer = arguments_.measure ? time_orders : OrderTimer{}});

@@ -3,6 +3,7 @@
 
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
+#include "io/format.hpp"
 #include "mesh/graphs.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "payoff/access_stream.hpp"
@@ -98,7 +99,7 @@ class MeshStudy {
     const double seconds = best_seconds(
         threads_, [&] { moved = mesh_; },
         [&] {
-          order = compute_reordering(
+          order = compute_order_in_file(
               mesh_, graph_, {.methods = {ordering.vertices, ordering.elements}, .order = options_.ordering});
           apply_reordering(moved, order);
         });

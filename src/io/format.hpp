@@ -90,6 +90,10 @@ std::optional<Permutation> arrange_cells(Mesh& mesh, const Format& to);
 /// cannot change places. O(cells · log cells).
 Permutation with_groups_together(const Mesh& mesh, Permutation cells, const Format& to);
 
+/// As `compute_reordering`, for a mesh that will be written in the format `options.format`, or in its own if
+/// that is empty: without groups in `options`, those of `Format::together` stay together.
+MeshOrder compute_order_in_file(const Mesh& mesh, const CsrGraph& graph, const ReorderOptions& options);
+
 /// Throws InvalidArgument for `Ids::keep` if the format cannot hold ids.
 void check_holds_ids(const Format& format, Ids ids);
 

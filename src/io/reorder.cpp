@@ -98,6 +98,17 @@ Permutation with_groups_together(const Mesh& mesh, Permutation cells, const Form
   return permutation_within_classes(slot_classes(cell_arrays(mesh)), std::move(in_order));
 }
 
+MeshOrder compute_order_in_file(const Mesh& mesh, const CsrGraph& graph, const ReorderOptions& options) {
+  MeshOrder order = compute_reordering(mesh, graph, options);
+  const Format* const to = format_to_write(mesh, options.format);
+  const bool has_groups = !options.group_by.empty() || !options.order.cell_groups.empty();
+  const bool is_as_in_file =
+      to != nullptr && mesh.format == to->key() && order.cells.method.name == "original";
+  if (to != nullptr && !has_groups && !is_as_in_file)
+    order.cells.permutation = with_groups_together(mesh, std::move(order.cells.permutation), *to);
+  return order;
+}
+
 void check_holds_ids(const Format& format, Ids ids) {
   if (ids != Ids::keep || format.holds_ids) return;
   throw InvalidArgument(
@@ -136,13 +147,8 @@ MeshOrder reorder(Mesh& mesh, const ReorderOptions& options, std::optional<CsrGr
         groups = in_new_order(options.order.cell_groups, *arranged);
         of_arranged.order.cell_groups = groups;
       }
-      MeshOrder order = compute_reordering(mesh, *graph, of_arranged);
+      MeshOrder order = compute_order_in_file(mesh, *graph, of_arranged);
       const Format* const to = format_to_write(mesh, options.format);
-      const bool has_groups = !options.group_by.empty() || !options.order.cell_groups.empty();
-      const bool is_as_in_file =
-          to != nullptr && mesh.format == to->key() && order.cells.method.name == "original";
-      if (to != nullptr && !has_groups && !is_as_in_file)
-        order.cells.permutation = with_groups_together(mesh, std::move(order.cells.permutation), *to);
       if (ordered) ordered(*graph, order.vertices.permutation);
       graph.reset();  // its memory serves the moved arrays
       move_with_ids(mesh, order.vertices.permutation, order.cells.permutation, options.ids);

@@ -4,7 +4,7 @@
 #include "base/parallel.hpp"
 #include "base/run_scope.hpp"
 #include "base/stopwatch.hpp"
-#include "mesh/reorder.hpp"
+#include "io/format.hpp"
 #include "mesh/simplices.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "metrics/edge_span.hpp"
@@ -93,7 +93,7 @@ Timings raced(const std::vector<KernelInput>& orders, const AdviceOptions& optio
 std::vector<ReorderOptions> asked_for(const Mesh& mesh, const CsrGraph& graph, const AdviceOptions& options) {
   std::vector<ReorderOptions> result;
   for (const MeshMethods& methods : options.methods) {
-    result.push_back({.methods = methods, .order = options.ordering});
+    result.push_back({.methods = methods, .format = options.format, .order = options.ordering});
   }
   if (!result.empty()) return result;
   const auto method_for = [&](Workload workload) {
@@ -183,7 +183,7 @@ void add_candidates(Advice& advice, Orders& orders, const Mesh& mesh, const Advi
   const CsrGraph& graph = orders.all.front().graph();
   for (const ReorderOptions& reordering : asked_for(mesh, graph, options)) {
     const Stopwatch stopwatch;
-    const MeshOrder order = compute_reordering(mesh, graph, reordering);
+    const MeshOrder order = compute_order_in_file(mesh, graph, reordering);
     Candidate candidate{.vertices = order.vertices.method,
                         .elements = order.cells.method,
                         .workload = reordering.order.workload};

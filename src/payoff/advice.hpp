@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace meshorder {
@@ -34,6 +35,7 @@ struct AdviceOptions {
   int threads = 1;                       ///< that share each run; for predictions: `machine.model.threads`
   Caches caches = {};                    ///< caches to predict for; empty: those of the machine
   OrderOptions ordering = {};
+  std::string format = {};   ///< in which the mesh will be written; empty: its own
   double graph_seconds = 0;  ///< time that building the vertex graph took
   bool predict = true;
   bool describe = true;         ///< set the spans and the pattern of all candidates

@@ -2,8 +2,8 @@
 #include "payoff/mesh_comparison.hpp"
 
 #include "base/stopwatch.hpp"
+#include "io/format.hpp"
 #include "mesh/graphs.hpp"
-#include "mesh/reorder.hpp"
 #include "payoff/advice.hpp"
 #include "payoff/band.hpp"
 #include "payoff/product_bench.hpp"
@@ -50,7 +50,7 @@ void add_orders(MeshComparison& comparison, const Mesh& mesh, const KernelInput&
     const Stopwatch stopwatch;
     ComparedMeshOrder c{
         .asked = asked,
-        .order = compute_reordering(mesh, input.graph(), {.methods = asked, .order = options.ordering})};
+        .order = compute_order_in_file(mesh, input.graph(), {.methods = asked, .order = options.ordering})};
     if (asked.vertices == "auto") {
       by_auto = taken(c.order);
       if (by_auto == methods.front()) {

@@ -66,7 +66,7 @@ struct MeshComparison {
 /// Computes the mesh's own order and the other orders, each once. Times the kernels in all orders and on the
 /// band, in interleaved rounds. Cuts the mesh into simplices once, and builds its graph once.
 ///
-/// @throws as `compute_reordering` and `prepare_kernels`
+/// @throws as `compute_order_in_file` and `prepare_kernels`
 MeshComparison compare_orders(const Mesh& mesh, const MeshComparisonOptions& options);
 
 /// Returns advice on the mesh from the times on the largest number of threads; the other orders are the

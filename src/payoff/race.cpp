@@ -68,6 +68,7 @@ Race race(const Mesh& mesh, const CsrGraph& graph, const RaceOptions& options) {
                           .machine = options.machine,
                           .threads = options.machine.model.threads,
                           .ordering = options.ordering,
+                          .format = options.format,
                           .graph_seconds = options.graph_seconds,
                           .race_of = kInRace,
                           .race_timer = options.timer});

@@ -15,6 +15,7 @@ namespace meshorder {
 
 struct RaceOptions {
   OrderOptions ordering = {};                ///< the race is for `ordering.workload`
+  std::string format = {};                   ///< in which the mesh will be written; empty: its own
   double graph_seconds = 0;                  ///< time that building the vertex graph took
   MachineChoice machine = choose_machine();  ///< its predictions and threads are used
   OrderTimer timer = time_orders;            ///< empty: predictions decide

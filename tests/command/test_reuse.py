@@ -88,6 +88,20 @@ def test_compare_predicts_what_info_says_of_the_reordered_file(command):
         assert original[kernel]["misses"][0] < scrambled[kernel]["misses"][0]
 
 
+def test_compare_predicts_obj_files_whose_faces_are_grouped_by_material(command):
+    """`order` keeps the faces of a material together, and so cannot give every cell its best place."""
+    side = 12
+    lines = [f"v {x} {y} 0" for y in range(side) for x in range(side)]
+    for y in range(side - 1):
+        for x in range(side - 1):
+            v = y * side + x + 1
+            lines += [f"usemtl m{(x + y) % 3}", f"f {v} {v + 1} {v + side}", f"f {v + 1} {v + side + 1} {v + side}"]
+    (command.folder / "a.obj").write_text("\n".join(lines) + "\n")
+    result = command.json("compare", "a.obj", "--methods", "scrambled/lexmax", "--budget", "0.1", "--cache", "1K,4K")
+    command.ok("order", "a.obj", "-o", "b.obj", "--vertices", "scrambled", "--elements", "lexmax")
+    assert result["methods"][1]["reuse"] == command.json("info", "b.obj", "--cache", "1K,4K")["reuse"]
+
+
 def test_threads_do_not_change_predictions(command):
     made = command.json("models", "make", "grid", "--size", "6")["models"][0]["path"]
     one, three = (command.json("info", made, "--threads", threads) for threads in "13")

@@ -11,7 +11,11 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace meshorder {
 namespace {
@@ -76,6 +80,20 @@ TEST(Advice, AMeshInTheOrderThatIsAdvisedHasNothingToGain) {
     EXPECT_NEAR((*advice.candidates[0].costs.predicted)[k] / (*advice.as_is.costs.predicted)[k], 1, 0.01);
   }
   EXPECT_EQ(saved_in_time_step(advice, 0), 0);
+}
+
+TEST(Advice, IsOnTheFileThatWillBeWritten) {
+  Mesh mesh = grid_in_order("scrambled", "scrambled");
+  std::vector<std::int32_t> materials(mesh.cells.shapes.size());
+  for (std::size_t c = 0; c < materials.size(); ++c) materials[c] = static_cast<std::int32_t>(c % 5);
+  mesh.data.push_back({std::string(kLabel), Association::cells, 1, std::move(materials), {}, {}});
+  AdviceOptions options = quick();
+  options.methods = {{"hilbert", "lexmax"}};
+  options.halvings = 0;
+  options.format = "obj";
+  const Advice advice = advice_on(mesh, options);
+  reorder(mesh, {.methods = options.methods.front(), .format = "obj"});
+  EXPECT_EQ(advice_on(mesh, options).as_is.costs.predicted, advice.candidates.front().costs.predicted);
 }
 
 TEST(Advice, SamplingChangesPredictedRatiosLittle) {
