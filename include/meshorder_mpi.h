@@ -43,7 +43,7 @@ typedef struct mo_mpi_options {
                              of one order of the whole mesh, by the method "fiedler" only */
   const char* balance;    /**< every part gets equally many "vertices" (null) or "cells" */
   uint64_t seed;          /**< of the method; default 0 */
-  int32_t parts;          /**< number of parts; 0 (default): one for each rank */
+  int32_t parts;          /**< at most the number of vertices; 0 (default): one for each rank */
   int32_t threads;        /**< of this rank; default 1 */
   int32_t interface_last; /**< non-zero: vertices that share an element with those of other ranks or parts
                              come after the others; default 0 */

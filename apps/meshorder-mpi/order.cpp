@@ -84,12 +84,18 @@ void check_count_of_pieces(const Communicator& communicator, const Arguments& ar
   });
 }
 
-/// Throws SharedError if there are more parts than vertices.
-void check_parts(const Communicator& communicator, Index parts, GlobalIndex vertices) {
-  communicator.together([&] {
+/// Throws SharedError if there are more parts than vertices. `mesh` is the one that the root read, if any.
+void check_parts(const Communicator& communicator, Index parts, GlobalIndex vertices, const Mesh& mesh) {
+  communicator.at_root([&] {
     if (parts <= vertices) return;
-    throw InvalidArgument(fmt::format("--parts: the mesh has {} vertices, too few for {} parts",
-                                      with_commas(vertices), with_commas(parts)));
+    const StoredMatrix* const stored = stored_matrix(mesh);
+    const bool has_rows = stored != nullptr && !stored->is_graph;
+    throw InvalidArgument(fmt::format("--parts: the {} has {} {}, too few for {} parts",
+                                      has_rows            ? "matrix"
+                                      : stored != nullptr ? "graph"
+                                                          : "mesh",
+                                      with_commas(vertices), has_rows ? "rows" : "vertices",
+                                      with_commas(parts)));
   });
 }
 
@@ -218,7 +224,7 @@ void run(const Arguments& arguments, const Communicator& communicator) {
                                           : distributed::scattered(communicator, whole.mesh);
   const GlobalIndex vertex_count = slice.vertices.size();
   const GlobalIndex cell_count = slice.cells.size();
-  check_parts(communicator, arguments.parts, vertex_count);
+  check_parts(communicator, arguments.parts, vertex_count, whole.mesh);
   MeshChecksums before;
   if (by_all && !arguments.maps.empty()) before = checksums_of(communicator, slice);
   const double read_seconds = reading.seconds();
@@ -266,7 +272,9 @@ void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
           "Method for the vertices of a part, see `meshorder methods`; `auto` is spectral; fiedler orders\n"
           "the whole mesh unless --partition is ptscotch, hilbert or rsb")
       ->capture_default_str();
-  subcommand.add_option("--parts", arguments.parts, "Number of parts; 0: as many as ranks")
+  subcommand
+      .add_option("--parts", arguments.parts,
+                  "Number of parts, at most that of vertices (of rows in a matrix); 0: as many as ranks")
       ->check(whole_from(0))
       ->capture_default_str();
   subcommand

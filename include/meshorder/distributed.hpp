@@ -33,7 +33,7 @@ struct RankOptions {
   std::string partition = "ptscotch";
   std::string balance = "vertices";  ///< of `order_parts`: every part gets equally many "vertices" or "cells"
   std::uint64_t seed = 0;
-  std::int32_t parts = 0;    ///< of `order_parts`; 0: one for each rank
+  std::int32_t parts = 0;    ///< of `order_parts`, at most the number of vertices; 0: one for each rank
   std::int32_t threads = 1;  ///< of this rank
   /// Whether vertices that share an element with those of other ranks or parts come after the others.
   bool interface_last = false;
@@ -120,7 +120,7 @@ inline RankOrder order_ranks(MPI_Comm communicator, const RankMesh& mesh, const 
 /// @param communicator  of the ranks that share the mesh
 /// @param mesh          of this rank, with coordinates; each element on one rank
 /// @param options       the same on all ranks
-/// @throws Error as `order_ranks`
+/// @throws Error as `order_ranks`, and for more parts than vertices
 /// @note PT-Scotch needs MPI_THREAD_MULTIPLE; without it "hilbert" makes the parts.
 inline PartOrder order_parts(MPI_Comm communicator, const RankMesh& mesh, const RankOptions& options = {}) {
   const mo_mpi_mesh given = detail::to_c(mesh);

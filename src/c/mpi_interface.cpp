@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
@@ -219,7 +220,14 @@ mo_status mo_mpi_order_parts(int32_t communicator, const mo_mpi_mesh* mesh, cons
         DistributedOptions wanted = options_of(ranks, options);
         if (wanted.partitioner == distributed::Partitioner::ptscotch && !lets_threads_call())
           wanted.partitioner = distributed::Partitioner::hilbert;
-        const distributed::OwnedParts parts = order_parts_of_owned(ranks, mesh_of(ranks, mesh), wanted);
+        OwnedMesh owned = mesh_of(ranks, mesh);
+        ranks.together([&] {
+          const GlobalIndex vertices = owned.vertices.size();
+          require(wanted.parts <= vertices, "options: the mesh has " + std::to_string(vertices) +
+                                                " vertices, too few for " + std::to_string(wanted.parts) +
+                                                " parts");
+        });
+        const distributed::OwnedParts parts = order_parts_of_owned(ranks, std::move(owned), wanted);
         write(ranks, parts.new_numbers, new_numbers, "new_numbers");
         write(ranks, parts.starts, part_starts, "part_starts");
         write(ranks, parts.cells, cell_parts);

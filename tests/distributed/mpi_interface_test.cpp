@@ -221,6 +221,10 @@ TEST(RankMeshes, AFaultOfOneRankIsToldOnAll) {
       Code::invalid_argument, "nonsense");
   expect_error([&] { (void)order_parts(MPI_COMM_WORLD, solver.view(), {.partition = "rcb"}); },
                Code::invalid_argument, "rcb");
+  const Index n = solver.mesh.vertex_count();
+  expect_error([&] { (void)order_parts(MPI_COMM_WORLD, solver.view(), {.parts = n + 1}); },
+               Code::invalid_argument, "too few for " + std::to_string(n + 1) + " parts");
+  EXPECT_EQ(order_parts(MPI_COMM_WORLD, solver.view(), {.parts = n}).part_starts.back(), n);
   if (last > 0) {
     mesh = solver.view();
     mesh.points = {};

@@ -390,6 +390,12 @@ def test_a_matrix_without_coordinates_has_no_geometric_order(tmp_path, matrix, o
     order(2, matrix, "-o", tmp_path / "b.mtx", "--points", tmp_path / "points.txt", *options)
 
 
+def test_more_parts_than_rows_are_refused_in_the_terms_of_matrices(tmp_path, matrix):
+    done = launch(2, "order", matrix, "-o", tmp_path / "b.mtx", "--parts", "500")
+    assert done.returncode == 2
+    assert own_lines(done) == ["meshorder: --parts: the matrix has 400 rows, too few for 500 parts"]
+
+
 def test_a_matrix_is_spoken_of_as_by_one_process(tmp_path, matrix):
     one = serial("order", matrix, "-o", tmp_path / "b.mtx", "--vertices", "spectral").stdout
     done = order(2, matrix, "-o", tmp_path / "b.mtx", "--vertices", "spectral").stdout

@@ -270,7 +270,7 @@ def order_parts(communicator: Any, vertex_count: int, cells: ArrayLike | tuple[A
         vertex_count: number of vertices that this rank owns.
         cells: the elements that this rank has, in a form that `order_ranks` takes; each element is on one rank only.
         points: coordinates of the rank's own vertices, ``vertex_count`` rows of one to three.
-        parts: number of parts; 0: one for each rank.
+        parts: number of parts, at most the number of vertices; 0: one for each rank.
         method: name of the vertex method for the parts, but not "auto", "original" or "scrambled".
         partition: the method that makes the parts: "ptscotch", which needs MPI_THREAD_MULTIPLE and is replaced by
             "hilbert" without it; "hilbert"; "rsb", recursive spectral bisection; or "order", which orders the whole
