@@ -49,9 +49,10 @@ enum {
   MO_OUT_OF_MEMORY = 8
 };
 
-/** Type of the numbers of an array. */
+/** Type of the numbers of an array. MO_UINT8 is for `vtk_types` only. Data of vertices and cells need no
+ * type: `mo_move` moves rows of any number of bytes. */
 typedef int32_t mo_type;
-enum { MO_INT32 = 0, MO_UINT32 = 1, MO_INT64 = 2, MO_UINT64 = 3, MO_FLOAT = 4, MO_DOUBLE = 5 };
+enum { MO_INT32 = 0, MO_UINT32 = 1, MO_INT64 = 2, MO_UINT64 = 3, MO_FLOAT = 4, MO_DOUBLE = 5, MO_UINT8 = 6 };
 
 /** An array that is read during the call, aligned as its type. A null pointer to this structure, or size 0,
  * means no array. */
@@ -144,7 +145,8 @@ MO_API mo_status mo_order_graph(const mo_in* offsets, const mo_in* neighbours, c
  *
  * @param cell_offsets       cells + 1, ascending, the first is `base`
  * @param cell_vertices      vertices of the cells, from `base` on
- * @param vtk_types          VTK's type of each cell (any integer type), or null: all cells of one dimension
+ * @param vtk_types          VTK's type of each cell (any integer type; VTK has MO_UINT8), or null: all cells
+ *                           of one dimension
  * @param vertex_count       n; 0: as many as there are points
  * @param points             dimension * n coordinates, or null
  * @param dimension          1 to 3; not used without points

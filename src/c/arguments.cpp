@@ -28,6 +28,7 @@ void check_alignment(const void* data, mo_type type, const char* name) {
   const std::size_t alignment = type == MO_INT32 || type == MO_UINT32 || type == MO_FLOAT
                                     ? alignof(std::int32_t)
                                 : type == MO_DOUBLE ? alignof(double)
+                                : type == MO_UINT8  ? alignof(std::uint8_t)
                                                     : alignof(std::int64_t);
   if (reinterpret_cast<std::uintptr_t>(data) % alignment == 0) return;
   fail(name, "the address is not a multiple of " + std::to_string(alignment) +
@@ -148,6 +149,10 @@ IndexView offsets_of(const mo_in* array, const char* name) {
 }
 
 std::vector<std::uint8_t> types_of(const mo_in* array) {
+  if (array != nullptr && array->type == MO_UINT8 && is_given(array, "vtk_types")) {
+    const auto* const types = static_cast<const std::uint8_t*>(array->data);
+    return {types, types + array->size};
+  }
   const IndexView given = integers(array, "vtk_types");
   std::vector<std::uint8_t> types(given.size());
   for (std::size_t c = 0; c < given.size(); ++c) {

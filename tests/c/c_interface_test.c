@@ -152,10 +152,11 @@ static void test_mesh(void) {
   static const int32_t cell_offsets[3] = {1, 4, 7};
   static const int32_t cell_vertices[6] = {1, 2, 3, 2, 4, 3};
   static const int32_t types[2] = {5, 5};
+  static const uint8_t bytes[2] = {5, 5};
   static const double xy[8] = {0, 0, 1, 0, 0, 1, 1, 1};
   const mo_in offsets = in32(cell_offsets, COUNT(cell_offsets));
   const mo_in vertices = in32(cell_vertices, COUNT(cell_vertices));
-  const mo_in vtk_types = in32(types, COUNT(types));
+  mo_in vtk_types = in32(types, COUNT(types));
   const mo_in points = {xy, 8, MO_DOUBLE};
   int32_t vertex_new_to_old[4];
   int32_t cell_new_to_old[2];
@@ -179,6 +180,15 @@ static void test_mesh(void) {
   CHECK(strcmp(cell_result.method, "lexmax") == 0);
   CHECK(cell_new_to_old[0] + cell_new_to_old[1] == 3);
   CHECK(cell_old_to_new[cell_new_to_old[0] - 1] == 1);
+
+  vtk_types.data = bytes;
+  vtk_types.type = MO_UINT8;
+  CHECK(mo_order_mesh(&offsets, &vertices, &vtk_types, 0, &points, 2, &options, NULL, NULL, NULL,
+                      &cell_inverse, NULL, NULL) == MO_OK);
+  CHECK(cell_old_to_new[cell_new_to_old[0] - 1] == 1);
+  CHECK(mo_order_mesh(&offsets, &vtk_types, NULL, 0, &points, 2, &options, NULL, NULL, NULL, &cell_inverse,
+                      NULL, NULL) == MO_INVALID_ARGUMENT);
+  CHECK(strstr(mo_last_error(), "cell_vertices: the type is 6") != NULL);
 
   CHECK(mo_move(&map, 1, xy, moved, (int64_t)(2 * sizeof(double))) == MO_OK);
   for (k = 0; k < 4; ++k) {
