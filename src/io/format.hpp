@@ -20,7 +20,7 @@ namespace meshorder {
 /// A file format: its name, its file extensions, its reader and its writer.
 ///
 /// Readers throw Error for every fault of a file and must return a mesh that passes `check_mesh`. Writers
-/// leave no partial file and note the parts of the mesh that the format has no place for.
+/// leave no partial file and note what the format cannot hold. Every format has a reader and a writer.
 struct Format {
   std::string_view name;                     ///< as people write it: "Gmsh"
   std::vector<std::string_view> extensions;  ///< with dot, lower case

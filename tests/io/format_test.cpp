@@ -40,6 +40,14 @@ TEST(Format, IsFoundByItsExtensionInAnyCase) {
   EXPECT_THROW((void)format_of("mesh"), InputError);
 }
 
+TEST(Format, EachHasAReaderAndAWriter) {
+  for (const Format& format : all_formats()) {
+    EXPECT_NE(format.read, nullptr) << format.name;
+    EXPECT_NE(format.write, nullptr) << format.name;
+    EXPECT_NE(format.holds, nullptr) << format.name;
+  }
+}
+
 TEST(Format, ExtensionsAreUnique) {
   std::vector<std::string> all;
   for (const FormatInfo& format : formats()) {
