@@ -3,8 +3,8 @@
 
 #include "base/parallel.hpp"
 #include "kernels/positions.hpp"
-#include "kernels/rotation.hpp"
 #include "lab/admm/local_steps.hpp"
+#include "lab/support/rotation.hpp"
 
 #include <cmath>
 #include <limits>

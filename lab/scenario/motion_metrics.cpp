@@ -1,7 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "lab/scenario/motion_metrics.hpp"
 
-#include "kernels/rotation.hpp"
+#include "lab/support/rotation.hpp"
 #include <meshorder/error.hpp>
 
 #include <algorithm>

@@ -172,7 +172,10 @@ HWY_INLINE bool rotations_by_formula(const typename Lanes::Value (&f)[3][3], typ
   return true;
 }
 
-/// Computes the rotations R closest to 3×3 matrices, which maximise R:F: see closest_rotation.
+/// Computes the rotation closest to each 3×3 matrix F: R with RᵀR = I and det R = 1 that minimises ‖F − R‖.
+/// For det F > 0 it is the rotation of F's polar decomposition. It exists for every F. If it is not unique (F
+/// = 0, or σ₂ + σ₃ = 0 for the signed singular values), returns one of the closest rotations: the identity
+/// for F = 0. NaN if an entry is not finite. The error is about 1e-15 σ₁ / (σ₂ + σ₃).
 template <class Lanes>
 HWY_INLINE void closest_rotations(const typename Lanes::Value (&f)[3][3], typename Lanes::Value (&r)[3][3]) {
   RotationTerms<Lanes> terms;

@@ -1,5 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "kernels/rotation.hpp"
+#include "lab/support/rotation.hpp"
 
 #include "payoff/elastic.hpp"
 

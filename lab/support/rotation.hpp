@@ -10,10 +10,7 @@ namespace meshorder {
 /// A 3×3 matrix, row by row.
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
-/// Returns the rotation closest to F: R with RᵀR = I and det R = 1 that minimises ‖F − R‖. For det F > 0 it
-/// is the rotation of F's polar decomposition. It exists for every F. If it is not unique (F = 0, or σ₂ + σ₃
-/// = 0 for the signed singular values), returns one of the closest rotations: the identity for F = 0. NaN if
-/// an entry is not finite. The error is about 1e-15 σ₁ / (σ₂ + σ₃).
+/// Returns the rotation closest to F, as `closest_rotations` computes it.
 inline Matrix3 closest_rotation(const Matrix3& f) {
   double from[3][3];
   double to[3][3];
