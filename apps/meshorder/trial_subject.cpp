@@ -136,11 +136,13 @@ class TriedMesh final : public TrialSubject {
   OrderingOptions options_;
 };
 
-/// Returns whether a case is decomposed for several processes: it has folders such as processor0 or
-/// processors4.
+/// Returns whether a folder with this name in a case has meshes of processes: processor0 or processors4.
+bool is_of_process(const std::string& name) { return name.starts_with("processor"); }
+
+/// Returns whether a case is decomposed for several processes.
 bool is_decomposed(const fs::path& folder) {
   return std::ranges::any_of(fs::directory_iterator(folder), [](const fs::directory_entry& entry) {
-    return entry.is_directory() && entry.path().filename().string().starts_with("processor");
+    return entry.is_directory() && is_of_process(entry.path().filename().string());
   });
 }
 
@@ -174,6 +176,11 @@ class TriedCase final : public TrialSubject {
   }
 
   [[nodiscard]] TrialFolder folder(const std::vector<std::string>& with) const override {
+    if (is_decomposed(path_) && (with.empty() || std::ranges::any_of(with, is_of_process))) {
+      throw InputError(
+          path_, "it has a mesh in constant and others in processor folders; only the first can be tried",
+          "if the program reads that one, name the folders that it needs, as in --with 0,constant,system");
+    }
     return {path_, "", with};
   }
 

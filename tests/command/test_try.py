@@ -568,6 +568,18 @@ def test_what_links_of_a_case_lead_to_stays(folder, case, linked, method):
     assert by_name(result)[method]["fault"] is None
 
 
+def test_a_case_with_meshes_of_processes_is_tried_only_without_them(folder, case):
+    """A parallel program reads these meshes, which stay in their order."""
+    (case / "processor0" / "constant" / "polyMesh").mkdir(parents=True)
+    (case / "processor0" / "constant" / "polyMesh" / "owner").write_text("")
+    folder.before = folder.contents()
+    for options in ([], ["--with", "0,constant,system,processor0"]):
+        fault = folder.fails("cavity", *options, "--", "flow")
+        assert "others in processor folders" in fault and "--with 0,constant,system" in fault
+    result = folder.json("cavity", "--methods", "rcm", "--budget", "6", "--with", "0,constant,system", "--json", "--", "flow")
+    assert by_name(result)["rcm"]["fault"] is None
+
+
 def test_faults_of_cases(folder, case):
     assert "there is no mesh of OpenFOAM" in folder.fails(".", "--", "flow")
     assert "there is no such order; cells have the vertex methods" in folder.fails("cavity", "--methods", "lexmax", "--", "flow")
