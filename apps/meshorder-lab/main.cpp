@@ -19,7 +19,7 @@ constexpr std::array kAdders{add_simulate, add_reproduce, add_report, add_models
 static_assert(kAdders.size() == kLabCommands.size());
 
 void describe(CLI::App& app, std::vector<std::string>& /*arguments*/) {
-  app.description("The laboratory of meshorder: the program that `meshorder` runs for these subcommands.");
+  app.description("The laboratory of meshorder. `meshorder` runs this program for these subcommands.");
   for (std::size_t i = 0; i < kLabCommands.size(); ++i)
     kAdders[i](*app.add_subcommand(kLabCommands[i].name, kLabCommands[i].description));
   add_serve_steps(*app.add_subcommand("serve-steps"));

@@ -155,7 +155,7 @@ std::string add_mesh(Page& page, const std::string& file, const ReportArguments&
 std::string title_of(const Page& page) {
   std::vector<std::string> names;
   for (const PageMesh& mesh : page.meshes) names.push_back(mesh.name);
-  return fmt::format("What the order of {} is worth", fmt::join(names, ", "));
+  return fmt::format("The gain from orders of {}", fmt::join(names, ", "));
 }
 
 /// Throws InvalidArgument for a name that is not that of a page: a page would overwrite such a file, perhaps
@@ -319,20 +319,20 @@ void run(const ReportArguments& arguments) {
 void add_report(CLI::App& subcommand) {
   subcommand.footer(
       "Examples:\n"
-      "  meshorder report dragon.veg -o dragon.html   your mesh as it is and in other orders, and what\n"
-      "                                               each is worth; takes about half a minute\n"
+      "  meshorder report dragon.veg -o dragon.html   your mesh in its own order and in others, with the\n"
+      "                                               gain of each; takes about half a minute\n"
       "  meshorder report results/                    a study: writes its tables, figures and page again\n"
       "  meshorder report mine/ theirs/results.json   two studies: savings of orders on both machines");
   const auto arguments = std::make_shared<ReportArguments>();
   subcommand
       .add_option(
           "INPUT", arguments->inputs,
-          "Mesh, matrix or graph files; or the folder or results.json of one study, or of two to compare")
+          "Mesh, matrix or graph files; or one study, or two to compare, each by its folder or results.json")
       ->required()
       ->type_name("MESH… | STUDY [STUDY]");
   subcommand.add_option(
       "-o,--output", arguments->output,
-      "File for the page on meshes (default: report.html), or on two studies (comparison.html)");
+      "File for the page. Default: report.html for meshes, comparison.html for two studies");
   subcommand
       .add_option("--budget", arguments->budget_seconds,
                   "Seconds to spend on running the kernels, for each mesh")

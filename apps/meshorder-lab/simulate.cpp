@@ -266,27 +266,27 @@ void add_scenario_options(CLI::App& subcommand, SimulateArguments& arguments) {
                         "Mesh instead of the scenario's own: a file, or a name from `meshorder models`");
   CLI::Option* const order = subcommand.add_option(
       "--order", arguments.order,
-      "VERTICES or VERTICES/ELEMENTS. With only VERTICES, elements have the same method for\n"
-      "auto, original and scrambled, and lexmax for others; those of water follow max");
+      "VERTICES or VERTICES/ELEMENTS. Without ELEMENTS, the method is also that of the elements if it\n"
+      "is auto, original or scrambled; else they are ordered by lexmax. Elements of water follow max");
   subcommand.add_option("--vertices", arguments.vertices, "Method for vertices, see `meshorder methods`")
       ->excludes(order);
   subcommand.add_option("--elements", arguments.elements, "Method for elements, see `meshorder methods`")
       ->excludes(order);
   subcommand
       .add_option("--order-every", arguments.order_every,
-                  "For fluids: steps from one order of the particles to the next; 0: when it pays")
+                  "For fluids: number of steps after which the particles are ordered again; 0: when it pays")
       ->check(in_range(0, 1'000'000));
   subcommand.add_option("--steps", arguments.steps, "Number of steps")->check(in_range(1, 1'000'000));
   subcommand.add_option("--preconditioner", arguments.preconditioner,
                         "For backward Euler: " + names_of<PreconditionerKind>());
   subcommand.add_option("--precision", arguments.precision,
-                        "double or single: precision of the matrix in CG, of all arrays in ADMM");
+                        "Precision, double or single: of the matrix in CG, of all arrays in ADMM");
 }
 
 void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {
   CLI::Option* const frames = subcommand.add_option(
       "--vtk", arguments.frames, "Write the motion into this folder, for ParaView: open SCENARIO.pvd");
-  subcommand.add_option("--every", arguments.every, "Steps from one frame to the next")
+  subcommand.add_option("--every", arguments.every, "Number of steps between frames")
       ->check(whole_from(1))
       ->needs(frames)
       ->capture_default_str();
@@ -294,7 +294,7 @@ void add_output_options(CLI::App& subcommand, SimulateArguments& arguments) {
       subcommand.add_option("--checkpoint", arguments.checkpoint,
                             "Write checkpoints to this file; Ctrl-C saves one before exiting");
   subcommand
-      .add_option("--checkpoint-every", arguments.checkpoint_every, "Steps from one checkpoint to the next")
+      .add_option("--checkpoint-every", arguments.checkpoint_every, "Number of steps between checkpoints")
       ->check(whole_from(1))
       ->needs(checkpoint)
       ->capture_default_str();

@@ -289,16 +289,16 @@ void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
   subcommand
       .add_option(
           "--balance", arguments.balance,
-          "Give all parts the same number of `vertices`, or of `cells`: elements, each shared out among its\n"
-          "vertices")
+          "Give all parts the same number of `vertices`, or of `cells`. For cells, a vertex counts by its\n"
+          "shares of its elements")
       ->check(CLI::IsMember({"vertices", "cells"}))
       ->capture_default_str();
   subcommand
       .add_option(
           "--interface", arguments.interface_place,
-          "Place in a part of the vertices that share an element with those of other parts: `mixed` with\n"
-          "the others, in the method's order, or `last`, after them, so that a program can work on\n"
-          "the others while it waits for these")
+          "Place of the interface in each part: of the vertices that share an element with other parts.\n"
+          "`mixed`: among the others, in the method's order. `last`: after the others, so that a program\n"
+          "can work on these while it waits for data of the interface")
       ->check(CLI::IsMember({"mixed", "last"}))
       ->capture_default_str();
 }
@@ -307,8 +307,8 @@ void add_partition_options(CLI::App& subcommand, Arguments& arguments) {
 
 void add_distributed_order(CLI::App& subcommand, const Communicator& communicator, bool is_started_as_rank) {
   subcommand.description(
-      "Reorder a mesh by all ranks: cut it into parts, order each, and number them one after another, so\n"
-      "that parts that touch are near each other.\n"
+      "Reorder a mesh by all ranks: cut it into parts, order each part, and number the parts one after\n"
+      "another. Parts that touch get near numbers.\n"
       "All ranks read the mesh and write the results if it is\n"
       "- a .vtu file of one piece with raw appended data, compressed or not,\n"
       "- a .vtkhdf file of one partition without chunks,\n"

@@ -85,9 +85,11 @@ void print_calibration(const Console& console, const Calibration& calibration) {
   console.print("read       {:.1f} GB/s on one thread, {:.1f} GB/s on {}", calibration.read_bandwidth,
                 calibration.read_bandwidth_all, calibration.threads);
   console.print(
-      "\nCost of a kernel, in ns: an access; a miss and, in addition, a jump of the first cache, the\n"
-      "second, half of the last and all of it; a loop end that the processor did not predict (turn).\n"
-      "The second line of each kernel is of triangles");
+      "\nCosts of a kernel, in ns: of an access, of a cache miss, of a jump and of a turn. A jump is a miss\n"
+      "that no prefetcher predicts; its cost is added to that of the miss. Misses and jumps have four\n"
+      "columns: for the first cache, the second, half of the last, and all of it. A turn is a loop end that\n"
+      "the processor did not predict. The first line of each kernel is for tetrahedra, the second for\n"
+      "triangles");
   console.print("{:<14}{:>7}{:>32}{:>32}{:>7}{:>10}{:>7}{:>7}", "", "access", "misses", "jumps", "turn",
                 "condition", "error", "floor");
   print_costs(console, calibration.model, calibration.quality);
@@ -96,9 +98,9 @@ void print_calibration(const Console& console, const Calibration& calibration) {
     print_costs(console, calibration.all_threads, calibration.all_threads_quality);
   }
   console.print(
-      "condition: factor by which errors of the measured times can grow in these costs; error: median error\n"
-      "of the predicted times for the runs that the costs were fitted to; floor: difference of two timings\n"
-      "of one run at different addresses");
+      "condition: factor by which errors of the measured times can grow in these costs. error: median error\n"
+      "of predicted times, for the runs to which the costs were fitted. floor: difference between two\n"
+      "timings of one run at different addresses");
 }
 
 void list_machines(const Console& console) {
@@ -134,7 +136,7 @@ void recheck_machine(const CalibrateArguments& arguments, Console& console) {
     console.print("{:<14} {:.2f}", kKernelTitles[k], found.ratio[k]);
     ratios[std::string(to_string(kKernels[k]))] = found.ratio[k];
   }
-  console.print("{}", found.moved.empty() ? "as it was" : found.moved);
+  console.print("{}", found.moved.empty() ? "not changed" : found.moved);
   console.print_json(
       {{"calibrated", stored.calibration->date}, {"ratio", ratios}, {"moved", !found.moved.empty()}});
 }
@@ -163,11 +165,11 @@ void run(const CalibrateArguments& arguments) {
 
 void add_calibrate(CLI::App& subcommand) {
   subcommand.description(
-      "Measure this machine, so that `info` predicts times for it: a thread's share of the caches,\n"
-      "latencies, bandwidths, and the cost of misses for each kernel on one thread and on all. The result\n"
-      "is kept for this processor and this build in $MESHORDER_CACHE, else in $XDG_CACHE_HOME/meshorder,\n"
-      "else in ~/.cache/meshorder. `info --predict` does so by itself the first time, in 40 to 60 s, unless\n"
-      "--machine or $MESHORDER_MACHINE names another machine.");
+      "Measure this machine, so that `info` can predict times for it: caches, latencies, bandwidths, and\n"
+      "the cost of cache misses in each kernel, on one thread and on all. The result is kept for this\n"
+      "processor and this build in $MESHORDER_CACHE, else in $XDG_CACHE_HOME/meshorder, else in\n"
+      "~/.cache/meshorder. The first `info --predict` calibrates, too, in 40 to 60 s, unless --machine or\n"
+      "$MESHORDER_MACHINE names another machine.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder calibrate\n"
@@ -177,7 +179,7 @@ void add_calibrate(CLI::App& subcommand) {
       "--list", arguments->list, "List the machines that --machine takes, and do nothing else");
   subcommand
       .add_flag("--recheck", arguments->recheck,
-                "Run the kernels for some seconds, and say whether the machine is as it was in the\n"
+                "Run the kernels for some seconds, and say whether the machine has changed since the\n"
                 "calibration")
       ->excludes(list);
   subcommand.add_option("--budget", arguments->seconds, "Seconds to spend")

@@ -101,17 +101,18 @@ void add_keeping_options(CLI::App& subcommand, Keeping& keeping) {
   subcommand
       .add_option_function<std::string>(
           "--only", [&keeping](const std::string& name) { keeping.dimension = kDimensionsByName.at(name); },
-          "Keep only these cells, with all vertices: volume, surface, curve or point")
+          "Keep only cells of this kind, and all vertices: volume, surface, curve or point")
       ->check(CLI::IsMember(kDimensionsByName))
       ->type_name("CELLS");
   subcommand.add_flag(
       "--strict", keeping.strict,
-      "Fail if the output format has no place for some cells, arrays, sets or ids; without --strict\n"
-      "these are left out and named on stderr");
+      "Fail if the output format cannot hold some cells, arrays, sets or ids. Without --strict these are\n"
+      "left out and listed on stderr");
 }
 
 void add_seed_option(CLI::App& subcommand, std::uint64_t& seed) {
-  subcommand.add_option("--seed", seed, "Seed of random orders, of METIS and of start vectors")
+  subcommand
+      .add_option("--seed", seed, "Seed of random orders, of METIS and of start vectors of the eigensolver")
       ->check(whole_from(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str();
 }
@@ -138,10 +139,11 @@ void add_ordering_options(CLI::App& subcommand, OrderOptions& options) {
 
 CLI::Option* add_ids_option(CLI::App& subcommand, std::string& ids) {
   return subcommand
-      .add_option("--ids", ids,
-                  "Numbers that the file gives its vertices and cells: `renumber` sorts them along the new\n"
-                  "order; `keep` leaves each with its vertex or cell, so that other files that use the\n"
-                  "numbers stay valid; `attach` sorts them, and adds the old ones as arrays `original`")
+      .add_option(
+          "--ids", ids,
+          "Numbers of vertices and cells in the file. `renumber` sorts them along the new order. `keep`\n"
+          "leaves each number with its vertex or cell; other files that use the numbers then stay valid.\n"
+          "`attach` sorts them and adds the old ones as arrays `original`")
       ->check(CLI::IsMember({"renumber", "keep", "attach"}))
       ->capture_default_str();
 }
@@ -149,8 +151,8 @@ CLI::Option* add_ids_option(CLI::App& subcommand, std::string& ids) {
 void add_cache_option(CLI::App& subcommand, std::string& caches) {
   subcommand.add_option(
       "--cache", caches,
-      "Caches to predict misses for: this (this machine's), paper (the paper's), or the sizes of the\n"
-      "levels, such as 48K,1M,32M");
+      "Caches for which misses are predicted: `this` for those of this machine, `paper` for those of the\n"
+      "paper, or the sizes of the levels, such as 48K,1M,32M");
 }
 
 void with_threads(int threads, const std::function<void()>& work) {

@@ -187,8 +187,8 @@ void run(const CompareArguments& arguments) {
 
 void add_compare(CLI::App& subcommand) {
   subcommand.description(
-      "Say which order of a mesh is best on this machine: run kernels in the file's own order and others.\n"
-      "With --threads N, N > 1, they run on one thread and then on N.");
+      "Run kernels on a mesh in its own order and in others, and say which order is best on this machine.\n"
+      "With --threads N, N > 1, the kernels run on one thread and then on N.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder compare dragon.veg\n"
@@ -206,8 +206,8 @@ void add_compare(CLI::App& subcommand) {
                       "Also show edge spans, cache misses and milliseconds of each order");
   subcommand.add_flag(
       "--gpu", arguments->gpu,
-      "Run kernels on this machine's GPU instead; in the command of the Python package, with\n"
-      "CuPy. Other options are then --methods, --threads, --json and --quiet");
+      "Run kernels on this machine's GPU instead. This needs the command of the Python package,\n"
+      "and CuPy. It takes no other options than --methods, --threads, --json and --quiet");
   subcommand
       .add_option("--gpu-layout", arguments->gpu_layouts,
                   "Also count the cost of atomic additions on a graphics processor: packed, apart, padded,\n"

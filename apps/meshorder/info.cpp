@@ -409,8 +409,8 @@ void run(const InfoArguments& arguments) {
 
 void add_info(CLI::App& subcommand) {
   subcommand.description(
-      "Show whether the order of a mesh file is good, and what the file holds. Kernels run on meshes where\n"
-      "this takes no longer than two seconds; the gain on larger ones is predicted.");
+      "Say whether the order of a mesh file is good, and show what the file holds. The gain of a better\n"
+      "order is measured by kernels if two seconds are enough for that, else it is predicted.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder info dragon.veg\n"
@@ -422,7 +422,7 @@ void add_info(CLI::App& subcommand) {
   CLI::Option* const gpu = subcommand.add_flag(
       "--gpu", arguments->gpu,
       "Judge the order for a graphics processor instead: count the sectors of memory that kernels\n"
-      "touch in it and in that of `order --for gpu`");
+      "touch in this order and in that of `order --for gpu`");
   subcommand.add_option("--card", arguments->card, "Also compute times of element forces on this card, h100")
       ->check(CLI::IsMember(gpu_card_names()))
       ->needs(gpu);
@@ -433,10 +433,10 @@ void add_info(CLI::App& subcommand) {
                       "Also show a histogram of the spans, and cache misses");
   CLI::Option* const measure = subcommand.add_flag(
       "--measure", arguments->measure,
-      "Run the kernels for a few seconds, however large the mesh is, and predict them as well");
+      "Run the kernels for a few seconds on a mesh of any size, and predict their times, too");
   subcommand
       .add_flag("--predict", arguments->predict,
-                "Predict the gain, however small the mesh is; calibrates this machine the first time")
+                "Predict the gain for a mesh of any size. The first call calibrates this machine")
       ->excludes(measure);
   add_kernels_option(subcommand, arguments->kernels);
   for (const char* const on_processors :

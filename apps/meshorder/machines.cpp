@@ -22,16 +22,16 @@ void add_machine_option(CLI::App& subcommand, std::string& machine) {
 
 void add_all_threads_option(CLI::App& subcommand, bool& all_threads) {
   subcommand.add_flag("--all-threads", all_threads,
-                      "Judge kernel runs that all threads share, not runs on one thread; see\n"
-                      "--threads. Predictions need a calibration of this machine");
+                      "Judge kernels that run on all threads, not on one; see --threads.\n"
+                      "Predictions then need a calibration of this machine");
 }
 
 void add_kernels_option(CLI::App& subcommand, KernelSet& kernels) {
   subcommand
       .add_option_function<std::string>(
           "--kernels", [&kernels](const std::string& name) { kernels = parse_kernels(name); },
-          "Kernels to run: plain, as in most programs, or tuned: these prefetch and work on blocks, as the\n"
-          "simulators of `meshorder simulate` do, and are equally fast in all good orders")
+          "Kernels to run: `plain`, as in most programs, or `tuned`, as in `meshorder simulate`. Tuned\n"
+          "kernels prefetch and work on blocks, and are equally fast in all good orders")
       ->type_name("SET")
       ->default_str("plain");
 }

@@ -34,11 +34,11 @@ constexpr const char* kDescription =
     "Reorders the vertices and elements of a simulation mesh, with all data in its file, so that\n"
     "simulations on it run faster.\n\n"
     "  meshorder order  dragon.veg -o ordered.veg   order by the method chosen for the mesh\n"
-    "  meshorder info   dragon.veg                  counts and spans; is it in a good order?\n"
-    "  meshorder compare dragon.veg                 every order: cost, quality, measured kernels\n"
+    "  meshorder info   dragon.veg                  say whether its order is good, and what it holds\n"
+    "  meshorder compare dragon.veg                 run kernels in many orders, and name the best\n"
     "  meshorder try wing.su2 -- SU2_CFD wing.cfg {} your own program in several orders\n"
     "  meshorder openfoam cavity                    order the cells of an OpenFOAM case\n"
-    "  meshorder calibrate                          measure this machine, for info's predictions\n";
+    "  meshorder calibrate                          measure this machine, so that info can predict times\n";
 
 constexpr const char* kDescriptionOfLab =
     "  meshorder simulate falling --mesh dragon.veg simulate an elastic body and time it\n"

@@ -17,8 +17,8 @@ namespace meshorder::command {
 void add_points_option(CLI::App& subcommand, std::string& points) {
   subcommand
       .add_option("--points", points,
-                  "Coordinates for orders such as hilbert: a row of 2 or 3 numbers for each row of a\n"
-                  "matrix, or vertex of a graph, as text, .npy or Matrix Market's array")
+                  "Coordinates of the rows of a matrix or the vertices of a graph, for orders such as\n"
+                  "hilbert: 2 or 3 numbers for each, as text, .npy or Matrix Market's array")
       ->type_name("FILE");
 }
 

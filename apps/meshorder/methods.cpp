@@ -35,7 +35,7 @@ void run(const Common& common) {
 }  // namespace
 
 void add_methods(CLI::App& subcommand) {
-  subcommand.description("List the ordering methods, with a description each.");
+  subcommand.description("List and describe the ordering methods.");
   subcommand.footer(
       "Example:\n"
       "  meshorder methods");

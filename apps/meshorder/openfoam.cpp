@@ -408,8 +408,9 @@ void run(const OpenFoamArguments& arguments) {
 
 void add_openfoam(CLI::App& subcommand) {
   subcommand.description(
-      "Order the cells of an OpenFOAM case. Writes the order, as constant/cellOrder, and\n"
-      "system/renumberMeshDict for renumberMesh, which moves the cells with all fields, zones and sets.");
+      "Order the cells of an OpenFOAM case. Writes the order to constant/cellOrder, and a dictionary,\n"
+      "system/renumberMeshDict. By these, OpenFOAM's renumberMesh moves the cells with all fields, zones\n"
+      "and sets.");
   subcommand.footer(
       "Examples:\n"
       "  meshorder openfoam cavity\n"

@@ -273,33 +273,33 @@ void add_order(CLI::App& subcommand) {
                   "Method for vertices, see `meshorder methods`")
       ->capture_default_str();
   subcommand
-      .add_option(
-          "--elements", arguments->reordering.methods.elements,
-          "Method for elements, see `meshorder methods`. Entries of a matrix keep their places in the\n"
-          "file unless a method is named")
+      .add_option("--elements", arguments->reordering.methods.elements,
+                  "Method for elements, see `meshorder methods`. With auto, the entries of a matrix\n"
+                  "keep their places in the file")
       ->capture_default_str();
   add_points_option(subcommand, arguments->points);
   subcommand
       .add_option(
           "--group-by", arguments->reordering.group_by,
           "Keep groups together. NAME is an array of integers that `meshorder info` lists, or `sets`.\n"
-          "`label` is the file's own cell tag (Gmsh's first physical group, Medit's reference);\n"
+          "label: the file's own cell tag, such as Gmsh's first physical group or Medit's reference;\n"
           "gmsh:geometrical: Gmsh's entities; attribute: TetGen's regions; sets: Vega's regions and\n"
-          "named physical groups. Cells are sorted by value, each group in the methods' order; a\n"
-          "vertex has the smallest value among its elements. An array on vertices groups only\n"
+          "named physical groups. Cells are sorted by value, and the methods order each group. A\n"
+          "vertex gets the smallest value of its elements. An array on vertices groups only\n"
           "the vertices. Write cells:NAME or vertices:NAME if both have that array (default: cells).\n"
           "Cells and vertices without a value come last")
       ->type_name("NAME");
   subcommand.add_flag(
       "--measure", arguments->measure,
-      "Time the kernels for about two seconds, in the file's order, in the one that `auto` takes and\n"
-      "in the two predicted to be the best of five others, and take the fastest. Useful for meshes on\n"
-      "which programs run for long. The result may differ from run to run, and between machines");
+      "Time the kernels for about two seconds and take the fastest order. The candidates are the file's\n"
+      "order, that of `auto`, and the two of five others with the best predictions. Useful for meshes on\n"
+      "which programs run for long. The result may differ between runs and between machines");
   subcommand
       .add_flag(
           "--predict", arguments->predict,
-          "Like --measure, without timing: take the order whose predicted times on --machine are the least.\n"
-          "The same costs give the same order; the first call on a machine calibrates it, in 40 to 60 s")
+          "Like --measure, without timing: take the order with the shortest predicted times on --machine.\n"
+          "The same calibration gives the same order. The first call on a machine calibrates it, which\n"
+          "takes 40 to 60 s")
       ->excludes("--measure");
   add_machine_option(subcommand, arguments->machine);
   add_all_threads_option(subcommand, arguments->all_threads);

@@ -27,9 +27,9 @@ void add_reading_options(CLI::App& subcommand) {
   subcommand
       .add_option_function<std::string>(
           "--limit-memory", [](const std::string& text) { set_memory_limit(*limit_of(text)); },
-          "Memory limit, such as 4G, for values that a file does not write out (compressed, repeated or\n"
-          "only counted) and for the graph of its cells: files that need more are refused. `none`: no\n"
-          "limit. Default: 256M plus 100 times the file's size, at most three quarters of the memory")
+          "Memory limit, such as 4G. It applies to the graph of the cells and to values that the file has\n"
+          "in a short form: compressed, repeated or only counted. Files that need more are refused. `none`:\n"
+          "no limit. Default: 256M plus 100 times the file's size, at most three quarters of the memory")
       ->check(CLI::Validator(
           [](std::string& text) {
             return limit_of(text) ? std::string() : "'" + text + "' is neither a size, such as 4G, nor none";
@@ -49,8 +49,8 @@ void add_reading_options(CLI::App& subcommand) {
       ->allow_extra_args(false);
   subcommand.add_flag_callback(
       "--trust", trust_files,
-      "Read files that libraries parse (CGNS, Exodus, MED, VTKHDF, XDMF) with all rights of this process,\n"
-      "not in a separate, confined process");
+      "Read CGNS, Exodus, MED, VTKHDF and XDMF files with all rights of this process. By default, a\n"
+      "confined process reads them, because libraries parse them");
 }
 
 }  // namespace meshorder::command

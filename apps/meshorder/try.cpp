@@ -124,10 +124,9 @@ void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
       ->delimiter(',')
       ->allow_extra_args(false);
   subcommand
-      .add_option(
-          "--budget", arguments.budget_seconds,
-          "Seconds for all runs of the program. Without time for all orders, the last ones are left out;\n"
-          "those of --methods share the time if each can run twice")
+      .add_option("--budget", arguments.budget_seconds,
+                  "Seconds for all runs of the program. If they are too few, the last orders are left out;\n"
+                  "orders of --methods share the time if each can run twice")
       ->check(positive())
       ->capture_default_str();
   subcommand.add_option("--timeout", arguments.timeout_seconds, "Seconds after which a run counts as failed")
@@ -136,32 +135,33 @@ void add_trial_options(CLI::App& subcommand, TryArguments& arguments) {
   subcommand
       .add_option(
           "--time", arguments.time,
-          "Time to compare: `cpu`, the processor time of the program and all that it starts; `wall`, the\n"
-          "time by the clock; or a regular expression with a group: the last number that the group\n"
-          "captures in the program's output")
+          "Time to compare: `cpu`, the processor time of the program and of all that it starts; `wall`, the\n"
+          "time by the clock; or a regular expression with a group, which captures a time in the program's\n"
+          "output (the last match counts)")
       ->type_name("TIME")
       ->capture_default_str();
   subcommand
-      .add_option("--count", arguments.count,
-                  "Regular expression for a number that is shown for each order, such as iterations; a note\n"
-                  "names the orders in which it grows by a tenth or more")
+      .add_option(
+          "--count", arguments.count,
+          "Regular expression for a number that the program prints, such as iterations. It is shown for\n"
+          "each order; a note names the orders in which it grows by a tenth or more")
       ->type_name("REGEX");
   subcommand
       .add_option("--same", arguments.same,
-                  "Regular expression for numbers that the program prints: an order is left out\n"
-                  "if they differ from those of the first run")
+                  "Regular expression for numbers that the program prints. An order is left out if\n"
+                  "its numbers differ from those of the first run")
       ->type_name("REGEX");
   subcommand
       .add_option(
           "--same-file", arguments.same_file,
-          "The same for a file that the program writes, compared word by word: {out} or a path in its\n"
-          "folder, such as {stem}.dat. Only for files that do not depend on the order of the mesh")
+          "Like --same, for all words of a file that the program writes: {out} or a path in its folder,\n"
+          "such as {stem}.dat. Only for files that do not depend on the order of the mesh")
       ->type_name("FILE");
   subcommand
       .add_option(
           "--tolerance", arguments.tolerance,
-          "Relative difference up to which numbers count as the same; differences below 1e-12 of the\n"
-          "largest number compared never count")
+          "Relative difference up to which numbers count as equal. Differences below 1e-12 of the largest\n"
+          "number compared never count")
       ->check(positive())
       ->capture_default_str();
   subcommand
