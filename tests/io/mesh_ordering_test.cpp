@@ -135,7 +135,7 @@ TEST(MeshOrdering, TakesTheVertexGraphThatItIsGiven) {
     return reorder(mesh, options, std::move(given), [&](const CsrGraph& used, const Permutation& order) {
       graph = used;
       vertices = order;
-      test::expect_same(mesh, original);  // nothing has moved yet
+      EXPECT_EQ(mesh.points, original.points);  // no vertex has moved yet
     });
   };
   Mesh expected = original;
