@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/parallel.hpp"
 #include "io/stream/regular_text.hpp"
 #include "support/files.hpp"
 #include <meshorder/error.hpp>
@@ -99,6 +100,62 @@ TEST(RegularRecords, AreReadAsOneAfterAnotherHoweverTheTextIsDivided) {
       EXPECT_EQ(outcome.rest, expected.rest) << text << "in parts of " << bytes;
       EXPECT_EQ(outcome.numbers, expected.numbers) << text << "in parts of " << bytes;
     }
+  }
+}
+
+TEST(RegularRecords, StopAtTheSameErrorOnOneThread) {
+  const TemporaryFolder folder;
+  Scanner in(folder.file("a.txt", "1\n# none\n\n2 # two\n3 x\n4\n"), '#');
+  std::vector<int> numbers(kRecords);
+  const Index regular = in_arena({.threads = 1}, [&] {
+    return read_regular_records(
+        in, kRecords, [&](Scanner& part, Index record) { return part.take_number(numbers[record]); });
+  });
+  EXPECT_EQ(regular, 2);
+  EXPECT_EQ(in.line(), 4);
+  EXPECT_EQ(in.word("a word"), "3");
+}
+
+TEST(RegularLines, AreRecordsEvenIfTheyAreBlank) {
+  const TemporaryFolder folder;
+  const std::string text = "head\n1 2\n\n \t\n3\r\n\n4 5 x\n6\n";
+  for (const int threads : {1, 2}) {
+    for (std::size_t bytes = 1; bytes <= text.size() + 1; ++bytes) {
+      Scanner in(folder.file("a.txt", text));
+      (void)in.raw_line();
+      std::vector<std::vector<int>> lines(8);
+      const Index regular = in_arena({.threads = threads}, [&] {
+        return read_regular_lines(
+            in, 7,
+            [&](Scanner& part, Index record) {
+              lines[record].clear();
+              while (!part.at_line_end()) lines[record].push_back(part.integer<int>("a number"));
+              return true;
+            },
+            bytes);
+      });
+      // those before the fault that are in its part may be left
+      ASSERT_LE(regular, 5);
+      EXPECT_EQ(in.line(), 2 + regular);
+      lines.resize(regular);
+      const std::vector<std::vector<int>> all = {{1, 2}, {}, {}, {3}, {}};
+      EXPECT_EQ(lines, std::vector(all.begin(), all.begin() + regular));
+      EXPECT_TRUE(regular == 5 || (threads > 1 && bytes > 1)) << bytes;
+    }
+  }
+}
+
+TEST(RegularLines, EndWithTheText) {
+  const TemporaryFolder folder;
+  for (const std::string text : {"1\n\n2", "1\n\n2\n"}) {
+    Scanner in(folder.file("a.txt", text));
+    std::vector<int> numbers(9, 0);
+    const Index regular = read_regular_lines(
+        in, 9, [&](Scanner& part, Index record) { return record == 1 || part.take_number(numbers[record]); },
+        1);
+    EXPECT_EQ(regular, 3);
+    EXPECT_EQ(in.bytes_left(), 0);
+    EXPECT_EQ(numbers[2], 2);
   }
 }
 

@@ -80,11 +80,18 @@ std::size_t count_words(std::string_view text);
 /// @param count  the most records to read, ≥ 0
 /// @param read   `read(part, record)` takes the words of a record; returns false if the record is not
 ///              regular. It writes only data of the record, and may be called again for the same record. A
-///              record is also not regular if `read` throws an Error, or if more words follow on its line
+///              record is also not regular if `read` throws an InputError, or if more words follow on its
+///              line
 /// @param part_bytes  least size of a part, > 0
 /// @note O(bytes); memory: a few numbers for each part.
 Index read_regular_records(Scanner& in, Index count, const std::function<bool(Scanner&, Index)>& read,
                            std::size_t part_bytes = std::size_t{1} << 20);
+
+/// As `read_regular_records`, for records that may have no word: each line is a record. The scanner must be
+/// at the beginning of a line of a text without comments; it is then at the beginning of the line after the
+/// last record.
+Index read_regular_lines(Scanner& in, Index count, const std::function<bool(Scanner&, Index)>& read,
+                         std::size_t part_bytes = std::size_t{1} << 20);
 
 /// Reads records as `read_regular_records` does; a record is regular only if it begins with a number that is
 /// one more than that of the last record. Adds the numbers to `numbering`, which is empty before.

@@ -70,6 +70,7 @@ class Scanner {
   /// Skips blanks and comments on this line only; returns true at its end.
   bool at_line_end() {
     if (skip_spaces()) return false;
+    if (text_[position_] == '\n') return true;  // as at most line ends
     skip_blanks();
     return at_break();
   }
