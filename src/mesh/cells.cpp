@@ -62,4 +62,22 @@ void append_cells(Cells& cells, Shape shape, int nodes, Index count) {
   resize_large(cells.vertices, static_cast<std::size_t>(begin + Offset{count} * nodes));
 }
 
+void trim_to_corners(Cells& cells, Index first, Index count) {
+  std::array<std::size_t, kShapes> nodes{};
+  const std::size_t end = static_cast<std::size_t>(first) + static_cast<std::size_t>(count);
+  auto to = static_cast<std::size_t>(cells.offsets[static_cast<std::size_t>(first)]);
+  for (auto c = static_cast<std::size_t>(first); c < end; ++c) {
+    const auto from = static_cast<std::size_t>(cells.offsets[c]);
+    std::size_t& size = nodes[static_cast<std::size_t>(cells.shapes[c])];
+    if (size == 0) size = static_cast<std::size_t>(corners(cells.shapes[c], 0));
+    for (std::size_t k = 0; to < from && k < size; ++k) cells.vertices[to + k] = cells.vertices[from + k];
+    cells.offsets[c] = static_cast<Offset>(to);
+    to += size;
+  }
+  cells.offsets[end] = static_cast<Offset>(to);
+  cells.offsets.resize(end + 1);
+  cells.shapes.resize(end);
+  cells.vertices.resize(to);
+}
+
 }  // namespace meshorder

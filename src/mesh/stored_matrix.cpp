@@ -16,20 +16,6 @@
 namespace meshorder {
 namespace {
 
-/// Returns whether the transposed place of each entry has an entry, too. Visits rows in ascending order. In a
-/// symmetric pattern, the rows that have an entry in column c are then visited in the order of the entries of
-/// row c.
-bool is_symmetric_pattern(const EntryPattern& pattern) {
-  std::vector<Offset> next(pattern.starts.begin(), pattern.starts.end() - 1);
-  for (Index row = 0; row < pattern.rows(); ++row) {
-    for (const Index column : pattern[row]) {
-      const Offset at = next[column]++;
-      if (at >= pattern.starts[column + 1] || pattern.columns[at] != row) return false;
-    }
-  }
-  return true;
-}
-
 /// Returns the number of entries divided by the size of all b × b blocks that have an entry.
 double fill_of_blocks(const EntryPattern& pattern, Index b) {
   std::vector<Index> seen_by(pattern.rows() / b, -1);  // for each block of columns, the last block of rows
@@ -100,6 +86,19 @@ EntryPattern entry_pattern(const Mesh& mesh) {
   return pattern;
 }
 
+bool is_symmetric(const EntryPattern& pattern) {
+  // the rows are visited in ascending order: in a symmetric pattern, those that have an entry in column c are
+  // visited in the order of the entries of row c
+  std::vector<Offset> next(pattern.starts.begin(), pattern.starts.end() - 1);
+  for (Index row = 0; row < pattern.rows(); ++row) {
+    for (const Index column : pattern[row]) {
+      const Offset at = next[column]++;
+      if (at >= pattern.starts[column + 1] || pattern.columns[at] != row) return false;
+    }
+  }
+  return true;
+}
+
 EntryPattern moved(const Permutation& rows, const EntryPattern& pattern) {
   // rows and columns move like the vertices of a graph
   CsrGraph graph = renumbered(GraphRef(pattern.starts, pattern.columns), rows.old_to_new());
@@ -120,7 +119,7 @@ PatternFacts facts_of(const EntryPattern& pattern) {
       ++facts.histogram_log2[bin];
     }
   }
-  facts.is_symmetric = is_symmetric_pattern(pattern);
+  facts.is_symmetric = is_symmetric(pattern);
   for (Index b = kLargestBlock; b > 1 && facts.block == 1; --b) {
     if (pattern.rows() % b != 0) continue;
     const double fill = fill_of_blocks(pattern, b);

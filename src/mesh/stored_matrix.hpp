@@ -54,6 +54,9 @@ struct EntryPattern {
 /// O(entries · log row length).
 EntryPattern entry_pattern(const Mesh& mesh);
 
+/// Returns whether the transposed place of each entry has an entry, too. O(entries).
+bool is_symmetric(const EntryPattern& pattern);
+
 /// Returns the pattern of P A P′: row and column i become `rows.old_to_new()[i]`. O(entries · log row
 /// length).
 EntryPattern moved(const Permutation& rows, const EntryPattern& pattern);

@@ -2,14 +2,17 @@
 //
 // Square sparse matrices as Matrix Market's coordinate files. Format: R. Boisvert, R. Pozo and K. Remington,
 // "The Matrix Market exchange formats: initial design", NISTIR 5935 (1996).
+#include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/matrix/matrix.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/cells.hpp"
 #include "mesh/stored_matrix.hpp"
 #include "mesh/values.hpp"
 
@@ -95,7 +98,7 @@ class MatrixReader {
     if (in_.last_comment() > begin_of_entries)
       notes_.push_back(in_.file() + ": comments between the entries are left out");
     note_missing_line_end(in_, '%', notes_);
-    if (!metadata_->is_half && !is_pattern_symmetric()) {
+    if (!metadata_->is_half && !is_symmetric(entry_pattern(mesh_))) {
       notes_.push_back("the pattern of the matrix A is not symmetric: orders use that of A + A'");
     }
     if (field_ != Field::pattern) {
@@ -166,11 +169,34 @@ class MatrixReader {
     return static_cast<Index>(number - 1);
   }
 
+  /// Reads entries on all threads, up to the first irregular line. Returns how many it read.
+  Index read_regular_entries() {
+    Cells& cells = mesh_.cells;
+    const std::size_t reals_of_entry = field_ == Field::complex ? 2 : field_ == Field::real ? 1 : 0;
+    const bool has_integer = field_ == Field::integer;
+    append_cells(cells, Shape::line, 2, entries_);
+    if (has_integer) resize_large(integers_, static_cast<std::size_t>(entries_));
+    resize_large(reals_, static_cast<std::size_t>(entries_) * reals_of_entry);
+    const Index regular = read_regular_records(in_, entries_, [&](Scanner& in, Index i) {
+      const std::span<Index> entry = cells[i];
+      for (Index& place : entry) {
+        if (!in.take_number(place) || place < 1 || place > mesh_.vertex_count()) return false;
+        --place;
+      }
+      cells.shapes[i] = entry[0] == entry[1] ? Shape::vertex : Shape::line;
+      const std::span reals =
+          std::span(reals_).subspan(static_cast<std::size_t>(i) * reals_of_entry, reals_of_entry);
+      return (!has_integer || in.take_number(integers_[i])) &&
+             std::ranges::all_of(reals, [&](double& value) { return in.take_number(value); });
+    });
+    trim_to_corners(cells, 0, regular);
+    if (has_integer) integers_.resize(static_cast<std::size_t>(regular));
+    reals_.resize(static_cast<std::size_t>(regular) * reals_of_entry);
+    return regular;
+  }
+
   void read_entries() {
-    mesh_.cells.reserve(entries_, Offset{entries_} * 2);
-    if (field_ == Field::integer) integers_.reserve(entries_);
-    if (field_ == Field::real) reals_.reserve(entries_);
-    for (Index i = 0; i < entries_; ++i) {
+    for (Index i = read_regular_entries(); i < entries_; ++i) {
       const std::array entry{place("a row"), place("a column")};
       if (entry[0] == entry[1]) {
         mesh_.cells.push_back(Shape::vertex, {entry.data(), 1});
@@ -182,19 +208,6 @@ class MatrixReader {
       if (field_ == Field::complex) reals_.push_back(in_.real("an imaginary part"));
       if (!in_.at_line_end()) in_.fail("the line of an entry has too many numbers", "check the first line");
     }
-  }
-
-  [[nodiscard]] bool is_pattern_symmetric() const {
-    std::vector<std::pair<Index, Index>> entries;
-    entries.reserve(mesh_.cells.shapes.size());
-    for (Index c = 0; c < mesh_.cell_count(); ++c) {
-      const auto entry = mesh_.cells[c];
-      if (entry.size() == 2) entries.emplace_back(entry[0], entry[1]);
-    }
-    std::sort(entries.begin(), entries.end());
-    return std::all_of(entries.begin(), entries.end(), [&](const std::pair<Index, Index>& entry) {
-      return std::binary_search(entries.begin(), entries.end(), std::pair{entry.second, entry.first});
-    });
   }
 
   Scanner in_;

@@ -3,13 +3,17 @@
 // Graphs in the format of METIS and Chaco. Format: G. Karypis, "METIS: a software package for partitioning
 // unstructured graphs … Version 5.1.0" (2013), section 4.1.1. Where the two differ, METIS's meaning is taken:
 // the hundreds digit of the third number says whether vertices have sizes.
+#include "base/memory.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/matrix/matrix.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/cells.hpp"
 #include "mesh/reorder.hpp"
 #include "mesh/stored_matrix.hpp"
 #include <meshorder/error.hpp>
@@ -41,6 +45,18 @@ struct Neighbour {
   std::int64_t value;
 };
 
+/// Returns how many words a line has.
+std::size_t words_in_line(std::string_view line) {
+  std::size_t words = 0;
+  bool in_word = false;
+  for (const char c : line) {
+    const bool is_blank = c == ' ' || c == '\t' || c == '\f' || c == '\v';
+    if (!is_blank && !in_word) ++words;
+    in_word = !is_blank;
+  }
+  return words;
+}
+
 bool comes_before(const Neighbour& a, const Neighbour& b) { return a.vertex < b.vertex; }
 
 // ---- reading
@@ -51,7 +67,7 @@ class GraphReader {
 
   Mesh read() {
     read_header();
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) read_vertex(v);
+    for (Index v = read_regular_vertices(); v < mesh_.vertex_count(); ++v) read_vertex(v);
     while (skip_comments()) {
       if (!trimmed(in_.peek_line()).empty()) {
         in_.fail(fmt::format("more than {} lines of vertices", mesh_.vertex_count()), "the count is wrong");
@@ -122,6 +138,66 @@ class GraphReader {
     return value;
   }
 
+  /// Sorts the neighbours of a vertex; returns the first one that is named twice, or null.
+  static const Neighbour* sort_neighbours(std::span<Neighbour> neighbours) {
+    std::ranges::sort(neighbours, comes_before);
+    const auto twice = std::ranges::adjacent_find(neighbours, {}, &Neighbour::vertex);
+    return twice == neighbours.end() ? nullptr : &*twice;
+  }
+
+  /// Sets `offsets_` and `lines_` from the number of words in each line, up to the first line that cannot be
+  /// a vertex. Returns the number of lines.
+  Index count_neighbours() {
+    const Index count = mesh_.vertex_count();
+    const std::size_t words_before = (has_sizes_ ? 1 : 0) + static_cast<std::size_t>(weights_);
+    const std::size_t words_of_neighbour = has_edge_weights_ ? 2 : 1;
+    offsets_.resize(static_cast<std::size_t>(count) + 1);
+    lines_.resize(static_cast<std::size_t>(count));
+    Scanner ahead = in_;
+    const Index regular = read_regular_lines(ahead, count, [&](Scanner& in, Index v) {
+      const std::string_view line = in.peek_line();
+      const std::size_t words = words_in_line(line);
+      if (words < words_before || (words - words_before) % words_of_neighbour != 0) return false;
+      offsets_[static_cast<std::size_t>(v) + 1] =
+          static_cast<Offset>((words - words_before) / words_of_neighbour);
+      lines_[v] = in.line();
+      in.move_on(line.size());
+      return true;
+    });
+    std::partial_sum(offsets_.begin(), offsets_.begin() + regular + 1, offsets_.begin());
+    return regular;
+  }
+
+  /// Reads vertices on all threads, up to the first irregular line. Returns how many it read.
+  Index read_regular_vertices() {
+    const Index count = count_neighbours();
+    const auto weights = static_cast<std::size_t>(weights_);
+    resize_large(neighbours_, static_cast<std::size_t>(offsets_[count]));
+    resize_large(vertex_weights_, static_cast<std::size_t>(count) * weights);
+    sizes_.resize(has_sizes_ ? static_cast<std::size_t>(count) : 0);
+    const auto take = [](Scanner& in, std::int64_t& value, std::int64_t least) {
+      return in.take_number(value) && value >= least;
+    };
+    const Index regular = read_regular_lines(in_, count, [&](Scanner& in, Index v) {
+      if (has_sizes_ && !take(in, sizes_[v], 0)) return false;
+      for (std::size_t k = 0; k < weights; ++k) {
+        if (!take(in, vertex_weights_[static_cast<std::size_t>(v) * weights + k], 0)) return false;
+      }
+      const std::span<Neighbour> neighbours = neighbours_of(v);
+      for (auto& [vertex, weight] : neighbours) {
+        if (!in.take_number(vertex) || vertex < 1 || vertex > mesh_.vertex_count()) return false;
+        if (--vertex == v || (has_edge_weights_ && !take(in, weight, 1))) return false;
+      }
+      return sort_neighbours(neighbours) == nullptr;
+    });
+    neighbours_.resize(static_cast<std::size_t>(offsets_[regular]));
+    vertex_weights_.resize(static_cast<std::size_t>(regular) * weights);
+    sizes_.resize(has_sizes_ ? static_cast<std::size_t>(regular) : 0);
+    offsets_.resize(static_cast<std::size_t>(regular) + 1);
+    lines_.resize(static_cast<std::size_t>(regular));
+    return regular;
+  }
+
   void read_vertex(Index v) {
     if (!skip_comments()) {
       throw InputError(Location{in_.file(), lines_.empty() ? line_of_header_ : lines_.back(), -1},
@@ -142,39 +218,71 @@ class GraphReader {
       neighbours_.push_back(
           {static_cast<Index>(neighbour - 1), has_edge_weights_ ? number("the weight of an edge", 1) : 0});
     }
-    std::sort(neighbours_.begin() + static_cast<std::ptrdiff_t>(first), neighbours_.end(), comes_before);
-    for (std::size_t i = first + 1; i < neighbours_.size(); ++i) {
-      if (neighbours_[i].vertex == neighbours_[i - 1].vertex) {
-        in_.fail(fmt::format("the vertex names {} twice", neighbours_[i].vertex + 1), "once is right");
-      }
+    if (const Neighbour* const twice = sort_neighbours(std::span(neighbours_).subspan(first))) {
+      in_.fail(fmt::format("the vertex names {} twice", twice->vertex + 1), "once is right");
     }
     offsets_.push_back(static_cast<Offset>(neighbours_.size()));
     (void)in_.raw_line();
   }
 
-  [[nodiscard]] std::span<const Neighbour> neighbours_of(Index v) const {
+  [[nodiscard]] std::span<Neighbour> neighbours_of(Index v) {
     return std::span(neighbours_).subspan(offsets_[v], offsets_[v + 1] - offsets_[v]);
+  }
+
+  /// Returns whether the other vertex of an edge names v with the same weight.
+  [[nodiscard]] bool is_named_back(Index v, const Neighbour& edge) {
+    const std::span<const Neighbour> back = neighbours_of(edge.vertex);
+    const auto found = std::lower_bound(back.begin(), back.end(), Neighbour{v, 0}, comes_before);
+    return found != back.end() && found->vertex == v && found->value == edge.value;
+  }
+
+  /// Returns the neighbours of v with a greater number.
+  [[nodiscard]] std::span<Neighbour> greater_neighbours(Index v) {
+    const std::span<Neighbour> all = neighbours_of(v);
+    return {std::upper_bound(all.begin(), all.end(), Neighbour{v, 0}, comes_before), all.end()};
+  }
+
+  /// Fails at the first edge that one of its vertices does not name.
+  [[noreturn]] void fail_one_sided() {
+    Index v = 0;
+    const auto is_one_sided = [&](const Neighbour& edge) { return !is_named_back(v, edge); };
+    while (std::ranges::none_of(neighbours_of(v), is_one_sided)) ++v;
+    throw InputError(Location{in_.file(), lines_[v], -1},
+                     fmt::format("vertex {} names {}, which does not name it with the same weight", v + 1,
+                                 std::ranges::find_if(neighbours_of(v), is_one_sided)->vertex + 1),
+                     "each edge must be in the lists of both its vertices");
   }
 
   /// Makes a line of each edge, from the vertex with the smaller number.
   void make_edges() {
-    mesh_.cells.reserve(edges_, 2 * Offset{edges_});
-    std::vector<std::int64_t> weights;
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-      for (const Neighbour& edge : neighbours_of(v)) {
-        const auto back = neighbours_of(edge.vertex);
-        const auto found = std::lower_bound(back.begin(), back.end(), Neighbour{v, 0}, comes_before);
-        if (found == back.end() || found->vertex != v || found->value != edge.value) {
-          throw InputError(Location{in_.file(), lines_[v], -1},
-                           fmt::format("vertex {} names {}, which does not name it with the same weight",
-                                       v + 1, edge.vertex + 1),
-                           "each edge must be in the lists of both its vertices");
-        }
-        if (edge.vertex < v) continue;
-        mesh_.cells.push_back(Shape::line, std::array{v, edge.vertex});
-        if (has_edge_weights_) weights.push_back(edge.value);
+    constexpr Index kAtOnce = 16384;  // vertices
+    const Index count = mesh_.vertex_count();
+    const bool are_named_back = holds_for_all(count, [&](Offset begin, Offset end) {
+      for (auto v = static_cast<Index>(begin); v < end; ++v) {
+        const bool all = std::ranges::all_of(neighbours_of(v),
+                                             [&](const Neighbour& edge) { return is_named_back(v, edge); });
+        if (!all) return false;
       }
-    }
+      return true;
+    });
+    if (!are_named_back) fail_one_sided();
+    std::vector<Index> firsts(chunk_count(count, kAtOnce) + std::size_t{1});  // first edge of each chunk
+    for_each_chunk(count, kAtOnce, [&](Index chunk, Index begin, Index end) {
+      for (Index v = begin; v < end; ++v) firsts[chunk + 1] += index_size(greater_neighbours(v));
+    });
+    std::partial_sum(firsts.begin(), firsts.end(), firsts.begin());
+    append_cells(mesh_.cells, Shape::line, 2, edges_);
+    std::vector<std::int64_t> weights(has_edge_weights_ ? edges_ : 0);
+    for_each_chunk(count, kAtOnce, [&](Index chunk, Index begin, Index end) {
+      Index at = firsts[chunk];
+      for (Index v = begin; v < end; ++v) {
+        for (const Neighbour& edge : greater_neighbours(v)) {
+          std::ranges::copy(std::array{v, edge.vertex}, mesh_.cells[at].begin());
+          if (has_edge_weights_) weights[at] = edge.value;
+          ++at;
+        }
+      }
+    });
     const auto add = [&](std::string_view name, Association association, Index components,
                          std::vector<std::int64_t>& values) {
       if (!values.empty()) {
