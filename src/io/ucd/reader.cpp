@@ -3,9 +3,11 @@
 #include "io/labels.hpp"
 #include "io/names.hpp"
 #include "io/stream/id_map.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_ends.hpp"
 #include "io/ucd/ucd.hpp"
+#include "mesh/cells.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 
 namespace meshorder::ucd {
@@ -80,9 +83,28 @@ class Reader {
     return static_cast<Index>(number);
   }
 
+  /// Returns whether the next number and the `count` − 1 after it may be numbers of nodes or cells.
+  [[nodiscard]] bool can_count_from_next(Index count) const {
+    Scanner ahead = in_;
+    Index first = 0;
+    return ahead.take_number(first) && first >= 0 && first <= kMaxIndex - count;
+  }
+
+  /// Reads nodes on all threads, up to the first one that is not numbered on or is irregular. Returns how
+  /// many it read.
+  Index read_regular_nodes() {
+    const Index count = mesh_.vertex_count();
+    if (!can_count_from_next(count)) return 0;
+    const Index regular = read_numbered_records(in_, count, node_numbers_, [&](Scanner& in, Index v) {
+      return std::ranges::all_of(mesh_.points[v], [&](double& x) { return in.take_finite(x); });
+    });
+    if (regular > 0) (void)take_end();
+    return regular;
+  }
+
   void read_nodes(Index count) {
     mesh_.points.resize(static_cast<std::size_t>(count));
-    for (Point& point : mesh_.points) {
+    for (Point& point : std::span(mesh_.points).subspan(static_cast<std::size_t>(read_regular_nodes()))) {
       const Index id = number("the number of a node");
       if (!node_numbers_.add(id)) in_.fail(fmt::format("node {} is given twice", id), "numbers must differ");
       for (double& coordinate : point) coordinate = in_.finite("a coordinate");
@@ -90,11 +112,51 @@ class Reader {
     }
   }
 
+  /// Returns the type of the next cell, null if there is none.
+  [[nodiscard]] const CellKind* next_kind() const {
+    Scanner ahead = in_;
+    std::int64_t number = 0;
+    if (!ahead.take_number(number) || !ahead.take_number(number)) return nullptr;
+    return find_kind(ahead.peek_word());
+  }
+
+  /// Reads cells on all threads, up to the first one that is not numbered on, has more nodes than the first
+  /// cell or is irregular.
+  void read_regular_cells(Index count, std::vector<std::int64_t>& materials) {
+    const CellKind* const first = next_kind();
+    if (first == nullptr || !can_count_from_next(count)) return;
+    Cells& cells = mesh_.cells;
+    append_cells(cells, first->shape, first->nodes, count);
+    materials.resize(static_cast<std::size_t>(count));
+    const Index regular = read_numbered_records(in_, count, cell_numbers_, [&](Scanner& in, Index c) {
+      if (!in.take_number(materials[c])) return false;
+      const std::string_view name = in.word("the type of a cell");
+      const CellKind* const kind = name == first->name ? first : find_kind(name);
+      if (kind == nullptr || kind->nodes > first->nodes) return false;
+      std::array<Index, 8> as_given{};
+      const auto nodes = static_cast<std::size_t>(kind->nodes);
+      for (std::size_t k = 0; k < nodes; ++k) {
+        Index node = 0;
+        if (!in.take_number(node)) return false;
+        as_given[k] = node_numbers_.find(node);
+        if (as_given[k] < 0) return false;
+      }
+      cells.shapes[c] = kind->shape;
+      const std::span<Index> cell = cells[c];
+      for (std::size_t k = 0; k < nodes; ++k) cell[k] = as_given[static_cast<std::size_t>(kind->places[k])];
+      return true;
+    });
+    trim_to_corners(cells, 0, regular);
+    materials.resize(static_cast<std::size_t>(regular));
+    if (regular > 0) (void)take_end();
+  }
+
   void read_cells(Index count) {
     std::vector<std::int64_t> materials;
     materials.reserve(static_cast<std::size_t>(count));
     std::array<Index, 8> cell{};
-    for (Index c = 0; c < count; ++c) {
+    read_regular_cells(count, materials);
+    for (Index c = mesh_.cell_count(); c < count; ++c) {
       const Index id = number("the number of a cell");
       if (cells_are_numbered_ && !cell_numbers_.add(id)) {
         cells_are_numbered_ = false;
@@ -126,15 +188,17 @@ class Reader {
         {std::string(kLabel), Association::cells, 1, label_values(std::move(materials)), {}, {}});
   }
 
-  const CellKind& kind_named(std::string_view name) const {
+  static const CellKind* find_kind(std::string_view name) {
     const auto* const found = std::find_if(kCellKinds.begin(), kCellKinds.end(), [&](const CellKind& kind) {
       return same_but_for_case(kind.name, name);
     });
-    if (found == kCellKinds.end()) {
-      in_.fail(fmt::format("a cell has the type '{}'", shown(name)),
-               "known are " + join(kCellKinds, [](const CellKind& kind) { return kind.name; }));
-    }
-    return *found;
+    return found == kCellKinds.end() ? nullptr : found;
+  }
+
+  const CellKind& kind_named(std::string_view name) const {
+    if (const CellKind* const kind = find_kind(name)) return *kind;
+    in_.fail(fmt::format("a cell has the type '{}'", shown(name)),
+             "known are " + join(kCellKinds, [](const CellKind& kind) { return kind.name; }));
   }
 
   // ---- data
@@ -154,9 +218,23 @@ class Reader {
                           static_cast<std::size_t>(mesh_.data[i].components));
     }
     const std::string what = fmt::format("a value of a {}", item);
+    const IdMap* const places = of_nodes || cells_are_numbered_ ? &numbers : nullptr;
+    const Index regular = read_regular_records(in_, rows, [&](Scanner& in, Index row) {
+      Index id = 0;
+      if (!in.take_number(id) || id < 0 || (places != nullptr && places->id(row) != id)) return false;
+      for (std::vector<double>& array : arrays) {
+        const std::size_t components = array.size() / static_cast<std::size_t>(rows);
+        const std::span own =
+            std::span(array).subspan(static_cast<std::size_t>(row) * components, components);
+        if (!std::ranges::all_of(own, [&](double& value) { return in.take_number(value); })) return false;
+      }
+      return true;
+    });
+    if (regular > 0) (void)take_end();
     std::vector<bool> seen(static_cast<std::size_t>(rows), false);
-    for (Index row = 0; row < rows; ++row) {
-      const Index place = place_of_row(of_nodes || cells_are_numbered_ ? &numbers : nullptr, row, item);
+    std::fill(seen.begin(), seen.begin() + regular, true);
+    for (Index row = regular; row < rows; ++row) {
+      const Index place = place_of_row(places, row, item);
       if (seen[place]) in_.fail(fmt::format("the {} has data twice", item), "remove one of the lines");
       seen[place] = true;
       for (std::size_t i = 0; i < arrays.size(); ++i) {
