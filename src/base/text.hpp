@@ -47,20 +47,24 @@ std::string join(const Texts& texts, std::string_view separator = ", ") {
 
 /// Returns `text` without spaces and tabs at its ends.
 inline std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
 }
 
 /// Removes the next word from the front of `line` and returns it without the separators around it; empty if
 /// none is left.
 inline std::string_view next_word(std::string_view& line, std::string_view separators = " \t") {
-  const std::size_t begin = line.find_first_not_of(separators);
-  if (begin == std::string_view::npos) return line = {};
-  line.remove_prefix(begin);
-  const std::string_view word = line.substr(0, line.find_first_of(separators));
-  line.remove_prefix(word.size());
-  return word;
+  // words and separators are short: a loop is faster than the functions of string_view, which call memchr
+  const auto separates = [&](char c) {
+    return std::any_of(separators.begin(), separators.end(), [c](char separator) { return c == separator; });
+  };
+  const char* const end = line.data() + line.size();
+  const char* const begin = std::find_if_not(line.data(), end, separates);
+  const char* const after = std::find_if(begin, end, separates);
+  line.remove_prefix(static_cast<std::size_t>(after - line.data()));
+  return {begin, static_cast<std::size_t>(after - begin)};
 }
 
 /// Returns whether two words differ at most in the case of ASCII letters.

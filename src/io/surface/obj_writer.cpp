@@ -59,10 +59,10 @@ class ObjWriter {
     write_vertices();
     write_lists();
     write_unused_names();
-    for (Index c = 0; c < mesh_.cell_count(); ++c) {
-      write_changes(c);
-      write_cell(c);
-    }
+    write_rows(out_, mesh_.cell_count(), [&](Text& row, Index cell) {
+      add_changes(row, cell);
+      add_cell(row, cell);
+    });
     out_.commit();
     note_losses();
   }
@@ -199,12 +199,17 @@ class ObjWriter {
       out_.write(native_->normals);
       return;
     }
-    for (Index v = 0; vertex_texture_.width > 0 && v < mesh_.vertex_count(); ++v) {
-      out_.print("vt {}\n", fmt::join(vertex_texture_[v], " "));
-    }
-    for (Index v = 0; vertex_normals_.width > 0 && v < mesh_.vertex_count(); ++v) {
-      out_.print("vn {}\n", fmt::join(vertex_normals_[v], " "));
-    }
+    write_list("vt", vertex_texture_);
+    write_list("vn", vertex_normals_);
+  }
+
+  void write_list(std::string_view keyword, const GatheredVector& vectors) {
+    if (vectors.width == 0) return;
+    write_rows(out_, mesh_.vertex_count(), [&](Text& row, Index v) {
+      row.write(keyword);
+      for (const double x : vectors[v]) row.real(" ", x);
+      row.write("\n");
+    });
   }
 
   [[nodiscard]] std::string state_name(std::size_t i, std::int32_t value) const {
@@ -217,26 +222,29 @@ class ObjWriter {
     return std::to_string(value);
   }
 
-  void write_state(std::size_t i, std::int32_t value) {
+  void add_state(Text& text, std::size_t i, std::int32_t value) const {
     const std::string name = state_name(i, value);
-    out_.print("{}{}{}\n", kStates[i].keyword, name.empty() ? "" : " ", name);
-    current_[i] = name;
+    text.print("{}{}{}\n", kStates[i].keyword, name.empty() ? "" : " ", name);
   }
 
   /// Writes the names that no cell has, which the file would otherwise lose.
   void write_unused_names() {
+    Text text;
     for (std::size_t s = 0; s < mesh_.sets.size(); ++s) {
       if (mesh_.sets[s].association != Association::cells || !mesh_.sets[s].members.empty()) continue;
-      out_.print("g {}\n", group_names_[s]);
+      text.print("g {}\n", group_names_[s]);
       in_group_ = true;
     }
     for (std::size_t i = 0; native_ && i < kStates.size(); ++i) {
       if (states_[i].empty()) continue;
       const std::set<std::int32_t> used(states_[i].begin(), states_[i].end());
       for (const auto& [value, name] : native_->names[i]) {
-        if (!used.contains(value)) write_state(i, value);
+        if (used.contains(value)) continue;
+        add_state(text, i, value);
+        current_[i] = state_name(i, value);
       }
     }
+    out_.write(text.view());
   }
 
   /// Returns the names of groups, as a statement of the file that the mesh came from has them.
@@ -252,37 +260,38 @@ class ObjWriter {
     return found != native_->group_statements.end() ? found->second : names;
   }
 
-  void write_changes(Index cell) {
+  /// Appends the statements that change between the cell before and this one.
+  void add_changes(Text& row, Index cell) const {
     const auto groups = groups_of(cell);
     const bool same =
         cell > 0 ? std::ranges::equal(groups, groups_of(cell - 1)) : groups.empty() && !in_group_;
-    if (!same) out_.print("g{}{}\n", groups.empty() ? "" : " ", names_in_statement(groups));
+    if (!same) row.print("g{}{}\n", groups.empty() ? "" : " ", names_in_statement(groups));
     for (std::size_t i = 0; i < kStates.size(); ++i) {
       if (states_[i].empty()) continue;
       const bool changes =
           cell == 0 ? state_name(i, states_[i][0]) != current_[i] : states_[i][cell] != states_[i][cell - 1];
-      if (changes) write_state(i, states_[i][cell]);
+      if (changes) add_state(row, i, states_[i][cell]);
     }
   }
 
-  void write_cell(Index cell) {
+  void add_cell(Text& row, Index cell) const {
     const int dimensions = dimension(mesh_.cells.shapes[cell]);
-    out_.write(dimensions == 2 ? "f" : dimensions == 1 ? "l" : "p");
+    row.write(dimensions == 2 ? "f" : dimensions == 1 ? "l" : "p");
     const auto vertices = mesh_.cells[cell];
     for (std::size_t k = 0; k < vertices.size(); ++k) {
       Index texture = texture_[cell] ? texture_[cell][k] : -1;
       Index normal = normals_[cell] ? normals_[cell][k] : -1;
       if (vertex_texture_.width > 0 && dimensions > 0) texture = vertices[k];
       if (vertex_normals_.width > 0 && dimensions == 2) normal = vertices[k];
-      out_.integer(" ", std::int64_t{vertices[k]} + 1);
+      row.integer(" ", std::int64_t{vertices[k]} + 1);
       if (texture >= 0) {
-        out_.integer("/", std::int64_t{texture} + 1);
+        row.integer("/", std::int64_t{texture} + 1);
       } else if (normal >= 0) {
-        out_.write("/");
+        row.write("/");
       }
-      if (normal >= 0) out_.integer("/", std::int64_t{normal} + 1);
+      if (normal >= 0) row.integer("/", std::int64_t{normal} + 1);
     }
-    out_.write("\n");
+    row.write("\n");
   }
 
   void note_losses() {
@@ -315,7 +324,7 @@ class ObjWriter {
   std::vector<const std::int32_t*> texture_;  // of each cell's corners; null if there are none
   std::vector<const std::int32_t*> normals_;
   std::array<std::vector<std::int32_t>, kStates.size()> states_;
-  std::array<std::string, kStates.size()> current_;
+  std::array<std::string, kStates.size()> current_;  // the last names written before the cells
   std::vector<Offset> group_offsets_;
   std::vector<Index> groups_;
   std::vector<std::string> group_names_;  // of all sets; empty for sets of vertices

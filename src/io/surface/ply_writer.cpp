@@ -7,6 +7,7 @@
 #include "io/exact_values.hpp"
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/surface/ply_parts.hpp"
 #include "io/surface/surface_data.hpp"
 #include "io/unsupported.hpp"
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -370,7 +372,7 @@ void write_header(OutputFile& out, Encoding encoding, const ply::PlyMetadata* me
 /// Writes the body's numbers in the encoding, each line of text with blanks between them.
 class NumberWriter {
  public:
-  NumberWriter(OutputFile& out, Encoding encoding) : out_(out), encoding_(encoding) {}
+  NumberWriter(Text& out, Encoding encoding) : out_(out), encoding_(encoding) {}
 
   template <class T>
   void number(Type type, T value) {
@@ -414,17 +416,13 @@ class NumberWriter {
     if (encoding_ == Encoding::ascii) {
       const std::string_view before = at_start_ ? "" : " ";
       at_start_ = false;
-      if constexpr (std::is_integral_v<T>) {
-        out_.integer(before, value);
-      } else {
-        out_.print("{}{}", before, value);
-      }
+      out_.number(before, value);
     } else {
       out_.binary(value, encoding_ == Encoding::big_endian ? std::endian::big : std::endian::little);
     }
   }
 
-  OutputFile& out_;
+  Text& out_;
   Encoding encoding_;
   bool at_start_ = true;
   bool rounded_ = false;
@@ -517,13 +515,17 @@ void write_ply(const Mesh& mesh, const FilePath& path, Notes& notes) {
   const Encoding encoding = metadata ? metadata->encoding : Encoding::little_endian;
   OutputFile out(path);
   write_header(out, encoding, metadata, tables);
-  NumberWriter to(out, encoding);
+  std::atomic<bool> rounded = false;
   for (const Table& table : tables) {
     if (table.element.role == Role::other) out.write(table.element.content);
-    for (const Index item : table.items) write_item(to, mesh, table, item);
+    write_row_ranges(out, index_size(table.items), [&](Text& text, Index begin, Index end) {
+      NumberWriter to(text, encoding);
+      for (Index i = begin; i < end; ++i) write_item(to, mesh, table, table.items[i]);
+      if (to.rounded()) rounded = true;
+    });
   }
   out.commit();
-  if (to.rounded()) notes.emplace_back("coordinates are rounded to 32 bits, as the file has them");
+  if (rounded) notes.emplace_back("coordinates are rounded to 32 bits, as the file has them");
   note_losses(mesh, written, notes);
   if (as_file) {
     note_left_out(*metadata, notes);

@@ -351,10 +351,16 @@ void write_binary(const Mesh& mesh, const StlMetadata& metadata, const DataArray
 void add_facet(Text& text, const Mesh& mesh, Index cell) {
   const auto t = mesh.cells[cell];
   const Point n = normal_of(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
-  text.print("facet normal {} {} {}\n  outer loop\n", n[0], n[1], n[2]);
+  const auto add_point = [&](std::string_view before, const Point& point) {
+    text.real(before, point[0]);
+    text.real(" ", point[1]);
+    text.real(" ", point[2]);
+  };
+  add_point("facet normal ", n);
+  text.write("\n  outer loop\n");
   for (const Index v : t) {
-    const Point& p = mesh.points[v];
-    text.print("    vertex {} {} {}\n", p[0], p[1], p[2]);
+    add_point("    vertex ", mesh.points[v]);
+    text.write("\n");
   }
   text.write("  endloop\nendfacet\n");
 }
