@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "io/stream/read_limits.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/surface/obj_parts.hpp"
 #include "io/surface/surface_data.hpp"
@@ -9,10 +10,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -94,12 +97,100 @@ struct List {
   std::int64_t line_ahead = 0;
 };
 
+/// A line. A vertex, a face of at most four corners, a texture coordinate and a normal are parsed if they
+/// hold plain numbers and nothing else.
+struct Line {
+  enum class Kind : std::uint8_t { vertex, texture, normal, face, other };
+  using Corner = std::array<Index, 3>;  ///< v, vt and vn, counted from 1; 0 if it has none
+
+  std::int64_t byte = 0;    ///< of its first word
+  std::int64_t number = 0;  ///< of the line
+  Kind kind = Kind::other;
+  std::size_t count = 0;          ///< of numbers or corners
+  std::string_view text;          ///< of a texture coordinate or normal
+  std::array<double, 6> reals{};  ///< of a vertex
+  std::array<Corner, 4> corners{};
+};
+
+/// Parses v, v/vt, v//vn or v/vt/vn; returns false for any other word and for numbers below 1.
+bool parse_corner(std::string_view word, Line::Corner& corner) {
+  const char* at = word.data();
+  const char* const end = at + word.size();
+  corner = {0, 0, 0};
+  for (std::size_t k = 0; k < corner.size(); ++k) {
+    if (k > 0) {
+      if (at == end) return true;
+      if (*at++ != '/') return false;
+      if (k == 1 && at != end && *at == '/') continue;
+    }
+    const auto [after, code] = std::from_chars(at, end, corner[k]);
+    if (code != std::errc{} || corner[k] < 1) return false;
+    at = after;
+  }
+  return at == end;
+}
+
+/// Takes the numbers up to the end of the line; returns false if there is anything else.
+bool take_reals(Scanner& in, std::span<double> reals, std::size_t& count) {
+  for (count = 0; !in.at_line_end(); ++count) {
+    if (count == reals.size() || !in.take_number(reals[count])) return false;
+  }
+  return true;
+}
+
+bool take_corners(Scanner& in, Line& line) {
+  for (line.count = 0; !in.at_line_end(); ++line.count) {
+    const std::string_view word = in.peek_word();
+    if (line.count == line.corners.size() || !parse_corner(word, line.corners[line.count])) return false;
+    in.move_on(word.size());
+  }
+  const auto has_first = [&](std::size_t k) { return line.corners[0][k] > 0; };
+  return line.count >= 3 &&
+         std::all_of(line.corners.begin(), line.corners.begin() + static_cast<std::ptrdiff_t>(line.count),
+                     [&](const Line::Corner& corner) {
+                       return (corner[1] > 0) == has_first(1) && (corner[2] > 0) == has_first(2);
+                     });
+}
+
+/// Parses the words of a line that is not `other`; else returns false.
+bool parse_plain(Scanner& in, Line& line) {
+  const std::string_view keyword = in.peek_word();
+  in.move_on(keyword.size());
+  if (keyword == "f") {
+    line.kind = Line::Kind::face;
+    return take_corners(in, line);
+  }
+  if (keyword == "v") {
+    line.kind = Line::Kind::vertex;
+    return take_reals(in, line.reals, line.count) &&
+           (line.count == 3 || line.count == 4 || line.count == 6) &&
+           std::all_of(line.reals.begin(), line.reals.begin() + 3, [](double x) { return std::isfinite(x); });
+  }
+  if (keyword != "vt" && keyword != "vn") return false;
+  line.kind = keyword == "vt" ? Line::Kind::texture : Line::Kind::normal;
+  if (!take_reals(in, line.reals, line.count)) return false;
+  line.text = trimmed(
+      in.all().substr(static_cast<std::size_t>(line.byte), static_cast<std::size_t>(in.byte() - line.byte)));
+  return line.count == 3 || (line.kind == Line::Kind::texture && (line.count == 1 || line.count == 2));
+}
+
+void parse(Scanner& in, Line& line) {
+  line.byte = in.byte();
+  line.number = in.line();
+  if (parse_plain(in, line)) return;
+  line.kind = Line::Kind::other;
+  in.move_on(in.peek_line().size());
+}
+
 class Reader {
  public:
-  explicit Reader(const FilePath& path) : scanner_(path) {}
+  // a Scanner skips form feeds and vertical tabs, which belong to words here
+  explicit Reader(const FilePath& path) : scanner_(path), are_regular_(!has_any_of(scanner_.all(), "\f\v")) {}
 
   Mesh read() {
-    while (scanner_.bytes_left() > 0) read_statement();
+    while (scanner_.bytes_left() > 0) {
+      if (!read_lines()) read_statement();
+    }
     for (const List& list : {vertices_, texture_, normals_}) check_ahead(list);
     add_vertex_arrays();
     add_corner_arrays("texture", texture_indices_);
@@ -111,6 +202,67 @@ class Reader {
   }
 
  private:
+  /// Reads many lines: parses them on all threads, then adds those that are parsed, and reads each other
+  /// line as a statement. Returns false if it read none.
+  bool read_lines() {
+    constexpr std::int64_t kMostLines = 1 << 16;
+    constexpr std::size_t kPartBytes = std::size_t{1} << 16;
+    if (!are_regular_) return false;
+    lines_.resize(static_cast<std::size_t>(std::min(kMostLines, scanner_.bytes_left())));
+    Scanner end = scanner_;
+    const Index count = read_regular_records(
+        end, index_size(lines_),
+        [&](Scanner& in, Index k) {
+          parse(in, lines_[static_cast<std::size_t>(k)]);
+          return true;
+        },
+        kPartBytes);
+    are_regular_ = count > 0;
+    for (const Line& line : std::span(lines_).first(static_cast<std::size_t>(count))) {
+      if (line.byte < scanner_.byte() || add(line)) continue;  // the first: it is joined to a line before it
+      scanner_.move_to(scanner_.at(line.byte, line.number));
+      read_statement();
+    }
+    if (scanner_.byte() < end.byte()) scanner_.move_to(end);
+    return are_regular_;
+  }
+
+  /// Returns false if the line must be read as a statement.
+  bool add(const Line& line) {
+    switch (line.kind) {
+      case Line::Kind::vertex:
+        add_vertex(line.reals, line.count);
+        return true;
+      case Line::Kind::texture:
+        add_listed(line.text, texture_, metadata_->texture);
+        return true;
+      case Line::Kind::normal:
+        add_listed(line.text, normals_, metadata_->normals);
+        return true;
+      case Line::Kind::face:
+        return add_face(std::span(line.corners).first(line.count));
+      case Line::Kind::other:
+        break;
+    }
+    return false;
+  }
+
+  /// Adds a face unless a number points ahead.
+  bool add_face(std::span<const Line::Corner> corners) {
+    const std::array lists{vertices_.count, texture_.count, normals_.count};
+    const std::array indices{&corners_, &corner_texture_, &corner_normals_};
+    for (std::size_t k = 0; k < lists.size(); ++k) {
+      indices[k]->clear();
+      if (corners[0][k] == 0) continue;
+      for (const Line::Corner& corner : corners) {
+        if (corner[k] > lists[k]) return false;
+        indices[k]->push_back(corner[k] - 1);
+      }
+    }
+    add_cell(2);
+    return true;
+  }
+
   /// Reads one line, or several joined by backslashes. Takes the line last: errors then name its number.
   void read_statement() {
     std::string_view line = trimmed(scanner_.peek_line());
@@ -199,6 +351,11 @@ class Reader {
       scanner_.fail("a vertex of " + std::to_string(count) + " numbers",
                     "x y z, x y z w and x y z r g b are right");
     }
+    add_vertex(numbers, count);
+  }
+
+  /// Adds a vertex of 3, 4 or 6 numbers.
+  void add_vertex(const std::array<double, 6>& numbers, std::size_t count) {
     const Index v = vertices_.count++;
     mesh_.points.push_back({numbers[0], numbers[1], numbers[2]});
     if (count == 4) {
@@ -223,6 +380,10 @@ class Reader {
                     least == most ? fmt::format("{} are needed", least)
                                   : fmt::format("{} to {} are right", least, most));
     }
+    add_listed(line, list, text);
+  }
+
+  static void add_listed(std::string_view line, List& list, std::string& text) {
     text.append(line).append("\n");
     ++list.count;
   }
@@ -285,6 +446,11 @@ class Reader {
         scanner_.fail("corners of one cell have different numbers of indices", "write all alike");
       }
     }
+    add_cell(dimension);
+  }
+
+  /// Adds a cell of the corners that were read last.
+  void add_cell(int dimension) {
     const Index cell = mesh_.cell_count();
     mesh_.cells.push_back(shape(dimension, corners_.size()), corners_);
     texture_indices_.add(cell, corner_texture_);
@@ -376,6 +542,8 @@ class Reader {
   }
 
   Scanner scanner_;
+  bool are_regular_;         // the next lines may be parsed on all threads
+  std::vector<Line> lines_;  // parsed ahead
   Mesh mesh_;
   std::shared_ptr<ObjMetadata> metadata_ = std::make_shared<ObjMetadata>();
   List vertices_{"v"};

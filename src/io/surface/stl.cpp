@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
@@ -21,6 +22,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 
 namespace meshorder {
 namespace {
@@ -210,6 +212,108 @@ void read_facet(Scanner& scanner, Builder& builder) {
   builder.add(normal, corners);
 }
 
+/// Parses lines on all threads, ahead of the scanner, and takes the facets that are in plain lines.
+class FacetLines {
+ public:
+  explicit FacetLines(Scanner start) : end_(std::move(start)) {}
+
+  /// Adds the facets from the scanner's place on, up to the first one that is not in the seven lines in which
+  /// programs write it.
+  void take(Scanner& scanner, Builder& builder) {
+    while (!scanner.at_end()) {
+      while (first_ < count_ && lines_[first_].byte < scanner.byte()) ++first_;
+      if (count_ - first_ < kForm.size() && !parse(scanner)) return;
+      if (lines_[first_].byte != scanner.byte()) return;
+      const std::size_t before = first_;
+      for (; is_facet(); first_ += kForm.size()) {
+        const Line* const line = &lines_[first_];
+        builder.add(line[0].point, {line[2].point, line[3].point, line[4].point});
+      }
+      if (first_ == before) return;
+      if (first_ < count_) {
+        scanner.move_to(scanner.at(lines_[first_].byte, lines_[first_].number));
+      } else {
+        scanner.move_to(end_);
+      }
+    }
+  }
+
+ private:
+  enum class Kind : std::uint8_t { facet, loop, vertex, end_loop, end_facet, other };
+  static constexpr std::array kForm{Kind::facet,  Kind::loop,     Kind::vertex,   Kind::vertex,
+                                    Kind::vertex, Kind::end_loop, Kind::end_facet};
+
+  struct Line {
+    std::int64_t byte = 0;    // of its first word
+    std::int64_t number = 0;  // of the line
+    Kind kind = Kind::other;
+    Point point{};
+  };
+
+  [[nodiscard]] bool is_facet() const {
+    return count_ - first_ >= kForm.size() &&
+           std::equal(kForm.begin(), kForm.end(), lines_.begin() + static_cast<std::ptrdiff_t>(first_),
+                      [](Kind kind, const Line& line) { return kind == line.kind; });
+  }
+
+  /// Parses the next lines; returns whether they are enough for a facet. Does not try again after a failure.
+  bool parse(const Scanner& scanner) {
+    constexpr std::int64_t kMostLines = 1 << 17;
+    constexpr std::size_t kPartBytes = std::size_t{1} << 17;
+    if (are_over_) return false;
+    lines_.resize(static_cast<std::size_t>(std::min(kMostLines, scanner.bytes_left())));
+    end_ = scanner;
+    const Index count = read_regular_records(
+        end_, index_size(lines_),
+        [&](Scanner& in, Index k) {
+          Line& line = lines_[static_cast<std::size_t>(k)];
+          line.byte = in.byte();
+          line.number = in.line();
+          line.kind = kind_of(in, line.point);
+          in.move_on(in.peek_line().size());
+          return true;
+        },
+        kPartBytes);
+    first_ = 0;
+    count_ = static_cast<std::size_t>(count);
+    are_over_ = count_ < kForm.size();
+    return !are_over_;
+  }
+
+  static Kind kind_of(Scanner& in, Point& point) {
+    const auto take_word = [&](std::string_view expected) {
+      const bool is_next = in.peek_word() == expected;
+      if (is_next) in.move_on(expected.size());
+      return is_next;
+    };
+    const auto take_point = [&] {
+      return std::all_of(point.begin(), point.end(),
+                         [&](double& x) { return !in.at_line_end() && in.take_number(x); });
+    };
+    Kind kind = Kind::other;
+    if (take_word("vertex")) {
+      const bool is_finite =
+          take_point() && std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });
+      if (is_finite) kind = Kind::vertex;
+    } else if (take_word("facet")) {
+      if (!in.at_line_end() && take_word("normal") && take_point()) kind = Kind::facet;
+    } else if (take_word("outer")) {
+      if (!in.at_line_end() && take_word("loop")) kind = Kind::loop;
+    } else if (take_word("endloop")) {
+      kind = Kind::end_loop;
+    } else if (take_word("endfacet")) {
+      kind = Kind::end_facet;
+    }
+    return in.at_line_end() ? kind : Kind::other;
+  }
+
+  std::vector<Line> lines_;
+  std::size_t first_ = 0;  // line that is not taken
+  std::size_t count_ = 0;
+  Scanner end_;  // after all lines
+  bool are_over_ = false;
+};
+
 /// Returns the labels of solids: their names if all are distinct integers, else 1, 2, …
 std::vector<std::int64_t> labels_of(const std::vector<std::string>& names) {
   std::vector<std::int64_t> labels;
@@ -229,6 +333,7 @@ std::vector<std::int64_t> labels_of(const std::vector<std::string>& names) {
 
 Mesh read_ascii(Scanner& scanner, StlMetadata& metadata, Notes& notes) {
   Builder builder;
+  FacetLines lines(scanner);
   std::vector<Index> first_cells;
   while (!scanner.at_end()) {
     expect_word(scanner, "solid");
@@ -238,7 +343,8 @@ Mesh read_ascii(Scanner& scanner, StlMetadata& metadata, Notes& notes) {
       const std::string_view word = scanner.peek_word();
       return same_but_for_case(word, "endsolid") || same_but_for_case(word, "end");
     };
-    while (!is_at_end()) read_facet(scanner, builder);
+    for (lines.take(scanner, builder); !is_at_end(); lines.take(scanner, builder))
+      read_facet(scanner, builder);
     expect_end(scanner, "solid");
     (void)scanner.rest_of_line();
   }
