@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
 #include "io/stream/output_file.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/stream/scanner.hpp"
 #include "io/stream/text_rows.hpp"
 #include "io/surface/surface_data.hpp"
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace meshorder {
 namespace {
@@ -129,18 +131,29 @@ struct Numbers {
   }
 };
 
+/// Reads points on all threads if vertices have coordinates alone, each on a line of its own. Returns how
+/// many it read.
+Index read_plain_points(Scanner& scanner, const VertexColumns& layout, std::vector<Point>& points) {
+  const bool are_plain =
+      layout.one_line_each && !layout.normals && !layout.texture && layout.color_width == 0;
+  if (!are_plain) return 0;
+  return read_regular_records(scanner, index_size(points), [&](Scanner& in, Index v) {
+    return std::all_of(points[v].begin(), points[v].end(), [&](double& x) { return in.take_finite(x); });
+  });
+}
+
 void read_vertices(Scanner& scanner, Index count, const VertexColumns& layout, Mesh& mesh) {
   mesh.points.resize(count);
   std::array<Numbers, 3> columns;  // normals, colours, texture coordinates
   const std::array<int, 3> widths{layout.normals ? 3 : 0, layout.color_width, layout.texture ? 2 : 0};
-  for (Point& point : mesh.points) {
+  for (Index v = read_plain_points(scanner, layout, mesh.points); v < count; ++v) {
     const auto expect_more = [&] {
       if (layout.one_line_each && scanner.at_line_end() && scanner.bytes_left() > 0) {
         scanner.fail("a vertex has fewer numbers than the first one", "all need the same");
       }
     };
     scanner.at_end();  // moves to the next line that holds something
-    for (double& x : point) {
+    for (double& x : mesh.points[v]) {
       expect_more();
       x = scanner.finite("a coordinate");
     }
@@ -160,11 +173,6 @@ void read_vertices(Scanner& scanner, Index count, const VertexColumns& layout, M
     Values values = k == 1 ? std::move(columns[k]).typed() : Values(std::move(columns[k].values));
     mesh.data.push_back({std::string(names[k]), Association::vertices, widths[k], std::move(values), {}, {}});
   }
-}
-
-Shape face_shape(Index vertices) {
-  constexpr std::array kShapesOf{Shape::vertex, Shape::line, Shape::triangle, Shape::quad};
-  return vertices <= 4 ? kShapesOf[vertices - 1] : Shape::polygon;
 }
 
 /// Colours of one width and kind, and the faces that have them.
@@ -211,11 +219,28 @@ void add_colors(ColorGroups groups, Mesh& mesh) {
   }
 }
 
+/// Reads faces of at most four vertices and without colours on all threads, as long as each is on a line of
+/// its own. Returns how many it read.
+Index read_plain_faces(Scanner& scanner, Index count, Mesh& mesh) {
+  std::vector<FewVertices> faces(static_cast<std::size_t>(count));
+  const Index read = read_regular_records(scanner, count, [&](Scanner& in, Index f) {
+    FewVertices& face = faces[static_cast<std::size_t>(f)];
+    face.fill(-1);
+    Index size = 0;
+    if (!in.take_number(size) || size < 1 || size > std::ssize(face)) return false;
+    return std::all_of(face.begin(), face.begin() + size, [&](Index& vertex) {
+      return in.take_number(vertex) && vertex >= 0 && vertex < mesh.vertex_count();
+    });
+  });
+  append_small_cells(std::span(faces).first(static_cast<std::size_t>(read)), Shape::quad, mesh.cells);
+  return read;
+}
+
 void read_faces(Scanner& scanner, Index count, Mesh& mesh) {
   mesh.cells.reserve(count, Offset{3} * count);
   ColorGroups colors;
   std::vector<Index> face;
-  for (Index f = 0; f < count; ++f) {
+  for (Index f = read_plain_faces(scanner, count, mesh); f < count; ++f) {
     const Index size = scanner.count("the number of a face's vertices", 2);
     if (size == 0) scanner.fail("a face without vertices", "at least one is needed");
     face.resize(size);

@@ -1,7 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "io/stream/number_reader.hpp"
+#include "io/stream/regular_text.hpp"
 #include "io/surface/ply_parts.hpp"
+#include "io/surface/surface_data.hpp"
 #include "mesh/values.hpp"
 #include <meshorder/error.hpp>
 
@@ -15,6 +17,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <utility>
 
 namespace meshorder::ply {
@@ -387,6 +390,42 @@ struct Column {
   }
 };
 
+/// Takes the next number of a text if it is a plain one that the type can hold.
+template <class T>
+bool take_plain(Scanner& in, T& value) {
+  if constexpr (std::is_same_v<T, double>) {
+    return in.take_number(value);
+  } else if constexpr (std::is_integral_v<T>) {
+    std::int64_t number = 0;
+    if (!in.take_number(number) || !std::in_range<T>(number)) return false;
+    value = static_cast<T>(number);
+    return true;
+  } else {
+    const std::string_view word = in.peek_word();
+    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+    in.move_on(word.size());
+    return code == std::errc{} && end == word.data() + word.size();
+  }
+}
+
+/// Takes a number as `BodyReader::number_as` does, if it is a plain one.
+template <class T>
+bool take_plain_as(Scanner& in, Type type, T& value) {
+  if (!is_integer(type)) {
+    double number = 0;
+    if (!in.take_number(number)) return false;
+    value = static_cast<T>(number);
+    return true;
+  }
+  std::int64_t number = 0;
+  if (!in.take_number(number)) return false;
+  value = static_cast<T>(number);
+  constexpr std::array<std::array<std::int64_t, 2>, 6> kRanges{
+      {{-128, 127}, {0, 255}, {-32768, 32767}, {0, 65535}, {-2147483648, 2147483647}, {0, 4294967295}}};
+  const auto [least, most] = kRanges[static_cast<std::size_t>(type)];
+  return least <= number && number <= most;
+}
+
 /// Returns the minimum number of bytes (in text: digits and blanks) of an item of the element.
 std::int64_t min_bytes(const Element& element, const BodyReader& body) {
   constexpr std::array<int, 8> kBytes{1, 1, 2, 2, 4, 4, 4, 8};
@@ -438,7 +477,7 @@ class Reader {
     if (element.role == Role::vertices) mesh_.points.resize(element.count);
     if (holds_cells(element) && cell_elements_ > 1 && element.count > 0) mesh_.cell_blocks.push_back(first);
     std::vector<Column> columns(element.properties.size());
-    for (Index i = 0; i < element.count; ++i) {
+    for (Index i = read_plain_rows(element, columns); i < element.count; ++i) {
       ends_ = {-1, -1};
       for (std::size_t k = 0; k < columns.size(); ++k) {
         const Property& property = element.properties[k];
@@ -454,6 +493,75 @@ class Reader {
       if (property.why_left_out.empty() && !property.numbers_rows)
         add_arrays(element, property, std::move(columns[k]), first);
     }
+  }
+
+  /// Reads, on all threads, rows of a text that are each on a line of its own and hold plain numbers, with no
+  /// list except that of at most four vertices. Returns how many it read.
+  Index read_plain_rows(const Element& element, std::vector<Column>& columns) {
+    const bool has_few_lists =
+        element.role != Role::strips && element.role != Role::rows_of_faces &&
+        !has(element, [&](const Property& p) { return p.is_list && !is_geometry(element, p); });
+    if (body_.binary || !has_few_lists || element.count == 0) return 0;
+    const auto count = static_cast<std::size_t>(element.count);
+    std::vector<Values*> values(columns.size(), nullptr);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      if (is_geometry(element, element.properties[k])) continue;
+      values[k] = &columns[k].by_length[1].values;
+      *values[k] = values_of(element.properties[k].type.type);
+      with_numbers(*values[k], [&](auto& list) { list.resize(count); });
+    }
+    std::vector<FewVertices> cells(holds_cells(element) ? count : 0);
+    const Index read = read_regular_records(body_.scanner, element.count, [&](Scanner& in, Index row) {
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        const Property& property = element.properties[k];
+        const bool is_plain =
+            values[k] != nullptr
+                ? with_numbers(*values[k], [&](auto& list) { return take_plain(in, list[row]); })
+            : element.role == Role::vertices ? take_coordinate(in, property, mesh_.points[row])
+                                             : take_vertices(in, element, property, cells[row]);
+        if (!is_plain) return false;
+      }
+      return true;
+    });
+    for (Values* const list : values) {
+      if (list != nullptr) with_numbers(*list, [&](auto& numbers) { numbers.resize(read); });
+    }
+    append_small_cells(std::span(cells).first(cells.empty() ? 0 : static_cast<std::size_t>(read)),
+                       element.role == Role::tetrahedra ? Shape::tetrahedron : Shape::quad, mesh_.cells);
+    return read;
+  }
+
+  /// Returns whether `read_geometry` reads the property.
+  static bool is_geometry(const Element& element, const Property& property) {
+    if (element.role == Role::vertices) return coordinate_of(property) >= 0;
+    if (element.role == Role::edges) return end_of(property) >= 0;
+    return is_corner_list(property);
+  }
+
+  static bool take_coordinate(Scanner& in, const Property& property, Point& point) {
+    double& x = point[coordinate_of(property)];
+    return take_plain_as(in, property.type.type, x) && std::isfinite(x);
+  }
+
+  /// Takes an end of an edge, or the list of the vertices of a cell.
+  bool take_vertices(Scanner& in, const Element& element, const Property& property, FewVertices& cell) const {
+    const auto take_vertex = [&](Index& vertex) {
+      std::int64_t number = 0;
+      if (!take_plain_as(in, property.type.type, number) || number < 0 || number >= vertex_count_)
+        return false;
+      vertex = static_cast<Index>(number);
+      return true;
+    };
+    if (element.role == Role::edges) {
+      std::fill(cell.begin() + 2, cell.end(), -1);
+      return take_vertex(cell[end_of(property)]);
+    }
+    std::int64_t length = 0;
+    const std::int64_t least = element.role == Role::tetrahedra ? 4 : 1;
+    if (!take_plain_as(in, property.count_type.type, length) || length < least || length > std::ssize(cell))
+      return false;
+    cell.fill(-1);
+    return std::all_of(cell.begin(), cell.begin() + length, take_vertex);
   }
 
   /// Returns whether the values are 0, 1, 2 …
@@ -530,11 +638,6 @@ class Reader {
       mesh_.cells.push_back(Shape::triangle, is_turned ? std::array{last[1], last[0], last[2]} : last);
     }
     return true;
-  }
-
-  static Shape face_shape(Index vertices) {
-    constexpr std::array kShapesOf{Shape::vertex, Shape::line, Shape::triangle, Shape::quad};
-    return vertices <= 4 ? kShapesOf[vertices - 1] : Shape::polygon;
   }
 
   Index vertex(const Property& property) {

@@ -3,6 +3,7 @@
 
 #include <meshorder/mesh.hpp>
 
+#include <array>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -36,5 +37,14 @@ struct GatheredVector {
 
 /// Returns the vector of all vertices or cells; of width 0 unless the mesh has it for all of them. O(rows).
 GatheredVector gather(const Mesh& mesh, const SurfaceVector& vector, Association association);
+
+/// Returns the shape of a face, also of one with one or two vertices.
+Shape face_shape(Index vertices);
+
+/// The vertices of a cell that has at most four of them, then −1.
+using FewVertices = std::array<Index, 4>;
+
+/// Appends cells: faces, or, if `four` says so, tetrahedra. O(cells).
+void append_small_cells(std::span<const FewVertices> cells, Shape four, Cells& to);
 
 }  // namespace meshorder
