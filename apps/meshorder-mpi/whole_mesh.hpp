@@ -8,6 +8,8 @@
 #include <meshorder/mesh.hpp>
 #include <meshorder/permutation.hpp>
 
+#include <optional>
+
 namespace meshorder::command {
 
 /// A mesh that rank 0 reads, moves and writes, with its cells in the order that the output's format needs.

@@ -39,9 +39,7 @@ Cells reordered(Cells&& cells, const Permutation& vertices, const Permutation& o
   Cells result;
   result.shapes = moved(order, cells.shapes);
   resize_large(result.vertices, cells.vertices.size());
-  if (size > 0) {
-    result.offsets = std::move(cells.offsets);
-  } else {
+  if (size == 0) {
     result.offsets.resize(cells.offsets.size());
     for_cells([&](Index c, Index old, Index ahead) {
       __builtin_prefetch(&cells.offsets[ahead]);
@@ -52,9 +50,11 @@ Cells reordered(Cells&& cells, const Permutation& vertices, const Permutation& o
   for_cells([&](Index c, Index old, Index ahead) {
     __builtin_prefetch(cells.vertices.data() + begin_of(ahead));
     const Index* const from = cells.vertices.data() + begin_of(old);
-    std::transform(from, from + result.vertex_count(c), result[c].begin(),
+    Index* const to = result.vertices.data() + (size > 0 ? size * c : result.offsets[c]);
+    std::transform(from, from + (size > 0 ? size : cells.vertex_count(old)), to,
                    [&](Index v) { return new_number[v]; });
   });
+  if (size > 0) result.offsets = std::move(cells.offsets);  // last: if a loop stops, the cells are whole
   return result;
 }
 

@@ -23,6 +23,7 @@ class PlainBench final : public KernelBench {
 
  private:
   void compute(Kernel kernel) override;
+
   /// The elements and edges that one thread computes; it adds only to the vertices `owned`.
   struct Share {
     plain::VertexRange owned;

@@ -23,6 +23,7 @@ class TunedBench final : public KernelBench {
 
  private:
   void compute(Kernel kernel) override;
+
   /// The work of one thread.
   struct Share {
     OwnedBatches elements;
