@@ -11,6 +11,17 @@
 
 namespace meshorder {
 
+/// How a bucket stores an entry: as it is. A specialisation can take less memory: it stores the entry's row
+/// relative to the first row of its part, and the key relative to the first key of its bucket. A bucket has
+/// at most 65,536 keys.
+template <class Entry>
+struct StoredEntry {
+  Entry entry;
+
+  static StoredEntry of(const Entry& entry, Index /*first_row*/, Index /*first_key*/) { return {entry}; }
+  [[nodiscard]] const Entry& whole(Index /*first_row*/, Index /*first_key*/) const { return entry; }
+};
+
 /// Puts entries into buckets of adjacent keys; entries of a bucket keep their given order. This is the first
 /// step of sorting more entries than the caches hold; the second step sorts each bucket. Each thread fills
 /// its own buckets with a part of the entries: its writes then stay in its caches, whatever the order of the
@@ -26,8 +37,8 @@ class Buckets {
   /// @param key          `key(entry)` returns the key of an entry
   template <class EntriesOf, class Key>
   Buckets(Index rows, Index rows_of_part, Index keys, const EntriesOf& entries_of, const Key& key)
-      : keys_(keys), parts_(chunk_count(rows, rows_of_part)) {
-    while (chunk_count(keys, width()) > kMostBuckets) ++log2_width_;
+      : keys_(keys), rows_of_part_(rows_of_part), parts_(chunk_count(rows, rows_of_part)) {
+    while (log2_width_ < kMostLog2Width && chunk_count(keys, width()) > kEnoughBuckets) ++log2_width_;
     for_each_chunk(rows, rows_of_part, [&](Index k, Index begin, Index end) {
       const auto for_each_entry = entries_of(k, begin, end);
       SortedPart& part = parts_[k];
@@ -37,7 +48,8 @@ class Buckets {
       part.starts = next;
       part.entries.resize(std::size_t(next.back()));
       for_each_entry([&, entries = part.entries.data(), next = next.data()](const Entry& entry) {
-        entries[next[bucket_of(key(entry))]++] = entry;
+        const Index bucket = bucket_of(key(entry));
+        entries[next[bucket]++] = StoredEntry<Entry>::of(entry, begin, first_key(bucket));
       });
     });
     starts_.assign(std::size_t(size()) + 1, 0);
@@ -69,17 +81,21 @@ class Buckets {
   /// Calls `visit(entry)` for the entries of the bucket, in the order in which they came.
   template <class Visit>
   void for_each(Index bucket, const Visit& visit) const {
-    for (const SortedPart& part : parts_) std::ranges::for_each(part[bucket], visit);
+    for (Index k = 0; k < index_size(parts_); ++k) {
+      for (const StoredEntry<Entry>& stored : parts_[k][bucket])
+        visit(stored.whole(k * rows_of_part_, first_key(bucket)));
+    }
   }
 
  private:
-  static constexpr Index kMostBuckets = 2048;
+  static constexpr Index kEnoughBuckets = 2048;
+  static constexpr int kMostLog2Width = 16;
 
   struct SortedPart {
-    std::vector<Entry> entries;
+    std::vector<StoredEntry<Entry>> entries;
     std::vector<Offset> starts;  ///< where each bucket begins, and the end
 
-    std::span<const Entry> operator[](Index bucket) const {
+    std::span<const StoredEntry<Entry>> operator[](Index bucket) const {
       return {entries.data() + starts[bucket], entries.data() + starts[bucket + 1]};
     }
   };
@@ -88,6 +104,7 @@ class Buckets {
   [[nodiscard]] Index bucket_of(Index key) const { return key >> log2_width_; }
 
   Index keys_;
+  Index rows_of_part_;
   int log2_width_ = 10;  ///< of the number of keys in a bucket
   std::vector<SortedPart> parts_;
   std::vector<Offset> starts_;  ///< where each bucket begins among the entries of all parts, and the end

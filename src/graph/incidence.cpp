@@ -11,6 +11,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -23,6 +24,28 @@ struct Position {
   Index row;
   Index column;
 };
+
+/// Rows that a thread takes together.
+constexpr Index kRowsOfPart = 16384;
+
+}  // namespace
+
+template <>
+struct StoredEntry<Position> {
+  static_assert(kRowsOfPart - 1 <= UINT16_MAX);
+  std::uint16_t row;     ///< from the first of its part
+  std::uint16_t column;  ///< from the first of its bucket
+
+  static StoredEntry of(Position at, Index first_row, Index first_column) {
+    return {static_cast<std::uint16_t>(at.row - first_row),
+            static_cast<std::uint16_t>(at.column - first_column)};
+  }
+  [[nodiscard]] Position whole(Index first_row, Index first_column) const {
+    return {first_row + row, first_column + column};
+  }
+};
+
+namespace {
 
 /// Returns whether the columns of consecutive rows lie far apart; writing column by column would then wait
 /// for memory. Looks at about a thousand rows.
@@ -41,9 +64,6 @@ bool is_scattered(IncidenceRef incidence) {
   }
   return far > looks / 8;
 }
-
-/// Rows that a thread takes together.
-constexpr Index kRowsOfPart = 16384;
 
 // Both of the following return the rows of each column, ascending, one column after another.
 // `entries_of(part, begin, end)` returns a function that calls its argument for each position of a part.

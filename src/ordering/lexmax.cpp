@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <utility>
@@ -24,6 +25,29 @@ struct Entry {
   std::array<Index, kInEntry> ranks;
   Index item;  ///< the element
 };
+
+}  // namespace
+
+template <>
+struct StoredEntry<Entry> {
+  static_assert(kPart - 1 <= UINT16_MAX);
+  std::array<Index, kInEntry - 1> other_ranks;
+  std::uint16_t largest_rank;  ///< from the first of its bucket
+  std::uint16_t item;          ///< from the first of its part
+
+  static StoredEntry of(const Entry& entry, Index first_item, Index first_rank) {
+    const auto& [largest, second, third, fourth] = entry.ranks;
+    return {{second, third, fourth},
+            static_cast<std::uint16_t>(largest - first_rank),
+            static_cast<std::uint16_t>(entry.item - first_item)};
+  }
+  [[nodiscard]] Entry whole(Index first_item, Index first_rank) const {
+    const auto& [second, third, fourth] = other_ranks;
+    return {{first_rank + largest_rank, second, third, fourth}, first_item + item};
+  }
+};
+
+namespace {
 
 Entry entry_of(Index element, std::span<const Index> vertices, std::span<const Index> rank_of) {
   Entry entry{{-1, -1, -1, -1}, element};

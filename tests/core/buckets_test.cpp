@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <random>
 #include <utility>
 
@@ -55,10 +56,59 @@ TEST(Buckets, SortedOneByOneSortAllAndKeepThoseOfAKeyAsTheyCame) {
 TEST(Buckets, OfNothingAreEmpty) {
   const auto entries_of = [](Index, Index, Index) { return [](const auto& /*call*/) {}; };
   EXPECT_EQ(Buckets<Entry>(0, 3, 0, entries_of, key_of).size(), 0);
-  EXPECT_GT(Buckets<Entry>(0, 3, kMaxIndex, entries_of, key_of).first_key(1), kMaxIndex / 4000);
+  EXPECT_EQ(Buckets<Entry>(0, 3, kMaxIndex, entries_of, key_of).first_key(1), 65536);
   const Buckets<Entry> without_entries(9, 3, 5, entries_of, key_of);
   EXPECT_EQ(without_entries.start(without_entries.size()), 0);
   EXPECT_EQ(without_entries.key_starts(0, key_of), std::vector<Offset>(6, 0));
+}
+
+/// An entry that is stored in two bytes for each number.
+struct Cell {
+  Index row;
+  Index key;
+
+  bool operator==(const Cell&) const = default;
+};
+
+}  // namespace
+
+template <>
+struct StoredEntry<Cell> {
+  std::uint16_t row;
+  std::uint16_t key;
+
+  static StoredEntry of(Cell cell, Index first_row, Index first_key) {
+    return {static_cast<std::uint16_t>(cell.row - first_row),
+            static_cast<std::uint16_t>(cell.key - first_key)};
+  }
+  [[nodiscard]] Cell whole(Index first_row, Index first_key) const {
+    return {first_row + row, first_key + key};
+  }
+};
+
+namespace {
+
+TEST(Buckets, ReturnWholeEntriesOfWhichTheyStoreAPart) {
+  constexpr Index kRows = 200000;
+  for (const Index keys : {70000, 200000000, kMaxIndex}) {
+    const auto cell_of = [&](Offset row) {
+      return Cell{static_cast<Index>(row), static_cast<Index>(row * 7919 * 10007 % keys)};
+    };
+    const auto entries_of = [&](Index /*part*/, Index begin, Index end) {
+      return [&, begin, end](const auto& call) {
+        for (Index row = begin; row < end; ++row) call(cell_of(row));
+      };
+    };
+    const Buckets<Cell> buckets(kRows, 65536, keys, entries_of, [](const Cell& cell) { return cell.key; });
+    Index found = 0;
+    for (Index bucket = 0; bucket < buckets.size(); ++bucket) {
+      buckets.for_each(bucket, [&](const Cell& cell) {
+        ASSERT_EQ(cell, cell_of(cell.row));
+        ++found;
+      });
+    }
+    EXPECT_EQ(found, kRows) << keys << " keys";
+  }
 }
 
 }  // namespace
