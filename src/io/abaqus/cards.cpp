@@ -73,11 +73,6 @@ std::string compact(std::string_view text) {
   return result;
 }
 
-std::string_view without_quotes(std::string_view value) {
-  const bool quoted = value.size() >= 2 && value.front() == '"' && value.back() == '"';
-  return quoted ? value.substr(1, value.size() - 2) : value;
-}
-
 std::string_view trimmed_of_ends(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) return {};
@@ -168,6 +163,11 @@ std::string_view next_field(std::string_view& line) {
   const std::string_view field = trimmed(line.substr(0, comma));
   line = comma == std::string_view::npos ? std::string_view() : line.substr(comma + 1);
   return field;
+}
+
+std::string_view without_quotes(std::string_view value) {
+  const bool quoted = value.size() >= 2 && value.front() == '"' && value.back() == '"';
+  return quoted ? value.substr(1, value.size() - 2) : value;
 }
 
 std::int64_t number_of(std::string_view field) {
@@ -299,60 +299,42 @@ char field_at(std::string_view fields, std::size_t k) {
   return repeats ? fields[given - 1] : '-';
 }
 
+/// Calls `work` with each line below a keyword, without its end; leaves out comments.
+template <class Work>
+void for_data_lines(std::string_view lines, const Work& work) {
+  for (std::size_t begin = keyword_lines(lines).size(); begin < lines.size();) {
+    const std::string_view line = first_line(lines.substr(begin));
+    if (!is_comment_line(line)) work(without_end(line));
+    begin += line.size();
+  }
+}
+
 /// Collects references from the lines below a keyword.
 class ReferenceFinder {
  public:
   ReferenceFinder(const Card& card, std::string_view lines) : card_(card), lines_(lines) {}
 
-  /// See `pairs_sets` in cards.hpp.
-  [[nodiscard]] bool pairs_sets() const {
-    const bool is_mpc = card_.keyword == "MPC";
-    if (!is_mpc && card_.keyword != "EQUATION") return false;
-    int names = 0;
-    for_lines(keyword_lines(lines_).size(), [&](std::string_view line) {
-      if (is_mpc) (void)next_field(line);  // the type of the constraint
-      while (!line.empty()) {
-        const std::string_view field = next_field(line);
-        const char first = field.empty() ? '0' : field.front();
-        const bool is_name =
-            std::isalpha(static_cast<unsigned char>(first)) != 0 || first == '_' || first == '"';
-        if (is_name && number_of(field) == 0) ++names;
-      }
-    });
-    return names > 1;
-  }
-
   std::optional<std::vector<Reference>> find() {
-    if (pairs_sets()) return {};
-    const std::size_t begin = keyword_lines(lines_).size();
-    add_parameters(lines_.substr(0, begin));
+    if (pairs_sets(card_, lines_)) return {};
+    add_parameters(keyword_lines(lines_));
     // the numbers below *SECTION PRINT may be nodes on its axes
-    if (card_.keyword == "SECTIONPRINT" && has_numbers_in_front(begin)) return {};
+    if (card_.keyword == "SECTIONPRINT" && has_numbers_in_front()) return {};
     if (card_.keyword == "EQUATION" && !card_.has("REMOVE")) {
       if (has_other_file(card_)) return {};
-      for_lines(begin, [this](std::string_view line) { add_terms(line); });
+      for_data_lines(lines_, [this](std::string_view line) { add_terms(line); });
       return std::move(found_);
     }
     const auto fields = fields_of(card_);
     if (!fields) return {};
-    if (!fields->empty()) for_lines(begin, [&](std::string_view line) { add_fields(line, *fields); });
+    if (!fields->empty()) for_data_lines(lines_, [&](std::string_view line) { add_fields(line, *fields); });
     return std::move(found_);
   }
 
  private:
-  template <class Work>
-  void for_lines(std::size_t begin, Work work) const {
-    while (begin < lines_.size()) {
-      const std::string_view line = first_line(lines_.substr(begin));
-      if (!trimmed(line).starts_with("**")) work(without_end(line));
-      begin += line.size();
-    }
-  }
-
   /// Returns whether a line below the keyword begins with a whole number.
-  [[nodiscard]] bool has_numbers_in_front(std::size_t begin) const {
+  [[nodiscard]] bool has_numbers_in_front() const {
     bool any = false;
-    for_lines(begin, [&](std::string_view line) { any = any || number_of(next_field(line)) > 0; });
+    for_data_lines(lines_, [&](std::string_view line) { any = any || number_of(next_field(line)) > 0; });
     return any;
   }
 
@@ -434,15 +416,11 @@ std::vector<NamedSet> named_sets(const Card& card, std::string_view lines) {
   if (!fields || fields->empty()) return {};
   const Association association = fields->front() == 'n' ? Association::vertices : Association::cells;
   std::vector<NamedSet> sets;
-  for (std::size_t begin = keyword_lines(lines).size(); begin < lines.size();) {
-    const std::string_view line = first_line(lines.substr(begin));
-    begin += line.size();
-    if (is_comment_line(line)) continue;
-    std::string_view rest = without_end(line);
-    const std::string_view field = without_quotes(next_field(rest));
+  for_data_lines(lines, [&](std::string_view line) {
+    const std::string_view field = without_quotes(next_field(line));
     const bool is_name = !field.empty() && std::isdigit(static_cast<unsigned char>(field.front())) == 0;
     if (is_name && number_of(field) == 0) sets.push_back({association, field});
-  }
+  });
   return sets;
 }
 
@@ -462,7 +440,20 @@ bool depends_on_numbers(const Card& card) {
 }
 
 bool pairs_sets(const Card& card, std::string_view lines) {
-  return ReferenceFinder(card, lines).pairs_sets();
+  const bool is_mpc = card.keyword == "MPC";
+  if (!is_mpc && card.keyword != "EQUATION") return false;
+  int names = 0;
+  for_data_lines(lines, [&](std::string_view line) {
+    if (is_mpc) (void)next_field(line);  // the type of the constraint
+    while (!line.empty()) {
+      const std::string_view field = next_field(line);
+      const char first = field.empty() ? '0' : field.front();
+      const bool is_name =
+          std::isalpha(static_cast<unsigned char>(first)) != 0 || first == '_' || first == '"';
+      if (is_name && number_of(field) == 0) ++names;
+    }
+  });
+  return names > 1;
 }
 
 std::vector<std::int64_t> numbers_in(std::string_view lines) {
@@ -470,15 +461,10 @@ std::vector<std::int64_t> numbers_in(std::string_view lines) {
   const auto add = [&](std::string_view field) {
     if (const std::int64_t number = number_of(field); number > 0) numbers.push_back(number);
   };
-  std::size_t begin = keyword_lines(lines).size();
   for (const Card::Parameter& parameter : parse_card(lines).parameters) add(parameter.value);
-  while (begin < lines.size()) {
-    std::string_view line = first_line(lines.substr(begin));
-    begin += line.size();
-    if (trimmed(line).starts_with("**")) continue;
-    line = without_end(line);
+  for_data_lines(lines, [&](std::string_view line) {
     while (!line.empty()) add(next_field(line));
-  }
+  });
   return numbers;
 }
 

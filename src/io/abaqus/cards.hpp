@@ -46,6 +46,9 @@ std::string without_parameter(std::string_view lines, std::string_view name);
 /// Removes the next field from the front of a data line and returns it without blanks around it.
 std::string_view next_field(std::string_view& line);
 
+/// Returns `value` without the quotes around it, if it has some.
+std::string_view without_quotes(std::string_view value);
+
 /// Parses a field as the number of a node or element: digits, or the name of an instance, a dot and digits.
 /// Returns 0 for anything else.
 std::int64_t number_of(std::string_view field);

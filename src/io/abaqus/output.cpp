@@ -160,9 +160,8 @@ void DeckOutput::note_rounded(Notes& notes) const {
                   rounded_ == 1 ? "one coordinate is" : fmt::format("{} coordinates are", rounded_)));
 }
 
-void write_sets(DeckOutput& out, const std::vector<EntitySet>& sets,
-                const std::function<std::int64_t(Index)>& vertex_number,
-                const std::function<std::int64_t(Index)>& cell_number, Notes& notes) {
+void write_sets(DeckOutput& out, const std::vector<EntitySet>& sets, const DeckNumbers& numbers,
+                Notes& notes) {
   std::array<std::set<std::string>, 2> taken;
   std::array<NameNumbers, 2> numbering;
   for (const EntitySet& set : sets) {
@@ -173,12 +172,10 @@ void write_sets(DeckOutput& out, const std::vector<EntitySet>& sets,
     }
     const std::string name = name_for(set.name, taken[of_nodes ? 0 : 1], numbering[of_nodes ? 0 : 1]);
     note_renamed_set(set, name, notes);
-    std::vector<std::int64_t> numbers;
-    numbers.reserve(set.members.size());
-    for (const Index member : set.members) {
-      numbers.push_back(of_nodes ? vertex_number(member) : cell_number(member));
-    }
-    out.set(set.association, name, numbers);
+    std::vector<std::int64_t> members;
+    members.reserve(set.members.size());
+    for (const Index member : set.members) members.push_back(numbers.of(set.association).at(member));
+    out.set(set.association, name, members);
   }
 }
 

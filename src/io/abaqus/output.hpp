@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #pragma once
 
+#include "io/deck/numbers.hpp"
 #include "io/stream/output_file.hpp"
 #include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
@@ -63,10 +64,7 @@ std::string short_real(double value);
 
 /// Writes the sets under names that are valid in decks. Notes the names that change, and the sets without
 /// members, which are left out.
-///
-/// @param vertex_number, cell_number  number of a vertex and of a cell by its position
-void write_sets(DeckOutput& out, const std::vector<EntitySet>& sets,
-                const std::function<std::int64_t(Index)>& vertex_number,
-                const std::function<std::int64_t(Index)>& cell_number, Notes& notes);
+void write_sets(DeckOutput& out, const std::vector<EntitySet>& sets, const DeckNumbers& numbers,
+                Notes& notes);
 
 }  // namespace meshorder::abaqus

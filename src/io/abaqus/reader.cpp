@@ -74,21 +74,10 @@ template <class T>
   return true;
 }
 
-/// Returns why a deck with this card cannot be read; an empty text if it can.
-std::string_view fault_of(std::string_view keyword) {
-  constexpr std::array<std::string_view, 6> kGenerators{"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY"};
-  if (std::find(kGenerators.begin(), kGenerators.end(), keyword) != kGenerators.end()) {
-    return "makes nodes or elements that have no lines to move";
-  }
-  return {};
-}
-
-/// A node that an element names before a card defines it.
-struct UnknownNode {
-  Offset entry;  ///< place in Cells::vertices
-  Index number;
+/// A place in the deck: the position of its file in `files_`, and a line.
+struct Place {
+  Index file;
   std::int64_t line;
-  std::int32_t file;
 };
 
 /// A data line of *NODE.
@@ -135,8 +124,7 @@ class DeckReader {
   // ---- cards
 
   DeckCard& begin_section(CardKind part, std::string text, std::int64_t line) {
-    lines_of_sections_.push_back(line);
-    files_of_sections_.push_back(file_number());
+    places_of_sections_.push_back({present_file(), line});
     DeckCard& section = deck_->sections.emplace_back();
     section.part = part;
     section.text = std::move(text);
@@ -166,8 +154,10 @@ class DeckReader {
     std::string text = take_keyword();
     const Card card = parse_card(text);
     if (card.keyword == "INCLUDE") return include(card.value("INPUT"));
-    if (const std::string_view fault = fault_of(card.keyword); !fault.empty()) {
-      lines_.fail(line_, fmt::format("{} {}", card.title, fault),
+    constexpr std::array<std::string_view, 6> kGenerators{"NGEN", "NFILL", "NCOPY",
+                                                          "NMAP", "ELGEN", "ELCOPY"};
+    if (std::find(kGenerators.begin(), kGenerators.end(), card.keyword) != kGenerators.end()) {
+      lines_.fail(line_, card.title + " makes nodes or elements that have no lines to move",
                   "let a preprocessor write all nodes and elements");
     }
     if (card.keyword == "NODE") return read_nodes(card, std::move(text));
@@ -186,22 +176,23 @@ class DeckReader {
 
   /// Follows the cards of parts and assemblies; fails for a second part or instance.
   void follow_parts(const Card& card) {
-    constexpr std::string_view kRemedy =
-        "write the deck without parts and assemblies: in Abaqus/CAE a choice of Model > Edit Attributes";
-    if (card.keyword == "PART" && ++parts_ > 1) {
-      lines_.fail(line_, "a second *PART, which uses the numbers of the first", std::string(kRemedy));
-    }
-    if (card.keyword == "INSTANCE" && ++instances_ > 1) {
-      lines_.fail(line_, "a second *INSTANCE, which uses the numbers of the first", std::string(kRemedy));
-    }
+    if (card.keyword == "PART" && ++parts_ > 1) refuse_second("*PART");
+    if (card.keyword == "INSTANCE" && ++instances_ > 1) refuse_second("*INSTANCE");
     if (card.keyword == "ASSEMBLY" || card.keyword == "ENDINSTANCE") in_assembly_ = true;
     if (card.keyword == "ENDASSEMBLY" || card.keyword == "INSTANCE") in_assembly_ = false;
     sets_.enter_assembly(in_assembly_);
   }
 
+  void refuse_second(std::string_view title) const {
+    refuse_parts(fmt::format("a second {}, which uses the numbers of the first", title));
+  }
+
   void refuse_in_assembly(std::string_view title) const {
-    if (!in_assembly_) return;
-    lines_.fail(line_, fmt::format("{} of the assembly, in addition to the part's", title),
+    if (in_assembly_) refuse_parts(fmt::format("{} of the assembly, in addition to the part's", title));
+  }
+
+  [[noreturn]] void refuse_parts(const std::string& what) const {
+    lines_.fail(line_, what,
                 "write the deck without parts and assemblies: in Abaqus/CAE a choice of Model > Edit "
                 "Attributes");
   }
@@ -458,7 +449,8 @@ class DeckReader {
         cell[k] = deck_->nodes.find(node);
         if (cell[k] < 0) {
           cell[k] = 0;
-          unknown_nodes_.push_back({first + static_cast<Offset>(k), node, lines_.at().line(), file_number()});
+          later_nodes_.push_back(
+              {first + static_cast<Offset>(k), node, {present_file(), lines_.at().line()}});
         }
       }
       (void)lines_.take();
@@ -473,11 +465,11 @@ class DeckReader {
     mesh_.cells.push_back(kind.shape, {cell.data(), nodes});
   }
 
-  /// Returns the position of the present file in `files_`, for `unknown_nodes_`.
-  std::int32_t file_number() {
+  /// Returns the position of the present file in `files_`.
+  Index present_file() {
     const std::string& file = lines_.at().file();
     if (files_.empty() || files_.back() != file) files_.push_back(file);
-    return static_cast<std::int32_t>(files_.size()) - 1;
+    return index_size(files_) - 1;
   }
 
   /// Keeps the lines of elements of an unknown type as text.
@@ -512,7 +504,7 @@ class DeckReader {
 
   // ---- sets
 
-  void read_set(const Card& card, SetReader::Place place) {
+  void read_set(const Card& card, Location place) {
     const bool of_nodes = card.keyword == "NSET";
     if (card.value(card.keyword).empty()) {
       lines_.fail(line_, fmt::format("*{} has no name", card.keyword),
@@ -534,7 +526,8 @@ class DeckReader {
   // ---- the end
 
   void finish() {
-    if (deck_->nodes.size() == 0) throw InputError(lines_.at().file(), "has no *NODE", no_mesh());
+    constexpr const char* kNoMesh = "it may be cut short, or its mesh be in another file";
+    if (deck_->nodes.size() == 0) throw InputError(lines_.at().file(), "has no *NODE", kNoMesh);
     if (deck_->elements.size() == 0) {
       if (!other_types_.empty()) {
         throw InputError(lines_.at().file(),
@@ -542,14 +535,15 @@ class DeckReader {
                                      join(other_types_, std::string_view("; "))),
                          "correct TYPE= if it is misspelt; C3D4, C3D8, C3D10, S3, S4 and the like are cells");
       }
-      throw InputError(lines_.at().file(), "has no *ELEMENT", no_mesh());
+      throw InputError(lines_.at().file(), "has no *ELEMENT", kNoMesh);
     }
-    resolve_nodes();
+    resolve(later_nodes_, deck_->nodes, mesh_.cells, [&](const LaterNode<Place>& later) {
+      throw InputError(Location{files_[later.place.file], later.place.line, -1},
+                       fmt::format("a node of the element is {}, which no *NODE has", later.number),
+                       "add it, or correct the element");
+    });
     const bool has_volume = mesh_.cells.highest_dimension() == 3;
     mesh_.dimension = has_volume || has_third_coordinate_ ? 3 : 2;
-    if (mesh_.cell_blocks.size() < 2) mesh_.cell_blocks.clear();
-    mesh_.vertex_ids = deck_->nodes.ids_unless_from(1);
-    mesh_.cell_ids = deck_->elements.ids_unless_from(1);
     mesh_.sets = sets_.members(deck_->nodes, deck_->elements, other_elements_, mesh_.cells, notes_);
     deck_->sets = mesh_.sets;
     list_contents();
@@ -558,23 +552,16 @@ class DeckReader {
     if (!lines_.included().empty()) {
       notes_.push_back(fmt::format("included files are now part of the deck: {}", join(lines_.included())));
     }
-    auto metadata = std::make_shared<AbaqusMetadata>();
-    metadata->deck = deck_;
-    mesh_.format_metadata = std::move(metadata);
+    keep_deck(mesh_, deck_);
   }
 
-  static std::string no_mesh() { return "it may be cut short, or its mesh be in another file"; }
-
-  /// Fills in the nodes that are defined after the elements that name them.
-  void resolve_nodes() {
-    for (const UnknownNode& unknown : unknown_nodes_) {
-      const Index v = deck_->nodes.find(unknown.number);
-      if (v < 0) {
-        throw InputError(Location{files_[static_cast<std::size_t>(unknown.file)], unknown.line, -1},
-                         fmt::format("a node of the element is {}, which no *NODE has", unknown.number),
-                         "add it, or correct the element");
-      }
-      mesh_.cells.vertices[static_cast<std::size_t>(unknown.entry)] = v;
+  /// Calls `work(card, text, place)` for each card that is kept as text.
+  template <class Work>
+  void for_cards(const Work& work) const {
+    for (std::size_t i = 0; i < deck_->sections.size(); ++i) {
+      const DeckCard& section = deck_->sections[i];
+      if (section.part != CardKind::text || !is_keyword(trimmed(section.text))) continue;
+      work(parse_card(section.text), section.text, places_of_sections_[i]);
     }
   }
 
@@ -583,14 +570,12 @@ class DeckReader {
     std::vector<std::string> titles;
     std::set<std::string> known_titles;
     std::vector<std::string> surfaces;
-    for (const DeckCard& section : deck_->sections) {
-      if (section.part != CardKind::text || !is_keyword(trimmed(section.text))) continue;
-      const Card card = parse_card(section.text);
+    for_cards([&](const Card& card, std::string_view /*text*/, Place /*place*/) {
       if (card.keyword == "SURFACE") surfaces.push_back(fmt::format("'{}'", shown(card.value("NAME"))));
       const bool elsewhere =
           std::find(kElsewhere.begin(), kElsewhere.end(), card.keyword) != kElsewhere.end();
       if (!elsewhere && known_titles.insert(card.title).second) titles.push_back(card.title);
-    }
+    });
     std::vector<std::string>& contents = deck_->contents;
     if (!types_.empty()) contents.push_back("the types of elements " + join(types_));
     if (!surfaces.empty()) contents.push_back("surfaces of the deck: " + join(surfaces));
@@ -600,40 +585,32 @@ class DeckReader {
 
   /// Lists the cards that may name nodes or elements in places that `references` does not know.
   void find_unknown_cards() {
-    for (std::size_t i = 0; i < deck_->sections.size(); ++i) {
-      const DeckCard& section = deck_->sections[i];
-      if (section.part != CardKind::text || !is_keyword(trimmed(section.text))) continue;
-      const Card card = parse_card(section.text);
+    for_cards([&](const Card& card, std::string_view text, Place place) {
       const bool is_set = card.keyword == "NSET" || card.keyword == "ELSET";
-      if (card.keyword == "ELEMENT" || (is_set && !has_other_file(card))) continue;
+      if (card.keyword == "ELEMENT" || (is_set && !has_other_file(card))) return;
       const bool goes_by_numbers = depends_on_numbers(card);
-      if (!goes_by_numbers && references(card, section.text)) continue;
-      const std::vector<std::int64_t> numbers = numbers_in(section.text);
+      if (!goes_by_numbers && references(card, text)) return;
+      const std::vector<std::int64_t> numbers = numbers_in(text);
       const bool names_any = goes_by_numbers || card.keyword == "PARAMETER" || has_other_file(card) ||
-                             pairs_sets(card, section.text) ||
+                             pairs_sets(card, text) ||
                              std::any_of(numbers.begin(), numbers.end(), [&](std::int64_t number) {
                                return deck_->nodes.find(number) >= 0 || deck_->elements.find(number) >= 0;
                              });
       if (names_any) {
         deck_->unknown.push_back(
-            fmt::format("{} (line {}{})", card.title, lines_of_sections_[i], suggested_keyword(card)));
+            fmt::format("{} (line {}{})", card.title, place.line, suggested_keyword(card)));
       }
-    }
+    });
     note_kept_numbers(deck_->unknown, notes_);
   }
 
   /// Notes the nodes, elements and sets that cards name but the deck does not have.
   void find_dead_references() {
-    for (std::size_t i = 0; i < deck_->sections.size(); ++i) {
-      const DeckCard& section = deck_->sections[i];
-      if (section.part != CardKind::text || !is_keyword(trimmed(section.text))) continue;
-      const Card card = parse_card(section.text);
-      if (card.keyword == "NSET" || card.keyword == "ELSET" || card.keyword == "ELEMENT") continue;
-      const std::string which =
-          fmt::format("{}:{}: {} names", files_[static_cast<std::size_t>(files_of_sections_[i])],
-                      lines_of_sections_[i], card.title);
+    for_cards([&](const Card& card, std::string_view text, Place place) {
+      if (card.keyword == "NSET" || card.keyword == "ELSET" || card.keyword == "ELEMENT") return;
+      const std::string which = fmt::format("{}:{}: {} names", files_[place.file], place.line, card.title);
       std::vector<std::int64_t> missing;
-      for (const Reference& reference : references(card, section.text).value_or(std::vector<Reference>{})) {
+      for (const Reference& reference : references(card, text).value_or(std::vector<Reference>{})) {
         const bool of_nodes = reference.association == Association::vertices;
         const bool is_there = (of_nodes ? deck_->nodes : deck_->elements).find(reference.number) >= 0 ||
                               (!of_nodes && other_elements_.contains(reference.number));
@@ -641,12 +618,12 @@ class DeckReader {
       }
       if (!missing.empty()) notes_.push_back(note_of_missing(which, missing));
       std::set<std::string> named;
-      for (const auto& [association, name] : named_sets(card, section.text)) {
+      for (const auto& [association, name] : named_sets(card, text)) {
         if (sets_.knows(association, name) || !named.insert(capitals(name)).second) continue;
         notes_.push_back(fmt::format("{} the {} '{}', which the deck does not have", which,
                                      name_of_sets(association), shown(name)));
       }
-    }
+    });
   }
 
   DeckLines lines_;
@@ -654,13 +631,12 @@ class DeckReader {
   Mesh mesh_;
   std::shared_ptr<Deck> deck_ = std::make_shared<Deck>();
   SetReader sets_;
-  std::vector<std::int64_t> lines_of_sections_;
-  std::vector<std::int32_t> files_of_sections_;  // positions in files_
-  std::vector<UnknownNode> unknown_nodes_;
+  std::vector<Place> places_of_sections_;
+  std::vector<LaterNode<Place>> later_nodes_;
   std::vector<NodeLine> node_lines_;                 // buffer for regular lines
   std::vector<ElementLine> element_lines_;           // likewise
   std::vector<Index> element_nodes_;                 // their vertices, in the order of cells
-  std::vector<std::string> files_;                   // files of unknown_nodes_ and files_of_sections_
+  std::vector<std::string> files_;                   // files that were read, one after the other
   std::unordered_set<std::int64_t> other_elements_;  // numbers of elements that are not cells
   std::vector<std::string> other_types_;             // the first of their types, for a message
   std::vector<std::string> types_;

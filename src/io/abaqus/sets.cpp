@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -59,12 +58,12 @@ std::size_t SetReader::set_named(Association association, std::string_view name)
   return found->second;
 }
 
-const EntitySet* SetReader::find(Association association, const Addition& from, std::string_view name) const {
+const EntitySet* SetReader::find(Association association, bool in_assembly, std::string_view name) const {
   const auto at = [&](bool of_assembly, std::string_view key) -> const EntitySet* {
     const auto found = places_.find(Key{association, of_assembly, capitals(key)});
     return found == places_.end() ? nullptr : &sets_[found->second];
   };
-  if (from.in_assembly && !from.of_instance) {
+  if (in_assembly) {
     if (const EntitySet* const set = at(true, name)) return set;
   }
   if (const EntitySet* const set = at(false, name)) return set;
@@ -73,12 +72,9 @@ const EntitySet* SetReader::find(Association association, const Addition& from, 
 }
 
 bool SetReader::knows(Association association, std::string_view name) const {
-  const auto is_key = [&](std::string_view key) {
-    return places_.contains(Key{association, false, capitals(key)}) ||
-           places_.contains(Key{association, true, capitals(key)});
-  };
-  const std::size_t dot = name.find('.');  // "PART-1-1.SET"
-  return is_key(name) || (dot != std::string_view::npos && is_key(name.substr(dot + 1)));
+  const std::string_view after_dot = name.substr(name.find('.') + 1);  // the whole name if there is no dot
+  return find(association, true, name) != nullptr ||
+         places_.contains(Key{association, true, capitals(after_dot)});
 }
 
 void SetReader::add_block(Association association, std::string_view name, Index first, Index count) {
@@ -89,12 +85,11 @@ void SetReader::add_block(Association association, std::string_view name, Index 
   addition.count = count;
 }
 
-void SetReader::begin_card(Association association, const Card& card, Place place) {
+void SetReader::begin_card(Association association, const Card& card, Location place) {
   Addition& addition = additions_.emplace_back();
   addition.association = association;
   addition.set = set_named(association, card.value(association == Association::vertices ? "NSET" : "ELSET"));
-  addition.in_assembly = in_assembly_;
-  addition.of_instance = card.has("INSTANCE");
+  addition.in_assembly = in_assembly_ && !card.has("INSTANCE");
   addition.place = std::move(place);
   addition.generate = card.has("GENERATE");
   if (association == Association::vertices) addition.nodes_of = card.value("ELSET");
@@ -126,8 +121,7 @@ std::string SetReader::add_line(std::string_view line) {
     if (number > 0) {
       addition.numbers.push_back(static_cast<Index>(number));
     } else {
-      const bool quoted = field.size() > 1 && field.front() == '"' && field.back() == '"';
-      addition.names.emplace_back(quoted ? field.substr(1, field.size() - 2) : field);
+      addition.names.emplace_back(without_quotes(field));
     }
   }
   return {};
@@ -137,11 +131,10 @@ void SetReader::add_members(const Addition& addition, const IdMap& items,
                             const std::unordered_set<std::int64_t>& others, const Cells& cells,
                             Repeats& repeats, Notes& notes) {
   const auto claim = [&](std::size_t count) {
-    claim_memory(count * sizeof(Index), "the set", {addition.place.file, addition.place.line});
+    claim_memory(count * sizeof(Index), "the set", addition.place);
   };
   if (addition.count > 0) claim(static_cast<std::size_t>(addition.count));
-  std::vector<Index> members(static_cast<std::size_t>(addition.count));
-  std::iota(members.begin(), members.end(), addition.first);
+  std::vector<Index> members = index_range(addition.first, addition.count);
   std::vector<std::int64_t> missing;
   for (const Index number : addition.numbers) {
     const Index item = items.find(number);
@@ -157,7 +150,7 @@ void SetReader::add_members(const Addition& addition, const IdMap& items,
     repeats.append(set, items_in_range(items, from, to, step));
   std::vector<std::string> unknown;
   for (const std::string& name : addition.names) {
-    if (const EntitySet* const named = find(addition.association, addition, name)) {
+    if (const EntitySet* const named = find(addition.association, addition.in_assembly, name)) {
       claim(named->members.size());
       members = named->members;  // a set may name itself
       repeats.append(set, members);
@@ -166,7 +159,7 @@ void SetReader::add_members(const Addition& addition, const IdMap& items,
     }
   }
   if (!addition.nodes_of.empty()) {
-    if (const EntitySet* const of_cells = find(Association::cells, addition, addition.nodes_of)) {
+    if (const EntitySet* const of_cells = find(Association::cells, addition.in_assembly, addition.nodes_of)) {
       for (const Index c : of_cells->members) {
         claim(cells[c].size());
         repeats.append(set, cells[c]);

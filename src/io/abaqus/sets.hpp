@@ -3,6 +3,7 @@
 
 #include "io/abaqus/cards.hpp"
 #include "io/stream/id_map.hpp"
+#include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
 
@@ -27,12 +28,6 @@ std::string note_of_missing(std::string_view which, const std::vector<std::int64
 /// Reads the node and element sets of a deck: collects the additions of all cards, then finds the members.
 class SetReader {
  public:
-  /// The position of a card in the deck.
-  struct Place {
-    std::string file;
-    std::int64_t line = 0;
-  };
-
   /// Sets whether the next cards belong to the assembly. A set of the assembly may have the name of a part's
   /// set.
   void enter_assembly(bool inside) { in_assembly_ = inside; }
@@ -40,7 +35,7 @@ class SetReader {
   /// Adds `count` nodes or elements of the file, from position `first` on, to the set of that name.
   void add_block(Association association, std::string_view name, Index first, Index count);
   /// Begins a card *NSET or *ELSET, whose lines follow.
-  void begin_card(Association association, const Card& card, Place place);
+  void begin_card(Association association, const Card& card, Location place);
   /// Adds a data line of the last card; returns the fault of the line, an empty text if it has none.
   std::string add_line(std::string_view line);
 
@@ -58,9 +53,8 @@ class SetReader {
   struct Addition {
     std::size_t set = 0;
     Association association = Association::vertices;
-    bool in_assembly = false;
-    bool of_instance = false;  ///< the addition's names and numbers belong to the part
-    Place place = {};
+    bool in_assembly = false;  ///< false also if the addition's names and numbers belong to the part
+    Location place = {};
     bool generate = false;
     Index first = 0;  ///< position of the block that `add_block` adds
     Index count = 0;
@@ -73,8 +67,7 @@ class SetReader {
   using Key = std::tuple<Association, bool, std::string>;  ///< bool: whether the set belongs to the assembly
 
   std::size_t set_named(Association association, std::string_view name);
-  [[nodiscard]] const EntitySet* find(Association association, const Addition& from,
-                                      std::string_view name) const;
+  [[nodiscard]] const EntitySet* find(Association association, bool in_assembly, std::string_view name) const;
   void add_members(const Addition& addition, const IdMap& items,
                    const std::unordered_set<std::int64_t>& others, const Cells& cells, Repeats& repeats,
                    Notes& notes);

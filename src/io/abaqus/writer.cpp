@@ -1,8 +1,9 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
 #include "io/abaqus/abaqus.hpp"
+#include "io/abaqus/cards.hpp"
 #include "io/abaqus/output.hpp"
 #include "io/all_formats.hpp"
-#include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
@@ -10,58 +11,268 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
 
 namespace meshorder::abaqus {
 namespace {
 
-/// Writes a deck of nodes, elements and sets for a mesh that has no deck of its own.
-class PlainWriter {
+/// Returns the deck that a mesh was read from; null if there is none or if the mesh no longer fits it.
+const AbaqusMetadata* deck_of(const Mesh& mesh) {
+  std::size_t at = 0;  // of the card of element k
+  return own_deck<Deck>(mesh, [&](const Deck& deck, Index k, Shape shape, int vertices) {
+    const auto has_element = [k](const DeckCard& card) {
+      return card.part == CardKind::elements && k < card.first + card.count;
+    };
+    while (!has_element(deck.sections[at])) ++at;
+    return deck.sections[at].kind == ElementKind{shape, vertices};
+  });
+}
+
+/// Returns a deck of nodes and elements for a mesh that has no deck of its own.
+std::shared_ptr<Deck> plain_deck(const Mesh& mesh) {
+  auto deck = std::make_shared<Deck>();
+  deck->sections.push_back({CardKind::nodes, "*NODE\n", 0, mesh.vertex_count()});
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const ElementKind kind{mesh.cells.shapes[c], mesh.cells.vertex_count(c)};
+    if (c == 0 || kind != deck->sections.back().kind) {
+      const std::string_view type = type_of(kind, mesh.dimension == 2);
+      deck->sections.push_back({CardKind::elements, fmt::format("*ELEMENT, TYPE={}\n", type), c, 0, kind});
+    }
+    ++deck->sections.back().count;
+  }
+  return deck;
+}
+
+/// Takes the next word of a card and returns it in capitals; a name in quotes may have several words.
+std::string next_word_in_capitals(std::string_view& text) { return capitals(next_word(text, " \t,=\"\r\n")); }
+
+class DeckWriter {
  public:
-  PlainWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
+  DeckWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
       : mesh_(mesh),
+        own_(deck_of(mesh)),
+        plain_(own_ == nullptr ? plain_deck(mesh) : nullptr),
+        deck_(own_ == nullptr ? *plain_.deck : *own_->deck),
+        numbers_(own_ == nullptr ? plain_.numbers(ids_as_numbers(mesh.vertex_ids, kLargest),
+                                                  ids_as_numbers(mesh.cell_ids, kLargest))
+                                 : own_->numbers(mesh.vertex_ids, mesh.cell_ids)),
         notes_(notes),
         file_(path),
-        out_(file_, "\n"),
-        vertices_(mesh.vertex_ids, kLargest),
-        cells_(mesh.cell_ids, kLargest) {}
+        out_(file_, deck_.line_end),
+        more_of_nodes_(by_place(deck_.more_of_nodes, numbers_.nodes)),
+        more_of_elements_(by_place(deck_.more_of_elements, numbers_.elements)),
+        same_numbers_(keep_numbers(numbers_, kLargest, deck_.unknown, path)) {}
 
   void write() {
-    write_nodes();
-    write_elements();
-    std::vector<EntitySet> sets = mesh_.sets;
-    add_sets_of_labels(sets);
-    write_sets(
-        out_, sets, [&](Index v) { return vertices_.of(v); }, [&](Index c) { return cells_.of(c); }, notes_);
+    const auto after_last = [&](auto is_wanted) {
+      return std::find_if(deck_.sections.rbegin(), deck_.sections.rend(), is_wanted).base();
+    };
+    const auto after_mesh =
+        after_last([](const DeckCard& section) { return section.part != CardKind::text; });
+    const auto after_nodes = after_last(
+        [](const DeckCard& section) { return section.part == CardKind::nodes && section.count > 0; });
+    for (auto section = deck_.sections.begin();; ++section) {
+      if (section == after_nodes) write_sets_of_cards();
+      if (section == after_mesh) write_new_sets();
+      if (section == deck_.sections.end()) break;
+      if (section->part == CardKind::text && may_use_set_of_cards(section->text)) write_sets_of_cards();
+      write(*section);
+    }
     file_.commit();
     note_losses();
   }
 
  private:
-  [[nodiscard]] ElementKind kind_of_cell(Index c) const {
-    return {mesh_.cells.shapes[c], static_cast<int>(mesh_.cells[c].size())};
+  using TextByPlace = std::unordered_map<Index, std::string_view>;
+
+  /// Changes the keys of `texts` from positions in the file to positions in the mesh.
+  static TextByPlace by_place(const std::map<Index, std::string>& texts, const FileNumbers& numbers) {
+    TextByPlace result;
+    for (const auto& [k, text] : texts) result.emplace(numbers.place(k), text);
+    return result;
   }
 
-  void write_nodes() {
-    out_.text("*NODE\n");
-    out_.nodes(mesh_.points, mesh_.dimension,
-               [&](DeckOutput::Row& row, Index v) { row.number = vertices_.of(v); });
+  static std::string_view text_at(const TextByPlace& texts, Index place) {
+    if (texts.empty()) return {};
+    const auto found = texts.find(place);
+    return found == texts.end() ? std::string_view() : found->second;
   }
 
-  void write_elements() {
-    for (Index first = 0; first < mesh_.cell_count();) {
-      const ElementKind kind = kind_of_cell(first);
-      Index end = first + 1;
-      while (end < mesh_.cell_count() && kind_of_cell(end) == kind) ++end;
-      file_.print("*ELEMENT, TYPE={}\n", type_of(kind, mesh_.dimension == 2));
-      out_.elements(end - first, [&](DeckOutput::Row& row, Index i) {
-        const auto cell = mesh_.cells[first + i];
-        row.number = cells_.of(first + i);
-        row.nodes.resize(cell.size());
-        for (std::size_t k = 0; k < cell.size(); ++k) row.nodes[node_place(kind, k)] = vertices_.of(cell[k]);
-      });
-      first = end;
+  void note_losses() {
+    out_.note_rounded(notes_);
+    if (own_ == nullptr) {
+      note_arrays_beside_cell_labels(mesh_, "Abaqus", notes_);
+      note_unfit_ids(mesh_, "Abaqus", kLargest, notes_);
+      note_metadata_unsupported(mesh_, "Abaqus", notes_);
     }
+    if (!more_of_nodes_.empty()) {
+      notes_.push_back(fmt::format(
+          "fields after the coordinates of {} stay as they are, and are not understood",
+          more_of_nodes_.size() == 1 ? "a node" : fmt::format("{} nodes", more_of_nodes_.size())));
+    }
+    if (!more_of_elements_.empty()) {
+      notes_.push_back(
+          fmt::format("numbers after the last node of {} stay as they are; CalculiX does not read them",
+                      more_of_elements_.size() == 1 ? "an element"
+                                                    : fmt::format("{} elements", more_of_elements_.size())));
+    }
+    if (own_ == nullptr) return;
+    for (const DataArray& array : mesh_.data) note_array_unsupported(array, "Abaqus", notes_);
+  }
+
+  void write(const DeckCard& section) {
+    switch (section.part) {
+      case CardKind::nodes:
+        return write_nodes(section);
+      case CardKind::elements:
+        return write_elements(section);
+      case CardKind::text:
+        return same_numbers_ ? out_.text(section.text) : write_renumbered(section.text);
+    }
+  }
+
+  /// Returns the positions in the mesh of a card's items, ascending.
+  static std::vector<Index> places_of(const DeckCard& section, const FileNumbers& numbers) {
+    std::vector<Index> places = index_range(section.first, section.count);
+    for (Index& place : places) place = numbers.place(place);
+    if (places.empty()) return places;
+    const auto [least, greatest] = std::minmax_element(places.begin(), places.end());
+    if (const Index first = *least; *greatest - first == section.count - 1) {  // no gaps
+      std::iota(places.begin(), places.end(), first);
+    } else {
+      std::sort(places.begin(), places.end());
+    }
+    return places;
+  }
+
+  /// Writes as many nodes as the card had, in the order of the mesh. If these are no longer the card's own
+  /// nodes, its NSET is left out, and `write_sets_of_cards` writes the set.
+  void write_nodes(const DeckCard& section) {
+    if (has_its_nodes(section)) {
+      out_.text(section.text);
+    } else {
+      out_.text(without_parameter(section.text, "NSET"));
+      const std::string set(parse_card(section.text).value("NSET"));
+      if (!set.empty()) {
+        std::string_view words = set;
+        words_of_sets_.insert(next_word_in_capitals(words));
+        sets_of_cards_.emplace_back(set, &section);
+      }
+    }
+    const std::span points(mesh_.points);
+    out_.nodes(
+        points.subspan(static_cast<std::size_t>(section.first), static_cast<std::size_t>(section.count)),
+        mesh_.dimension, [&](DeckOutput::Row& row, Index i) {
+          row.number = numbers_.nodes.at(section.first + i);
+          row.more = text_at(more_of_nodes_, section.first + i);
+        });
+  }
+
+  [[nodiscard]] bool has_its_nodes(const DeckCard& section) const {
+    const std::vector<Index> places = places_of(section, numbers_.nodes);
+    return places.empty() ||
+           (places.front() == section.first && index_size(places) == places.back() + 1 - section.first);
+  }
+
+  /// Returns whether a card contains the first word of the name of a set that is still to be written. O(bytes
+  /// of the card), for any number of sets.
+  [[nodiscard]] bool may_use_set_of_cards(std::string_view text) const {
+    while (!sets_of_cards_.empty() && !text.empty()) {
+      if (words_of_sets_.contains(next_word_in_capitals(text))) return true;
+    }
+    return false;
+  }
+
+  /// Writes the sets that `write_nodes` left out so far: after the last *NODE or before a card that uses one
+  /// of these sets.
+  void write_sets_of_cards() {
+    for (const auto& [set, section] : sets_of_cards_) {
+      std::vector<std::int64_t> members;
+      for (const Index v : places_of(*section, numbers_.nodes)) members.push_back(numbers_.nodes.at(v));
+      const bool quoted = set.find_first_of(" ,=") != std::string::npos;
+      out_.set(Association::vertices, quoted ? '"' + set + '"' : set, members);
+    }
+    sets_of_cards_.clear();
+    words_of_sets_.clear();
+  }
+
+  void write_elements(const DeckCard& section) {
+    out_.text(section.text);
+    const std::vector<Index> places = places_of(section, numbers_.elements);
+    out_.elements(section.count, [&](DeckOutput::Row& row, Index i) {
+      const Index c = places[static_cast<std::size_t>(i)];
+      const auto cell = mesh_.cells[c];
+      row.number = numbers_.elements.at(c);
+      row.nodes.resize(cell.size());
+      for (std::size_t k = 0; k < cell.size(); ++k)
+        row.nodes[node_place(section.kind, k)] = numbers_.nodes.at(cell[k]);
+      row.more = text_at(more_of_elements_, c);
+    });
+  }
+
+  /// Writes a card with the present numbers of the nodes and elements that it names.
+  void write_renumbered(const std::string& text) {
+    const Card card = parse_card(text);
+    if ((card.keyword == "NSET" || card.keyword == "ELSET") && card.has("GENERATE")) {
+      const Association association = card.keyword == "NSET" ? Association::vertices : Association::cells;
+      return write_generated(text, numbers_.of(association), card.has("UNSORTED"));
+    }
+    std::size_t done = 0;
+    for (const Reference& reference : references(card, text).value_or(std::vector<Reference>())) {
+      out_.text(std::string_view(text).substr(done, reference.begin - done));
+      file_.integer("", numbers_.of(reference.association).now(reference.number));
+      done = reference.begin + reference.length;
+    }
+    out_.text(std::string_view(text).substr(done));
+  }
+
+  /// Writes a set of ranges: unchanged if the ranges still hold the same items, else as a list, with the
+  /// comments after it. `is_path`: the order of the items matters.
+  void write_generated(const std::string& text, const FileNumbers& numbers, bool is_path) {
+    std::vector<std::int64_t> now;
+    std::string comments;
+    bool same = true;
+    const std::string_view keyword = keyword_lines(text);
+    std::string_view lines = std::string_view(text).substr(keyword.size());
+    while (!lines.empty()) {
+      std::string_view line = next_word(lines, "\r\n");
+      if (trimmed(line).starts_with("**")) comments.append(line).append(deck_.line_end);
+      if (line.empty() || trimmed(line).starts_with("**")) continue;
+      std::array<std::int64_t, 3> range{0, 0, 1};
+      for (std::int64_t& value : range) {
+        const std::int64_t number = line.empty() ? 0 : number_of(next_field(line));
+        if (number > 0) value = number;
+      }
+      const auto& [from, to, step] = range;
+      if (from == 0) continue;
+      std::vector<std::int64_t> of_range;
+      std::vector<std::int64_t> before;
+      for (const Index k : items_in_range(numbers.of_file(), from, std::max(from, to), step)) {
+        before.push_back(numbers.of_file().id(k));
+        of_range.push_back(numbers.at(numbers.place(k)));
+      }
+      if (!is_path) std::sort(of_range.begin(), of_range.end());
+      same = same && of_range == before;
+      now.insert(now.end(), of_range.begin(), of_range.end());
+    }
+    if (same) return out_.text(text);
+    out_.text(without_parameter(keyword, "GENERATE"));
+    out_.list(now);
+    out_.text(comments);
+  }
+
+  /// Writes the sets that the deck does not have.
+  void write_new_sets() {
+    std::vector<EntitySet> sets = sets_beside(deck_.sets, mesh_, numbers_, notes_);
+    if (own_ == nullptr) add_sets_of_labels(sets);
+    write_sets(out_, sets, numbers_, notes_);
   }
 
   void add_sets_of_labels(std::vector<EntitySet>& sets) {
@@ -80,29 +291,26 @@ class PlainWriter {
     notes_.emplace_back("labels of cells are written as sets of the names label_N");
   }
 
-  void note_losses() {
-    out_.note_rounded(notes_);
-    note_arrays_beside_cell_labels(mesh_, "Abaqus", notes_);
-    note_unfit_ids(mesh_, "Abaqus", kLargest, notes_);
-    note_metadata_unsupported(mesh_, "Abaqus", notes_);
-  }
-
   const Mesh& mesh_;
+  const AbaqusMetadata* own_;  // null if the mesh has no deck
+  AbaqusMetadata plain_;       // the deck in this case
+  const Deck& deck_;
+  DeckNumbers numbers_;
   Notes& notes_;
   OutputFile file_;
   DeckOutput out_;
-  NewNumbers vertices_;
-  NewNumbers cells_;
+  TextByPlace more_of_nodes_;
+  TextByPlace more_of_elements_;
+  bool same_numbers_;
+  std::vector<std::pair<std::string, const DeckCard*>> sets_of_cards_;  ///< sets still to be written
+  std::unordered_set<std::string> words_of_sets_;  ///< first word of each of their names, in capitals
 };
 
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
-  return !type_of({shape, vertices}, false).empty() || own_deck(mesh) != nullptr;
+  return !type_of({shape, vertices}, false).empty() || deck_of(mesh) != nullptr;
 }
 
-void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  if (const AbaqusMetadata* const own = own_deck(mesh)) return write_into_deck(mesh, *own, path, notes);
-  PlainWriter(mesh, path, notes).write();
-}
+void write(const Mesh& mesh, const FilePath& path, Notes& notes) { DeckWriter(mesh, path, notes).write(); }
 
 }  // namespace
 }  // namespace meshorder::abaqus

@@ -7,18 +7,31 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace meshorder {
 
+/// What every deck holds, in its own order.
+struct DeckContents {
+  IdMap nodes;                  ///< their numbers
+  IdMap elements;               ///< numbers of the elements that are cells
+  std::vector<EntitySet> sets;  ///< members are positions in the file
+  std::string line_end = "\n";
+  /// Parts that may name nodes or elements by number but are not understood: "CWELD (line 12)". If there are
+  /// any, all numbers must stay.
+  std::vector<std::string> unknown;
+  std::vector<std::string> contents;  ///< contents that other formats lose
+};
+
 /// The contents of a deck or a similar file, and the positions of its nodes and elements in the mesh. The
 /// contents stay the same while the mesh is reordered.
 ///
-/// @tparam Deck  contents of the file, in its own order. Two members are used: `contents` lists what other
-///               formats lose; `unknown` lists the parts that may name nodes or elements by number but are
-///               not understood. If `unknown` is not empty, all numbers must stay.
+/// @tparam Deck  derived from DeckContents
 template <class Deck>
 struct DeckMetadata final : FormatMetadata {
+  explicit DeckMetadata(std::shared_ptr<const Deck> of_file) : deck(std::move(of_file)) {}
+
   std::shared_ptr<const Deck> deck;
   std::vector<Index> vertex_of;  ///< vertex of each node of the file; empty if both have the same order
   std::vector<Index> cell_of;    ///< cell of each element of the file; empty if both have the same order
@@ -36,8 +49,58 @@ struct DeckMetadata final : FormatMetadata {
     return result;
   }
 
-  /// Returns the cell of the k-th element of the file.
-  [[nodiscard]] Index cell(Index k) const { return cell_of.empty() ? k : cell_of[k]; }
+  /// Returns the numbers of the nodes and elements in a mesh with these ids.
+  [[nodiscard]] DeckNumbers numbers(std::span<const std::int64_t> vertex_ids,
+                                    std::span<const std::int64_t> cell_ids) const {
+    return {{deck->nodes, vertex_of, vertex_ids}, {deck->elements, cell_of, cell_ids}};
+  }
 };
+
+/// Gives a mesh, whose vertices and cells are in the order of the deck, the ids and metadata of the deck.
+template <class Deck>
+void keep_deck(Mesh& mesh, std::shared_ptr<Deck> deck) {
+  mesh.vertex_ids = deck->nodes.ids_unless_from(1);
+  mesh.cell_ids = deck->elements.ids_unless_from(1);
+  if (mesh.cell_blocks.size() < 2) mesh.cell_blocks.clear();
+  mesh.format_metadata = std::make_shared<DeckMetadata<Deck>>(std::move(deck));
+}
+
+/// Returns the deck that a mesh can be written into; null if the mesh came from elsewhere or no longer fits
+/// its deck. Valid as long as the mesh. O(cells).
+///
+/// @param fits  `fits(deck, k, shape, vertices)` returns whether such a cell fits the k-th element of the
+///              deck; called for k = 0, 1, 2 …
+template <class Deck, class Fits>
+const DeckMetadata<Deck>* own_deck(const Mesh& mesh, Fits fits) {
+  const auto* const own = dynamic_cast<const DeckMetadata<Deck>*>(mesh.format_metadata.get());
+  if (own == nullptr || !own->whole) return nullptr;
+  const Deck& deck = *own->deck;
+  if (deck.nodes.size() != mesh.vertex_count() || deck.elements.size() != mesh.cell_count()) return nullptr;
+  for (Index k = 0; k < mesh.cell_count(); ++k) {
+    const Index c = own->cell_of.empty() ? k : own->cell_of[k];
+    if (!fits(deck, k, mesh.cells.shapes[c], mesh.cells.vertex_count(c))) return nullptr;
+  }
+  return own;
+}
+
+/// A vertex of a cell whose node comes later in the deck.
+///
+/// @tparam Place  of the element in the deck, for a message
+template <class Place>
+struct LaterNode {
+  Offset entry;  ///< of Cells::vertices
+  std::int64_t number;
+  Place place;
+};
+
+/// Fills in vertices when all nodes are known. `fail(later)` throws: there is no such node.
+template <class Place, class Fail>
+void resolve(const std::vector<LaterNode<Place>>& nodes, const IdMap& numbers, Cells& cells, Fail fail) {
+  for (const LaterNode<Place>& later : nodes) {
+    const Index v = numbers.find(later.number);
+    if (v < 0) fail(later);
+    cells.vertices[static_cast<std::size_t>(later.entry)] = v;
+  }
+}
 
 }  // namespace meshorder

@@ -2,12 +2,15 @@
 #include "io/deck/numbers.hpp"
 
 #include "base/text.hpp"
+#include "io/named_parts.hpp"
 #include "io/stream/read_limits.hpp"
 #include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 namespace meshorder {
 
@@ -114,19 +117,18 @@ void require_valid(const FileNumbers& numbers, std::string_view item, std::int64
 
 }  // namespace
 
-std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
-                                   const std::vector<EntitySet>& of_mesh, const FileNumbers& nodes,
-                                   const FileNumbers& elements, Notes& notes) {
+std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck, const Mesh& mesh,
+                                   const DeckNumbers& numbers, Notes& notes) {
+  std::set<std::pair<Association, std::string_view>> in_deck;
+  for (const EntitySet& set : of_deck) in_deck.emplace(set.association, set.name);
   std::vector<EntitySet> added;
-  const SetsByName in_deck(of_deck);
-  for (const EntitySet& set : of_mesh) {
-    if (in_deck.find(set.association, set.name) == nullptr) added.push_back(set);
+  for (const EntitySet& set : mesh.sets) {
+    if (!in_deck.contains({set.association, set.name})) added.push_back(set);
   }
-  const SetsByName in_mesh(of_mesh);
+  const NamedParts in_mesh(mesh);
   for (const EntitySet& wanted : of_deck) {
-    const EntitySet* const set = in_mesh.find(wanted.association, wanted.name);
-    const bool of_nodes = wanted.association == Association::vertices;
-    if (set != nullptr && is_as_in_deck(*set, wanted, of_nodes ? nodes : elements)) continue;
+    const EntitySet* const set = in_mesh.set(wanted.name, wanted.association);
+    if (set != nullptr && is_as_in_deck(*set, wanted, numbers.of(wanted.association))) continue;
     notes.push_back(fmt::format("the set '{}' of {} is written as the deck has it; changes of it are lost",
                                 wanted.name, to_string(wanted.association)));
   }
@@ -144,11 +146,11 @@ void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t larg
   }
 }
 
-bool keep_numbers(const FileNumbers& nodes, const FileNumbers& elements, std::int64_t largest,
-                  const std::vector<std::string>& unknown, const FilePath& path) {
-  if (nodes.all_as_in_file() && elements.all_as_in_file()) return true;
-  require_valid(nodes, "vertex", largest, path);
-  require_valid(elements, "cell", largest, path);
+bool keep_numbers(const DeckNumbers& numbers, std::int64_t largest, const std::vector<std::string>& unknown,
+                  const FilePath& path) {
+  if (numbers.nodes.all_as_in_file() && numbers.elements.all_as_in_file()) return true;
+  require_valid(numbers.nodes, "vertex", largest, path);
+  require_valid(numbers.elements, "cell", largest, path);
   if (unknown.empty()) return false;
   throw InputError(path.string(),
                    "its numbers cannot change, since these may refer to them: " + join(unknown),

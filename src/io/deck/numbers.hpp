@@ -9,11 +9,9 @@
 #include <meshorder/mesh.hpp>
 
 #include <cstdint>
-#include <map>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace meshorder {
@@ -26,13 +24,19 @@ bool move_places(std::vector<Index>& places, std::span<const Index> moves);
 /// False if there are no ids. O(n) time; O(n log n) if the ids are far apart.
 bool can_be_numbers(std::span<const std::int64_t> ids, std::int64_t largest, std::int64_t smallest = 1);
 
+/// Returns the ids if they can be numbers of nodes or elements, else no ids.
+inline std::span<const std::int64_t> ids_as_numbers(std::span<const std::int64_t> ids, std::int64_t largest,
+                                                    std::int64_t smallest = 1) {
+  return can_be_numbers(ids, largest, smallest) ? ids : std::span<const std::int64_t>();
+}
+
 /// The number of each vertex or cell in a new file: its id if all ids can be numbers, else `first` plus its
 /// position. The ids must outlive this object.
 class NewNumbers {
  public:
   NewNumbers(std::span<const std::int64_t> ids, std::int64_t largest, std::int64_t smallest = 1,
              std::int64_t first = 1)
-      : ids_(can_be_numbers(ids, largest, smallest) ? ids : std::span<const std::int64_t>()), first_(first) {}
+      : ids_(ids_as_numbers(ids, largest, smallest)), first_(first) {}
 
   [[nodiscard]] std::int64_t of(Index item) const { return ids_.empty() ? item + first_ : ids_[item]; }
 
@@ -46,10 +50,11 @@ class NewNumbers {
 /// O(items · log items).
 std::vector<Index> items_in_range(const IdMap& items, std::int64_t from, std::int64_t to, std::int64_t step);
 
-/// Maps the nodes or elements of a file to their positions and numbers in a mesh.
+/// Maps the nodes or elements of a file to their positions and numbers in a mesh. All arguments must outlive
+/// this object.
 class FileNumbers {
  public:
-  FileNumbers(const IdMap& of_file, const std::vector<Index>& places, const std::vector<std::int64_t>& ids)
+  FileNumbers(const IdMap& of_file, std::span<const Index> places, std::span<const std::int64_t> ids)
       : of_file_(of_file), places_(places), ids_(ids) {}
 
   /// Returns the position in the mesh of the k-th item of the file.
@@ -70,40 +75,34 @@ class FileNumbers {
     }
     return true;
   }
+  /// Returns, for each place in the mesh, the item of the file that is there. O(items).
+  [[nodiscard]] std::vector<Index> items() const {
+    std::vector<Index> items(static_cast<std::size_t>(of_file_.size()));
+    for (Index k = 0; k < of_file_.size(); ++k) items[place(k)] = k;
+    return items;
+  }
   [[nodiscard]] const IdMap& of_file() const { return of_file_; }
 
  private:
   const IdMap& of_file_;
-  const std::vector<Index>& places_;
-  const std::vector<std::int64_t>& ids_;
+  std::span<const Index> places_;
+  std::span<const std::int64_t> ids_;
 };
 
-/// Finds the sets of a mesh by name; if several sets have the same name, finds the first. The sets must
-/// outlive this object.
-class SetsByName {
- public:
-  explicit SetsByName(const std::vector<EntitySet>& sets) {
-    for (const EntitySet& set : sets)
-      sets_.try_emplace(std::pair(set.association, std::string_view(set.name)), &set);
-  }
+/// Both.
+struct DeckNumbers {
+  FileNumbers nodes;
+  FileNumbers elements;
 
-  /// Returns the set of that name, null if there is none. O(log sets).
-  [[nodiscard]] const EntitySet* find(Association association, std::string_view name) const {
-    const auto found = sets_.find({association, name});
-    return found == sets_.end() ? nullptr : found->second;
+  [[nodiscard]] const FileNumbers& of(Association association) const {
+    return association == Association::vertices ? nodes : elements;
   }
-
- private:
-  std::map<std::pair<Association, std::string_view>, const EntitySet*> sets_;
 };
 
 /// Returns the sets of a mesh that its deck does not have. Notes the deck's sets that are missing or
 /// different in the mesh.
-///
-/// @param nodes, elements  numbers of the deck's nodes and elements in the mesh
-std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck,
-                                   const std::vector<EntitySet>& of_mesh, const FileNumbers& nodes,
-                                   const FileNumbers& elements, Notes& notes);
+std::vector<EntitySet> sets_beside(const std::vector<EntitySet>& of_deck, const Mesh& mesh,
+                                   const DeckNumbers& numbers, Notes& notes);
 
 /// Notes that ids of a mesh are not written if they are not valid numbers (see `can_be_numbers`).
 void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t largest, Notes& notes,
@@ -114,8 +113,8 @@ void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t larg
 ///   file, if it is less) to `largest` (or the greatest number in the file, if it is greater);
 /// - if there are `unknown` cards: they may name items by number, so no number can change.
 /// Time as `can_be_numbers`.
-bool keep_numbers(const FileNumbers& nodes, const FileNumbers& elements, std::int64_t largest,
-                  const std::vector<std::string>& unknown, const FilePath& path);
+bool keep_numbers(const DeckNumbers& numbers, std::int64_t largest, const std::vector<std::string>& unknown,
+                  const FilePath& path);
 
 /// Notes that all numbers stay because of `unknown` cards, which may name nodes or elements. Notes nothing if
 /// there are no such cards.

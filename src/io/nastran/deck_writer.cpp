@@ -1,5 +1,4 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
 #include "io/nastran/nastran.hpp"
 #include "io/nastran/references.hpp"
@@ -11,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <exception>
 #include <mutex>
 #include <utility>
@@ -18,45 +18,23 @@
 namespace meshorder::nastran {
 namespace {
 
-/// Returns whether the cell of each element of the deck has the element's shape and number of nodes.
-bool has_cells_of(const Mesh& mesh, const BulkMetadata& metadata) {
-  const Deck& deck = *metadata.deck;
-  for (Index k = 0; k < mesh.cell_count(); ++k) {
-    const Index c = metadata.cell(k);
-    const ElementCard& card = deck.elements[k];
-    if (mesh.cells.shapes[c] != card.type->shape || mesh.cells.vertex_count(c) != card.nodes) return false;
-  }
-  return true;
-}
-
 constexpr std::size_t kWidestField = 16;
 
-/// Returns, for each place in the mesh, the item of the file that is there.
-std::vector<Index> items_at(const FileNumbers& numbers) {
-  std::vector<Index> items(static_cast<std::size_t>(numbers.of_file().size()));
-  for (Index k = 0; k < numbers.of_file().size(); ++k) items[numbers.place(k)] = k;
-  return items;
-}
+/// What could not be written as the mesh has it.
+struct Losses {
+  std::atomic<std::int64_t> rounded = 0;  ///< coordinates
+  std::atomic<bool> has_labels = false;   ///< labels that are not numbers of properties
+};
 
 /// What all cards are written from.
 struct Source {
   const Mesh& mesh;
   const Deck& deck;
-  FileNumbers nodes;
-  FileNumbers elements;
+  DeckNumbers numbers;
   Labels labels;
   std::string target;         ///< path of the file that is written
   bool same_numbers = false;  ///< whether all nodes and elements keep the numbers of the deck
-
-  [[nodiscard]] const FileNumbers& numbers_of(Association association) const {
-    return association == Association::vertices ? nodes : elements;
-  }
-};
-
-/// What could not be written as the mesh has it.
-struct Losses {
-  std::int64_t rounded = 0;  ///< coordinates
-  bool has_labels = false;   ///< labels that are not numbers of properties
+  mutable Losses losses = {};
 };
 
 /// Makes the text of cards with the present coordinates and numbers.
@@ -66,12 +44,11 @@ class CardWriter {
       : source_(source),
         mesh_(source.mesh),
         deck_(source.deck),
-        nodes_(source.nodes),
-        elements_(source.elements) {}
+        nodes_(source.numbers.nodes),
+        elements_(source.numbers.elements) {}
 
   /// Returns the text made since the last call.
   [[nodiscard]] std::string take_text() { return std::exchange(out_, {}); }
-  [[nodiscard]] const Losses& losses() const { return losses_; }
 
   /// Adds a text between nodes and elements.
   void write_text(Piece part) {
@@ -95,9 +72,9 @@ class CardWriter {
 
   /// Adds the node `item` of the deck, which is vertex v now.
   void write_node(Index item, Index v) {
-    const std::string_view card = deck_.nodes[item].of(deck_.text);
+    const std::string_view card = deck_.node_cards[item].of(deck_.text);
     const bool moved = mesh_.points[v] != deck_.points[item];
-    if (!moved && nodes_.at(v) == deck_.node_numbers.id(item)) {
+    if (!moved && nodes_.at(v) == deck_.nodes.id(item)) {
       out_.append(card);
       return;
     }
@@ -131,7 +108,7 @@ class CardWriter {
   void write_set(std::int64_t number, const EntitySet& set, Notes& notes) {
     std::vector<std::int64_t> members;
     for (const Index member : set.members) {
-      members.push_back(source_.numbers_of(set.association).at(member));
+      members.push_back(source_.numbers.of(set.association).at(member));
     }
     append_set(out_, number, set, members, deck_.line_end, notes);
   }
@@ -148,7 +125,7 @@ class CardWriter {
     std::vector<std::string> texts{std::to_string(nodes_.at(v)), deck_.has_default_system ? "0" : ""};
     for (const double x : mesh_.points[v]) {
       RealText real = real_text(x);
-      if (real.is_rounded) ++losses_.rounded;
+      if (real.is_rounded) ++source_.losses.rounded;
       texts.push_back(std::move(real.text));
     }
     for (std::size_t field = 6; field < fields_.fields.size(); ++field) {
@@ -185,7 +162,7 @@ class CardWriter {
     const std::int64_t label = given ? source_.labels.values[c] : before;
     if (label == 0 && integer_of(fields_.text(2)) == 0) return;  // an element that has no property yet
     if (label < 1 || label > kLargestNumber) {
-      losses_.has_labels = losses_.has_labels || given;
+      if (given) source_.losses.has_labels = true;
       return;
     }
     // a blank field stays if it still means the label: the property of BAROR, or the element's own number
@@ -218,20 +195,17 @@ class CardWriter {
     }
     edits_.clear();
     for (const Reference& reference : found->fields) {
-      edit(reference.field, now(reference.association, number_of(fields_.text(reference.field))));
+      const std::int64_t number = number_of(fields_.text(reference.field));
+      edit(reference.field, source_.numbers.of(reference.association).now(number));
     }
     if (found->is_range) return write_ranges(card, name, *found);
     if (found->list > 0) {
       for (std::size_t field = found->list; field < fields_.fields.size(); ++field) {
         const std::int64_t number = number_of(fields_.text(field));
-        if (number > 0) edit(field, now(found->of_list, number));
+        if (number > 0) edit(field, source_.numbers.of(found->of_list).now(number));
       }
     }
     append_edited_card(card);
-  }
-
-  [[nodiscard]] std::int64_t now(Association association, std::int64_t number) const {
-    return source_.numbers_of(association).now(number);
   }
 
   /// Writes a card with ranges of numbers. If the ranges no longer hold the same items, writes a list
@@ -245,7 +219,7 @@ class CardWriter {
       ranges = ranges_of(fields_, found.list).value_or(ranges);
     }
     const bool of_nodes = found.of_list == Association::vertices;
-    const FileNumbers& numbers = source_.numbers_of(found.of_list);
+    const FileNumbers& numbers = source_.numbers.of(found.of_list);
     std::vector<Index> items;
     const std::vector<std::int64_t> others = numbers_in_list(
         ranges, numbers.of_file(), of_nodes ? deck_.other_points : deck_.other_elements, items);
@@ -296,7 +270,6 @@ class CardWriter {
   std::string out_;
   CardFields fields_;
   std::vector<Edit> edits_;
-  Losses losses_;
 };
 
 class BulkWriter {
@@ -304,16 +277,14 @@ class BulkWriter {
   BulkWriter(const Mesh& mesh, const BulkMetadata& own, const FilePath& path, Notes& notes)
       : source_{mesh,
                 *own.deck,
-                {own.deck->node_numbers, own.vertex_of, mesh.vertex_ids},
-                {own.deck->element_numbers, own.cell_of, mesh.cell_ids},
+                own.numbers(mesh.vertex_ids, mesh.cell_ids),
                 labels_of(mesh, Association::cells),
                 {}},
         notes_(notes),
         file_(path),
         writer_(source_) {
     source_.target = file_.target().string();
-    source_.same_numbers =
-        keep_numbers(source_.nodes, source_.elements, kLargestNumber, source_.deck.unknown, path);
+    source_.same_numbers = keep_numbers(source_.numbers, kLargestNumber, source_.deck.unknown, path);
     find_items();
   }
 
@@ -349,11 +320,12 @@ class BulkWriter {
 
   void find_items() {
     const Deck& deck = source_.deck;
-    const Index nodes = index_size(deck.nodes);
-    const Index elements = index_size(deck.elements);
-    items_.reserve(deck.nodes.size() + deck.elements.size());
+    const Index nodes = deck.nodes.size();
+    const Index elements = deck.elements.size();
+    items_.reserve(deck.node_cards.size() + deck.element_cards.size());
     for (Index v = 0, c = 0; v < nodes || c < elements;) {
-      const bool is_node = v < nodes && (c == elements || deck.nodes[v].begin < deck.elements[c].place.begin);
+      const bool is_node =
+          v < nodes && (c == elements || deck.node_cards[v].begin < deck.element_cards[c].place.begin);
       items_.push_back({is_node, is_node ? v++ : c++});
     }
   }
@@ -361,7 +333,7 @@ class BulkWriter {
   /// Returns the place in the text that the k-th node or element gets.
   [[nodiscard]] Piece place(Index k) const {
     const Item item = items_[k];
-    return item.is_node ? source_.deck.nodes[item.next] : source_.deck.elements[item.next].place;
+    return item.is_node ? source_.deck.node_cards[item.next] : source_.deck.element_cards[item.next].place;
   }
 
   void write_text(Piece part) {
@@ -385,15 +357,14 @@ class BulkWriter {
         keep_error(first + begin);
       }
       text.write(writer.take_text());
-      add_losses(writer.losses());
     });
     if (error_) std::rethrow_exception(error_);
   }
 
   /// Returns where the deck says where the item was that is written.
   [[nodiscard]] const Piece* old_place(Item item) const {
-    return item.is_node ? &source_.deck.nodes[node_at_[item.next]]
-                        : &source_.deck.elements[element_at_[item.next]].place;
+    return item.is_node ? &source_.deck.node_cards[node_at_[item.next]]
+                        : &source_.deck.element_cards[element_at_[item.next]].place;
   }
 
   void prefetch(Piece card) const {
@@ -407,7 +378,7 @@ class BulkWriter {
     if (item.is_node) {
       writer.write_node(node_at_[item.next], item.next);
     } else {
-      writer.write_element(source_.deck.elements[element_at_[item.next]], item.next);
+      writer.write_element(source_.deck.element_cards[element_at_[item.next]], item.next);
     }
   }
 
@@ -419,50 +390,40 @@ class BulkWriter {
     error_ = std::current_exception();
   }
 
-  void add_losses(const Losses& losses) {
-    const std::scoped_lock lock(mutex_);
-    losses_.rounded += losses.rounded;
-    losses_.has_labels = losses_.has_labels || losses.has_labels;
-  }
-
   void write_new_sets() {
     std::int64_t number = source_.deck.last_set;
-    for (const EntitySet& set :
-         sets_beside(source_.deck.sets, source_.mesh.sets, source_.nodes, source_.elements, notes_)) {
+    for (const EntitySet& set : sets_beside(source_.deck.sets, source_.mesh, source_.numbers, notes_)) {
       writer_.write_set(++number, set, notes_);
       file_.write(writer_.take_text());
     }
   }
 
   void note_losses() const {
-    if (losses_.rounded > 0) notes_.push_back(rounded_note(losses_.rounded));
-    if (losses_.has_labels) notes_.emplace_back("labels that are not property numbers are not written");
+    if (source_.losses.rounded > 0) notes_.push_back(rounded_note(source_.losses.rounded));
+    if (source_.losses.has_labels)
+      notes_.emplace_back("labels that are not property numbers are not written");
     note_arrays_beside_cell_labels(source_.mesh, "Nastran", notes_);
   }
 
   Source source_;
   Notes& notes_;
   OutputFile file_;
-  CardWriter writer_;                                           // of texts and sets
-  std::vector<Index> node_at_ = items_at(source_.nodes);        // node of the deck at each vertex
-  std::vector<Index> element_at_ = items_at(source_.elements);  // element of the deck at each cell
+  CardWriter writer_;                                                 // of texts and sets
+  std::vector<Index> node_at_ = source_.numbers.nodes.items();        // node of the deck at each vertex
+  std::vector<Index> element_at_ = source_.numbers.elements.items();  // element of the deck at each cell
   std::vector<Item> items_;
   std::mutex mutex_;  // of the members below
-  Losses losses_;
   std::exception_ptr error_;
   Index first_with_error_ = kMaxIndex;
 };
 
 }  // namespace
 
-const BulkMetadata* own_deck(const Mesh& mesh) {
-  const auto* const own = dynamic_cast<const BulkMetadata*>(mesh.format_metadata.get());
-  if (own == nullptr || !own->whole) return nullptr;
-  const Deck& deck = *own->deck;
-  if (deck.node_numbers.size() != mesh.vertex_count() || deck.element_numbers.size() != mesh.cell_count()) {
-    return nullptr;
-  }
-  return has_cells_of(mesh, *own) ? own : nullptr;
+const BulkMetadata* deck_of(const Mesh& mesh) {
+  return own_deck<Deck>(mesh, [](const Deck& deck, Index k, Shape shape, int vertices) {
+    const ElementCard& card = deck.element_cards[k];
+    return shape == card.type->shape && vertices == card.nodes;
+  });
 }
 
 void write_into_deck(const Mesh& mesh, const BulkMetadata& own, const FilePath& path, Notes& notes) {

@@ -29,13 +29,11 @@ struct ElementCard {
 };
 
 /// A file, and where its nodes and elements are in it.
-struct Deck {
+struct Deck : DeckContents {
   std::string text;  ///< all lines; lines of included files are in place
   Piece bulk;        ///< the lines between BEGIN BULK and ENDDATA, or all
-  std::vector<Piece> nodes;
-  std::vector<ElementCard> elements;
-  IdMap node_numbers;
-  IdMap element_numbers;
+  std::vector<Piece> node_cards;
+  std::vector<ElementCard> element_cards;
   std::vector<Point> points;        ///< of the nodes, in the basic system
   bool has_default_system = false;  ///< GRDSET gives a system to nodes that name no system
   /// Properties that BAROR and BEAMOR give to elements that name no property, by the name of the elements'
@@ -43,21 +41,14 @@ struct Deck {
   std::map<std::string_view, std::int64_t> default_properties;
   std::vector<std::int64_t> other_points;    ///< numbers of points that are not nodes, ascending
   std::vector<std::int64_t> other_elements;  ///< numbers of elements that are not cells, ascending
-  std::vector<EntitySet> sets;               ///< of the cards SET3; members are positions in the file
-  std::int64_t last_set = 0;                 ///< the largest number of a set
-  std::string line_end = "\n";
-  /// Cards that may name nodes or elements by number and are not understood: "CWELD (line 12)". If there are
-  /// any, all numbers must stay.
-  std::vector<std::string> unknown;
-  std::vector<std::string> contents;  ///< contents that other formats lose
+  std::int64_t last_set = 0;                 ///< the largest number of a set, those of SET3 are in `sets`
 };
 
 /// A deck, and where its nodes and elements are in the mesh.
 using BulkMetadata = DeckMetadata<Deck>;
 
-/// Returns the deck that a mesh can be written into; null if the mesh came from elsewhere or no longer fits
-/// its deck. Valid as long as the mesh. O(cells).
-const BulkMetadata* own_deck(const Mesh& mesh);
+/// Returns the deck that a mesh can be written into; null if there is none. Valid as long as the mesh.
+const BulkMetadata* deck_of(const Mesh& mesh);
 
 /// The words before the name of a set, in the comment above its SET3.
 constexpr std::string_view kSetComment = "$ set: ";

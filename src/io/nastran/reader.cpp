@@ -26,13 +26,6 @@
 namespace meshorder::nastran {
 namespace {
 
-/// A node of an element that no GRID before the element defines.
-struct MissingNode {
-  Offset entry;  ///< of Cells::vertices
-  std::int64_t number;
-  std::size_t byte;
-};
-
 /// Distinct texts, in the order of their first appearance.
 struct Texts {
   std::vector<std::string> list;
@@ -121,34 +114,34 @@ class DeckReader {
   // ---- nodes
 
   void add_node(const Card& card) {
-    if (!deck_->node_numbers.add(card.number)) {
+    if (!deck_->nodes.add(card.number)) {
       fail(fmt::format("node {} is given twice", card.number), "numbers must differ");
     }
     system_of_.push_back(card.group);
     has_systems_ = has_systems_ || card.group > 0;
     has_more_in_nodes_ = has_more_in_nodes_ || card.has_more;
     mesh_.points.push_back(card.point);
-    deck_->nodes.push_back(card.place);
+    deck_->node_cards.push_back(card.place);
   }
 
   // ---- elements
 
   void add_element(const Card& card) {
-    if (!deck_->element_numbers.add(card.number)) {
+    if (!deck_->elements.add(card.number)) {
       fail(fmt::format("element {} is given twice", card.number), "numbers must differ");
     }
     std::array<Index, kMostNodes> cell{};
     const Offset entry = mesh_.cells.offsets.back();
     for (std::size_t k = 0; k < static_cast<std::size_t>(card.nodes); ++k) {
-      cell[k] = deck_->node_numbers.find(card.cell[k]);
+      cell[k] = deck_->nodes.find(card.cell[k]);
       if (cell[k] >= 0) continue;
       cell[k] = 0;
-      missing_.push_back({entry + static_cast<Offset>(k), card.cell[k], card.place.begin});
+      later_nodes_.push_back({entry + static_cast<Offset>(k), card.cell[k], card.place.begin});
     }
     begin_block();
     const ElementType& type = *card.type;
     mesh_.cells.push_back(type.shape, {cell.data(), static_cast<std::size_t>(card.nodes)});
-    deck_->elements.push_back({card.place, &type, card.nodes});
+    deck_->element_cards.push_back({card.place, &type, card.nodes});
     if (type.has_property) {
       labels_.push_back(card.group);  // if none is named, resolved when all cards are known
       labelled_.push_back(mesh_.cell_count() - 1);
@@ -160,7 +153,7 @@ class DeckReader {
   /// Begins a block of cells at the first element and after each card of another kind: elements stay in their
   /// blocks.
   void begin_block() {
-    const bool first = deck_->elements.empty();
+    const bool first = deck_->element_cards.empty();
     if (first || other_since_) mesh_.cell_blocks.push_back(mesh_.cell_count());
     other_since_ = false;
   }
@@ -229,12 +222,12 @@ class DeckReader {
       }
       throw InputError(path, "has no elements that are cells", kNoMesh);
     }
-    resolve_nodes();
+    resolve(later_nodes_, deck_->nodes, mesh_.cells, [&](const LaterNode<std::size_t>& later) {
+      file_.fail(later.place, fmt::format("a node of the element is {}, which no GRID has", later.number),
+                 "add it, or correct the element");
+    });
     place_nodes();
     mesh_.dimension = 3;
-    if (mesh_.cell_blocks.size() < 2) mesh_.cell_blocks.clear();
-    mesh_.vertex_ids = deck_->node_numbers.ids_unless_from(1);
-    mesh_.cell_ids = deck_->element_numbers.ids_unless_from(1);
     sort_once(deck_->other_points);
     sort_once(deck_->other_elements);
     complete_properties();
@@ -245,27 +238,12 @@ class DeckReader {
     note_all();
     deck_->points = mesh_.points;
     deck_->text = std::move(file_.text());
-    auto metadata = std::make_shared<BulkMetadata>();
-    metadata->deck = deck_;
-    mesh_.format_metadata = std::move(metadata);
+    keep_deck(mesh_, deck_);
   }
 
   static void sort_once(std::vector<std::int64_t>& numbers) {
     std::sort(numbers.begin(), numbers.end());
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  }
-
-  /// Finds nodes that come after the elements that name them.
-  void resolve_nodes() {
-    for (const MissingNode& missing : missing_) {
-      const Index v = deck_->node_numbers.find(missing.number);
-      if (v < 0) {
-        file_.fail(missing.byte,
-                   fmt::format("a node of the element is {}, which no GRID has", missing.number),
-                   "add it, or correct the element");
-      }
-      mesh_.cells.vertices[static_cast<std::size_t>(missing.entry)] = v;
-    }
   }
 
   /// Converts the coordinates of nodes from their own systems to the basic system.
@@ -274,12 +252,12 @@ class DeckReader {
     std::replace(system_of_.begin(), system_of_.end(), Card::kBlank, default_system_);
     const std::vector<Point> given = mesh_.points;
     const CoordinateSystems::NodePosition in_basic = [&](std::int64_t node, std::size_t byte) {
-      const Index v = deck_->node_numbers.find(node);
+      const Index v = deck_->nodes.find(node);
       if (v < 0) file_.fail(byte, fmt::format("node {} of the coordinate system is missing", node), "add it");
       return systems_.in_basic(system_of_[v], given[v], byte, in_basic);
     };
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-      mesh_.points[v] = systems_.in_basic(system_of_[v], given[v], deck_->nodes[v].begin, in_basic);
+      mesh_.points[v] = systems_.in_basic(system_of_[v], given[v], deck_->node_cards[v].begin, in_basic);
     }
   }
 
@@ -288,9 +266,9 @@ class DeckReader {
     for (std::size_t k = 0; k < labels_.size(); ++k) {
       if (labels_[k] != Card::kBlank) continue;
       const Index c = labelled_[k];
-      const auto found = deck_->default_properties.find(deck_->elements[c].type->name);
+      const auto found = deck_->default_properties.find(deck_->element_cards[c].type->name);
       const bool has_default = found != deck_->default_properties.end();
-      labels_[k] = has_default ? found->second : deck_->element_numbers.id(c);
+      labels_[k] = has_default ? found->second : deck_->elements.id(c);
     }
   }
 
@@ -314,8 +292,7 @@ class DeckReader {
       set.name = name_of_set(text, card);
       const bool of_nodes = set.association == Association::vertices;
       if (!ranges) continue;
-      (void)numbers_in_list(*ranges, of_nodes ? deck_->node_numbers : deck_->element_numbers, {},
-                            set.members);
+      (void)numbers_in_list(*ranges, of_nodes ? deck_->nodes : deck_->elements, {}, set.members);
       mesh_.sets.push_back(std::move(set));
     }
     deck_->sets = mesh_.sets;
@@ -341,7 +318,7 @@ class DeckReader {
   }
 
   [[nodiscard]] bool is_item(std::int64_t number) const {
-    return deck_->node_numbers.find(number) >= 0 || deck_->element_numbers.find(number) >= 0;
+    return deck_->nodes.find(number) >= 0 || deck_->elements.find(number) >= 0;
   }
 
   /// Returns whether the text of a field may name nodes or elements.
@@ -400,7 +377,7 @@ class DeckReader {
     std::string_view last;
     for (std::string_view word; !(word = next_word(line, " \t,=()")).empty(); last = word) {
       const bool is_point = same_but_for_case(last, "GRID") || same_but_for_case(last, "GRDPNT");
-      if (is_point && deck_->node_numbers.find(number_of(word)) >= 0) return true;
+      if (is_point && deck_->nodes.find(number_of(word)) >= 0) return true;
     }
     return false;
   }
@@ -441,9 +418,9 @@ class DeckReader {
   CardFields fields_;
   CoordinateSystems systems_{file_};
   std::int64_t default_system_ = 0;
-  std::vector<std::int64_t> system_of_;  // system of each node
-  bool has_systems_ = false;             // whether any is not the basic one
-  std::vector<MissingNode> missing_;
+  std::vector<std::int64_t> system_of_;              // system of each node
+  bool has_systems_ = false;                         // whether any is not the basic one
+  std::vector<LaterNode<std::size_t>> later_nodes_;  // place: the byte of the element
   std::vector<std::int64_t> labels_;
   std::vector<Index> labelled_;
   std::vector<Piece> sets_;

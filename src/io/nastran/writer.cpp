@@ -124,11 +124,11 @@ class PlainBulkWriter {
 };
 
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
-  return !card_of(shape, vertices).empty() || own_deck(mesh) != nullptr;
+  return !card_of(shape, vertices).empty() || deck_of(mesh) != nullptr;
 }
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
-  if (const BulkMetadata* const own = own_deck(mesh)) return write_into_deck(mesh, *own, path, notes);
+  if (const BulkMetadata* const own = deck_of(mesh)) return write_into_deck(mesh, *own, path, notes);
   PlainBulkWriter(mesh, path, notes).write();
 }
 

@@ -34,13 +34,6 @@ bool is_harmless(int dataset) {
   return std::find(kHarmless.begin(), kHarmless.end(), dataset) != kHarmless.end();
 }
 
-/// A cell's vertex whose node comes later in the file.
-struct UnresolvedNode {
-  Offset entry;
-  Index number;
-  std::int64_t line;
-};
-
 /// The members of a group before all nodes and elements are known.
 struct Members {
   std::int64_t line = 0;
@@ -302,7 +295,7 @@ class UnvReader {
       const std::size_t at = order.empty() ? k : static_cast<std::size_t>(order[k]);
       const Index vertex = file_->nodes.find(node);
       cell[at] = std::max(vertex, 0);
-      if (vertex < 0) unresolved_.push_back({first + static_cast<Offset>(at), node, in_.line()});
+      if (vertex < 0) later_nodes_.push_back({first + static_cast<Offset>(at), node, in_.line()});
     }
     (void)file_->elements.add(number);
     mesh_.cells.push_back(kind.shape, {cell.data(), nodes});
@@ -491,31 +484,19 @@ class UnvReader {
       }
       throw InputError(in_.file(), "has no elements that are cells (dataset 2412 or 780)", no_mesh);
     }
-    resolve_nodes();
+    resolve(later_nodes_, file_->nodes, mesh_.cells, [&](const LaterNode<std::int64_t>& later) {
+      throw InputError(
+          Location{in_.file(), later.place, -1},
+          fmt::format("a node of the element is {}, which no dataset of nodes has", later.number),
+          "add it, or correct the element");
+    });
     check_systems();
-    mesh_.vertex_ids = file_->nodes.ids_unless_from(1);
-    mesh_.cell_ids = file_->elements.ids_unless_from(1);
     make_arrays_of_fields();
     make_sets();
     make_arrays();
     list_losses();
     note_kept_numbers(file_->unknown, notes_);
-    auto metadata = std::make_shared<UnvMetadata>();
-    metadata->deck = file_;
-    mesh_.format_metadata = std::move(metadata);
-  }
-
-  void resolve_nodes() {
-    for (const UnresolvedNode& unresolved : unresolved_) {
-      const Index v = file_->nodes.find(unresolved.number);
-      if (v < 0) {
-        throw InputError(
-            Location{in_.file(), unresolved.line, -1},
-            fmt::format("a node of the element is {}, which no dataset of nodes has", unresolved.number),
-            "add it, or correct the element");
-      }
-      mesh_.cells.vertices[static_cast<std::size_t>(unresolved.entry)] = v;
-    }
+    keep_deck(mesh_, file_);
   }
 
   /// Refuses nodes whose coordinates are in a system of the file other than the global system.
@@ -579,10 +560,10 @@ class UnvReader {
   int dataset_ = 0;  // being read
   bool is_binary_ = false;
   std::string binary_fields_;
-  std::int64_t begin_ = 0;  // first byte of the dataset
-  std::int64_t line_ = 0;   // first line of the dataset
-  std::vector<UnresolvedNode> unresolved_;
-  std::set<std::int64_t> other_elements_;  // elements that are not cells
+  std::int64_t begin_ = 0;                            // first byte of the dataset
+  std::int64_t line_ = 0;                             // first line of the dataset
+  std::vector<LaterNode<std::int64_t>> later_nodes_;  // place: the line of the node
+  std::set<std::int64_t> other_elements_;             // elements that are not cells
   std::set<std::string> other_types_;
   std::vector<Members> members_;  // members of the groups
   std::vector<FoundResults> results_;

@@ -7,8 +7,6 @@
 // −1.
 
 #include "io/deck/metadata.hpp"
-#include "io/format.hpp"
-#include "io/stream/id_map.hpp"
 #include "io/unv/elements.hpp"
 
 #include <array>
@@ -65,16 +63,13 @@ template <class Fields>
 class FieldTable {
  public:
   void add(const Fields& fields) {
-    if (size_ > 0 && different_[last_] == fields) {
-      if (!of_.empty()) of_.push_back(last_);
-      ++size_;
-      return;
+    if (size_ == 0 || different_[last_] != fields) {
+      const auto [found, is_new] = places_.try_emplace(fields, index_size(different_));
+      if (is_new) different_.push_back(fields);
+      last_ = found->second;
     }
-    const auto [found, is_new] = places_.try_emplace(fields, static_cast<Index>(different_.size()));
-    if (is_new) different_.push_back(fields);
-    last_ = found->second;
-    if (size_ > 0 && of_.empty()) of_.resize(static_cast<std::size_t>(size_), 0);
-    if (size_ > 0) of_.push_back(last_);
+    if (last_ != 0 && of_.empty()) of_.resize(static_cast<std::size_t>(size_), 0);
+    if (!of_.empty()) of_.push_back(last_);
     ++size_;
   }
   [[nodiscard]] const Fields& operator[](Index item) const { return different_[of_.empty() ? 0 : of_[item]]; }
@@ -129,21 +124,14 @@ struct Dataset {
   std::vector<OtherElement> others = {};  ///< elements that are not cells
 };
 
-/// The contents of a universal file, in its order.
-struct Contents {
+/// The contents of a universal file, in its order. Its groups are not in `sets`.
+struct Contents : DeckContents {
   std::vector<Dataset> sections;
-  IdMap nodes;     ///< numbers in the order of the file
-  IdMap elements;  ///< numbers of the elements that are cells
   FieldTable<NodeFields> node_fields;
   FieldTable<ElementFields> element_fields;
   std::vector<Group> groups;
   std::vector<Results> results;
   char exponent = 'D';  ///< letter before exponents of coordinates
-  std::string line_end = "\n";
-  /// Datasets that are not understood and may name nodes or elements by number: "dataset 791 (line 12)". If
-  /// there are any, all numbers must stay.
-  std::vector<std::string> unknown;
-  std::vector<std::string> contents;  ///< contents that other formats lose
 };
 
 /// A universal file, and where its nodes and elements are in the mesh.
@@ -156,10 +144,5 @@ inline constexpr std::string_view kMaterial = "material";
 int numbers_of_member(int dataset);
 
 Mesh read(const FilePath& path, Notes& notes);
-void write(const Mesh& mesh, const FilePath& path, Notes& notes);
-
-/// Returns the metadata of the file that a mesh came from, if the mesh can still be written into that file;
-/// else null. Valid as long as the mesh. O(cells).
-const UnvMetadata* own_file(const Mesh& mesh);
 
 }  // namespace meshorder::unv

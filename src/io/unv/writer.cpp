@@ -1,8 +1,8 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "base/text.hpp"
 #include "io/all_formats.hpp"
-#include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
+#include "io/named_parts.hpp"
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
@@ -105,53 +105,38 @@ class Lines {
   std::array<char, 64> buffer_{};
 };
 
-/// Returns the contents of a file for a mesh that came from elsewhere: nodes, then elements.
-Contents plain_contents(const Mesh& mesh) {
-  Contents file;
-  Dataset& nodes = file.sections.emplace_back();
-  nodes.part = DatasetKind::nodes;
-  nodes.dataset = kNodes;
-  nodes.count = mesh.vertex_count();
-  Dataset& elements = file.sections.emplace_back();
-  elements.part = DatasetKind::elements;
-  elements.dataset = kElements;
-  elements.count = mesh.cell_count();
-  return file;
+/// Returns the file that a mesh can be written into; null if there is none.
+const UnvMetadata* file_of(const Mesh& mesh) {
+  return own_deck<Contents>(mesh, [](const Contents& file, Index k, Shape shape, int vertices) {
+    return kind_of(file.element_fields[k].type, vertices) == ElementKind{shape, vertices};
+  });
 }
 
-/// Returns the item of the file at each position of the mesh; empty if they are in the file's order.
-std::vector<Index> inverse(const std::vector<Index>& places) {
-  std::vector<Index> items(places.size());
-  for (Index k = 0; k < index_size(places); ++k) items[places[k]] = k;
-  return items;
+/// Returns the contents of a file for a mesh that came from elsewhere: nodes, then elements.
+std::shared_ptr<Contents> plain_contents(const Mesh& mesh) {
+  auto file = std::make_shared<Contents>();
+  file->sections.push_back({DatasetKind::nodes, kNodes, {}, 0, mesh.vertex_count()});
+  file->sections.push_back({DatasetKind::elements, kElements, {}, 0, mesh.cell_count()});
+  return file;
 }
 
 class UnvWriter {
  public:
   UnvWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
       : mesh_(mesh),
-        own_(own_file(mesh)),
-        plain_(own_ != nullptr ? Contents() : plain_contents(mesh)),
-        file_(own_ != nullptr ? *own_->deck : plain_),
+        own_(file_of(mesh)),
+        plain_(own_ == nullptr ? plain_contents(mesh) : nullptr),
+        file_(own_ == nullptr ? *plain_.deck : *own_->deck),
         notes_(notes),
-        vertex_ids_(can_be_numbers(mesh.vertex_ids, kLargestNumber) ? mesh.vertex_ids
-                                                                    : std::vector<std::int64_t>()),
-        cell_ids_(can_be_numbers(mesh.cell_ids, kLargestNumber) ? mesh.cell_ids
-                                                                : std::vector<std::int64_t>()),
-        nodes_(file_.nodes, own_ != nullptr ? own_->vertex_of : none_, vertex_ids_),
-        elements_(file_.elements, own_ != nullptr ? own_->cell_of : none_, cell_ids_),
+        numbers_(own_ == nullptr ? plain_.numbers(ids_as_numbers(mesh.vertex_ids, kLargestNumber),
+                                                  ids_as_numbers(mesh.cell_ids, kLargestNumber))
+                                 : own_->numbers(mesh.vertex_ids, mesh.cell_ids)),
         labels_(labels_of(mesh, Association::cells)),
         materials_(materials_of(mesh)),
-        sets_(mesh.sets),
+        parts_(mesh),
         out_(path),
         lines_(out_, file_.line_end) {
-    if (own_ == nullptr) return;
-    // the numbers of a file may begin at 0
-    if (vertex_ids_.empty()) vertex_ids_ = mesh.vertex_ids;
-    if (cell_ids_.empty()) cell_ids_ = mesh.cell_ids;
-    file_node_ = inverse(own_->vertex_of);
-    file_element_ = inverse(own_->cell_of);
-    keep_numbers(nodes_, elements_, kLargestNumber, file_.unknown, path);
+    keep_numbers(numbers_, kLargestNumber, file_.unknown, path);
   }
 
   void write() {
@@ -181,8 +166,7 @@ class UnvWriter {
   // ---- nodes and elements
 
   [[nodiscard]] NodeFields fields_of_node(Index v) const {
-    if (own_ == nullptr) return {};
-    return file_.node_fields[file_node_.empty() ? v : file_node_[v]];
+    return own_ == nullptr ? NodeFields() : file_.node_fields[file_node_[v]];
   }
 
   void write_nodes(const Dataset& section) {
@@ -190,7 +174,7 @@ class UnvWriter {
     const bool single = section.dataset == kNodesInSingle;
     for (Index v = section.first; v < section.first + section.count; ++v) {
       const NodeFields fields = fields_of_node(v);
-      lines_.integer(nodes_.at(v));
+      lines_.integer(numbers_.nodes.at(v));
       lines_.integer(fields.system);
       lines_.integer(fields.displacement_system);
       lines_.integer(fields.colour);
@@ -206,8 +190,8 @@ class UnvWriter {
   [[nodiscard]] ElementFields fields_of_element(Index c) const {
     ElementFields fields;
     if (own_ != nullptr) {
-      fields = file_.element_fields[file_element_.empty() ? c : file_element_[c]];
-      if (fields.beam[0] != 0) fields.beam[0] = nodes_.now(fields.beam[0]);  // 0: no node
+      fields = file_.element_fields[file_element_[c]];
+      if (fields.beam[0] != 0) fields.beam[0] = numbers_.nodes.now(fields.beam[0]);  // 0: no node
     } else {
       fields.type = type_of({mesh_.cells.shapes[c], mesh_.cells.vertex_count(c)});
       fields.has_beam = is_beam(fields.type);
@@ -225,15 +209,15 @@ class UnvWriter {
       const std::span<const int> order = file_order({mesh_.cells.shapes[c], static_cast<int>(cell.size())});
       nodes.resize(cell.size());
       for (std::size_t k = 0; k < cell.size(); ++k) {
-        nodes[k] = nodes_.at(cell[order.empty() ? k : static_cast<std::size_t>(order[k])]);
+        nodes[k] = numbers_.nodes.at(cell[order.empty() ? k : static_cast<std::size_t>(order[k])]);
       }
-      write_element(section, elements_.at(c), fields_of_element(c), nodes);
+      write_element(section, numbers_.elements.at(c), fields_of_element(c), nodes);
     }
     for (const OtherElement& other : section.others) {
       nodes = other.nodes;
-      for (std::int64_t& node : nodes) node = nodes_.now(node);
+      for (std::int64_t& node : nodes) node = numbers_.nodes.now(node);
       ElementFields fields = other.fields;
-      if (fields.beam[0] != 0) fields.beam[0] = nodes_.now(fields.beam[0]);  // 0: no node
+      if (fields.beam[0] != 0) fields.beam[0] = numbers_.nodes.now(fields.beam[0]);  // 0: no node
       write_element(section, other.number, fields, nodes);
     }
     lines_.delimiter();
@@ -285,10 +269,9 @@ class UnvWriter {
   void add_members(const EntitySet* set, std::vector<std::array<std::int64_t, 4>>& members) {
     if (set == nullptr) return;
     written_.insert(set);
-    const bool of_nodes = set->association == Association::vertices;
+    const std::int64_t code = set->association == Association::vertices ? kNodeCode : kElementCode;
     for (const Index member : set->members) {
-      members.push_back(
-          {of_nodes ? kNodeCode : kElementCode, of_nodes ? nodes_.at(member) : elements_.at(member), 0, 0});
+      members.push_back({code, numbers_.of(set->association).at(member), 0, 0});
     }
   }
 
@@ -297,8 +280,8 @@ class UnvWriter {
     for (Index g = section.first; g < section.first + section.count; ++g) {
       const Group& group = file_.groups[g];
       std::vector<std::array<std::int64_t, 4>> members;
-      const EntitySet* const nodes = sets_.find(Association::vertices, group.set);
-      const EntitySet* const elements = sets_.find(Association::cells, group.set);
+      const EntitySet* const nodes = parts_.set(group.set, Association::vertices);
+      const EntitySet* const elements = parts_.set(group.set, Association::cells);
       // a group is left out if its sets were removed
       const bool is_gone = nodes == nullptr && elements == nullptr && (group.has_nodes || group.has_elements);
       if (is_gone && group.others.empty()) continue;
@@ -343,8 +326,8 @@ class UnvWriter {
     for (const EntitySet& set : mesh_.sets) {
       if (written_.contains(&set)) continue;
       std::vector<std::array<std::int64_t, 4>> members;
-      const EntitySet* const nodes = sets_.find(Association::vertices, set.name);
-      const EntitySet* const elements = sets_.find(Association::cells, set.name);
+      const EntitySet* const nodes = parts_.set(set.name, Association::vertices);
+      const EntitySet* const elements = parts_.set(set.name, Association::cells);
       if (nodes != nullptr && !written_.contains(nodes)) add_members(nodes, members);
       if (elements != nullptr && !written_.contains(elements)) add_members(elements, members);
       if (!written_.contains(&set)) add_members(&set, members);  // another set of that name
@@ -381,7 +364,7 @@ class UnvWriter {
 
   void write_results(const Dataset& section) {
     const Results& results = file_.results[section.first];
-    const DataArray* const array = find_array(mesh_, results.array, results.association);
+    const DataArray* const array = parts_.array(results.array, results.association);
     if (array == nullptr || array->components != results.components || are_texts(array->values)) {
       return;
     }
@@ -397,7 +380,7 @@ class UnvWriter {
 
   /// Writes rows: the number of the node or element and, if not 0, `components` on a line, then the values.
   void write_rows(const DataArray& array, const Results& results, std::int64_t components) {
-    const FileNumbers& numbers = array.association == Association::vertices ? nodes_ : elements_;
+    const FileNumbers& numbers = numbers_.of(array.association);
     const auto width = static_cast<std::size_t>(array.components);
     const std::size_t on_line = results.integers ? 8 : results.digits > 5 ? 3 : 6;
     bool is_rounded = false;
@@ -499,47 +482,28 @@ class UnvWriter {
 
   const Mesh& mesh_;
   const UnvMetadata* own_;  // null if the mesh comes from elsewhere
-  Contents plain_;
+  UnvMetadata plain_;       // the file in this case
   const Contents& file_;
   Notes& notes_;
-  std::vector<Index> none_;
-  std::vector<std::int64_t> vertex_ids_;
-  std::vector<std::int64_t> cell_ids_;
-  FileNumbers nodes_;
-  FileNumbers elements_;
+  DeckNumbers numbers_;
   Labels labels_;
   std::vector<std::int64_t> materials_;
-  SetsByName sets_;
+  NamedParts parts_;
   OutputFile out_;
   Lines lines_;
-  std::vector<Index> file_node_;     // of each vertex; empty if they are in the file's order
-  std::vector<Index> file_element_;  // of each cell; empty if they are in the file's order
+  std::vector<Index> file_node_ = numbers_.nodes.items();        // of each vertex, if there is a file
+  std::vector<Index> file_element_ = numbers_.elements.items();  // of each cell, likewise
   std::set<const EntitySet*> written_;
   std::set<const DataArray*> written_arrays_;
 };
 
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
-  return type_of({shape, vertices}) != 0 || own_file(mesh) != nullptr;
-}
-
-}  // namespace
-
-const UnvMetadata* own_file(const Mesh& mesh) {
-  const auto* const own = dynamic_cast<const UnvMetadata*>(mesh.format_metadata.get());
-  if (own == nullptr || !own->whole) return nullptr;
-  const Contents& file = *own->deck;
-  if (file.nodes.size() != mesh.vertex_count() || file.elements.size() != mesh.cell_count()) return nullptr;
-  for (Index k = 0; k < file.elements.size(); ++k) {
-    const Index c = own->cell(k);
-    const int vertices = mesh.cells.vertex_count(c);
-    const auto kind = kind_of(file.element_fields[k].type, vertices);
-    if (kind != ElementKind{mesh.cells.shapes[c], vertices}) return nullptr;
-  }
-  return own;
+  return type_of({shape, vertices}) != 0 || file_of(mesh) != nullptr;
 }
 
 void write(const Mesh& mesh, const FilePath& path, Notes& notes) { UnvWriter(mesh, path, notes).write(); }
 
+}  // namespace
 }  // namespace meshorder::unv
 
 namespace meshorder {
