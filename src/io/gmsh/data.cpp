@@ -43,7 +43,7 @@ View read_view_head(NumberReader& source, std::string_view section) {
   view.integers.resize(
       source.checked_count(source.text_integer("the number of integer tags"), "integer tags", 2));
   if (view.integers.size() < 3) {
-    source.fail("$" + std::string(section) + " has " + std::to_string(view.integers.size()) + " integer tags",
+    source.fail(fmt::format("${} has {} integer tags", section, view.integers.size()),
                 "step, components and number of entries are needed");
   }
   for (std::size_t i = 0; i < view.integers.size(); ++i) {
@@ -116,9 +116,9 @@ Entries read_entries(ReadContext& reading, const View& view) {
     const std::int64_t id = source.binary ? source.int32("the number of an entry") : source.int64("an entry");
     const Index place = places.find(id);
     if (place < 0) {
-      source.fail("$" + view.section + " names " +
-                      (view.association == Association::vertices ? "node " : "element ") +
-                      std::to_string(id) + ", which the file does not have",
+      const bool of_nodes = view.association == Association::vertices;
+      source.fail(fmt::format("${} names {} {}, which the file does not have", view.section,
+                              of_nodes ? "node" : "element", id),
                   "give values only for existing nodes and elements");
     }
     entries.rows.push_back(place);
@@ -210,15 +210,6 @@ class ArrayNames {
   std::map<Name, int> last_numbers_;
 };
 
-template <class Number>
-double as_double(const Number& value) {
-  if constexpr (std::is_arithmetic_v<Number>) {
-    return static_cast<double>(value);
-  } else {
-    return 0.0;  // strings never get a view
-  }
-}
-
 }  // namespace
 
 void check_distinct(const NumberReader& source, std::vector<Index> rows, std::string_view section) {
@@ -262,14 +253,13 @@ void name_views(ReadContext& reading) {
   for (const View& view : views) {
     if (view.array) ++steps[{view.section, *view.array}];
   }
-  const std::map<std::pair<std::string, std::string>, int> counts = std::move(steps);
   ArrayNames names(reading.mesh);
   for (std::size_t i = 0; i < views.size(); ++i) {
     View& view = views[i];
     if (!view.array) continue;
     DataArray& array = reading.mesh.data[reading.view_arrays[i]];
     std::string name = *view.array;
-    if (counts.at({view.section, name}) > 1) name += " step " + std::to_string(view.integers[0]);
+    if (steps.at({view.section, name}) > 1) name += " step " + std::to_string(view.integers[0]);
     names.rename(array, name);
     restore_labels(array);
     view.array = array.name;
@@ -356,27 +346,22 @@ void write_view(NumberWriter& sink, const WriteContext& output, const View& view
   for (std::size_t i = 0; i < view.integers.size(); ++i) sink.text_line(i == 2 ? rows : view.integers[i]);
   if (!array) return;
 
-  std::visit(
-      [&](const auto& values) {
-        const auto width = static_cast<std::size_t>(array->components);
-        write_rows(sink, rows, [&](RowWriter& to, Index row) {
-          const Index place = array->is_dense() ? row : array->indices[row];
-          const std::int64_t id =
-              view.association == Association::vertices ? output.node_id(place) : output.cell_id(place);
-          to.int32(id);
-          int nodes = 1;
-          if (view.per != PerElement::one) {
-            nodes = nodes_of_entry(mesh, place, view.per, view.nodes);
-            to.int32(nodes);
-          }
-          const auto value = [&](std::size_t k) {
-            return k < width ? as_double(values[row * width + k]) : 0.0;
-          };
-          const std::size_t count = static_cast<std::size_t>(nodes) * components;
-          to.all<double>(count, value);
-        });
-      },
-      array->values);
+  const auto width = static_cast<std::size_t>(array->components);
+  with_numbers(array->values, [&](const auto& values) {
+    write_rows(sink, rows, [&](RowWriter& to, Index row) {
+      const Index place = array->is_dense() ? row : array->indices[row];
+      const bool of_nodes = view.association == Association::vertices;
+      to.int32(of_nodes ? output.node_id(place) : output.cell_id(place));
+      int nodes = 1;
+      if (view.per != PerElement::one) {
+        nodes = nodes_of_entry(mesh, place, view.per, view.nodes);
+        to.int32(nodes);
+      }
+      to.all<double>(static_cast<std::size_t>(nodes) * components, [&](std::size_t k) {
+        return k < width ? static_cast<double>(values[row * width + k]) : 0.0;
+      });
+    });
+  });
 }
 
 }  // namespace meshorder::gmsh

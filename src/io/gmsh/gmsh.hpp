@@ -139,9 +139,9 @@ struct GmshMetadata : FormatMetadata {
 
 // ---- reading
 
-/// Maps the numbers of nodes or elements to their positions. Fails for negative numbers and for numbers that
-/// are given twice; `what` is "node" or "element".
-IdMap number_ids(const NumberReader& source, const std::vector<std::int64_t>& ids, std::string_view what);
+/// Maps the numbers of nodes or elements to their positions; clears `ids` if they are 1, 2, 3 … Fails for
+/// negative numbers and for numbers that are given twice; `what` is "node" or "element".
+IdMap number_ids(const NumberReader& source, std::vector<std::int64_t>& ids, std::string_view what);
 
 /// The state of the reader.
 struct ReadContext {
@@ -190,6 +190,9 @@ inline Index place_of_node(const ReadContext& reading, std::int64_t id, std::str
   return place;
 }
 
+/// Adds a dense array to the mesh.
+void keep_array(Mesh& mesh, std::string_view name, Association association, Index components, Values values);
+
 /// Adds the array kCellType if shape and count do not determine the type of every cell.
 void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers);
 
@@ -207,8 +210,8 @@ void read_entities_4(ReadContext& reading, bool partitioned);
 void read_nodes_4(ReadContext& reading);
 void read_elements_4(ReadContext& reading);
 void read_view(ReadContext& reading, std::string_view section);
-void read_periodic(ReadContext& reading);
-void read_ghosts(ReadContext& reading);
+void read_periodic(ReadContext& reading, std::string_view section);
+void read_ghosts(ReadContext& reading, std::string_view section);
 /// Gives the arrays of views distinct names: "NAME step K" if several views of a kind have the same name.
 void name_views(ReadContext& reading);
 

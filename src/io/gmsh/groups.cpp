@@ -32,27 +32,22 @@ struct CellEntities {
   const Cells& cells;
 };
 
-/// Finds the value of an entity. Caches the last result: successive cells mostly have the same entity.
-template <class Value>
-class EntityTable {
- public:
-  explicit EntityTable(const std::map<Entity, Value>& table) : table_(table) {}
-  const Value* find(Entity entity) {
-    if (!known_ || entity != last_) {
-      const auto found = table_.find(entity);
-      value_ = found == table_.end() ? nullptr : &found->second;
-      last_ = entity;
-      known_ = true;
+/// Calls `work(c, value)` for each cell whose entity `entity_of(c)` is in the table.
+template <class Value, class EntityOf, class Work>
+void for_cells_of(const std::map<Entity, Value>& table, const Mesh& mesh, const EntityOf& entity_of,
+                  const Work& work) {
+  Entity last{};
+  const Value* value = nullptr;
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const Entity entity = entity_of(c);
+    if (c == 0 || entity != last) {  // successive cells mostly have the same entity
+      const auto found = table.find(entity);
+      value = found == table.end() ? nullptr : &found->second;
+      last = entity;
     }
-    return value_;
+    if (value) work(c, *value);
   }
-
- private:
-  const std::map<Entity, Value>& table_;
-  bool known_ = false;
-  Entity last_{};
-  const Value* value_ = nullptr;
-};
+}
 
 // ---- for a mesh of another format: cells with the same label and the same sets form an entity
 
@@ -317,17 +312,18 @@ std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metad
     }
     if (!of_entity.empty()) sets_of_entity[entity].assign(of_entity.begin(), of_entity.end());
   }
-  const CellEntities entities(mesh);
-  const std::vector<std::int32_t> labels =
-      metadata.is_version_2() ? integers_of(mesh, kLabel, Association::cells) : std::vector<std::int32_t>{};
-  EntityTable<std::vector<Index>> table(metadata.is_version_2() ? sets_of_group : sets_of_entity);
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    Entity entity = entities(c);
-    if (metadata.is_version_2()) entity = {dimension(mesh.cells.shapes[c]), labels.empty() ? 0 : labels[c]};
-    const std::vector<Index>* of_cell = table.find(entity);
-    if (!of_cell) continue;
-    if (of_cell->size() > 1) claim_memory(of_cell->size() * sizeof(Index), "items in several groups");
-    for (const Index s : *of_cell) sets[s].members.push_back(c);
+  const auto add = [&](Index c, const std::vector<Index>& of_cell) {
+    if (of_cell.size() > 1) claim_memory(of_cell.size() * sizeof(Index), "items in several groups");
+    for (const Index s : of_cell) sets[s].members.push_back(c);
+  };
+  if (metadata.is_version_2()) {
+    const std::vector<std::int32_t> labels = integers_of(mesh, kLabel, Association::cells);
+    const auto group_of = [&](Index c) -> Entity {
+      return {dimension(mesh.cells.shapes[c]), labels.empty() ? 0 : labels[c]};
+    };
+    for_cells_of(sets_of_group, mesh, group_of, add);
+  } else {
+    for_cells_of(sets_of_entity, mesh, CellEntities(mesh), add);
   }
   std::erase_if(sets, [](const EntitySet& set) { return set.members.empty(); });
   return sets;
@@ -335,16 +331,13 @@ std::vector<EntitySet> physical_sets(const Mesh& mesh, const GmshMetadata& metad
 
 std::vector<std::int32_t> labels_of_entities(const Mesh& mesh, const GmshMetadata& metadata) {
   if (metadata.physicals.empty()) return {};
-  const CellEntities entities(mesh);
-  EntityTable<std::vector<std::int32_t>> table(metadata.physicals);
   std::vector<std::int32_t> labels(mesh.cells.shapes.size(), 0);
   bool any = false;
-  for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const std::vector<std::int32_t>* physicals = table.find(entities(c));
-    if (!physicals) continue;
-    labels[c] = physicals->front();
-    any = true;
-  }
+  for_cells_of(metadata.physicals, mesh, CellEntities(mesh),
+               [&](Index c, const std::vector<std::int32_t>& physicals) {
+                 labels[c] = physicals.front();
+                 any = true;
+               });
   if (!any) labels.clear();
   return labels;
 }

@@ -9,13 +9,6 @@
 namespace meshorder::gmsh {
 namespace {
 
-const EntitySet* find_set(const Mesh& mesh, const std::string& name) {
-  const auto found = std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const EntitySet& set) {
-    return set.association == Association::vertices && set.name == name;
-  });
-  return found == mesh.sets.end() ? nullptr : &*found;
-}
-
 constexpr std::int64_t kAffine = -1;  // precedes the coefficients in binary files of 4.0
 
 bool has_affine_line(const GmshMetadata& metadata) {
@@ -69,7 +62,7 @@ Index read_pairs(ReadContext& reading, PeriodicLink& link, Index count) {
 
 }  // namespace
 
-void read_periodic(ReadContext& reading) {
+void read_periodic(ReadContext& reading, std::string_view section) {
   NumberReader& source = reading.source;
   // in version 2.2 this section is text in binary files as well
   const bool binary = source.binary;
@@ -83,19 +76,19 @@ void read_periodic(ReadContext& reading) {
     link.tag = source.int32("the tag of a periodic entity");
     link.master = source.int32("the tag of a master entity");
     if (!entities.emplace(link.dimension, link.tag).second) {
-      source.fail("the periodic entity " + std::to_string(link.tag) + " of dimension " +
-                      std::to_string(link.dimension) + " is given twice",
-                  "each has one master");
+      source.fail(
+          fmt::format("the periodic entity {} of dimension {} is given twice", link.tag, link.dimension),
+          "each has one master");
     }
     const Index pairs = read_affine(reading, link);
     missing += read_pairs(reading, link, pairs);
     reading.metadata.periodic.push_back(std::move(link));
   }
-  expect_end(reading, "Periodic");
+  expect_end(reading, section);
   source.binary = binary;
   if (missing > 0) {
-    reading.notes.push_back(std::to_string(missing) +
-                            " pairs of $Periodic are ignored: they name nodes that the file does not have");
+    reading.notes.push_back(fmt::format(
+        "{} pairs of $Periodic are ignored: they name nodes that the file does not have", missing));
   }
 }
 
@@ -121,8 +114,8 @@ void write_periodic(NumberWriter& sink, const WriteContext& output) {
     for (const double value : link.affine) to.real(value);
     if (!affine_line || !link.affine.empty()) to.end_line();
     // the sets may have been removed from the mesh
-    const EntitySet* nodes = find_set(output.mesh, link.nodes);
-    const EntitySet* masters = find_set(output.mesh, link.master_nodes);
+    const EntitySet* nodes = output.parts.set(link.nodes, Association::vertices);
+    const EntitySet* masters = output.parts.set(link.master_nodes, Association::vertices);
     const Index count =
         nodes && masters ? std::min(index_size(nodes->members), index_size(masters->members)) : 0;
     to.size(count);
@@ -137,7 +130,7 @@ void write_periodic(NumberWriter& sink, const WriteContext& output) {
 
 // ---- ghost elements
 
-void read_ghosts(ReadContext& reading) {
+void read_ghosts(ReadContext& reading, std::string_view section) {
   NumberReader& source = reading.source;
   const Index count = read_count(reading, "the number of ghost elements", 6, 12);
   DataArray array;
@@ -161,8 +154,8 @@ void read_ghosts(ReadContext& reading) {
     most = std::max(most, partitions.size());
     total += partitions.size();
   }
-  expect_end(reading, "GhostElements");
-  check_distinct(source, array.indices, "GhostElements");
+  expect_end(reading, section);
+  check_distinct(source, array.indices, section);
   if (count == 0) return;
   const std::size_t width = 2 + most;
   if (width * owners.size() > 64 * (total + owners.size()) + 4096) {

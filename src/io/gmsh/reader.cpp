@@ -1,4 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
+#include "base/text.hpp"
 #include "io/gmsh/gmsh.hpp"
 
 #include <fmt/format.h>
@@ -83,6 +84,14 @@ void read_format(ReadContext& reading) {
   reading.metadata.sections.push_back({SectionKind::format, "MeshFormat", "", 0});
 }
 
+/// Keeps the text since that byte as a section, which ends here.
+void keep_verbatim(ReadContext& reading, std::string_view section, std::int64_t begin) {
+  const Scanner& in = reading.source.scanner;
+  const std::string_view text = in.all().substr(begin, in.byte() - begin);
+  expect_end(reading, section);
+  reading.metadata.sections.push_back({SectionKind::verbatim, std::string(section), std::string(text), 0});
+}
+
 /// Reads the names of physical groups and keeps the section verbatim. Version 2.0 gives no dimensions, so its
 /// names are not interpreted.
 void read_names(ReadContext& reading) {
@@ -116,20 +125,15 @@ void read_names(ReadContext& reading) {
   } else {
     (void)body(reading, "PhysicalNames");
   }
-  const std::string_view text = source.scanner.all().substr(begin, source.scanner.byte() - begin);
-  expect_end(reading, "PhysicalNames");
-  reading.metadata.sections.push_back({SectionKind::verbatim, "PhysicalNames", std::string(text), 0});
+  keep_verbatim(reading, "PhysicalNames", begin);
 }
 
 /// Reads the physical groups of entities and keeps the section verbatim.
-void read_entities(ReadContext& reading, const std::string& section) {
-  NumberReader& source = reading.source;
-  const std::int64_t begin = source.scanner.byte();
+void read_entities(ReadContext& reading, std::string_view section) {
+  const std::int64_t begin = reading.source.scanner.byte();
   read_entities_4(reading, section == "PartitionedEntities");
-  (void)source.scanner.at_end();
-  const std::string_view text = source.scanner.all().substr(begin, source.scanner.byte() - begin);
-  expect_end(reading, section);
-  reading.metadata.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
+  (void)reading.source.scanner.at_end();
+  keep_verbatim(reading, section, begin);
 }
 
 /// Returns whether any word of the text is a number.
@@ -154,6 +158,7 @@ bool is_text(std::string_view text) {
 void read_verbatim(ReadContext& reading, const std::string& section) {
   NumberReader& source = reading.source;
   const std::int64_t line = source.scanner.line();
+  const std::int64_t begin = source.scanner.byte();
   const std::string_view text = body(reading, section);
   if (!kVerbatimSections.contains(section) && (has_numbers(text) || !is_text(text))) {
     source.fail(
@@ -162,27 +167,20 @@ void read_verbatim(ReadContext& reading, const std::string& section) {
                     section, line - 1),
         "take it out of the file, or keep it as $Comments");
   }
-  expect_end(reading, section);
-  reading.metadata.sections.push_back({SectionKind::verbatim, section, std::string(text), 0});
+  keep_verbatim(reading, section, begin);
 }
 
-void read_nodes(ReadContext& reading) {
-  reading.metadata.is_version_2() ? read_nodes_2(reading, "Nodes") : read_nodes_4(reading);
-}
-
-void read_parametric_nodes(ReadContext& reading) {
-  if (!reading.metadata.is_version_2()) {
+void read_nodes(ReadContext& reading, std::string_view section) {
+  const bool version_2 = reading.metadata.is_version_2();
+  if (section == "ParametricNodes" && !version_2) {
     reading.source.fail("a section $ParametricNodes", "in version 4 it is called $Nodes");
   }
-  read_nodes_2(reading, "ParametricNodes");
+  version_2 || section != "Nodes" ? read_nodes_2(reading, section) : read_nodes_4(reading);
 }
 
-void read_elements(ReadContext& reading) {
-  reading.metadata.is_version_2() ? read_elements_2(reading, "Elements") : read_elements_4(reading);
-}
-
-void read_periodic_or_ghosts(ReadContext& reading, SectionKind kind) {
-  kind == SectionKind::periodic ? read_periodic(reading) : read_ghosts(reading);
+void read_elements(ReadContext& reading, std::string_view section) {
+  const bool of_old = reading.metadata.is_version_2() || section == "ELM";
+  of_old ? read_elements_2(reading, section) : read_elements_4(reading);
 }
 
 /// A section that a file has at most once; it must follow a section of the kind `after`.
@@ -190,23 +188,18 @@ struct Single {
   std::string_view name;
   SectionKind kind;
   SectionKind after;
-  void (*read)(ReadContext&);
+  void (*read)(ReadContext&, std::string_view section);
 };
 
 constexpr std::array kSingles{
     Single{"Nodes", SectionKind::nodes, SectionKind::format, read_nodes},
-    Single{"NOD", SectionKind::nodes, SectionKind::format,
-           [](ReadContext& reading) { read_nodes_2(reading, "NOD"); }},
-    Single{"NOE", SectionKind::nodes, SectionKind::format,
-           [](ReadContext& reading) { read_nodes_2(reading, "NOE"); }},
-    Single{"ELM", SectionKind::elements, SectionKind::nodes,
-           [](ReadContext& reading) { read_elements_2(reading, "ELM"); }},
-    Single{"ParametricNodes", SectionKind::nodes, SectionKind::format, read_parametric_nodes},
+    Single{"NOD", SectionKind::nodes, SectionKind::format, read_nodes},
+    Single{"NOE", SectionKind::nodes, SectionKind::format, read_nodes},
+    Single{"ParametricNodes", SectionKind::nodes, SectionKind::format, read_nodes},
     Single{"Elements", SectionKind::elements, SectionKind::nodes, read_elements},
-    Single{"Periodic", SectionKind::periodic, SectionKind::nodes,
-           [](ReadContext& reading) { read_periodic_or_ghosts(reading, SectionKind::periodic); }},
-    Single{"GhostElements", SectionKind::ghosts, SectionKind::elements,
-           [](ReadContext& reading) { read_periodic_or_ghosts(reading, SectionKind::ghosts); }},
+    Single{"ELM", SectionKind::elements, SectionKind::nodes, read_elements},
+    Single{"Periodic", SectionKind::periodic, SectionKind::nodes, read_periodic},
+    Single{"GhostElements", SectionKind::ghosts, SectionKind::elements, read_ghosts},
 };
 
 void read_single(ReadContext& reading, const Single& single) {
@@ -218,7 +211,7 @@ void read_single(ReadContext& reading, const Single& single) {
     reading.source.fail("$" + name + " comes before the nodes or elements that it names",
                         "put $Nodes and $Elements first");
   }
-  single.read(reading);
+  single.read(reading, name);
   reading.metadata.sections.push_back({single.kind, name, "", 0});
 }
 
@@ -264,8 +257,7 @@ void finish(ReadContext& reading) {
   }
   if (!reading.metadata.is_version_2()) {
     std::vector<std::int32_t> labels = labels_of_entities(mesh, reading.metadata);
-    if (!labels.empty())
-      mesh.data.push_back({std::string(kLabel), Association::cells, 1, std::move(labels), {}, {}});
+    if (!labels.empty()) keep_array(mesh, kLabel, Association::cells, 1, std::move(labels));
   }
   name_views(reading);
   std::vector<EntitySet> sets = physical_sets(mesh, reading.metadata);
@@ -292,6 +284,41 @@ Mesh read(const FilePath& path, Notes& notes) {
   }
   finish(reading);
   return std::move(reading.mesh);
+}
+
+IdMap number_ids(const NumberReader& source, std::vector<std::int64_t>& ids, std::string_view what) {
+  for (const std::int64_t id : ids) {
+    if (id < 0) source.fail(fmt::format("{} {} has a negative number", what, id), "numbers must be positive");
+  }
+  IdMap result;
+  for (const std::int64_t id : ids) {
+    if (!result.add(id)) {
+      source.fail(fmt::format("{} {} is given twice", what, id), "each needs a number of its own");
+    }
+  }
+  if (result.runs_from(1)) ids = std::vector<std::int64_t>();  // frees the memory
+  return result;
+}
+
+void expect_end(ReadContext& reading, std::string_view section) {
+  NumberReader& source = reading.source;
+  const std::string end = fmt::format("{}{}", reading.metadata.is_version_1() ? "$END" : "$End", section);
+  const std::string_view word = source.scanner.peek_word();
+  const std::string_view all = source.scanner.all();
+  const bool is_cut = word.size() < end.size() && word.data() + word.size() == all.data() + all.size();
+  if (word.empty() || is_cut) source.fail("unexpected end of file; expected " + end, "it may be cut short");
+  if (word != end && word != fmt::format("$End{}", section)) {
+    const std::string found = shown(word);
+    if (word.front() == '$' && !same_but_for_case(word.substr(0, 4), "$End")) {
+      source.fail(fmt::format("expected {}, found {}", end, found), "end the section before the next one");
+    }
+    if (word.front() != '$') {
+      source.fail(fmt::format("${} continues; expected {}", section, end), "is a count too small?");
+    }
+    reading.notes.push_back(fmt::format("{}:{}: {} is read as {}; Gmsh itself skips the text after it",
+                                        source.scanner.file(), source.scanner.line(), found, end));
+  }
+  (void)source.scanner.word(end);
 }
 
 const ElementType& known_type(const NumberReader& source, std::int64_t number) {
@@ -323,19 +350,18 @@ void keep_unusual_types(Mesh& mesh, const std::vector<std::int32_t>& numbers) {
     if (last && last->number == number) continue;
     last = find_type(number);
     if (find_type(last->shape, last->nodes) == last) continue;
-    mesh.data.push_back({std::string(kCellType), Association::cells, 1, numbers, {}, {}});
-    return;
+    return keep_array(mesh, kCellType, Association::cells, 1, numbers);
   }
+}
+
+void keep_array(Mesh& mesh, std::string_view name, Association association, Index components, Values values) {
+  mesh.data.push_back({std::string(name), association, components, std::move(values), {}, {}});
 }
 
 void keep_parameters(Mesh& mesh, std::vector<double> values) {
   values.resize(4 * mesh.points.size(), 0.0);
-  mesh.data.push_back({std::string(kNodeParameters),
-                       Association::vertices,
-                       4,
-                       std::move(values),
-                       {},
-                       {"given", "u", "v", "w"}});
+  keep_array(mesh, kNodeParameters, Association::vertices, 4, std::move(values));
+  mesh.data.back().component_names = {"given", "u", "v", "w"};
 }
 
 }  // namespace meshorder::gmsh

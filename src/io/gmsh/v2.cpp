@@ -75,15 +75,13 @@ Index read_alike(ReadContext& reading, const Element& last, Index most, Tags& ta
   const auto node_count = static_cast<std::size_t>(last.type->nodes);
   const std::size_t first = ids.size();
   const std::size_t first_tag = tags.values.size();
-  ids.resize(first + static_cast<std::size_t>(most));
-  tags.values.resize(first_tag + static_cast<std::size_t>(most) * tag_count);
-  std::vector<Index> nodes(static_cast<std::size_t>(most) * node_count);
+  ids.resize(first + most);
+  tags.values.resize(first_tag + most * tag_count);
+  std::vector<Index> nodes(most * node_count);
   const auto tags_of = [&](Index e) {
-    return std::span(tags.values).subspan(first_tag + static_cast<std::size_t>(e) * tag_count, tag_count);
+    return std::span(tags.values).subspan(first_tag + e * tag_count, tag_count);
   };
-  const auto nodes_of = [&](Index e) {
-    return std::span(nodes).subspan(static_cast<std::size_t>(e) * node_count, node_count);
-  };
+  const auto nodes_of = [&](Index e) { return std::span(nodes).subspan(e * node_count, node_count); };
   const Index read = read_regular_records(reading.source.scanner, most, [&](Scanner& in, Index e) {
     std::int32_t id = 0;
     std::int32_t type = 0;
@@ -91,7 +89,7 @@ Index read_alike(ReadContext& reading, const Element& last, Index most, Tags& ta
     if (!in.take_number(id) || !in.take_number(type) || type != last.type->number ||
         !in.take_number(own_tags) || own_tags != last.tag_count)
       return false;
-    ids[first + static_cast<std::size_t>(e)] = id;
+    ids[first + e] = id;
     for (std::int32_t& tag : tags_of(e)) {
       if (!in.take_number(tag)) return false;
     }
@@ -104,8 +102,8 @@ Index read_alike(ReadContext& reading, const Element& last, Index most, Tags& ta
     }
     return true;
   });
-  ids.resize(first + static_cast<std::size_t>(read));
-  tags.values.resize(first_tag + static_cast<std::size_t>(read) * tag_count);
+  ids.resize(first + read);
+  tags.values.resize(first_tag + read * tag_count);
   for (Index e = 0; e < read; ++e) {
     tags.offsets.push_back(tags.offsets.back() + last.tag_count);
     add_cell(reading.mesh, *last.type, nodes_of(e));
@@ -148,8 +146,9 @@ Index read_tag_count(NumberReader& source) {
                               source.binary ? 4 : 2);
 }
 
-/// Returns the tags first, first + 1, … of all cells as an array of `components`; missing tags are 0.
-DataArray tags_as_array(const Tags& tags, std::string_view name, std::size_t first, std::size_t components) {
+/// Adds the tags first, first + 1, … of all cells as an array of `components`; missing tags are 0.
+void keep_tags_as(Mesh& mesh, std::string_view name, const Tags& tags, std::size_t first,
+                  std::size_t components) {
   std::vector<std::int32_t> values(tags.size() * components, 0);
   for (Index c = 0; c < tags.size(); ++c) {
     const auto of_cell = tags[c];
@@ -157,7 +156,7 @@ DataArray tags_as_array(const Tags& tags, std::string_view name, std::size_t fir
       values[c * components + k] = of_cell[first + k];
     }
   }
-  return {std::string(name), Association::cells, static_cast<Index>(components), std::move(values), {}, {}};
+  keep_array(mesh, name, Association::cells, static_cast<Index>(components), std::move(values));
 }
 
 void keep_tags(const NumberReader& source, Mesh& mesh, const Tags& tags) {
@@ -172,13 +171,13 @@ void keep_tags(const NumberReader& source, Mesh& mesh, const Tags& tags) {
     source.fail("an element has " + std::to_string(most) + " tags, far more than the others",
                 "the file may be damaged");
   }
-  if (most > 0) mesh.data.push_back(tags_as_array(tags, kLabel, 0, 1));
-  if (most > 1) mesh.data.push_back(tags_as_array(tags, kCellEntity, 1, 1));
-  if (most > 2) mesh.data.push_back(tags_as_array(tags, kCellPartitions, 2, most - 2));
+  if (most > 0) keep_tags_as(mesh, kLabel, tags, 0, 1);
+  if (most > 1) keep_tags_as(mesh, kCellEntity, tags, 1, 1);
+  if (most > 2) keep_tags_as(mesh, kCellPartitions, tags, 2, most - 2);
   if (!even) {
     std::vector<std::int32_t> counts(tags.size());
     for (Index c = 0; c < tags.size(); ++c) counts[c] = static_cast<std::int32_t>(tags[c].size());
-    mesh.data.push_back({std::string(kCellTagCount), Association::cells, 1, std::move(counts), {}, {}});
+    keep_array(mesh, kCellTagCount, Association::cells, 1, std::move(counts));
   }
 }
 
@@ -248,10 +247,9 @@ void read_nodes_2(ReadContext& reading, std::string_view section) {
   }
   expect_end(reading, section);
   reading.nodes = number_ids(source, ids, "node");
-  if (!reading.nodes.runs_from(1)) reading.mesh.vertex_ids = std::move(ids);
+  reading.mesh.vertex_ids = std::move(ids);
   if (!parametric) return;
-  reading.mesh.data.push_back(
-      {std::string(kNodeEntity), Association::vertices, 2, std::move(entities), {}, {}});
+  keep_array(reading.mesh, kNodeEntity, Association::vertices, 2, std::move(entities));
   keep_parameters(reading.mesh, std::move(parameters));
 }
 
@@ -277,8 +275,7 @@ void read_elements_2(ReadContext& reading, std::string_view section) {
       run = source.checked_count(source.int32("the length of a run"), "the length of a run", 8);
     element.tag_count = reading.metadata.is_version_1() ? 2 : read_tag_count(source);
     if (run > count - index_size(ids)) {
-      source.fail("$" + std::string(section) + " has more elements than the " + std::to_string(count) +
-                      " in its header",
+      source.fail(fmt::format("${} has more elements than the {} in its header", section, count),
                   "the count is wrong or the file is damaged");
     }
     for (Index i = 0; i < run; ++i) {
@@ -293,7 +290,7 @@ void read_elements_2(ReadContext& reading, std::string_view section) {
   }
   expect_end(reading, section);
   reading.elements = number_ids(source, ids, "element");
-  if (!reading.elements.runs_from(1)) reading.mesh.cell_ids = std::move(ids);
+  reading.mesh.cell_ids = std::move(ids);
   keep_tags(source, reading.mesh, tags);
   keep_unusual_types(reading.mesh, types);
 }

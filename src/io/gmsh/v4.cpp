@@ -4,6 +4,8 @@
 #include "io/stream/regular_text.hpp"
 #include "mesh/cells.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -67,31 +69,27 @@ void read_node_block(ReadContext& reading, const EmptyBlock& head, Index count,
   const int given = parameters_4(reading.metadata, head[0]);
   const bool number_with_point = reading.metadata.is_version_40();
   if (!number_with_point) {
-    ids.resize(ids.size() + static_cast<std::size_t>(count));
-    const std::span block = std::span(ids).last(static_cast<std::size_t>(count));
+    ids.resize(ids.size() + count);
+    const std::span block = std::span(ids).last(count);
     const Index regular =
         read_regular(source, count, [&](Scanner& in, Index i) { return in.take_number(block[i]); });
     for (std::int64_t& id : block.subspan(regular)) id = source.int64("the number of a node");
   }
+  std::vector<Point>& points = reading.mesh.points;
+  const std::size_t first = points.size();
+  points.resize(first + count);
+  const std::span block = std::span(points).last(count);
+  Index regular = 0;
   if (!parametric && !number_with_point) {
-    std::vector<Point>& points = reading.mesh.points;
-    points.resize(points.size() + static_cast<std::size_t>(count));
-    const std::span block = std::span(points).last(static_cast<std::size_t>(count));
-    const Index regular = read_regular(source, count, [&](Scanner& in, Index i) {
+    regular = read_regular(source, count, [&](Scanner& in, Index i) {
       return std::ranges::all_of(block[i], [&](double& x) { return in.take_finite(x); });
     });
-    for (Point& point : block.subspan(regular)) {
-      for (double& x : point) x = source.finite("a coordinate");
-    }
-    return;
   }
-  for (Index i = 0; i < count; ++i) {
+  for (Index i = regular; i < count; ++i) {
     if (number_with_point) ids.push_back(read_number(reading, "the number of a node"));
-    Point& point = reading.mesh.points.emplace_back();
-    for (double& x : point) x = source.finite("a coordinate");
+    for (double& x : block[i]) x = source.finite("a coordinate");
     if (!parametric) continue;
-    // zeros for earlier nodes without parameters
-    parameters.resize(4 * (reading.mesh.points.size() - 1), 0.0);
+    parameters.resize(4 * (first + i), 0.0);  // zeros for earlier nodes without parameters
     parameters.push_back(1);
     for (int k = 0; k < 3; ++k) {
       parameters.push_back(k < given ? source.real("a parametric coordinate") : 0.0);
@@ -158,8 +156,8 @@ Head read_head(ReadContext& reading, std::string_view what, std::int64_t text_by
 
 [[noreturn]] void fail_count(const NumberReader& source, std::string_view section, std::int64_t blocks,
                              std::int64_t promised) {
-  source.fail("the blocks of $" + std::string(section) + " have " + std::to_string(blocks) +
-                  (blocks > promised ? " or more" : "") + " instead of " + std::to_string(promised),
+  source.fail(fmt::format("the blocks of ${} have {}{} instead of {}", section, blocks,
+                          blocks > promised ? " or more" : "", promised),
               "the counts must agree");
 }
 
@@ -267,8 +265,8 @@ void read_nodes_4(ReadContext& reading) {
   if (index_size(ids) != head.count) fail_count(source, "Nodes", index_size(ids), head.count);
   expect_end(reading, "Nodes");
   reading.nodes = number_ids(source, ids, "node");
-  if (!reading.nodes.runs_from(1)) mesh.vertex_ids = std::move(ids);
-  mesh.data.push_back({std::string(kNodeEntity), Association::vertices, 2, std::move(entities), {}, {}});
+  mesh.vertex_ids = std::move(ids);
+  keep_array(mesh, kNodeEntity, Association::vertices, 2, std::move(entities));
   if (!parameters.empty()) keep_parameters(mesh, std::move(parameters));
 }
 
@@ -313,16 +311,15 @@ void read_elements_4(ReadContext& reading) {
   if (index_size(ids) != head.count) fail_count(source, "Elements", index_size(ids), head.count);
   expect_end(reading, "Elements");
   reading.elements = number_ids(source, ids, "element");
-  if (!reading.elements.runs_from(1)) mesh.cell_ids = std::move(ids);
+  mesh.cell_ids = std::move(ids);
 
   // if a kind has several blocks, as in a converted mesh, do not bind cells to blocks: the order of the cells
   // matters more
   if (!repeated && starts.size() > 1) mesh.cell_blocks = std::move(starts);
   bool own = true;
   for (Index c = 0; c < mesh.cell_count(); ++c) own = own && dimensions[c] == dimension(mesh.cells.shapes[c]);
-  mesh.data.push_back({std::string(kCellEntity), Association::cells, 1, std::move(tags), {}, {}});
-  if (!own)
-    mesh.data.push_back({std::string(kCellDimension), Association::cells, 1, std::move(dimensions), {}, {}});
+  keep_array(mesh, kCellEntity, Association::cells, 1, std::move(tags));
+  if (!own) keep_array(mesh, kCellDimension, Association::cells, 1, std::move(dimensions));
   keep_unusual_types(mesh, types);
 }
 

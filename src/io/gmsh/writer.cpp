@@ -3,6 +3,7 @@
 #include "io/deck/numbers.hpp"
 #include "io/gmsh/gmsh.hpp"
 #include "io/unsupported.hpp"
+#include "mesh/values.hpp"
 
 #include <fmt/format.h>
 
@@ -90,11 +91,8 @@ void take_layout(const GmshMetadata& layout, WriteContext& output, Notes& notes)
   output.cell_tags = integers_of(mesh, kCellEntity, Association::cells);
   output.cell_dimensions = integers_of(mesh, kCellDimension, Association::cells);
   if (output.cell_dimensions.empty()) {
-    std::array<std::int32_t, kShapes> dimensions{};
-    for (int s = 0; s < kShapes; ++s) dimensions[s] = dimension(static_cast<Shape>(s));
-    output.cell_dimensions.resize(mesh.cells.shapes.size());
-    std::transform(mesh.cells.shapes.begin(), mesh.cells.shapes.end(), output.cell_dimensions.begin(),
-                   [&](Shape shape) { return dimensions[static_cast<std::size_t>(shape)]; });
+    output.cell_dimensions.reserve(mesh.cells.shapes.size());
+    for (const Shape shape : mesh.cells.shapes) output.cell_dimensions.push_back(dimension(shape));
   }
   output.node_entities = integers_of(mesh, kNodeEntity, Association::vertices);
   place(kCellDimension, Association::cells);
@@ -250,25 +248,14 @@ const std::vector<double>* parameters_of(const Mesh& mesh) {
 std::vector<std::int32_t> integers_of(const Mesh& mesh, std::string_view name, Association association) {
   const DataArray* array = find_array(mesh, name, association);
   if (!array || (!array->is_dense() && array->components != 1)) return {};
-  std::vector<std::int32_t> given = std::visit(
-      [](const auto& values) {
-        using T = typename std::decay_t<decltype(values)>::value_type;
-        std::vector<std::int32_t> result;
-        if constexpr (std::is_same_v<T, std::int32_t>) {
-          result = values;
-        } else if constexpr (std::is_integral_v<T>) {
-          result.reserve(values.size());
-          for (const T value : values) {
-            if (!std::in_range<std::int32_t>(value)) return std::vector<std::int32_t>{};
-            result.push_back(static_cast<std::int32_t>(value));
-          }
-        }
-        return result;
-      },
-      array->values);
+  std::vector<std::int32_t> given =
+      with_integers(array->values, []<class Number>(const std::vector<Number>& values) {
+        const bool fit = std::all_of(values.begin(), values.end(),
+                                     [](Number value) { return std::in_range<std::int32_t>(value); });
+        return fit ? std::vector<std::int32_t>(values.begin(), values.end()) : std::vector<std::int32_t>();
+      });
   if (array->is_dense() || given.empty()) return given;
-  const Index count = association == Association::vertices ? mesh.vertex_count() : mesh.cell_count();
-  std::vector<std::int32_t> all(static_cast<std::size_t>(count), 0);
+  std::vector<std::int32_t> all(static_cast<std::size_t>(item_count(mesh, association)), 0);
   for (std::size_t k = 0; k < given.size(); ++k) all[array->indices[k]] = given[k];
   return all;
 }
