@@ -6,9 +6,11 @@
 #include "io/abaqus/elements.hpp"
 #include "io/deck/metadata.hpp"
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace meshorder::abaqus {
@@ -38,6 +40,16 @@ struct Deck : DeckContents {
 
 /// A deck, and the positions of its nodes and elements in the mesh.
 using AbaqusMetadata = DeckMetadata<Deck>;
+
+/// A number in at most 20 characters: Abaqus and CalculiX read no more.
+struct RealText {
+  explicit RealText(double value);
+  [[nodiscard]] std::string_view text() const { return {buffer.data(), size}; }
+
+  std::array<char, 40> buffer{};
+  std::size_t size = 0;
+  bool is_rounded = false;  ///< whether the text reads back to another number
+};
 
 Mesh read(const FilePath& path, Notes& notes);
 

@@ -2,17 +2,20 @@
 #include "base/text.hpp"
 #include "io/abaqus/abaqus.hpp"
 #include "io/abaqus/cards.hpp"
-#include "io/abaqus/output.hpp"
 #include "io/all_formats.hpp"
 #include "io/labels.hpp"
-#include "io/stream/output_file.hpp"
+#include "io/names.hpp"
+#include "io/stream/text_rows.hpp"
 #include "io/unsupported.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cctype>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -22,6 +25,8 @@
 
 namespace meshorder::abaqus {
 namespace {
+
+constexpr std::size_t kPerLine = 16;  // numbers
 
 /// Returns the deck that a mesh was read from; null if there is none or if the mesh no longer fits it.
 const AbaqusMetadata* deck_of(const Mesh& mesh) {
@@ -53,6 +58,19 @@ std::shared_ptr<Deck> plain_deck(const Mesh& mesh) {
 /// Takes the next word of a card and returns it in capitals; a name in quotes may have several words.
 std::string next_word_in_capitals(std::string_view& text) { return capitals(next_word(text, " \t,=\"\r\n")); }
 
+/// Returns a valid name that is not in `taken`, ignoring case, and adds it to `taken`.
+std::string name_for(const std::string& given, std::set<std::string>& taken, NameNumbers& numbers) {
+  constexpr std::size_t kLongest = 80;
+  std::string name = plain_name(given, " ,\"=*.");
+  if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0) name = "set_" + name;
+  const auto numbered = [&](int k) {
+    const std::string end = fmt::format("_{}", k);
+    return std::string(utf8_prefix(name, kLongest - end.size())) + end;
+  };
+  return numbers.free_name(std::string(utf8_prefix(name, kLongest)), numbered,
+                           [&](const std::string& free) { return taken.insert(capitals(free)).second; });
+}
+
 class DeckWriter {
  public:
   DeckWriter(const Mesh& mesh, const FilePath& path, Notes& notes)
@@ -65,7 +83,6 @@ class DeckWriter {
                                  : own_->numbers(mesh.vertex_ids, mesh.cell_ids)),
         notes_(notes),
         file_(path),
-        out_(file_, deck_.line_end),
         more_of_nodes_(by_place(deck_.more_of_nodes, numbers_.nodes)),
         more_of_elements_(by_place(deck_.more_of_elements, numbers_.elements)),
         same_numbers_(keep_numbers(numbers_, kLargest, deck_.unknown, path)) {}
@@ -106,7 +123,11 @@ class DeckWriter {
   }
 
   void note_losses() {
-    out_.note_rounded(notes_);
+    if (rounded_ > 0) {
+      notes_.push_back(fmt::format(
+          "{} rounded to the 20 characters that Abaqus and CalculiX read of a number",
+          rounded_ == 1 ? "one coordinate is" : fmt::format("{} coordinates are", rounded_.load())));
+    }
     if (own_ == nullptr) {
       note_arrays_beside_cell_labels(mesh_, "Abaqus", notes_);
       note_unfit_ids(mesh_, "Abaqus", kLargest, notes_);
@@ -134,7 +155,7 @@ class DeckWriter {
       case CardKind::elements:
         return write_elements(section);
       case CardKind::text:
-        return same_numbers_ ? out_.text(section.text) : write_renumbered(section.text);
+        return same_numbers_ ? write_text(section.text) : write_renumbered(section.text);
     }
   }
 
@@ -156,9 +177,9 @@ class DeckWriter {
   /// nodes, its NSET is left out, and `write_sets_of_cards` writes the set.
   void write_nodes(const DeckCard& section) {
     if (has_its_nodes(section)) {
-      out_.text(section.text);
+      write_text(section.text);
     } else {
-      out_.text(without_parameter(section.text, "NSET"));
+      write_text(without_parameter(section.text, "NSET"));
       const std::string set(parse_card(section.text).value("NSET"));
       if (!set.empty()) {
         std::string_view words = set;
@@ -166,13 +187,26 @@ class DeckWriter {
         sets_of_cards_.emplace_back(set, &section);
       }
     }
-    const std::span points(mesh_.points);
-    out_.nodes(
-        points.subspan(static_cast<std::size_t>(section.first), static_cast<std::size_t>(section.count)),
-        mesh_.dimension, [&](DeckOutput::Row& row, Index i) {
-          row.number = numbers_.nodes.at(section.first + i);
-          row.more = text_at(more_of_nodes_, section.first + i);
-        });
+    if (section.count > 0) begin_line();
+    write_row_ranges(file_, section.count, [&](Text& text, Index begin, Index end) {
+      std::int64_t rounded_here = 0;
+      for (Index v = section.first + begin; v < section.first + end; ++v) {
+        text.integer("", numbers_.nodes.at(v));
+        for (int k = 0; k < mesh_.dimension; ++k) {
+          const RealText real(mesh_.points[v][k]);
+          if (real.is_rounded) ++rounded_here;
+          text.write(", ");
+          text.write(real.text());
+        }
+        end_row(text, text_at(more_of_nodes_, v));
+      }
+      rounded_ += rounded_here;
+    });
+  }
+
+  void end_row(Text& text, std::string_view more) const {
+    text.write(more);
+    text.write(deck_.line_end);
   }
 
   [[nodiscard]] bool has_its_nodes(const DeckCard& section) const {
@@ -197,23 +231,33 @@ class DeckWriter {
       std::vector<std::int64_t> members;
       for (const Index v : places_of(*section, numbers_.nodes)) members.push_back(numbers_.nodes.at(v));
       const bool quoted = set.find_first_of(" ,=") != std::string::npos;
-      out_.set(Association::vertices, quoted ? '"' + set + '"' : set, members);
+      write_set(Association::vertices, quoted ? '"' + set + '"' : set, members);
     }
     sets_of_cards_.clear();
     words_of_sets_.clear();
   }
 
   void write_elements(const DeckCard& section) {
-    out_.text(section.text);
+    write_text(section.text);
     const std::vector<Index> places = places_of(section, numbers_.elements);
-    out_.elements(section.count, [&](DeckOutput::Row& row, Index i) {
-      const Index c = places[static_cast<std::size_t>(i)];
-      const auto cell = mesh_.cells[c];
-      row.number = numbers_.elements.at(c);
-      row.nodes.resize(cell.size());
-      for (std::size_t k = 0; k < cell.size(); ++k)
-        row.nodes[node_place(section.kind, k)] = numbers_.nodes.at(cell[k]);
-      row.more = text_at(more_of_elements_, c);
+    if (section.count > 0) begin_line();
+    write_row_ranges(file_, section.count, [&](Text& text, Index begin, Index end) {
+      std::vector<std::int64_t> nodes;
+      for (Index i = begin; i < end; ++i) {
+        const Index c = places[i];
+        const auto cell = mesh_.cells[c];
+        nodes.resize(cell.size());
+        for (std::size_t k = 0; k < cell.size(); ++k) {
+          nodes[node_place(section.kind, k)] = numbers_.nodes.at(cell[k]);
+        }
+        text.integer("", numbers_.elements.at(c));
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+          const bool begins_line = (k + 1) % kPerLine == 0;
+          if (begins_line) end_row(text, ",");
+          text.integer(begins_line ? "" : ", ", nodes[k]);
+        }
+        end_row(text, text_at(more_of_elements_, c));
+      }
     });
   }
 
@@ -226,11 +270,11 @@ class DeckWriter {
     }
     std::size_t done = 0;
     for (const Reference& reference : references(card, text).value_or(std::vector<Reference>())) {
-      out_.text(std::string_view(text).substr(done, reference.begin - done));
+      write_text(std::string_view(text).substr(done, reference.begin - done));
       file_.integer("", numbers_.of(reference.association).now(reference.number));
       done = reference.begin + reference.length;
     }
-    out_.text(std::string_view(text).substr(done));
+    write_text(std::string_view(text).substr(done));
   }
 
   /// Writes a set of ranges: unchanged if the ranges still hold the same items, else as a list, with the
@@ -262,17 +306,63 @@ class DeckWriter {
       same = same && of_range == before;
       now.insert(now.end(), of_range.begin(), of_range.end());
     }
-    if (same) return out_.text(text);
-    out_.text(without_parameter(keyword, "GENERATE"));
-    out_.list(now);
-    out_.text(comments);
+    if (same) return write_text(text);
+    write_text(without_parameter(keyword, "GENERATE"));
+    write_list(now);
+    write_text(comments);
   }
 
   /// Writes the sets that the deck does not have.
   void write_new_sets() {
     std::vector<EntitySet> sets = sets_beside(deck_.sets, mesh_, numbers_, notes_);
     if (own_ == nullptr) add_sets_of_labels(sets);
-    write_sets(out_, sets, numbers_, notes_);
+    write_sets(sets);
+  }
+
+  /// Writes the sets under names that are valid in decks. Notes the names that change, and the sets without
+  /// members, which are left out.
+  void write_sets(const std::vector<EntitySet>& sets) {
+    std::map<Association, std::set<std::string>> taken;
+    std::map<Association, NameNumbers> numbering;
+    for (const EntitySet& set : sets) {
+      if (set.members.empty()) {
+        note_set_empty(set, notes_);
+        continue;
+      }
+      const std::string name = name_for(set.name, taken[set.association], numbering[set.association]);
+      note_renamed_set(set, name, notes_);
+      std::vector<std::int64_t> members;
+      members.reserve(set.members.size());
+      for (const Index member : set.members) members.push_back(numbers_.of(set.association).at(member));
+      write_set(set.association, name, members);
+    }
+  }
+
+  void write_set(Association association, std::string_view name, const std::vector<std::int64_t>& members) {
+    const std::string_view keyword = association == Association::vertices ? "NSET" : "ELSET";
+    begin_line();
+    file_.print("*{}, {}={}{}", keyword, keyword, name, deck_.line_end);
+    write_list(members);
+  }
+
+  void write_list(const std::vector<std::int64_t>& numbers) {
+    if (!numbers.empty()) begin_line();
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      file_.integer(i % kPerLine == 0 ? "" : ", ", numbers[i]);
+      if (i % kPerLine == kPerLine - 1 || i + 1 == numbers.size()) file_.write(deck_.line_end);
+    }
+  }
+
+  /// Writes a part of the deck as it is.
+  void write_text(std::string_view text) {
+    file_.write(text);
+    if (!text.empty()) within_line_ = text.back() != '\n' && text.back() != '\r';
+  }
+
+  /// Ends the present line if `write_text` left it without an end.
+  void begin_line() {
+    if (within_line_) file_.write(deck_.line_end);
+    within_line_ = false;
   }
 
   void add_sets_of_labels(std::vector<EntitySet>& sets) {
@@ -298,7 +388,8 @@ class DeckWriter {
   DeckNumbers numbers_;
   Notes& notes_;
   OutputFile file_;
-  DeckOutput out_;
+  bool within_line_ = false;
+  std::atomic<std::int64_t> rounded_ = 0;  ///< coordinates
   TextByPlace more_of_nodes_;
   TextByPlace more_of_elements_;
   bool same_numbers_;
