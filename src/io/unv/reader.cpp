@@ -4,7 +4,6 @@
 #include "io/labels.hpp"
 #include "io/names.hpp"
 #include "io/stream/scanner.hpp"
-#include "io/unv/results.hpp"
 #include "io/unv/unv.hpp"
 #include <meshorder/error.hpp>
 
@@ -30,7 +29,7 @@ bool is_delimiter(std::string_view line) { return trimmed(line) == "-1" && line.
 /// Returns whether a dataset that is kept verbatim is known to name neither nodes nor elements.
 bool is_harmless(int dataset) {
   // systems of coordinates, header, units, materials, header of the model, systems of coordinates
-  constexpr std::array kHarmless{18, 151, 164, 1710, 2400, kSystems};
+  constexpr std::array kHarmless{18, kHeader, 164, 1710, 2400, kSystems};
   return std::find(kHarmless.begin(), kHarmless.end(), dataset) != kHarmless.end();
 }
 
@@ -136,9 +135,14 @@ class UnvReader {
       ends = is_delimiter(in_.raw_line());
     }
     add_text(dataset_);
-    const std::string name = fmt::format("dataset {}", dataset_);
-    if (!is_harmless(dataset_)) file_->unknown.push_back(fmt::format("{} (line {})", name, line_));
-    if (dataset_ != 151) kept_.insert(name);
+    keep(dataset_, line_);
+  }
+
+  /// Lists a dataset that is kept as it is.
+  void keep(int dataset, std::int64_t line) {
+    const std::string name = fmt::format("dataset {}", dataset);
+    if (!is_harmless(dataset)) file_->unknown.push_back(fmt::format("{} (line {})", name, line));
+    if (dataset != kHeader) kept_.insert(name);
   }
 
   /// Skips the binary part of a dataset, whose first line gives the numbers of its lines and bytes.
@@ -456,9 +460,7 @@ class UnvReader {
       if (!array || is_taken) {
         section.part = DatasetKind::text;
         section.text = found.all;
-        const std::string name = fmt::format("dataset {}", section.dataset);
-        file_->unknown.push_back(fmt::format("{} (line {})", name, found.line));
-        kept_.insert(name);
+        keep(section.dataset, found.line);
         continue;
       }
       mesh_.data.push_back(std::move(*array));

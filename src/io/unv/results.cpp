@@ -1,7 +1,6 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/unv/results.hpp"
-
 #include "base/text.hpp"
+#include "io/unv/unv.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -7,11 +7,13 @@
 // −1.
 
 #include "io/deck/metadata.hpp"
+#include "io/stream/scanner.hpp"
 #include "io/unv/elements.hpp"
 
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,6 +31,7 @@ inline constexpr int kGroups = 2477;
 inline constexpr int kResults = 2414;
 inline constexpr int kResultsAtNodes = 55;
 inline constexpr int kResultsAtElements = 56;
+inline constexpr int kHeader = 151;    ///< of the file
 inline constexpr int kSystems = 2420;  ///< systems of coordinates
 
 // Codes of the kinds of members of groups.
@@ -143,6 +146,43 @@ inline constexpr std::string_view kMaterial = "material";
 /// Returns how many numbers a member has in a dataset of groups, 2 or 4; 0 for other datasets.
 int numbers_of_member(int dataset);
 
+// ---- reading
+
 Mesh read(const FilePath& path, Notes& notes);
+
+/// The first records of a dataset of results.
+struct ResultsHeader {
+  Results results;   ///< without the array's name
+  std::string name;  ///< name of the dataset
+};
+
+/// A dataset of results before all nodes and elements are known.
+struct FoundResults : ResultsHeader {
+  std::int64_t line = 0;
+  std::vector<std::int64_t> numbers = {};  ///< numbers of nodes or elements
+  std::vector<double> values = {};         ///< components · numbers
+  std::string text = {};                   ///< the lines before the values
+  std::string all = {};                    ///< all lines
+};
+
+/// Takes the records before the values; returns nullopt if the values are neither at nodes nor at elements,
+/// or are of an unknown type.
+std::optional<ResultsHeader> read_results_header(Scanner& in, int dataset);
+
+/// Returns the values as an array; nullopt if there are no values, or if an item is unknown or comes twice.
+std::optional<DataArray> array_of(const FoundResults& found, const IdMap& items);
+
+/// Returns the numbers of the systems of coordinates in a dataset 2420, except global systems.
+std::vector<std::int64_t> local_systems(std::string_view text);
+
+/// Parses a real number as Fortran writes it: 1.5D-3, 1.5E-3, 1.5-103. Throws an Error at the scanner's line.
+double real_of(const Scanner& at, std::string_view word, std::string_view what);
+
+/// Returns whether a whole number leaves a blank in its ten columns. Readers can then split the line at
+/// blanks.
+inline bool fits_columns(std::int64_t number) {
+  constexpr std::int64_t kLargest = 999'999'999;
+  return number <= kLargest && number > -kLargest / 10;
+}
 
 }  // namespace meshorder::unv

@@ -6,7 +6,6 @@
 #include "io/names.hpp"
 #include "io/stream/output_file.hpp"
 #include "io/unsupported.hpp"
-#include "io/unv/results.hpp"
 #include "io/unv/unv.hpp"
 #include "mesh/values.hpp"
 
@@ -44,23 +43,19 @@ class Lines {
     line_.append(digits.data(), digits.size());
   }
 
-  /// Adds a number with that many digits after the point, or with 16 if it would otherwise read back as
-  /// another number.
-  void exact(double value, int digits, char exponent) {
-    char* const end = rounded(value, digits);
+  /// Adds a number with that many digits after the point, right-aligned in `digits` + 8 columns (+ 9 for 16
+  /// digits), or in more columns if it is longer. Returns whether it reads back as the same number; `exact`:
+  /// if not, adds 16 digits, which are always enough.
+  bool real(double value, int digits, char exponent = 'E', bool exact = false) {
+    const auto width = static_cast<std::size_t>(digits < kDigitsOfCoordinates ? digits + 8 : digits + 9);
+    char* end = rounded(value, digits);
     double read = 0;
     std::from_chars(buffer_.data(), end, read);
-    // 17 digits are always enough
-    add(digits < kDigitsOfCoordinates && read != value ? rounded(value, kDigitsOfCoordinates) : end, digits,
-        exponent);
-  }
-
-  /// Adds a number with that many digits after the point; returns whether it reads back as the same number.
-  bool real(double value, int digits) {
-    char* const end = rounded(value, digits);
-    double read = 0;
-    std::from_chars(buffer_.data(), end, read);
-    add(end, digits, 'E');
+    if (exact && digits < kDigitsOfCoordinates && read != value) end = rounded(value, kDigitsOfCoordinates);
+    const auto size = static_cast<std::size_t>(end - buffer_.data());
+    line_.append(std::max<std::size_t>(width, size + 1) - size, ' ');
+    std::replace(buffer_.data(), end, 'e', exponent);
+    line_.append(buffer_.data(), size);
     return read == value;
   }
 
@@ -87,16 +82,6 @@ class Lines {
     return std::to_chars(buffer_.data(), buffer_.data() + buffer_.size(), value,
                          std::chars_format::scientific, digits)
         .ptr;
-  }
-
-  /// Adds the number in the buffer, right-aligned in `digits` + 8 columns (+ 9 for 16 digits), or in more
-  /// columns if it is longer.
-  void add(char* end, int digits, char exponent) {
-    const auto width = static_cast<std::size_t>(digits < kDigitsOfCoordinates ? digits + 8 : digits + 9);
-    const auto size = static_cast<std::size_t>(end - buffer_.data());
-    line_.append(std::max<std::size_t>(width, size + 1) - size, ' ');
-    std::replace(buffer_.data(), end, 'e', exponent);
-    line_.append(buffer_.data(), size);
   }
 
   OutputFile& out_;
@@ -180,7 +165,7 @@ class UnvWriter {
       lines_.integer(fields.colour);
       if (!single) lines_.end_line();
       for (const double value : mesh_.points[v]) {
-        lines_.exact(value, single ? 5 : kDigitsOfCoordinates, file_.exponent);
+        (void)lines_.real(value, single ? 5 : kDigitsOfCoordinates, file_.exponent, true);
       }
       lines_.end_line();
     }
@@ -225,25 +210,20 @@ class UnvWriter {
 
   void write_element(const Dataset& section, std::int64_t number, const ElementFields& fields,
                      const std::vector<std::int64_t>& nodes) {
-    const bool of_old = section.dataset == kElementsOfOld;
-    lines_.integer(number);
-    lines_.integer(fields.type);
-    if (of_old) lines_.integer(fields.property_table);
-    lines_.integer(fields.property);
-    if (of_old) lines_.integer(fields.material_table);
-    lines_.integer(fields.material);
-    lines_.integer(fields.colour);
-    lines_.integer(index_size(nodes));
-    lines_.end_line();
-    if (fields.has_beam) {
-      for (const std::int64_t value : fields.beam) lines_.integer(value);
-      lines_.end_line();
+    const Index count = index_size(nodes);
+    if (section.dataset == kElementsOfOld) {
+      list(std::array<std::int64_t, 8>{number, fields.type, fields.property_table, fields.property,
+                                       fields.material_table, fields.material, fields.colour, count});
+    } else {
+      list(std::array<std::int64_t, 6>{number, fields.type, fields.property, fields.material, fields.colour,
+                                       count});
     }
+    if (fields.has_beam) list(fields.beam);
     list(nodes);
   }
 
   /// Writes numbers, 8 on a line.
-  void list(const std::vector<std::int64_t>& numbers) {
+  void list(std::span<const std::int64_t> numbers) {
     constexpr std::size_t kOnLine = 8;
     for (std::size_t k = 0; k < numbers.size(); ++k) {
       lines_.integer(numbers[k]);
@@ -393,10 +373,8 @@ class UnvWriter {
           const Value value = values[static_cast<std::size_t>(row) * width + k];
           if (results.integers) {
             lines_.integer(static_cast<std::int64_t>(value));
-          } else if (own_ != nullptr) {
-            lines_.exact(static_cast<double>(value), results.digits, 'E');
-          } else if (!lines_.real(static_cast<double>(value), results.digits)) {
-            is_rounded = true;
+          } else if (!lines_.real(static_cast<double>(value), results.digits, 'E', own_ != nullptr)) {
+            is_rounded = own_ == nullptr;
           }
           if (k % on_line == on_line - 1 || k + 1 == width) lines_.end_line();
         }
@@ -458,17 +436,16 @@ class UnvWriter {
     });
     const bool is_known = meaning != kMeanings.end();
     lines_.begin_dataset(kResults);
-    lines_.integer(label);
-    lines_.end_line();
+    list(std::array{label});
     lines_.line(name);
-    lines_.integer(array.association == Association::vertices ? 1 : 2);
-    lines_.end_line();
+    list(std::array<std::int64_t, 1>{array.association == Association::vertices ? 1 : 2});
     for (int k = 0; k < 5; ++k) lines_.line("NONE");
     // unknown model, static analysis
-    list({0, 1, is_known ? meaning->characteristic : 0, is_known ? meaning->type : 93,
-          results.integers ? 1 : 4, array.components});
-    list({0, 0, 0, 0, 0, 0, 0, 0});
-    list({0, 0});
+    list(std::array<std::int64_t, 6>{0, 1, is_known ? meaning->characteristic : 0,
+                                     is_known ? meaning->type : 93, results.integers ? 1 : 4,
+                                     array.components});
+    list(std::array<std::int64_t, 8>{});
+    list(std::array<std::int64_t, 2>{});
     for (int record = 0; record < 2; ++record) {
       for (int k = 0; k < 6; ++k) (void)lines_.real(0, 5);
       lines_.end_line();
