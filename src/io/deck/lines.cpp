@@ -1,6 +1,7 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
 #include "io/deck/lines.hpp"
 
+#include "base/text.hpp"
 #include "io/stream/read_limits.hpp"
 #include "io/stream/regular_text.hpp"
 #include <meshorder/error.hpp>
@@ -15,8 +16,6 @@ namespace {
 constexpr std::size_t kMostFiles = 10000;
 constexpr std::size_t kMostNested = 16;
 constexpr std::size_t kLineBytes = 64;  // assumed length of a line, to estimate how many lines follow
-
-bool is_space(char c) { return c == ' ' || c == '\t'; }
 
 }  // namespace
 
@@ -38,10 +37,7 @@ bool DeckLines::peek(std::string_view& line) {
     if (files_.size() == 1) return false;
     files_.pop_back();
   }
-  line = at().peek_line();
-  // plain loops for speed: this runs for every line of a mesh
-  while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
-  while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
+  line = trimmed(at().peek_line());
   return true;
 }
 

@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cmath>
 #include <system_error>
+#include <utility>
 
 namespace meshorder::nastran {
 namespace {
@@ -47,17 +48,10 @@ bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0
 
 bool is_free(std::string_view line) { return line.find(',') != std::string_view::npos; }
 
-/// As `trimmed`, faster for short texts.
-std::string_view trimmed_blanks(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
 /// Returns the first field of a line: the text before the first comma, or 8 columns if there is no comma.
 std::string_view first_field(std::string_view line) {
   const std::size_t comma = line.find(',');
-  return trimmed_blanks(line.substr(0, comma == std::string_view::npos ? kNameWidth : comma));
+  return trimmed(line.substr(0, comma == std::string_view::npos ? kNameWidth : comma));
 }
 
 bool is_continuation(std::string_view line) {
@@ -67,14 +61,12 @@ bool is_continuation(std::string_view line) {
   return first.empty() || first.front() == '+' || first.front() == '*';
 }
 
-bool is_blank_line(std::string_view line) {
-  return std::all_of(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\t'; });
-}
+bool is_blank_line(std::string_view line) { return trimmed(line).empty(); }
 
 /// Returns the name of a line without its mark, for comparison: "+A1" and "*A1" name the same line.
 std::string_view line_name(std::string_view field) {
   if (!field.empty() && (field.front() == '+' || field.front() == '*')) field.remove_prefix(1);
-  return trimmed_blanks(field);
+  return trimmed(field);
 }
 
 /// Splits the lines of a card.
@@ -119,7 +111,7 @@ class Splitter {
   void check_name(std::string_view name) {
     const std::string_view own = line_name(name);
     if (own.empty() || line_name(next_name_).empty() || own == line_name(next_name_)) return;
-    if (own != trimmed_blanks(next_name_.substr(1))) {
+    if (own != trimmed(next_name_.substr(1))) {
       result_.fault = "continuation lines do not follow their card";
     }
   }
@@ -131,7 +123,7 @@ class Splitter {
     for (std::size_t column = kNameWidth; column < kDataEnd; column += width, ++field) {
       const std::size_t at = std::min(column, line.size());
       const std::string_view bytes = line.substr(at, width);
-      result_.fields[field] = {begin + at, bytes.size(), width, trimmed_blanks(bytes)};
+      result_.fields[field] = {begin + at, bytes.size(), width, trimmed(bytes)};
     }
     next_name_ = line.size() > kDataEnd ? trimmed(line.substr(kDataEnd, kNameWidth)) : "";
   }
@@ -144,7 +136,7 @@ class Splitter {
     for (std::size_t k = 0;; ++k) {
       const std::size_t comma = ended ? line.size() : std::min(line.find(',', at), line.size());
       const std::string_view bytes = ended ? std::string_view() : line.substr(at, comma - at);
-      const std::string_view text = trimmed_blanks(bytes);
+      const std::string_view text = trimmed(bytes);
       if (k == most) next_name_ = text;
       if (k > most && !text.empty()) result_.fault = "a line has more than ten fields";
       if (k < most) result_.fields.push_back({begin + (ended ? line.size() : at), bytes.size(), 0, text});
@@ -326,10 +318,9 @@ std::string as_field(std::string_view number) {
   return mantissa.append(exponent);
 }
 
-template <class... Format>
-std::string chars_of(double value, Format... format) {
+std::string chars_of(double value, std::chars_format format) {
   std::array<char, 400> buffer{};
-  char* const end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format...).ptr;
+  char* const end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format).ptr;
   return as_field({buffer.data(), static_cast<std::size_t>(end - buffer.data())});
 }
 
@@ -342,25 +333,23 @@ std::string shortest(double value) {
 }  // namespace
 
 RealText real_text(double value) {
-  RealText result{shortest(value), false};
-  if (result.text.size() <= kLargeWidth) return result;
-  std::string best;
+  std::string text = shortest(value);
+  double rounded = value;
   // one digit more would give all digits of the value
-  for (int digits = 15; digits > 0 && best.empty(); --digits) {
+  for (int digits = 15; digits > 0 && text.size() > kLargeWidth; --digits) {
     std::array<char, 40> buffer{};
     char* const begin = buffer.data();
     char* const end =
         std::to_chars(begin, begin + buffer.size(), value, std::chars_format::scientific, digits).ptr;
-    double rounded = 0;
     if (std::from_chars(begin, end, rounded).ec != std::errc{}) continue;  // above the largest number
-    if (std::string text = shortest(rounded); text.size() <= kLargeWidth) {
-      result.is_rounded = rounded != value;
-      best = std::move(text);
-    }
+    text = shortest(rounded);
   }
-  constexpr double kLargest = 1.797693134e308;
-  if (best.empty()) return {shortest(std::copysign(kLargest, value)), true};
-  return {std::move(best), result.is_rounded};
+  if (text.size() > kLargeWidth) {
+    constexpr double kLargest = 1.797693134e308;
+    rounded = std::copysign(kLargest, value);
+    text = shortest(rounded);
+  }
+  return {std::move(text), rounded != value};
 }
 
 }  // namespace meshorder::nastran

@@ -43,25 +43,8 @@ struct Card {
 /// no such number.
 std::int64_t number_in(const CardFields& fields, std::size_t field, std::string_view what, Piece card);
 
-/// Parses cards. Keeps nothing from one card to the next but memory.
-class CardParser {
- public:
-  /// Parses the present card. Throws Fault if it is a line that continues no card, or a node or an element
-  /// with a fault.
-  Card parse(const Cards& cards);
-
- private:
-  [[noreturn]] void fail(std::string what, std::string remedy) const;
-  [[nodiscard]] std::int64_t number(std::size_t field, std::string_view what) const;
-  void check_lines() const;
-  [[nodiscard]] bool has_more_from(std::size_t field) const;
-  void read_node(Card& card) const;
-  void read_element(Card& card) const;
-  [[nodiscard]] bool is_to_ground(const ElementType& type) const;
-  void count_nodes(Card& card) const;
-
-  Piece place_;
-  CardFields fields_;
-};
+/// Parses the present card; uses the memory of `fields`. Throws Fault if it is a line that continues no card,
+/// or a node or an element with a fault.
+Card parse_card(const Cards& cards, CardFields& fields);
 
 }  // namespace meshorder::nastran

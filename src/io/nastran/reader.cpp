@@ -80,9 +80,9 @@ class DeckReader {
     PartCards result;
     result.cards.reserve((part.end - part.begin) / kCardBytes);
     Cards cards(file_.text(), part);
-    CardParser parser;
+    CardFields fields;
     try {
-      while (cards.next()) result.cards.push_back(parser.parse(cards));
+      while (cards.next()) result.cards.push_back(parse_card(cards, fields));
     } catch (const Fault& fault) {
       result.fault = fault;
     }

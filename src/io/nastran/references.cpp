@@ -8,121 +8,74 @@
 #include "io/stream/read_limits.hpp"
 
 #include <algorithm>
-#include <array>
+#include <map>
 #include <unordered_set>
 
 namespace meshorder::nastran {
 namespace {
 
-/// One letter for each field after the name: a node (n), a node if the next field is blank (G), an element
-/// (e), the number of an element that is not a cell (x), other (-). Letters in parentheses repeat to the end
-/// of the card. N, E and S begin a list of nodes, elements and points that are not nodes. From a "." on, all
-/// fields must be blank: some programs give a second element there.
+/// Cards with the same fields. One letter for each field after the name: a node (n), a node if the next field
+/// is blank (G), an element (e), the number of an element that is not a cell (x), other (-). Letters in
+/// parentheses repeat to the end of the card. N, E and S begin a list of nodes, elements and points that are
+/// not nodes. From a "." on, all fields must be blank: some programs give a second element there.
 struct CardPattern {
-  std::string_view name;
   std::string_view fields;
+  std::vector<std::string_view> names;
 };
 
-constexpr std::array kLayouts{
-    // loads
-    CardPattern{"ACCEL1", "--------N"},
-    CardPattern{"DAREA", "-n--n"},
-    CardPattern{"DELAY", "-n--n"},
-    CardPattern{"DPHASE", "-n--n"},
-    CardPattern{"FORCE", "-n"},
-    CardPattern{"FORCE1", "-n-nn"},
-    CardPattern{"FORCE2", "-n-nnnn"},
-    CardPattern{"MOMENT", "-n"},
-    CardPattern{"MOMENT1", "-n-nn"},
-    CardPattern{"MOMENT2", "-n-nnnn"},
-    CardPattern{"PLOAD", "--nnnn"},
-    CardPattern{"PLOAD1", "-e"},
-    CardPattern{"PLOADX1", "-e--nn"},
-    CardPattern{"QBDY1", "--E"},
-    CardPattern{"QBDY3", "--nE"},
-    CardPattern{"QHBDY", "----nnnnnnnn"},
-    CardPattern{"QVOL", "--nE"},
-    CardPattern{"RFORCE", "-n"},
-    CardPattern{"SLOAD", "-(n-)"},
-    CardPattern{"TEMP", "-n-n-n"},
-    CardPattern{"TEMPP1", "-e------E"},
-    CardPattern{"TEMPRB", "-e--------------E"},
-    CardPattern{"TIC", "-n"},
-    // constraints and sets of degrees of freedom
-    CardPattern{"ASET", "(n-)"},
-    CardPattern{"ASET1", "-N"},
-    CardPattern{"BNDGRID", "-N"},
-    CardPattern{"BSET", "(n-)"},
-    CardPattern{"BSET1", "-N"},
-    CardPattern{"CSET", "(n-)"},
-    CardPattern{"CSET1", "-N"},
-    CardPattern{"MPC", "(-n--n---)"},
-    CardPattern{"OMIT", "(n-)"},
-    CardPattern{"OMIT1", "-N"},
-    CardPattern{"QSET", "(n-)"},
-    CardPattern{"QSET1", "-N"},
-    CardPattern{"SEQGP", "(n-)"},
-    CardPattern{"SPC", "-n--n"},
-    CardPattern{"SPC1", "--N"},
-    CardPattern{"SPCD", "-n--n"},
-    CardPattern{"SUPORT", "(n-)"},
-    CardPattern{"SUPORT1", "-(n-)"},
-    CardPattern{"USET", "-(n-)"},
-    CardPattern{"USET1", "--N"},
-    // rigid elements
-    CardPattern{"RBAR", "xnn"},
-    CardPattern{"RBAR1", "xnn"},
-    CardPattern{"RBE1", "(xn-n-n--)"},
-    CardPattern{"RBE2", "xn-N"},
-    CardPattern{"RJOINT", "xnn"},
-    CardPattern{"RROD", "xnn"},
-    CardPattern{"RSPLINE", "x-n(n-)"},
-    CardPattern{"RTRPLT", "xnnn"},
-    // elements that are not cells
-    CardPattern{"CBUSH", "x-nnG"},
-    CardPattern{"CBUSH1D", "x-nn"},
-    CardPattern{"CDAMP1", "x-n-n"},
-    CardPattern{"CDAMP2", "x-n-n"},
-    CardPattern{"CDAMP3", "x-nn."},
-    CardPattern{"CDAMP4", "x-nn."},
-    CardPattern{"CDAMP5", "x-nn."},
-    CardPattern{"CELAS1", "x-n-n"},
-    CardPattern{"CELAS2", "x-n-n"},
-    CardPattern{"CELAS3", "x-nn."},
-    CardPattern{"CELAS4", "x-nn."},
-    CardPattern{"CGAP", "x-nnG"},
-    CardPattern{"CHBDYE", "xe"},
-    CardPattern{"CHBDYG", "x-------nnnnnnnn"},
-    CardPattern{"CMASS1", "x-n-n"},
-    CardPattern{"CMASS2", "x-n-n"},
-    CardPattern{"CMASS3", "x-nn."},
-    CardPattern{"CMASS4", "x-nn."},
-    CardPattern{"CONM1", "xn"},
-    CardPattern{"CONM2", "xn"},
-    CardPattern{"CONV", "--nnnnnnnnnn"},
-    CardPattern{"CVISC", "x-nn."},
-    CardPattern{"PLOTEL", "xnn."},
-    // points, systems, others
-    CardPattern{"BAROR", "----G"},
-    CardPattern{"BEAMOR", "----G"},
-    CardPattern{"BLSEG", "-N"},
-    CardPattern{"BSURF", "-E"},
-    CardPattern{"CORD1C", "-nnn-nnn"},
-    CardPattern{"CORD1R", "-nnn-nnn"},
-    CardPattern{"CORD1S", "-nnn-nnn"},
-    CardPattern{"DVGRID", "-n"},
-    CardPattern{"EIGB", "---------n"},
-    CardPattern{"EIGC", "---n"},
-    CardPattern{"EIGR", "---------n"},
-    CardPattern{"EPOINT", "S"},
-    CardPattern{"PCONV", "---------n"},
-    CardPattern{"RADBC", "n-nE"},
-    CardPattern{"SPOINT", "S"},
-};
+using FieldsOfCards = std::map<std::string_view, std::string_view>;
 
-/// Cards that name neither nodes nor elements.
-constexpr std::array<std::string_view, 124> kPlain{
+FieldsOfCards by_name(const std::vector<CardPattern>& patterns) {
+  FieldsOfCards result;
+  for (const auto& [fields, names] : patterns) {
+    for (const std::string_view name : names) result.emplace(name, fields);
+  }
+  return result;
+}
+
+const FieldsOfCards kFieldsOfCards = by_name({
+    {"--------N", {"ACCEL1"}},
+    {"-n--n", {"DAREA", "DELAY", "DPHASE", "SPC", "SPCD"}},
+    {"-n", {"DVGRID", "FORCE", "MOMENT", "RFORCE", "TIC"}},
+    {"-n-nn", {"FORCE1", "MOMENT1"}},
+    {"-n-nnnn", {"FORCE2", "MOMENT2"}},
+    {"--nnnn", {"PLOAD"}},
+    {"-e", {"PLOAD1"}},
+    {"-e--nn", {"PLOADX1"}},
+    {"--E", {"PLOAD2", "QBDY1"}},
+    {"--nE", {"QBDY3", "QVOL"}},
+    {"----nnnnnnnn", {"QHBDY"}},
+    {"-(n-)", {"SLOAD", "SUPORT1", "USET"}},
+    {"-n-n-n", {"TEMP"}},
+    {"-e------E", {"TEMPP1"}},
+    {"-e--------------E", {"TEMPRB"}},
+    {"(n-)", {"ASET", "BSET", "CSET", "OMIT", "QSET", "SEQGP", "SUPORT"}},
+    {"-N", {"ASET1", "BLSEG", "BNDGRID", "BSET1", "CSET1", "OMIT1", "QSET1"}},
+    {"(-n--n---)", {"MPC"}},
+    {"--N", {"SPC1", "USET1"}},
+    {"xnn", {"RBAR", "RBAR1", "RJOINT", "RROD"}},
+    {"(xn-n-n--)", {"RBE1"}},
+    {"xn-N", {"RBE2"}},
+    {"x-n(n-)", {"RSPLINE"}},
+    {"xnnn", {"RTRPLT"}},
+    {"x-nnG", {"CBUSH", "CGAP"}},
+    {"x-nn", {"CBUSH1D"}},
+    {"x-n-n", {"CDAMP1", "CDAMP2", "CELAS1", "CELAS2", "CMASS1", "CMASS2"}},
+    {"x-nn.", {"CDAMP3", "CDAMP4", "CDAMP5", "CELAS3", "CELAS4", "CMASS3", "CMASS4", "CVISC"}},
+    {"xe", {"CHBDYE"}},
+    {"x-------nnnnnnnn", {"CHBDYG"}},
+    {"xn", {"CONM1", "CONM2"}},
+    {"--nnnnnnnnnn", {"CONV"}},
+    {"xnn.", {"PLOTEL"}},
+    {"----G", {"BAROR", "BEAMOR"}},
+    {"-E", {"BSURF"}},
+    {"-nnn-nnn", {"CORD1C", "CORD1R", "CORD1S"}},
+    {"---------n", {"EIGB", "EIGR", "PCONV"}},
+    {"---n", {"EIGC"}},
+    {"S", {"EPOINT", "SPOINT"}},
+    {"n-nE", {"RADBC"}},
     // clang-format off
+    {"", {  // cards that name neither nodes nor elements
     "ACCEL", "BCPROP", "BCTADD", "BCTPARM", "BFRIC", "CORD2C", "CORD2R", "CORD2S", "CREEP",
     "DAMPING", "DCONADD", "DCONSTR", "DEQATN", "DESVAR", "DLINK", "DLOAD", "DOPTPRM", "DTABLE", "DVMREL1",
     "DVPREL1", "ECHOOFF", "ECHOON", "EIGP", "EIGRL", "FREQ", "FREQ1", "FREQ2", "FREQ3", "FREQ4",
@@ -136,8 +89,9 @@ constexpr std::array<std::string_view, 124> kPlain{
     "RFORCEADD", "RLOAD1", "RLOAD2", "SPCADD", "STACK", "TABDMP1", "TABLED1", "TABLED2", "TABLED3",
     "TABLED4", "TABLEM1", "TABLEM2", "TABLEM3", "TABLEM4", "TABLES1", "TABLEST", "TABRND1", "TABRNDG",
     "TEMPD", "TLOAD1", "TLOAD2", "TSTEP", "TSTEP1", "TSTEPNL", "VIEW", "VIEW3D",
+    }},
     // clang-format on
-};
+});
 
 constexpr Association association_of(char letter) {
   return letter == 'n' || letter == 'N' ? Association::vertices : Association::cells;
@@ -217,11 +171,9 @@ class Finder {
   /// SET3 is a set of grid points or elements. Sets of properties name neither; other sets are not known.
   std::optional<References> of_set3() {
     const std::string_view kind = card_.text(2);
-    if (is_word(kind, "GRID")) return by_layout("--N");
+    if (is_word(kind, "GRID") || is_word(kind, "POINT")) return by_layout("--N");
     if (is_word(kind, "ELEM")) return by_layout("--E");
-    if (is_word(kind, "PROP") || is_word(kind, "POINT"))
-      return is_word(kind, "PROP") ? found_ : by_layout("--N");
-    return {};
+    return is_word(kind, "PROP") ? std::optional(found_) : std::nullopt;
   }
 
  private:
@@ -260,19 +212,15 @@ std::optional<References> references(std::string_view name, const CardFields& ca
   if (!card.fault.empty()) return {};
   Finder finder(card);
   if (name == "PLOAD4") return finder.of_pload4();
-  if (name == "PLOAD2") return finder.by_layout("--E");
   if (name == "RBE3") return finder.of_rbe3();
   if (name == "DMIG") return finder.of_dmig();
   if (name == "PARAM") return finder.of_param();
   if (name == "SET3") return finder.of_set3();
-  for (const CardPattern& layout : kLayouts) {
-    if (layout.name != name) continue;
-    const auto found = finder.by_layout(layout.fields);
-    const bool is_path = name == "BLSEG" && found && found->is_range;  // a line of nodes in their order
-    return is_path ? std::nullopt : found;
-  }
-  if (std::find(kPlain.begin(), kPlain.end(), name) != kPlain.end()) return References();
-  return {};
+  const auto fields = kFieldsOfCards.find(name);
+  if (fields == kFieldsOfCards.end()) return {};
+  const auto found = finder.by_layout(fields->second);
+  const bool is_path = name == "BLSEG" && found && found->is_range;  // a line of nodes in their order
+  return is_path ? std::nullopt : found;
 }
 
 std::optional<std::vector<NumberRange>> ranges_of(const CardFields& card, std::size_t list) {

@@ -23,20 +23,12 @@ Point in_frame_directions(double radius, double angle, double z) {
 
 void CoordinateSystems::add(std::string_view name, const CardFields& fields, std::size_t byte) {
   constexpr std::size_t kLength = 6;
+  constexpr std::string_view kKinds = "RCS";  // as in `Kind`
   if (name.size() != kLength || !name.starts_with("CORD") || (name[4] != '1' && name[4] != '2')) return;
+  const std::size_t kind = kKinds.find(name[5]);
+  if (kind == std::string_view::npos) return;
   System system;
-  switch (name[5]) {
-    case 'R':
-      break;
-    case 'C':
-      system.kind = Kind::cylindrical;
-      break;
-    case 'S':
-      system.kind = Kind::spherical;
-      break;
-    default:
-      return;
-  }
+  system.kind = static_cast<Kind>(kind);
   if (!fields.fault.empty())
     file_.fail(byte, std::string(fields.fault),
                "write it in fields of 8 or 16 columns, its lines one after the other");
