@@ -54,8 +54,6 @@ class UnvReader {
   }
 
  private:
-  // ---- datasets
-
   /// Takes the lines before the content of the next dataset; returns false at the end of the file.
   bool begin_dataset() {
     begin_ = in_.byte();
@@ -161,8 +159,6 @@ class UnvReader {
              kCutShort);
   }
 
-  // ---- numbers
-
   /// Takes the first number of a record. If it is the −1 that ends the dataset, takes the line and returns
   /// false.
   bool begin_record(std::int64_t& number, std::string_view what) {
@@ -194,11 +190,8 @@ class UnvReader {
     return static_cast<Index>(number);
   }
 
-  // ---- nodes
-
   void read_nodes() {
-    const std::size_t place = file_->sections.size();
-    begin_section(DatasetKind::nodes, mesh_.vertex_count());
+    Dataset& section = begin_section(DatasetKind::nodes, mesh_.vertex_count());
     std::int64_t number = 0;
     while (begin_record(number, "the number of a node")) {
       if (!file_->nodes.add(checked_number(number, "the number of a node"))) {
@@ -217,7 +210,6 @@ class UnvReader {
       end_record("the node");
       mesh_.points.push_back(point);
     }
-    Dataset& section = file_->sections[place];
     section.count = mesh_.vertex_count() - section.first;
   }
 
@@ -232,11 +224,8 @@ class UnvReader {
     return value;
   }
 
-  // ---- elements
-
   void read_elements() {
-    const std::size_t place = file_->sections.size();
-    begin_section(DatasetKind::elements, mesh_.cell_count());
+    Dataset& section = begin_section(DatasetKind::elements, mesh_.cell_count());
     std::int64_t number = 0;
     while (begin_record(number, "the number of an element")) {
       (void)checked_number(number, "the number of an element");
@@ -261,11 +250,10 @@ class UnvReader {
         read_cell(static_cast<Index>(number), *kind);
         file_->element_fields.add(fields);
       } else {
-        read_other({number, fields, {}}, nodes, file_->sections[place]);
+        read_other({number, fields, {}}, nodes, section);
       }
       end_record("the element");
     }
-    Dataset& section = file_->sections[place];
     section.count = mesh_.cell_count() - section.first;
   }
 
@@ -312,8 +300,6 @@ class UnvReader {
     other_types_.insert(fmt::format("{}", element.fields.type));
     section.others.push_back(std::move(element));
   }
-
-  // ---- groups
 
   /// Reads groups. Returns false if a member belongs to a part of an assembly, that is, if its last two
   /// numbers are not 0.
@@ -415,8 +401,6 @@ class UnvReader {
     }
   }
 
-  // ---- results
-
   bool read_results() {
     auto header = read_results_header(in_, dataset_);
     if (!header) return false;
@@ -446,15 +430,15 @@ class UnvReader {
 
   void make_arrays() {
     std::map<std::pair<Association, std::string>, int> steps;
-    for (const FoundResults& found : results_) ++steps[{found.results.association, found.name}];
+    for (const FoundResults& found : results_) ++steps[{found.results.association, found.results.name}];
     std::map<std::pair<Association, std::string>, int> step;
     for (std::size_t r = 0; r < results_.size(); ++r) {
       FoundResults& found = results_[r];
-      const std::pair key{found.results.association, found.name};
+      const std::pair key{found.results.association, found.results.name};
       Dataset& section = file_->sections[section_of_results_[r]];
       const bool of_nodes = found.results.association == Association::vertices;
-      found.results.name = found.name;
-      found.results.array = steps[key] > 1 ? fmt::format("{} step {}", found.name, ++step[key]) : found.name;
+      const std::string& name = found.results.name;
+      found.results.array = steps[key] > 1 ? fmt::format("{} step {}", name, ++step[key]) : name;
       auto array = array_of(found, of_nodes ? file_->nodes : file_->elements);
       const bool is_taken = find_array(mesh_, found.results.array, found.results.association) != nullptr;
       if (!array || is_taken) {
@@ -470,8 +454,6 @@ class UnvReader {
       file_->results.push_back(found.results);
     }
   }
-
-  // ---- the end
 
   void finish() {
     const std::string no_mesh = "it may be cut short, or its mesh be in another file";

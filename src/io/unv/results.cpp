@@ -34,43 +34,43 @@ std::vector<std::string_view> take_lines(Scanner& in, std::size_t count) {
 
 /// Sets the fields that depend on a data type (1 integer, 2 single, 4 double, 5 complex single, 6 complex
 /// double) and the number of values; returns false for other types.
-bool set_type(ResultsHeader& header, std::int64_t type, std::int64_t values) {
+bool set_type(Results& results, std::int64_t type, std::int64_t values) {
   if (values < 1 || values > kMostComponents) return false;
   const bool is_complex = type == 5 || type == 6;
   if (type != 1 && type != 2 && type != 4 && !is_complex) return false;
-  header.results.components_in_file = values;
-  header.results.components = static_cast<Index>(is_complex ? 2 * values : values);
-  header.results.digits = type == 4 || type == 6 ? 12 : 5;
-  header.results.integers = type == 1;
+  results.components_in_file = values;
+  results.components = static_cast<Index>(is_complex ? 2 * values : values);
+  results.digits = type == 4 || type == 6 ? 12 : 5;
+  results.integers = type == 1;
   return true;
 }
 
 /// Sets the name to the first of the candidate lines that is not empty or NONE.
-void set_name(ResultsHeader& header, const std::vector<std::string_view>& lines,
+void set_name(Results& results, const std::vector<std::string_view>& lines,
               std::initializer_list<std::size_t> candidates) {
-  header.name = "results";
+  results.name = "results";
   for (const std::size_t k : candidates) {
     const std::string_view text = trimmed(lines[k]);
     if (text.empty() || text == kNoText) continue;
-    header.name = text;
+    results.name = text;
     return;
   }
 }
 
-std::optional<ResultsHeader> header_of_analysis(Scanner& in) {
+std::optional<Results> header_of_analysis(Scanner& in) {
   const std::vector<std::string_view> lines = take_lines(in, 13);
   if (lines.size() < 13) return {};
   const std::vector<std::int64_t> location = integers_of(lines[2]);
   const std::vector<std::int64_t> kinds = integers_of(lines[8]);
   if (location.size() != 1 || location[0] < 1 || location[0] > 2 || kinds.size() != 6) return {};
-  ResultsHeader header;
-  header.results.association = location[0] == 1 ? Association::vertices : Association::cells;
-  if (!set_type(header, kinds[4], kinds[5])) return {};
-  set_name(header, lines, {1, 3});
-  return header;
+  Results results;
+  results.association = location[0] == 1 ? Association::vertices : Association::cells;
+  if (!set_type(results, kinds[4], kinds[5])) return {};
+  set_name(results, lines, {1, 3});
+  return results;
 }
 
-std::optional<ResultsHeader> header_of_old(Scanner& in, int dataset) {
+std::optional<Results> header_of_old(Scanner& in, int dataset) {
   const std::vector<std::string_view> lines = take_lines(in, 6);
   if (lines.size() < 6) return {};
   const std::vector<std::int64_t> kinds = integers_of(lines[5]);
@@ -79,21 +79,21 @@ std::optional<ResultsHeader> header_of_old(Scanner& in, int dataset) {
   if (std::any_of(counts.begin(), counts.begin() + 2, [](std::int64_t n) { return n < 0 || n > 1000; })) {
     return {};
   }
-  ResultsHeader header;
-  header.results.association = dataset == kResultsAtNodes ? Association::vertices : Association::cells;
-  if (!set_type(header, kinds[4], kinds[5])) return {};
-  set_name(header, lines, {0, 1});
+  Results results;
+  results.association = dataset == kResultsAtNodes ? Association::vertices : Association::cells;
+  if (!set_type(results, kinds[4], kinds[5])) return {};
+  set_name(results, lines, {0, 1});
   // a line has 8 whole or 6 real numbers; the two counts are whole numbers, too
   const auto lines_of = [](std::int64_t numbers, std::int64_t on_line) {
     return static_cast<std::size_t>(std::max<std::int64_t>((numbers + on_line - 1) / on_line, 1));
   };
   (void)take_lines(in, lines_of(counts[0] + 2, 8) + lines_of(counts[1], 6));
-  return header;
+  return results;
 }
 
 }  // namespace
 
-std::optional<ResultsHeader> read_results_header(Scanner& in, int dataset) {
+std::optional<Results> read_results_header(Scanner& in, int dataset) {
   return dataset == kResults ? header_of_analysis(in) : header_of_old(in, dataset);
 }
 

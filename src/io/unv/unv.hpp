@@ -16,7 +16,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace meshorder::unv {
@@ -150,14 +149,9 @@ int numbers_of_member(int dataset);
 
 Mesh read(const FilePath& path, Notes& notes);
 
-/// The first records of a dataset of results.
-struct ResultsHeader {
-  Results results;   ///< without the array's name
-  std::string name;  ///< name of the dataset
-};
-
 /// A dataset of results before all nodes and elements are known.
-struct FoundResults : ResultsHeader {
+struct FoundResults {
+  Results results;  ///< without the array's name
   std::int64_t line = 0;
   std::vector<std::int64_t> numbers = {};  ///< numbers of nodes or elements
   std::vector<double> values = {};         ///< components · numbers
@@ -167,7 +161,7 @@ struct FoundResults : ResultsHeader {
 
 /// Takes the records before the values; returns nullopt if the values are neither at nodes nor at elements,
 /// or are of an unknown type.
-std::optional<ResultsHeader> read_results_header(Scanner& in, int dataset);
+std::optional<Results> read_results_header(Scanner& in, int dataset);
 
 /// Returns the values as an array; nullopt if there are no values, or if an item is unknown or comes twice.
 std::optional<DataArray> array_of(const FoundResults& found, const IdMap& items);

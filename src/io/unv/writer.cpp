@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <charconv>
 #include <set>
-#include <type_traits>
 #include <utility>
 
 namespace meshorder::unv {
@@ -148,8 +147,6 @@ class UnvWriter {
     }
   }
 
-  // ---- nodes and elements
-
   [[nodiscard]] NodeFields fields_of_node(Index v) const {
     return own_ == nullptr ? NodeFields() : file_.node_fields[file_node_[v]];
   }
@@ -244,8 +241,6 @@ class UnvWriter {
     });
   }
 
-  // ---- groups
-
   void add_members(const EntitySet* set, std::vector<std::array<std::int64_t, 4>>& members) {
     if (set == nullptr) return;
     written_.insert(set);
@@ -331,8 +326,6 @@ class UnvWriter {
                                   [](const Dataset& section) { return section.part == DatasetKind::groups; });
     return own == file_.sections.end() ? kGroups : own->dataset;
   }
-
-  // ---- results
 
   static bool holds_integers(const DataArray& array) {
     return with_integers(array.values, []<class Value>(const std::vector<Value>& values) {
