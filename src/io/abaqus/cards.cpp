@@ -191,37 +191,23 @@ std::string capitals(std::string_view text) {
 
 namespace {
 
-/// Which fields of a data line are nodes (n), elements (e) or neither (-). A final + repeats the last letter
-/// for all further fields.
+/// Keywords with the same fields in their data lines: nodes (n), elements (e) or neither (-). A final +
+/// repeats the last letter for all further fields.
 struct LineFields {
-  std::string_view keyword;
   std::string_view fields;
+  std::vector<std::string_view> keywords;
 };
 
-constexpr std::array kLayouts{
-    LineFields{"BOUNDARY", "n"},
-    LineFields{"BOUNDARYF", "e"},
-    LineFields{"CFLUX", "n"},
-    LineFields{"CLOAD", "n"},
-    LineFields{"DFLUX", "e"},
-    LineFields{"DISTRIBUTINGCOUPLING", "n"},
-    LineFields{"DLOAD", "e"},
-    LineFields{"DSFLUX", ""},
-    LineFields{"DSLOAD", ""},
-    LineFields{"ELSET", "e+"},
-    LineFields{"FILM", "e"},
-    LineFields{"KINEMATICCOUPLING", "n"},
-    LineFields{"MASSFLOW", "e"},
-    LineFields{"MODELCHANGE", "e+"},
-    LineFields{"MPC", "-n+"},
-    LineFields{"NODALTHICKNESS", "n"},
-    LineFields{"NORMAL", "en"},
-    LineFields{"NSET", "n+"},
-    LineFields{"RADIATE", "e"},
-    LineFields{"RELEASE", "e"},
-    LineFields{"RETAINEDNODALDOFS", "n"},
-    LineFields{"SUBMODEL", "n+"},
-    LineFields{"TEMPERATURE", "n"},
+const std::vector<LineFields> kLayouts{
+    {"n",
+     {"BOUNDARY", "CFLUX", "CLOAD", "DISTRIBUTINGCOUPLING", "KINEMATICCOUPLING", "NODALTHICKNESS",
+      "RETAINEDNODALDOFS", "TEMPERATURE"}},
+    {"e", {"BOUNDARYF", "DFLUX", "DLOAD", "FILM", "MASSFLOW", "RADIATE", "RELEASE"}},
+    {"", {"DSFLUX", "DSLOAD"}},
+    {"e+", {"ELSET", "MODELCHANGE"}},
+    {"-n+", {"MPC"}},
+    {"en", {"NORMAL"}},
+    {"n+", {"NSET", "SUBMODEL"}},
 };
 
 /// Keywords whose lines name no node and no element by number.
@@ -285,8 +271,8 @@ std::optional<std::string_view> fields_of(const Card& card) {
   if (has_other_file(card)) return {};
   if (with_parameter) return with_parameter;
   if (const auto fields = fields_by_parameters(card)) return fields;
-  for (const LineFields& layout : kLayouts) {
-    if (layout.keyword == card.keyword) return layout.fields;
+  for (const auto& [fields, keywords] : kLayouts) {
+    if (std::find(keywords.begin(), keywords.end(), card.keyword) != keywords.end()) return fields;
   }
   return {};
 }
@@ -426,7 +412,9 @@ std::vector<NamedSet> named_sets(const Card& card, std::string_view lines) {
 
 std::string suggested_keyword(const Card& card) {
   std::vector<std::string> names{"EQUATION", "INITIALCONDITIONS", "ORIENTATION", "SURFACE"};
-  for (const LineFields& layout : kLayouts) names.emplace_back(layout.keyword);
+  for (const LineFields& layout : kLayouts) {
+    names.insert(names.end(), layout.keywords.begin(), layout.keywords.end());
+  }
   names.insert(names.end(), kPlain.begin(), kPlain.end());
   if (std::find(names.begin(), names.end(), card.keyword) != names.end()) return {};
   for (std::string& name : names) name.insert(0, "*");

@@ -121,8 +121,6 @@ class DeckReader {
   }
 
  private:
-  // ---- cards
-
   DeckCard& begin_section(CardKind part, std::string text, std::int64_t line) {
     places_of_sections_.push_back({present_file(), line});
     DeckCard& section = deck_->sections.emplace_back();
@@ -221,8 +219,6 @@ class DeckReader {
     return without_parameter(text, "INPUT");
   }
 
-  // ---- data lines
-
   /// Gives the next data line of nodes or elements but does not take it; returns false at the next keyword.
   /// Appends comments to `comments`; drops blank lines.
   bool peek_data(std::string_view& line, std::string& comments) {
@@ -263,8 +259,6 @@ class DeckReader {
     return value;
   }
 
-  // ---- nodes
-
   void read_nodes(const Card& card, std::string text) {
     refuse_in_assembly("*NODE");
     const std::string_view system = card.value("SYSTEM");
@@ -274,17 +268,16 @@ class DeckReader {
     }
     const std::string set(card.value("NSET"));
     text = with_input(card, std::move(text));
-    const std::size_t place = deck_->sections.size();
-    begin_section(CardKind::nodes, std::move(text), line_).first = mesh_.vertex_count();
+    DeckCard& section = begin_section(CardKind::nodes, std::move(text), line_);
+    section.first = mesh_.vertex_count();
     std::string comments;
     std::string_view line;
     while (peek_data(line, comments)) {
-      deck_->sections[place].text += std::exchange(comments, {});
+      section.text += std::exchange(comments, {});
       if (read_regular_nodes()) continue;
       read_node(line);
       (void)lines_.take();
     }
-    DeckCard& section = deck_->sections[place];
     section.count = mesh_.vertex_count() - section.first;
     if (!set.empty()) sets_.add_block(Association::vertices, set, section.first, section.count);
     end_data(std::move(comments));
@@ -334,8 +327,6 @@ class DeckReader {
     mesh_.points.push_back(point);
   }
 
-  // ---- elements
-
   void read_elements(const Card& card, std::string text) {
     refuse_in_assembly("*ELEMENT");
     const std::string type = capitals(card.value("TYPE"));
@@ -344,18 +335,16 @@ class DeckReader {
     const auto kind = kind_of(type);
     if (!kind) return keep_elements(type, card, std::move(text));
     text = with_input(card, std::move(text));
-    const std::size_t place = deck_->sections.size();
-    DeckCard& begun = begin_section(CardKind::elements, std::move(text), line_);
-    begun.first = mesh_.cell_count();
-    begun.kind = *kind;
+    DeckCard& section = begin_section(CardKind::elements, std::move(text), line_);
+    section.first = mesh_.cell_count();
+    section.kind = *kind;
     std::string comments;
     std::string_view line;
     while (peek_data(line, comments)) {
-      deck_->sections[place].text += std::exchange(comments, {});
+      section.text += std::exchange(comments, {});
       if (read_regular_elements(*kind)) continue;
-      read_element(*kind, type, line, deck_->sections[place].text);
+      read_element(*kind, type, line, section.text);
     }
-    DeckCard& section = deck_->sections[place];
     section.count = mesh_.cell_count() - section.first;
     if (section.count > 0) mesh_.cell_blocks.push_back(section.first);
     if (!set.empty()) sets_.add_block(Association::cells, set, section.first, section.count);
@@ -502,8 +491,6 @@ class DeckReader {
     types_.push_back(type);
   }
 
-  // ---- sets
-
   void read_set(const Card& card, Location place) {
     const bool of_nodes = card.keyword == "NSET";
     if (card.value(card.keyword).empty()) {
@@ -522,8 +509,6 @@ class DeckReader {
       deck_->sections.back().text += lines_.take();
     }
   }
-
-  // ---- the end
 
   void finish() {
     constexpr const char* kNoMesh = "it may be cut short, or its mesh be in another file";
@@ -544,7 +529,7 @@ class DeckReader {
     });
     const bool has_volume = mesh_.cells.highest_dimension() == 3;
     mesh_.dimension = has_volume || has_third_coordinate_ ? 3 : 2;
-    mesh_.sets = sets_.members(deck_->nodes, deck_->elements, other_elements_, mesh_.cells, notes_);
+    mesh_.sets = sets_.members(notes_);
     deck_->sets = mesh_.sets;
     list_contents();
     find_unknown_cards();
@@ -630,7 +615,6 @@ class DeckReader {
   Notes& notes_;
   Mesh mesh_;
   std::shared_ptr<Deck> deck_ = std::make_shared<Deck>();
-  SetReader sets_;
   std::vector<Place> places_of_sections_;
   std::vector<LaterNode<Place>> later_nodes_;
   std::vector<NodeLine> node_lines_;                 // buffer for regular lines
@@ -638,7 +622,8 @@ class DeckReader {
   std::vector<Index> element_nodes_;                 // their vertices, in the order of cells
   std::vector<std::string> files_;                   // files that were read, one after the other
   std::unordered_set<std::int64_t> other_elements_;  // numbers of elements that are not cells
-  std::vector<std::string> other_types_;             // the first of their types, for a message
+  SetReader sets_{*deck_, mesh_.cells, other_elements_};
+  std::vector<std::string> other_types_;  // the first of their types, for a message
   std::vector<std::string> types_;
   std::int64_t line_ = 0;  // line of the last keyword
   int parts_ = 0;

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -127,9 +126,9 @@ std::string SetReader::add_line(std::string_view line) {
   return {};
 }
 
-void SetReader::add_members(const Addition& addition, const IdMap& items,
-                            const std::unordered_set<std::int64_t>& others, const Cells& cells,
-                            Repeats& repeats, Notes& notes) {
+void SetReader::add_members(const Addition& addition, Repeats& repeats, Notes& notes) {
+  const bool of_nodes = addition.association == Association::vertices;
+  const IdMap& items = of_nodes ? deck_.nodes : deck_.elements;
   const auto claim = [&](std::size_t count) {
     claim_memory(count * sizeof(Index), "the set", addition.place);
   };
@@ -140,7 +139,7 @@ void SetReader::add_members(const Addition& addition, const IdMap& items,
     const Index item = items.find(number);
     if (item >= 0) {
       members.push_back(item);
-    } else if (!others.contains(number)) {
+    } else if (of_nodes || !others_.contains(number)) {
       missing.push_back(number);
     }
   }
@@ -161,8 +160,8 @@ void SetReader::add_members(const Addition& addition, const IdMap& items,
   if (!addition.nodes_of.empty()) {
     if (const EntitySet* const of_cells = find(Association::cells, addition.in_assembly, addition.nodes_of)) {
       for (const Index c : of_cells->members) {
-        claim(cells[c].size());
-        repeats.append(set, cells[c]);
+        claim(cells_[c].size());
+        repeats.append(set, cells_[c]);
       }
     } else {
       unknown.push_back(addition.nodes_of);
@@ -177,18 +176,14 @@ void SetReader::add_members(const Addition& addition, const IdMap& items,
   }
 }
 
-std::vector<EntitySet> SetReader::members(const IdMap& nodes, const IdMap& elements,
-                                          const std::unordered_set<std::int64_t>& others, const Cells& cells,
-                                          Notes& notes) {
-  const std::unordered_set<std::int64_t> none;
-  Repeats of_vertices(nodes.size());
-  Repeats of_cells(elements.size());
-  for (const Addition& addition : additions_) {
-    const bool of_nodes = addition.association == Association::vertices;
-    add_members(addition, of_nodes ? nodes : elements, of_nodes ? none : others, cells,
-                of_nodes ? of_vertices : of_cells, notes);
-  }
-  for (EntitySet& set : sets_) (set.association == Association::vertices ? of_vertices : of_cells).drop(set);
+std::vector<EntitySet> SetReader::members(Notes& notes) {
+  Repeats of_vertices(deck_.nodes.size());
+  Repeats of_cells(deck_.elements.size());
+  const auto repeats = [&](Association association) -> Repeats& {
+    return association == Association::vertices ? of_vertices : of_cells;
+  };
+  for (const Addition& addition : additions_) add_members(addition, repeats(addition.association), notes);
+  for (EntitySet& set : sets_) repeats(set.association).drop(set);
   additions_.clear();
   return std::move(sets_);
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "io/abaqus/cards.hpp"
-#include "io/stream/id_map.hpp"
+#include "io/deck/metadata.hpp"
 #include <meshorder/error.hpp>
 #include <meshorder/io.hpp>
 #include <meshorder/mesh.hpp>
@@ -28,6 +28,13 @@ std::string note_of_missing(std::string_view which, const std::vector<std::int64
 /// Reads the node and element sets of a deck: collects the additions of all cards, then finds the members.
 class SetReader {
  public:
+  /// All arguments must outlive this object; they may change until the call of `members`.
+  ///
+  /// @param others  numbers of elements that are not cells; sets may name these elements but do not contain
+  ///                them
+  SetReader(const DeckContents& deck, const Cells& cells, const std::unordered_set<std::int64_t>& others)
+      : deck_(deck), cells_(cells), others_(others) {}
+
   /// Sets whether the next cards belong to the assembly. A set of the assembly may have the name of a part's
   /// set.
   void enter_assembly(bool inside) { in_assembly_ = inside; }
@@ -42,11 +49,8 @@ class SetReader {
   /// Returns whether cards so far define or extend a set of that name, in the part or in the assembly.
   [[nodiscard]] bool knows(Association association, std::string_view name) const;
 
-  /// Returns the sets with their members. Notes names and numbers that do not exist. `others`: numbers of
-  /// elements that are not cells; sets may name these elements but do not contain them.
-  std::vector<EntitySet> members(const IdMap& nodes, const IdMap& elements,
-                                 const std::unordered_set<std::int64_t>& others, const Cells& cells,
-                                 Notes& notes);
+  /// Returns the sets with their members. Notes names and numbers that do not exist.
+  std::vector<EntitySet> members(Notes& notes);
 
  private:
   /// The addition of one card to a set.
@@ -68,10 +72,11 @@ class SetReader {
 
   std::size_t set_named(Association association, std::string_view name);
   [[nodiscard]] const EntitySet* find(Association association, bool in_assembly, std::string_view name) const;
-  void add_members(const Addition& addition, const IdMap& items,
-                   const std::unordered_set<std::int64_t>& others, const Cells& cells, Repeats& repeats,
-                   Notes& notes);
+  void add_members(const Addition& addition, Repeats& repeats, Notes& notes);
 
+  const DeckContents& deck_;
+  const Cells& cells_;
+  const std::unordered_set<std::int64_t>& others_;
   bool in_assembly_ = false;
   std::vector<EntitySet> sets_;
   std::map<Key, std::size_t> places_;

@@ -123,11 +123,7 @@ class DeckWriter {
   }
 
   void note_losses() {
-    if (rounded_ > 0) {
-      notes_.push_back(fmt::format(
-          "{} rounded to the 20 characters that Abaqus and CalculiX read of a number",
-          rounded_ == 1 ? "one coordinate is" : fmt::format("{} coordinates are", rounded_.load())));
-    }
+    note_rounded(rounded_, "20 characters that Abaqus and CalculiX read of a number", notes_);
     if (own_ == nullptr) {
       note_arrays_beside_cell_labels(mesh_, "Abaqus", notes_);
       note_unfit_ids(mesh_, "Abaqus", kLargest, notes_);

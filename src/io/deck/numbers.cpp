@@ -157,6 +157,13 @@ bool keep_numbers(const DeckNumbers& numbers, std::int64_t largest, const std::v
                    "keep them: --ids keep");
 }
 
+void note_rounded(std::int64_t coordinates, std::string_view field, Notes& notes) {
+  if (coordinates == 0) return;
+  notes.push_back(fmt::format(
+      "{} rounded to the {}",
+      coordinates == 1 ? "one coordinate is" : fmt::format("{} coordinates are", coordinates), field));
+}
+
 void note_kept_numbers(const std::vector<std::string>& unknown, Notes& notes) {
   if (unknown.empty()) return;
   constexpr std::size_t kShown = 3;

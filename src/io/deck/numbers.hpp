@@ -116,6 +116,9 @@ void note_unfit_ids(const Mesh& mesh, std::string_view format, std::int64_t larg
 bool keep_numbers(const DeckNumbers& numbers, std::int64_t largest, const std::vector<std::string>& unknown,
                   const FilePath& path);
 
+/// Notes that coordinates were rounded to the width of `field`, if any were.
+void note_rounded(std::int64_t coordinates, std::string_view field, Notes& notes);
+
 /// Notes that all numbers stay because of `unknown` cards, which may name nodes or elements. Notes nothing if
 /// there are no such cards.
 void note_kept_numbers(const std::vector<std::string>& unknown, Notes& notes);

@@ -1,6 +1,5 @@
 // Copyright (c) the meshorder authors. SPDX-License-Identifier: MIT
-#include "io/nastran/card_parser.hpp"
-
+#include "io/nastran/nastran.hpp"
 #include "io/stream/scanner.hpp"
 
 #include <fmt/format.h>

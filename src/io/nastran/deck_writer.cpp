@@ -18,8 +18,6 @@
 namespace meshorder::nastran {
 namespace {
 
-constexpr std::size_t kWidestField = 16;
-
 /// What could not be written as the mesh has it.
 struct Losses {
   std::atomic<std::int64_t> rounded = 0;  ///< coordinates
@@ -136,8 +134,8 @@ class CardWriter {
   }
 
   void append_checked(std::string_view name, const std::vector<std::string>& texts) {
-    const bool fits = std::all_of(texts.begin(), texts.end(),
-                                  [](const std::string& text) { return text.size() <= kWidestField; });
+    const bool fits =
+        std::all_of(texts.begin(), texts.end(), [](const std::string& text) { return text.size() <= 16; });
     if (!fits) {
       throw InputError(source_.target, fmt::format("a field of {} has more than 16 characters", name),
                        "shorten it");
@@ -399,7 +397,7 @@ class BulkWriter {
   }
 
   void note_losses() const {
-    if (source_.losses.rounded > 0) notes_.push_back(rounded_note(source_.losses.rounded));
+    note_rounded(source_.losses.rounded, kWidestField, notes_);
     if (source_.losses.has_labels)
       notes_.emplace_back("labels that are not property numbers are not written");
     note_arrays_beside_cell_labels(source_.mesh, "Nastran", notes_);

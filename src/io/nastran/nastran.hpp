@@ -7,8 +7,8 @@
 #include "io/format.hpp"
 #include "io/nastran/card.hpp"
 #include "io/nastran/elements.hpp"
-#include "io/stream/id_map.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -53,7 +53,43 @@ const BulkMetadata* deck_of(const Mesh& mesh);
 /// The words before the name of a set, in the comment above its SET3.
 constexpr std::string_view kSetComment = "$ set: ";
 
+// ---- reading
+
 Mesh read(const FilePath& path, Notes& notes);
+
+/// Thrown for a card that cannot be read.
+struct Fault {
+  std::size_t byte = 0;  ///< of the text, where the card begins
+  std::string what;
+  std::string remedy;
+};
+
+/// A card, and its contents if it is a node or an element that is a cell.
+struct Card {
+  enum class Kind : std::uint8_t { node, element, other };
+  static constexpr std::int64_t kBlank = -1;
+
+  Piece place;
+  Kind kind = Kind::other;
+  bool has_more = false;        ///< whether other fields follow these
+  bool lacks_nodes = false;     ///< whether some nodes of edges are missing, so that only corners count
+  std::int64_t number = 0;      ///< of the node or element
+  std::int64_t group = kBlank;  ///< system of the node or property of the element; kBlank if it names none
+  Point point{};
+  const ElementType* type = nullptr;
+  int nodes = 0;                         ///< of the cell
+  std::array<Index, kMostNodes> cell{};  ///< numbers of the nodes, in the order of the cell's vertices
+};
+
+/// Returns the number of a node, element or property in a field of that card; throws Fault if the field holds
+/// no such number.
+std::int64_t number_in(const CardFields& fields, std::size_t field, std::string_view what, Piece card);
+
+/// Parses the present card; uses the memory of `fields`. Throws Fault if it is a line that continues no card,
+/// or a node or an element with a fault.
+Card parse_card(const Cards& cards, CardFields& fields);
+
+// ---- writing
 
 /// Writes a mesh into its deck; notes the parts that have no place in it.
 void write_into_deck(const Mesh& mesh, const BulkMetadata& own, const FilePath& path, Notes& notes);
@@ -63,7 +99,6 @@ void write_into_deck(const Mesh& mesh, const BulkMetadata& own, const FilePath& 
 void append_set(std::string& out, std::int64_t number, const EntitySet& set,
                 const std::vector<std::int64_t>& members, std::string_view line_end, Notes& notes);
 
-/// Returns the note on coordinates that do not fit a field.
-std::string rounded_note(std::int64_t coordinates);
+constexpr std::string_view kWidestField = "16 characters of a field of Nastran";
 
 }  // namespace meshorder::nastran

@@ -5,7 +5,6 @@
 #include "base/text.hpp"
 #include "io/deck/numbers.hpp"
 #include "io/labels.hpp"
-#include "io/nastran/card_parser.hpp"
 #include "io/nastran/deck_text.hpp"
 #include "io/nastran/nastran.hpp"
 #include "io/nastran/references.hpp"
@@ -17,7 +16,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <string>
@@ -111,8 +109,6 @@ class DeckReader {
     return number_in(fields_, field, what, card_);
   }
 
-  // ---- nodes
-
   void add_node(const Card& card) {
     if (!deck_->nodes.add(card.number)) {
       fail(fmt::format("node {} is given twice", card.number), "numbers must differ");
@@ -123,8 +119,6 @@ class DeckReader {
     mesh_.points.push_back(card.point);
     deck_->node_cards.push_back(card.place);
   }
-
-  // ---- elements
 
   void add_element(const Card& card) {
     if (!deck_->elements.add(card.number)) {
@@ -158,8 +152,6 @@ class DeckReader {
     other_since_ = false;
   }
 
-  // ---- other cards
-
   void read_other(const std::string& name) {
     if (name.starts_with('=')) fail("cards are repeated by '='", "write out the repeated cards");
     other_since_ = true;
@@ -172,19 +164,14 @@ class DeckReader {
       deck_->default_properties[name == "BAROR" ? "CBAR" : "CBEAM"] = number(2, "the property of elements");
     }
     systems_.add(name, fields_, card_.begin);
-    if (!found) {
-      strangers_.push_back({name, card_});
-    } else {
-      if (found->defines_element) deck_->other_elements.push_back(number_of(fields_.text(1)));
-      if (found->defines_points) {
-        for (const NumberRange& range :
-             ranges_of(fields_, found->list).value_or(std::vector<NumberRange>())) {
-          add_points(range);
-        }
+    if (!found) strangers_.push_back({name, card_});
+    if (found && found->defines_element) deck_->other_elements.push_back(number_of(fields_.text(1)));
+    if (found && found->defines_points) {
+      for (const NumberRange& range : ranges_of(fields_, found->list).value_or(std::vector<NumberRange>())) {
+        add_points(range);
       }
     }
-    deck_->last_set =
-        name.starts_with("SET") ? std::max(deck_->last_set, number_of(fields_.text(1))) : deck_->last_set;
+    if (name.starts_with("SET")) deck_->last_set = std::max(deck_->last_set, number_of(fields_.text(1)));
     if (name == "SET3" && found && found->list > 0) {
       sets_.push_back(card_);
     } else {
@@ -200,22 +187,15 @@ class DeckReader {
     for (std::int64_t n = range.from; n <= range.to; n += range.step) deck_->other_points.push_back(n);
   }
 
-  // ---- the end
-
-  /// Returns the cards of elements that are not cells: they begin with C, but not with CORD.
-  [[nodiscard]] std::vector<std::string> other_elements() const {
-    std::vector<std::string> names;
-    std::ranges::copy_if(others_.list, std::back_inserter(names), [](const std::string& name) {
-      return name.starts_with('C') && !name.starts_with("CORD");
-    });
-    return names;
-  }
-
   void finish() {
     const std::string& path = file_.path();
     if (mesh_.vertex_count() == 0) throw InputError(path, "has no GRID", kNoMesh);
     if (mesh_.cell_count() == 0) {
-      if (const std::vector<std::string> elements = other_elements(); !elements.empty()) {
+      std::vector<std::string> elements = others_.list;
+      std::erase_if(elements, [](const std::string& name) {
+        return !name.starts_with('C') || name.starts_with("CORD");
+      });
+      if (!elements.empty()) {
         throw InputError(path,
                          "its only elements are of types that are not cells here (" + join(elements) + ")",
                          "nothing can be reordered");

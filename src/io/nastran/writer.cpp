@@ -103,7 +103,7 @@ class PlainBulkWriter {
   }
 
   void note_losses() {
-    if (rounded_ > 0) notes_.push_back(rounded_note(rounded_));
+    note_rounded(rounded_, kWidestField, notes_);
     if (lost_labels_ > 0) {
       notes_.push_back(fmt::format("{} cells whose labels are not from 1 to 99999999 have the property 1",
                                    lost_labels_.load()));
@@ -133,11 +133,6 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
 }
 
 }  // namespace
-
-std::string rounded_note(std::int64_t coordinates) {
-  return fmt::format("{} rounded to the 16 characters of a field of Nastran",
-                     coordinates == 1 ? "one coordinate is" : fmt::format("{} coordinates are", coordinates));
-}
 
 void append_set(std::string& out, std::int64_t number, const EntitySet& set,
                 const std::vector<std::int64_t>& members, std::string_view line_end, Notes& notes) {
