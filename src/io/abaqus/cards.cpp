@@ -40,14 +40,10 @@ std::size_t skipped_lines(std::string_view lines) {
   return length;
 }
 
-/// A part of a keyword line between commas; commas in quotes do not count. Comments belong to no part.
-struct Piece {
-  std::size_t begin;
-  std::size_t end;
-};
-
-std::vector<Piece> pieces_of(std::string_view lines) {
-  std::vector<Piece> pieces;
+/// Returns the parts of a keyword line between commas; commas in quotes do not count. Comments belong to no
+/// part.
+std::vector<std::string_view> pieces_of(std::string_view lines) {
+  std::vector<std::string_view> pieces;
   bool quoted = false;
   std::size_t begin = 0;
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -59,10 +55,10 @@ std::vector<Piece> pieces_of(std::string_view lines) {
     }
     if (lines[i] == '"') quoted = !quoted;
     if (lines[i] != ',' || quoted) continue;
-    pieces.push_back({begin, i});
+    pieces.push_back(lines.substr(begin, i - begin));
     begin = i + 1;
   }
-  pieces.push_back({begin, lines.size()});
+  pieces.push_back(lines.substr(begin));
   return pieces;
 }
 
@@ -128,14 +124,13 @@ std::string_view keyword_lines(std::string_view lines) {
 
 Card parse_card(std::string_view lines) {
   lines = keyword_lines(lines);
-  const std::vector<Piece> pieces = pieces_of(lines);
-  const auto text_of = [&](Piece piece) { return lines.substr(piece.begin, piece.end - piece.begin); };
+  const std::vector<std::string_view> pieces = pieces_of(lines);
   Card card;
-  const std::string_view keyword = trimmed_of_ends(text_of(pieces.front()));
+  const std::string_view keyword = trimmed_of_ends(pieces.front());
   card.title = capitals(keyword);
   card.keyword = compact(keyword.substr(keyword.starts_with('*') ? 1 : 0));
   for (std::size_t i = 1; i < pieces.size(); ++i) {
-    Card::Parameter parameter = parameter_of(text_of(pieces[i]));
+    Card::Parameter parameter = parameter_of(pieces[i]);
     if (!parameter.name.empty()) card.parameters.push_back(std::move(parameter));
   }
   return card;
@@ -143,17 +138,14 @@ Card parse_card(std::string_view lines) {
 
 std::string without_parameter(std::string_view lines, std::string_view name) {
   const std::string_view keyword = keyword_lines(lines);
-  std::string result;
-  for (const Piece piece : pieces_of(keyword)) {
-    const std::string_view text = keyword.substr(piece.begin, piece.end - piece.begin);
-    if (piece.begin > 0 && parameter_of(text).name == name) {
-      // the end of the last line stays
-      const std::size_t last = text.find_last_not_of(" \t\r\n") + 1;
-      if (piece.end == keyword.size()) result += text.substr(last);
-      continue;
+  const std::vector<std::string_view> pieces = pieces_of(keyword);
+  std::string result(pieces.front());
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    if (parameter_of(pieces[i]).name != name) {
+      result.append(",").append(pieces[i]);
+    } else if (i + 1 == pieces.size()) {  // the end of the last line stays
+      result += pieces[i].substr(pieces[i].find_last_not_of(" \t\r\n") + 1);
     }
-    if (piece.begin > 0) result += ',';
-    result += text;
   }
   return result.append(lines.substr(keyword.size()));
 }
@@ -335,8 +327,7 @@ class ReferenceFinder {
 
   /// Adds parameters such as REF NODE=17, and the element of a pre-tension section.
   void add_parameters(std::string_view keyword) {
-    for (const Piece piece : pieces_of(keyword)) {
-      const std::string_view text = keyword.substr(piece.begin, piece.end - piece.begin);
+    for (const std::string_view text : pieces_of(keyword)) {
       const std::size_t equals = text.find('=');
       if (equals == std::string_view::npos) continue;
       const std::string name = parameter_of(text).name;

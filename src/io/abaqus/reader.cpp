@@ -511,17 +511,9 @@ class DeckReader {
   }
 
   void finish() {
-    constexpr const char* kNoMesh = "it may be cut short, or its mesh be in another file";
-    if (deck_->nodes.size() == 0) throw InputError(lines_.at().file(), "has no *NODE", kNoMesh);
-    if (deck_->elements.size() == 0) {
-      if (!other_types_.empty()) {
-        throw InputError(lines_.at().file(),
-                         fmt::format("its only elements are of types that are not cells here ({})",
-                                     join(other_types_, std::string_view("; "))),
-                         "correct TYPE= if it is misspelt; C3D4, C3D8, C3D10, S3, S4 and the like are cells");
-      }
-      throw InputError(lines_.at().file(), "has no *ELEMENT", kNoMesh);
-    }
+    require_mesh(*deck_, lines_.at().file(), "has no *NODE", "has no *ELEMENT",
+                 join(other_types_, std::string_view("; ")),
+                 "correct TYPE= if it is misspelt; C3D4, C3D8, C3D10, S3, S4 and the like are cells");
     resolve(later_nodes_, deck_->nodes, mesh_.cells, [&](const LaterNode<Place>& later) {
       throw InputError(Location{files_[later.place.file], later.place.line, -1},
                        fmt::format("a node of the element is {}, which no *NODE has", later.number),

@@ -77,11 +77,8 @@ bool SetReader::knows(Association association, std::string_view name) const {
 }
 
 void SetReader::add_block(Association association, std::string_view name, Index first, Index count) {
-  Addition& addition = additions_.emplace_back();
-  addition.set = set_named(association, name);
-  addition.association = association;
-  addition.first = first;
-  addition.count = count;
+  additions_.push_back(
+      {.set = set_named(association, name), .association = association, .first = first, .count = count});
 }
 
 void SetReader::begin_card(Association association, const Card& card, Location place) {

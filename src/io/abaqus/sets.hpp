@@ -62,10 +62,10 @@ class SetReader {
     bool generate = false;
     Index first = 0;  ///< position of the block that `add_block` adds
     Index count = 0;
-    std::vector<Index> numbers;
-    std::vector<std::array<std::int64_t, 3>> ranges;  ///< from, to, step
-    std::vector<std::string> names;
-    std::string nodes_of;  ///< name of an element set whose nodes are added
+    std::vector<Index> numbers = {};
+    std::vector<std::array<std::int64_t, 3>> ranges = {};  ///< from, to, step
+    std::vector<std::string> names = {};
+    std::string nodes_of = {};  ///< name of an element set whose nodes are added
   };
   class Repeats;
   using Key = std::tuple<Association, bool, std::string>;  ///< bool: whether the set belongs to the assembly

@@ -308,7 +308,6 @@ class DeckWriter {
     write_text(comments);
   }
 
-  /// Writes the sets that the deck does not have.
   void write_new_sets() {
     std::vector<EntitySet> sets = sets_beside(deck_.sets, mesh_, numbers_, notes_);
     if (own_ == nullptr) add_sets_of_labels(sets);

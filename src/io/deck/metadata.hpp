@@ -2,7 +2,10 @@
 #pragma once
 
 #include "io/deck/numbers.hpp"
+#include <meshorder/error.hpp>
 #include <meshorder/mesh.hpp>
+
+#include <fmt/format.h>
 
 #include <memory>
 #include <span>
@@ -55,6 +58,20 @@ struct DeckMetadata final : FormatMetadata {
     return {{deck->nodes, vertex_of, vertex_ids}, {deck->elements, cell_of, cell_ids}};
   }
 };
+
+/// Throws InputError unless a deck has nodes and elements that are cells.
+///
+/// @param others  types of its other elements, as one text
+inline void require_mesh(const DeckContents& deck, const std::string& file, const std::string& no_nodes,
+                         const std::string& no_elements, const std::string& others,
+                         const std::string& remedy_of_others = "nothing can be reordered") {
+  const std::string no_mesh = "it may be cut short, or its mesh be in another file";
+  if (deck.nodes.size() == 0) throw InputError(file, no_nodes, no_mesh);
+  if (deck.elements.size() > 0) return;
+  if (others.empty()) throw InputError(file, no_elements, no_mesh);
+  throw InputError(file, fmt::format("its only elements are of types that are not cells here ({})", others),
+                   remedy_of_others);
+}
 
 /// Gives a mesh, whose vertices and cells are in the order of the deck, the ids and metadata of the deck.
 template <class Deck>

@@ -33,15 +33,16 @@ View read_view_head(NumberReader& source, std::string_view section) {
   View view;
   view.section = section;
   view.association = section == "NodeData" ? Association::vertices : Association::cells;
-  const Index strings =
-      source.checked_count(source.text_integer("the number of string tags"), "string tags", 1);
+  const auto count = [&](const std::string& what, std::int64_t bytes) {
+    return source.checked_count(source.text_integer("the number of " + what), what, bytes);
+  };
+  const Index strings = count("string tags", 1);
   (void)source.scanner.raw_line();
   for (Index i = 0; i < strings; ++i) view.strings.emplace_back(source.scanner.rest_of_line());
   view.array = view.strings.empty() ? std::string(section) : unquoted(view.strings.front());
-  view.reals.resize(source.checked_count(source.text_integer("the number of real tags"), "real tags", 2));
+  view.reals.resize(count("real tags", 2));
   for (double& value : view.reals) value = source.text_real("a real tag");
-  view.integers.resize(
-      source.checked_count(source.text_integer("the number of integer tags"), "integer tags", 2));
+  view.integers.resize(count("integer tags", 2));
   if (view.integers.size() < 3) {
     source.fail(fmt::format("${} has {} integer tags", section, view.integers.size()),
                 "step, components and number of entries are needed");
@@ -49,7 +50,7 @@ View read_view_head(NumberReader& source, std::string_view section) {
   for (std::size_t i = 0; i < view.integers.size(); ++i) {
     const std::int64_t value = source.text_integer("an integer tag");
     if (i == 1 && (value < 1 || value > kMostComponents)) {
-      source.fail("the number of components is " + std::to_string(value), "1, 3 and 9 are usual");
+      source.fail(fmt::format("the number of components is {}", value), "1, 3 and 9 are usual");
     }
     if (!std::in_range<std::int32_t>(value)) {
       source.fail("an integer tag is " + std::to_string(value), "that is too large");

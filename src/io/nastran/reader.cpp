@@ -10,7 +10,6 @@
 #include "io/nastran/references.hpp"
 #include "io/nastran/systems.hpp"
 #include "io/stream/read_limits.hpp"
-#include <meshorder/error.hpp>
 
 #include <fmt/format.h>
 
@@ -188,20 +187,10 @@ class DeckReader {
   }
 
   void finish() {
-    const std::string& path = file_.path();
-    if (mesh_.vertex_count() == 0) throw InputError(path, "has no GRID", kNoMesh);
-    if (mesh_.cell_count() == 0) {
-      std::vector<std::string> elements = others_.list;
-      std::erase_if(elements, [](const std::string& name) {
-        return !name.starts_with('C') || name.starts_with("CORD");
-      });
-      if (!elements.empty()) {
-        throw InputError(path,
-                         "its only elements are of types that are not cells here (" + join(elements) + ")",
-                         "nothing can be reordered");
-      }
-      throw InputError(path, "has no elements that are cells", kNoMesh);
-    }
+    std::vector<std::string> elements = others_.list;
+    std::erase_if(elements,
+                  [](const std::string& name) { return !name.starts_with('C') || name.starts_with("CORD"); });
+    require_mesh(*deck_, file_.path(), "has no GRID", "has no elements that are cells", join(elements));
     resolve(later_nodes_, deck_->nodes, mesh_.cells, [&](const LaterNode<std::size_t>& later) {
       file_.fail(later.place, fmt::format("a node of the element is {}, which no GRID has", later.number),
                  "add it, or correct the element");
@@ -381,8 +370,6 @@ class DeckReader {
     if (!file_.has_end()) notes_.emplace_back("the file has no ENDDATA; it may be cut short");
     note_kept_numbers(deck_->unknown, notes_);
   }
-
-  static constexpr const char* kNoMesh = "it may be cut short, or its mesh be in another file";
 
   /// A card that is not known.
   struct Stranger {

@@ -456,18 +456,8 @@ class UnvReader {
   }
 
   void finish() {
-    const std::string no_mesh = "it may be cut short, or its mesh be in another file";
-    if (file_->nodes.size() == 0)
-      throw InputError(in_.file(), "has no nodes (dataset 2411, 781 or 15)", no_mesh);
-    if (file_->elements.size() == 0) {
-      if (!other_types_.empty()) {
-        throw InputError(
-            in_.file(),
-            fmt::format("its only elements are of types that are not cells here ({})", join(other_types_)),
-            "nothing can be reordered");
-      }
-      throw InputError(in_.file(), "has no elements that are cells (dataset 2412 or 780)", no_mesh);
-    }
+    require_mesh(*file_, in_.file(), "has no nodes (dataset 2411, 781 or 15)",
+                 "has no elements that are cells (dataset 2412 or 780)", join(other_types_));
     resolve(later_nodes_, file_->nodes, mesh_.cells, [&](const LaterNode<std::int64_t>& later) {
       throw InputError(
           Location{in_.file(), later.place, -1},

@@ -27,7 +27,6 @@ constexpr int kWidth = 10;                            // of whole numbers
 constexpr std::int64_t kLargestNumber = 999'999'999;  // more digits fill the width
 constexpr int kDigitsOfCoordinates = 16;
 
-/// Writes the lines of a universal file.
 class Lines {
  public:
   Lines(OutputFile& out, std::string_view line_end) : out_(out), line_end_(line_end) {}
