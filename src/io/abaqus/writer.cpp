@@ -78,9 +78,7 @@ class DeckWriter {
         own_(deck_of(mesh)),
         plain_(own_ == nullptr ? plain_deck(mesh) : nullptr),
         deck_(own_ == nullptr ? *plain_.deck : *own_->deck),
-        numbers_(own_ == nullptr ? plain_.numbers(ids_as_numbers(mesh.vertex_ids, kLargest),
-                                                  ids_as_numbers(mesh.cell_ids, kLargest))
-                                 : own_->numbers(mesh.vertex_ids, mesh.cell_ids)),
+        numbers_(own_ == nullptr ? plain_.new_numbers(mesh, kLargest) : own_->numbers(mesh)),
         notes_(notes),
         file_(path),
         more_of_nodes_(by_place(deck_.more_of_nodes, numbers_.nodes)),

@@ -52,10 +52,14 @@ struct DeckMetadata final : FormatMetadata {
     return result;
   }
 
-  /// Returns the numbers of the nodes and elements in a mesh with these ids.
-  [[nodiscard]] DeckNumbers numbers(std::span<const std::int64_t> vertex_ids,
-                                    std::span<const std::int64_t> cell_ids) const {
-    return {{deck->nodes, vertex_of, vertex_ids}, {deck->elements, cell_of, cell_ids}};
+  /// Returns the numbers of the nodes and elements in a mesh that fits the deck.
+  [[nodiscard]] DeckNumbers numbers(const Mesh& mesh) const {
+    return {{deck->nodes, vertex_of, mesh.vertex_ids}, {deck->elements, cell_of, mesh.cell_ids}};
+  }
+  /// Returns the numbers of a mesh that came from elsewhere: its ids if they can be numbers up to `largest`.
+  [[nodiscard]] DeckNumbers new_numbers(const Mesh& mesh, std::int64_t largest) const {
+    return {{deck->nodes, {}, ids_as_numbers(mesh.vertex_ids, largest)},
+            {deck->elements, {}, ids_as_numbers(mesh.cell_ids, largest)}};
   }
 };
 

@@ -89,7 +89,7 @@ class FileNumbers {
   std::span<const std::int64_t> ids_;
 };
 
-/// Both.
+/// The numbers of a deck's nodes and elements in a mesh.
 struct DeckNumbers {
   FileNumbers nodes;
   FileNumbers elements;

@@ -102,15 +102,6 @@ class CardWriter {
     append_edited_card(card);
   }
 
-  /// Adds a set as SET3, with a comment.
-  void write_set(std::int64_t number, const EntitySet& set, Notes& notes) {
-    std::vector<std::int64_t> members;
-    for (const Index member : set.members) {
-      members.push_back(source_.numbers.of(set.association).at(member));
-    }
-    append_set(out_, number, set, members, deck_.line_end, notes);
-  }
-
  private:
   void append_edited_card(std::string_view card) {
     if (append_edited(out_, card, fields_, edits_)) return;
@@ -273,11 +264,7 @@ class CardWriter {
 class BulkWriter {
  public:
   BulkWriter(const Mesh& mesh, const BulkMetadata& own, const FilePath& path, Notes& notes)
-      : source_{mesh,
-                *own.deck,
-                own.numbers(mesh.vertex_ids, mesh.cell_ids),
-                labels_of(mesh, Association::cells),
-                {}},
+      : source_{mesh, *own.deck, own.numbers(mesh), labels_of(mesh, Association::cells), {}},
         notes_(notes),
         file_(path),
         writer_(source_) {
@@ -391,8 +378,9 @@ class BulkWriter {
   void write_new_sets() {
     std::int64_t number = source_.deck.last_set;
     for (const EntitySet& set : sets_beside(source_.deck.sets, source_.mesh, source_.numbers, notes_)) {
-      writer_.write_set(++number, set, notes_);
-      file_.write(writer_.take_text());
+      std::string text;
+      append_set(text, ++number, set, source_.numbers, source_.deck.line_end, notes_);
+      file_.write(text);
     }
   }
 
@@ -406,7 +394,7 @@ class BulkWriter {
   Source source_;
   Notes& notes_;
   OutputFile file_;
-  CardWriter writer_;                                                 // of texts and sets
+  CardWriter writer_;                                                 // of texts between nodes and elements
   std::vector<Index> node_at_ = source_.numbers.nodes.items();        // node of the deck at each vertex
   std::vector<Index> element_at_ = source_.numbers.elements.items();  // element of the deck at each cell
   std::vector<Item> items_;

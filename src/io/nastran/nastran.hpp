@@ -96,8 +96,11 @@ void write_into_deck(const Mesh& mesh, const BulkMetadata& own, const FilePath& 
 
 /// Appends a set as SET3, with its name in a comment. Notes a set without members, which is left out, and a
 /// name that changes.
-void append_set(std::string& out, std::int64_t number, const EntitySet& set,
-                const std::vector<std::int64_t>& members, std::string_view line_end, Notes& notes);
+///
+/// @param number   of the set
+/// @param numbers  of its members
+void append_set(std::string& out, std::int64_t number, const EntitySet& set, const DeckNumbers& numbers,
+                std::string_view line_end, Notes& notes);
 
 constexpr std::string_view kWidestField = "16 characters of a field of Nastran";
 

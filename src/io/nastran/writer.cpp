@@ -28,8 +28,7 @@ class PlainBulkWriter {
         notes_(notes),
         file_(path),
         labels_(labels_of(mesh, Association::cells)),
-        vertices_(mesh.vertex_ids, kLargestNumber),
-        cells_(mesh.cell_ids, kLargestNumber) {
+        numbers_(no_deck_.new_numbers(mesh, kLargestNumber)) {
     if (mesh.vertex_count() > kLargestNumber || mesh.cell_count() > kLargestNumber) {
       throw InputError(path.string(), "has more than 99999999 vertices or cells",
                        "Nastran cannot number more");
@@ -53,17 +52,17 @@ class PlainBulkWriter {
       reals[k] = real_text(mesh_.points[v][k]);
       if (reals[k].is_rounded) ++rounded_;
     }
-    out.print("GRID*   {:>16}                {:>16}{:>16}\n*       {:>16}\n", vertices_.of(v), reals[0].text,
-              reals[1].text, reals[2].text);
+    out.print("GRID*   {:>16}                {:>16}{:>16}\n*       {:>16}\n", numbers_.nodes.at(v),
+              reals[0].text, reals[1].text, reals[2].text);
   }
 
   void write_element(Text& out, Index c) {
     const auto cell = mesh_.cells[c];
     const Shape shape = mesh_.cells.shapes[c];
     const int nodes = static_cast<int>(cell.size());
-    std::array<std::int64_t, 2 + kMostNodes> numbers{cells_.of(c), property(c)};
+    std::array<std::int64_t, 2 + kMostNodes> numbers{numbers_.elements.at(c), property(c)};
     for (std::size_t k = 0; k < cell.size(); ++k) {
-      numbers[2 + node_place(shape, nodes, k)] = vertices_.of(cell[k]);
+      numbers[2 + node_place(shape, nodes, k)] = numbers_.nodes.at(cell[k]);
     }
     constexpr std::size_t kOnLine = 8;
     constexpr std::string_view kBlanks = "        ";
@@ -91,13 +90,8 @@ class PlainBulkWriter {
   void write_sets() {
     std::int64_t number = 0;
     for (const EntitySet& set : mesh_.sets) {
-      std::vector<std::int64_t> members;
-      const bool of_nodes = set.association == Association::vertices;
-      for (const Index member : set.members) {
-        members.push_back(of_nodes ? vertices_.of(member) : cells_.of(member));
-      }
       std::string card;
-      append_set(card, ++number, set, members, "\n", notes_);
+      append_set(card, ++number, set, numbers_, "\n", notes_);
       file_.write(card);
     }
   }
@@ -119,8 +113,8 @@ class PlainBulkWriter {
   Labels labels_;
   std::atomic<std::int64_t> rounded_ = 0;
   std::atomic<std::int64_t> lost_labels_ = 0;
-  NewNumbers vertices_;
-  NewNumbers cells_;
+  BulkMetadata no_deck_{std::make_shared<Deck>()};
+  DeckNumbers numbers_;
 };
 
 bool holds(const Mesh& mesh, Shape shape, int vertices) {
@@ -134,9 +128,9 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
 
 }  // namespace
 
-void append_set(std::string& out, std::int64_t number, const EntitySet& set,
-                const std::vector<std::int64_t>& members, std::string_view line_end, Notes& notes) {
-  if (members.empty()) {
+void append_set(std::string& out, std::int64_t number, const EntitySet& set, const DeckNumbers& numbers,
+                std::string_view line_end, Notes& notes) {
+  if (set.members.empty()) {
     note_set_empty(set, notes);
     return;
   }
@@ -144,7 +138,9 @@ void append_set(std::string& out, std::int64_t number, const EntitySet& set,
   note_renamed_set(set, name, notes);
   std::vector<std::string> texts{std::to_string(number),
                                  set.association == Association::vertices ? "GRID" : "ELEM"};
-  for (const std::int64_t member : members) texts.push_back(std::to_string(member));
+  for (const Index member : set.members) {
+    texts.push_back(std::to_string(numbers.of(set.association).at(member)));
+  }
   out.append(kSetComment).append(name).append(line_end);
   append_card(out, "SET3", texts, line_end);
 }

@@ -111,9 +111,7 @@ class UnvWriter {
         plain_(own_ == nullptr ? plain_contents(mesh) : nullptr),
         file_(own_ == nullptr ? *plain_.deck : *own_->deck),
         notes_(notes),
-        numbers_(own_ == nullptr ? plain_.numbers(ids_as_numbers(mesh.vertex_ids, kLargestNumber),
-                                                  ids_as_numbers(mesh.cell_ids, kLargestNumber))
-                                 : own_->numbers(mesh.vertex_ids, mesh.cell_ids)),
+        numbers_(own_ == nullptr ? plain_.new_numbers(mesh, kLargestNumber) : own_->numbers(mesh)),
         labels_(labels_of(mesh, Association::cells)),
         materials_(materials_of(mesh)),
         parts_(mesh),
