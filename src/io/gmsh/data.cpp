@@ -72,7 +72,7 @@ int nodes_of_entry(const Mesh& mesh, Index c, PerElement per, int fixed) {
     case PerElement::each_corner:
       return corners(mesh.cells.shapes[c], vertices);
     case PerElement::fixed:
-      return fixed;
+      break;
   }
   return fixed;
 }
@@ -313,11 +313,8 @@ void refit_views(GmshMetadata& layout, const NamedParts& parts, Notes& notes) {
   }
 }
 
-bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes) {
-  if (!has_place(array)) {
-    note_array_unsupported(array, "Gmsh", notes);
-    return false;
-  }
+void add_view(GmshMetadata& layout, const DataArray& array, Notes& notes) {
+  if (!has_place(array)) return note_array_unsupported(array, "Gmsh", notes);
   const Index components = components_of_view(array, notes);
   View view;
   view.section = array.association == Association::vertices ? "NodeData" : "ElementData";
@@ -330,7 +327,6 @@ bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes) {
   view.integers = {0, components, 0};
   layout.sections.push_back({SectionKind::view, view.section, "", layout.views.size()});
   layout.views.push_back(std::move(view));
-  return true;
 }
 
 void write_view(NumberWriter& sink, const WriteContext& output, const View& view) {

@@ -321,8 +321,8 @@ const std::vector<double>* parameters_of(const Mesh& mesh);
 /// sets of cells and the entities that it may have kept from an earlier conversion.
 void classify(GmshMetadata& layout, WriteContext& output, Notes& notes);
 
-/// Adds a view for an array that has no view yet; returns false, with a note, if Gmsh has no place for it.
-bool add_view(GmshMetadata& layout, const DataArray& array, Notes& notes);
+/// Adds a view for an array that has no view yet, or a note if Gmsh has no place for it.
+void add_view(GmshMetadata& layout, const DataArray& array, Notes& notes);
 
 /// Adapts the views of arrays that were replaced to the components of the new arrays. A view that has no
 /// place for its new array loses the array. Notes changes.

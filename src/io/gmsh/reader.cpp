@@ -46,19 +46,15 @@ std::string_view body(ReadContext& reading, std::string_view section) {
   source.fail("$" + std::string(section) + " has no " + end, "the file may be cut short");
 }
 
-/// Fails unless the version is supported.
-void check_version(const NumberReader& source, double version) {
-  if ((version >= 2 && version < 2.3) || (version >= 4 && version < 4.15)) return;
-  source.fail(
-      fmt::format("version {:.1f} of Gmsh's format is not supported", version),
-      "1, 2.2, 4.0 and 4.1 are supported; convert the file with gmsh OLD.msh -save -format msh41 -o NEW.msh");
-}
-
 void read_format(ReadContext& reading) {
   NumberReader& source = reading.source;
   const std::int64_t begin = source.scanner.byte();
-  reading.metadata.version = source.scanner.real("the version");
-  check_version(source, reading.metadata.version);
+  const double version = reading.metadata.version = source.scanner.real("the version");
+  if (!(version >= 2 && version < 2.3) && !(version >= 4 && version < 4.15)) {
+    source.fail(fmt::format("version {:.1f} of Gmsh's format is not supported", version),
+                "1, 2.2, 4.0 and 4.1 are supported; convert the file with gmsh OLD.msh -save -format msh41 "
+                "-o NEW.msh");
+  }
   const auto file_type = source.scanner.integer<std::int32_t>("the file type");
   const auto data_size = source.scanner.integer<std::int32_t>("the data size");
   if (file_type != 0 && file_type != 1) {

@@ -38,13 +38,6 @@ bool has_element_tags(double version, std::span<const std::int32_t> tags) {
          (version < 2.15 || tags.size() < 4 ? 3 : 3 + static_cast<std::size_t>(std::max(0, tags[2])));
 }
 
-void refuse_element_tags(const NumberReader& source, double version, std::span<const std::int32_t> tags) {
-  if (has_element_tags(version, tags)) {
-    source.fail("an element has more tags than its partitions explain",
-                "elements cut from a parent cannot be reordered; save the mesh without them");
-  }
-}
-
 /// Reads the number of nodes of an element of version 1; fails unless its type has the same number.
 void check_node_count(NumberReader& source, const Element& element) {
   const std::int32_t count = source.int32("an element's number of nodes");
@@ -59,7 +52,10 @@ void read_element_body(ReadContext& reading, const Element& element, Tags& tags,
   for (Index t = 0; t < element.tag_count; ++t) tags.values.push_back(source.int32("a tag"));
   if (reading.metadata.is_version_1()) check_node_count(source, element);
   tags.offsets.push_back(static_cast<Offset>(tags.values.size()));
-  refuse_element_tags(source, reading.metadata.version, tags[tags.size() - 1]);
+  if (has_element_tags(reading.metadata.version, tags[tags.size() - 1])) {
+    source.fail("an element has more tags than its partitions explain",
+                "elements cut from a parent cannot be reordered; save the mesh without them");
+  }
   nodes.clear();
   for (int k = 0; k < element.type->nodes; ++k) {
     nodes.push_back(place_of_node(reading, source.int32("a node of an element"), "element", element.id));

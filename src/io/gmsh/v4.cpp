@@ -27,10 +27,6 @@ std::vector<std::int32_t> read_ints(NumberReader& source, std::string_view what)
   return result;
 }
 
-void skip_reals(NumberReader& source, int count, std::string_view what) {
-  for (int i = 0; i < count; ++i) (void)source.real(what);
-}
-
 std::int32_t read_dimension(NumberReader& source) {
   const std::int32_t dimension = source.int32("an entity's dimension");
   if (dimension < 0 || dimension > 3) {
@@ -135,23 +131,17 @@ void read_element_block(ReadContext& reading, const ElementType& type, Index cou
   }
 }
 
-/// The head of a section of blocks: the number of blocks, and of nodes or elements in all of them.
-struct Head {
-  Index blocks;
-  Index count;
-};
-
-Head read_head(ReadContext& reading, std::string_view what, std::int64_t text_bytes,
-               std::int64_t binary_bytes) {
+/// Reads the head of a section of blocks: the number of blocks, and of nodes or elements in all of them.
+std::pair<Index, Index> read_head(ReadContext& reading, std::string_view what, std::int64_t text_bytes,
+                                  std::int64_t binary_bytes) {
   NumberReader& source = reading.source;
-  Head head{};
-  head.blocks = source.count("the number of blocks", 8, 20);
-  head.count = source.count("the number of " + std::string(what), text_bytes, binary_bytes);
-  if (reading.metadata.is_version_40()) return head;
+  const Index blocks = source.count("the number of blocks", 8, 20);
+  const Index all = source.count(fmt::format("the number of {}", what), text_bytes, binary_bytes);
+  if (reading.metadata.is_version_40()) return {blocks, all};
   // skip the smallest and largest number, which Gmsh itself does not use
-  (void)source.int64("the smallest number of " + std::string(what));
-  (void)source.int64("the largest number of " + std::string(what));
-  return head;
+  (void)source.int64(fmt::format("the smallest number of {}", what));
+  (void)source.int64(fmt::format("the largest number of {}", what));
+  return {blocks, all};
 }
 
 [[noreturn]] void fail_count(const NumberReader& source, std::string_view section, std::int64_t blocks,
@@ -225,7 +215,8 @@ void read_entities_4(ReadContext& reading, bool partitioned) {
         const Index partitions = read_count(reading, "an entity's partitions", 2, 4);
         for (Index k = 0; k < partitions; ++k) (void)source.int32("an entity's partition");
       }
-      skip_reals(source, dimension == 0 && !version_40 ? 3 : 6, "an entity's extent");
+      const int reals = dimension == 0 && !version_40 ? 3 : 6;
+      for (int k = 0; k < reals; ++k) (void)source.real("an entity's extent");
       auto physicals = read_ints(source, "an entity's physical groups");
       if (dimension > 0) (void)read_ints(source, "an entity's boundary");
       // the sign of a physical group is an orientation
@@ -241,28 +232,28 @@ void read_nodes_4(ReadContext& reading) {
   NumberReader& source = reading.source;
   Mesh& mesh = reading.mesh;
   const std::int64_t bytes = reading.metadata.has_wide_numbers() ? 32 : 28;
-  const Head head = read_head(reading, "nodes", 8, bytes);
+  const auto [blocks, all] = read_head(reading, "nodes", 8, bytes);
   std::vector<std::int64_t> ids;
   std::vector<std::int32_t> entities;
   std::vector<double> parameters;
-  reserve_large(ids, static_cast<std::size_t>(head.count));
-  reserve_large(mesh.points, static_cast<std::size_t>(head.count));
-  reserve_large(entities, 2 * static_cast<std::size_t>(head.count));
-  for (Index b = 0; b < head.blocks; ++b) {
+  reserve_large(ids, static_cast<std::size_t>(all));
+  reserve_large(mesh.points, static_cast<std::size_t>(all));
+  reserve_large(entities, 2 * static_cast<std::size_t>(all));
+  for (Index b = 0; b < blocks; ++b) {
     const auto [dimension, tag] = read_entity(reading);
     const EmptyBlock block{dimension, tag, source.int32("whether nodes have parametric coordinates")};
     if (block[2] != 0 && block[2] != 1) {
       source.fail("'parametric' is " + std::to_string(block[2]), "0 and 1 are possible");
     }
     const Index count = source.count("the number of nodes in a block", 8, bytes);
-    if (count > head.count - index_size(ids)) {
-      fail_count(source, "Nodes", Offset{count} + index_size(ids), head.count);
+    if (count > all - index_size(ids)) {
+      fail_count(source, "Nodes", Offset{count} + index_size(ids), all);
     }
     if (count == 0) reading.metadata.empty_node_blocks.push_back(block);
     for (Index i = 0; i < count; ++i) entities.insert(entities.end(), {block[0], block[1]});
     read_node_block(reading, block, count, ids, parameters);
   }
-  if (index_size(ids) != head.count) fail_count(source, "Nodes", index_size(ids), head.count);
+  if (index_size(ids) != all) fail_count(source, "Nodes", index_size(ids), all);
   expect_end(reading, "Nodes");
   reading.nodes = number_ids(source, ids, "node");
   mesh.vertex_ids = std::move(ids);
@@ -274,7 +265,7 @@ void read_elements_4(ReadContext& reading) {
   NumberReader& source = reading.source;
   Mesh& mesh = reading.mesh;
   const std::int64_t bytes = reading.metadata.has_wide_numbers() ? 8 : 4;  // of a number
-  const Head head = read_head(reading, "elements", 4, 2 * bytes);
+  const auto [blocks, all] = read_head(reading, "elements", 4, 2 * bytes);
   std::vector<std::int64_t> ids;
   std::vector<std::int32_t> tags;
   std::vector<std::int32_t> dimensions;
@@ -283,14 +274,14 @@ void read_elements_4(ReadContext& reading) {
   std::set<EmptyBlock> kinds;
   std::optional<EmptyBlock> last;
   bool repeated = false;
-  reserve_large(ids, static_cast<std::size_t>(head.count));
-  for (Index b = 0; b < head.blocks; ++b) {
+  reserve_large(ids, static_cast<std::size_t>(all));
+  for (Index b = 0; b < blocks; ++b) {
     const auto [dimension, tag] = read_entity(reading);
     const ElementType& type = known_type(source, source.int32("a block's element type"));
     const Index count =
         source.count("the number of elements in a block", 2 + 2 * type.nodes, bytes * (1 + type.nodes));
-    if (count > head.count - index_size(ids)) {
-      fail_count(source, "Elements", Offset{count} + index_size(ids), head.count);
+    if (count > all - index_size(ids)) {
+      fail_count(source, "Elements", Offset{count} + index_size(ids), all);
     }
     if (count == 0) {
       reading.metadata.empty_element_blocks.push_back({dimension, tag, type.number});
@@ -308,7 +299,7 @@ void read_elements_4(ReadContext& reading) {
     dimensions.insert(dimensions.end(), count, dimension);
     types.insert(types.end(), count, type.number);
   }
-  if (index_size(ids) != head.count) fail_count(source, "Elements", index_size(ids), head.count);
+  if (index_size(ids) != all) fail_count(source, "Elements", index_size(ids), all);
   expect_end(reading, "Elements");
   reading.elements = number_ids(source, ids, "element");
   mesh.cell_ids = std::move(ids);

@@ -137,20 +137,16 @@ void add_views(GmshMetadata& layout, const WriteContext& output, Notes& notes) {
   }
 }
 
-void write_format(NumberWriter& sink, const GmshMetadata& layout) {
-  sink.out.print("{}\n", layout.header);
-  if (!layout.binary) return;
-  sink.int32(1);
-  sink.out.write("\n");
-}
-
 void write_section(NumberWriter& sink, const WriteContext& output, const MshSection& section) {
   if (section.name.empty()) return;  // version 1 has no section of the format
   const bool version_2 = output.layout.is_version_2();
   sink.out.print("${}\n", section.name);
   switch (section.kind) {
     case SectionKind::format:
-      write_format(sink, output.layout);
+      sink.out.print("{}\n", output.layout.header);
+      if (!sink.binary) break;
+      sink.int32(1);
+      sink.out.write("\n");
       break;
     case SectionKind::verbatim:
       break;
