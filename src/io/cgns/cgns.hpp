@@ -49,7 +49,8 @@ struct ElementType {
 const ElementType* element_type(std::int64_t number);
 /// Returns the type of cells of this shape, null if there is none.
 const ElementType* element_type_of(Shape shape, int nodes);
-/// Returns the place in the file of each vertex of a cell; empty if the file has the order of a Mesh.
+/// Returns the place in the file of each vertex of a cell, which is also the place in the cell of each vertex
+/// of the file; empty if the file has the order of a Mesh.
 std::span<const int> file_order(Shape shape, int nodes);
 
 // ---- contents of a file besides the mesh
@@ -72,6 +73,8 @@ struct Section {
   std::string number_type = "I4";
   std::string offset_type = {};  ///< type of ElementStartOffset, empty if the section has none
   Index first_item = 0;          ///< of polygons or polyhedra: place of the first one in `Polyhedra`
+
+  [[nodiscard]] bool is_of_polyhedra() const { return type == kPolygons || type == kPolyhedra; }
 };
 
 /// The polygons and polyhedra of all zones, section by section. Stays the same when the mesh is reordered.
@@ -172,9 +175,10 @@ struct CgnsMetadata final : FormatMetadata {
     return vertex_places.empty() ? place : vertex_places[static_cast<std::size_t>(place)];
   }
 
-  /// Returns the zone of a vertex.
-  [[nodiscard]] int zone_of(Index vertex) const {
-    return zone_of_vertex.empty() ? 0 : zone_of_vertex[static_cast<std::size_t>(vertex)];
+  /// Returns the zone of a vertex or a cell.
+  [[nodiscard]] int zone_of(Association association, Index position) const {
+    if (association == Association::cells) return sections[section_of_cell[position]].zone;
+    return zone_of_vertex.empty() ? 0 : zone_of_vertex[position];
   }
 
   [[nodiscard]] std::vector<std::string> contents() const override { return lost; }
@@ -197,12 +201,8 @@ inline constexpr std::string_view kSectionValues = "CellValues";
 const CgnsMetadata* own_metadata(const Mesh& mesh);
 
 /// Makes the nodes of a file for a mesh of another format: one zone with a section for each type and label.
-/// Sets and arrays are left to `add_missing`.
+/// Sets and arrays are left to `add_missing` (numbering.hpp).
 std::shared_ptr<CgnsMetadata> layout_of(const Mesh& mesh);
-
-/// Adds nodes to `metadata` for the arrays and sets that have no fields or lists there. Notes the arrays and
-/// sets that CGNS has no place for.
-void add_missing(const Mesh& mesh, CgnsMetadata& metadata, Notes& notes);
 
 Mesh read(const FilePath& path, Notes& notes);
 void write(const Mesh& mesh, const FilePath& path, Notes& notes);

@@ -2,7 +2,7 @@
 #include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/cell_division.hpp"
-#include "io/cgns/cgns.hpp"
+#include "io/cgns/numbering.hpp"
 #include "io/labels.hpp"
 #include "io/names.hpp"
 #include "io/unsupported.hpp"
@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -23,9 +24,10 @@ namespace {
 
 constexpr std::size_t kLongestName = 32;
 
-int bind(CgnsMetadata& metadata, Field field) {
+/// Makes a node whose values are a field.
+Node field_node(CgnsMetadata& metadata, std::string name, std::string label, Field field) {
   metadata.fields.push_back(std::move(field));
-  return static_cast<int>(metadata.fields.size()) - 1;
+  return {.name = std::move(name), .label = std::move(label), .field = index_size(metadata.fields) - 1};
 }
 
 /// Chooses valid names for the children of one node: up to 32 characters, no slash, all different.
@@ -96,10 +98,8 @@ class MetadataMaker {
     metadata.cell_dimension = std::max(1, mesh_.cells.highest_dimension());
     metadata.zones.push_back({"Zone", "I4", 0});
     const int coordinates = needs_three_coordinates(mesh_, metadata.cell_dimension) ? 3 : 2;
-    Node zone{.name = "Zone", .label = "Zone_t"};
-    zone.field = bind(metadata, {.role = Field::Role::zone_size});
-    zone.children.push_back(text_node("ZoneType", "ZoneType_t", "Unstructured"));
-    zone.children.push_back(grid(coordinates));
+    Node zone = field_node(metadata, "Zone", "Zone_t", {.role = Field::Role::zone_size});
+    zone.children = {text_node("ZoneType", "ZoneType_t", "Unstructured"), grid(coordinates)};
     add_sections(zone);
     Node base = integer_node("Base", "CGNSBase_t", {metadata.cell_dimension, coordinates});
     base.children.push_back(std::move(zone));
@@ -122,9 +122,8 @@ class MetadataMaker {
   Node grid(int coordinates) {
     Node node{.name = "GridCoordinates", .label = "GridCoordinates_t"};
     for (int k = 0; k < coordinates; ++k) {
-      Node axis{.name = std::string("Coordinate") + "XYZ"[k], .label = "DataArray_t"};
-      axis.field = bind(*metadata_, {.role = Field::Role::coordinate, .axis = k, .type = "R8"});
-      node.children.push_back(std::move(axis));
+      node.children.push_back(field_node(*metadata_, std::string("Coordinate") + "XYZ"[k], "DataArray_t",
+                                         {.role = Field::Role::coordinate, .axis = k, .type = "R8"}));
     }
     return node;
   }
@@ -148,19 +147,18 @@ class MetadataMaker {
       const Index first = starts[s];
       const Index end = s + 1 < starts.size() ? starts[s + 1] : mesh_.cell_count();
       const CellPart& key = division.keys[division.key_of_cell[first]];
-      const ElementType* const type_if_any = element_type_of(key.shape, key.nodes);
-      if (type_if_any == nullptr) {
+      const ElementType* const type = element_type_of(key.shape, key.nodes);
+      if (type == nullptr) {
         throw InvalidArgument(fmt::format(
             "CGNS: a {} is written only with the cells and faces of the file that it was read from",
             type_name(key.shape, key.nodes)));
       }
-      const ElementType& type = *type_if_any;
       const auto named = names.find(first);
       const bool is_boundary = dimension(key.shape) < metadata_->cell_dimension;
       const std::string name = is_boundary && named != names.end() ? named->second
-                               : division.by_labels                ? name_of_label(type, key.label)
-                                                                   : std::string(type.name);
-      add_section(zone, node_names.take(name, ignored), type, first, end - first);
+                               : division.by_labels                ? name_of_label(*type, key.label)
+                                                                   : std::string(type->name);
+      add_section(zone, node_names.take(name, ignored), *type, first, end - first);
       if (metadata_->has_labels) zone.children.back().children.push_back(label_node(key.label));
     }
   }
@@ -172,12 +170,10 @@ class MetadataMaker {
     metadata_->section_of_cell.resize(static_cast<std::size_t>(first) + static_cast<std::size_t>(count), s);
     if (dimension(type.shape) == metadata_->cell_dimension) metadata_->zones[0].cell_count += count;
     Node node = integer_node(name, "Elements_t", {type.number, 0});
-    Node range{.name = "ElementRange", .label = "IndexRange_t"};
-    range.field = bind(*metadata_, {.role = Field::Role::range, .place = s});
-    Node connectivity{.name = "ElementConnectivity", .label = "DataArray_t"};
-    connectivity.field = bind(*metadata_, {.role = Field::Role::connectivity, .place = s});
-    node.children.push_back(std::move(range));
-    node.children.push_back(std::move(connectivity));
+    node.children = {
+        field_node(*metadata_, "ElementRange", "IndexRange_t", {.role = Field::Role::range, .place = s}),
+        field_node(*metadata_, "ElementConnectivity", "DataArray_t",
+                   {.role = Field::Role::connectivity, .place = s})};
     zone.children.push_back(std::move(node));
   }
 
@@ -193,18 +189,11 @@ class MetadataMaker {
 
 // ---- arrays and sets that the file did not have
 
+/// Returns the type in which new values are written.
 std::string type_of_values(const Values& values) {
-  return std::visit(
-      [](const auto& numbers) -> std::string {
-        using Number = typename std::decay_t<decltype(numbers)>::value_type;
-        if constexpr (std::is_same_v<Number, float>) return "R4";
-        if constexpr (std::is_floating_point_v<Number>) return "R8";
-        if constexpr (std::is_integral_v<Number>) {
-          return sizeof(Number) < 4 || std::is_same_v<Number, std::int32_t> ? "I4" : "I8";
-        }
-        return {};
-      },
-      values);
+  // in the order of Values
+  constexpr std::array kTypes{"R8", "R4", "I4", "I4", "I4", "I4", "I4", "I8", "I8", "I8"};
+  return kTypes.at(values.index());
 }
 
 /// Returns the suffix that turns the name of an array into the name of one of its components.
@@ -227,12 +216,15 @@ std::string_view location_name(int dimension, int cell_dimension) {
 
 class Addition {
  public:
-  Addition(const Mesh& mesh, CgnsMetadata& metadata, Notes& notes)
-      : mesh_(mesh), metadata_(metadata), notes_(notes), tree_(*metadata.tree) {
-    for (Node& base : tree_.root.children) {
-      if (base.label != "CGNSBase_t") continue;
-      for (const Zone& zone : metadata_.zones) zones_.push_back(base.child(zone.name));
-    }
+  Addition(const Mesh& mesh, CgnsMetadata& metadata, const Numbering& numbering, Notes& notes)
+      : mesh_(mesh),
+        metadata_(metadata),
+        numbering_(numbering),
+        notes_(notes),
+        tree_(*metadata.tree),
+        base_(*tree_.root.child_of_label("CGNSBase_t")) {
+    for (const Zone& zone : metadata_.zones) zones_.push_back(base_.child(zone.name));
+    for (const Node& child : base_.children) names_in_base_.insert(child.name);
   }
 
   void add() {
@@ -244,7 +236,7 @@ class Addition {
     if (metadata_.has_labels) known.insert({Association::cells, std::string(kLabel)});
     for (const DataArray& array : mesh_.data) {
       if (known.contains({array.association, array.name})) continue;
-      if (type_of_values(array.values).empty()) {
+      if (are_texts(array.values)) {
         note_array_unsupported(array, "CGNS", notes_);
       } else {
         add_array(array);
@@ -257,24 +249,11 @@ class Addition {
     for (const EntitySet& set : mesh_.sets) {
       if (!known_sets.contains({set.association, set.name})) add_set(set);
     }
-    for (Node& base : tree_.root.children) {
-      if (base.label != "CGNSBase_t") continue;
-      std::set<std::string> names;
-      for (const Node& child : base.children) names.insert(child.name);
-      for (Node& family : families_) {
-        if (names.insert(family.name).second) base.children.push_back(std::move(family));
-      }
-    }
+    std::move(families_.begin(), families_.end(), std::back_inserter(base_.children));
     metadata_.tree = std::make_shared<const Tree>(std::move(tree_));
   }
 
  private:
-  [[nodiscard]] int zone_of(Association association, Index position) const {
-    if (association == Association::cells)
-      return metadata_.sections[metadata_.section_of_cell[position]].zone;
-    return metadata_.zone_of(position);
-  }
-
   /// Returns the names of the children of `parent`: a zone, or a node in it or in one of its sections.
   NodeNames& names_below(const Node& parent, int zone, int section = -1) {
     const std::string path = &parent == zones_[zone] ? fmt::format("{}", zone)
@@ -282,31 +261,9 @@ class Addition {
     return names_.try_emplace(path, parent).first->second;
   }
 
-  [[nodiscard]] int dimension_of(Index cell) const { return dimension(mesh_.cells.shapes[cell]); }
-
-  /// Divides the members by zone and by the dimension of the cells (0 for vertices).
-  [[nodiscard]] std::map<std::pair<int, int>, std::vector<Index>> parts_of(
-      Association association, const std::vector<Index>& members) const {
-    std::map<std::pair<int, int>, std::vector<Index>> parts;
-    for (const Index member : members) {
-      const int dimension = association == Association::cells ? dimension_of(member) : 0;
-      parts[{zone_of(association, member), dimension}].push_back(member);
-    }
-    return parts;
-  }
-
-  /// Returns the number of vertices of a zone, or of its cells of the base's dimension.
-  [[nodiscard]] Index full_count(Association association, int zone) {
-    if (full_counts_.empty()) {
-      for (const Association of : {Association::vertices, Association::cells}) {
-        const Index count = of == Association::vertices ? mesh_.vertex_count() : mesh_.cell_count();
-        for (Index i = 0; i < count; ++i) {
-          if (of == Association::cells && dimension_of(i) != metadata_.cell_dimension) continue;
-          ++full_counts_[{of, zone_of(of, i)}];
-        }
-      }
-    }
-    return full_counts_[{association, zone}];
+  /// Returns the dimension of a cell, 0 for a vertex.
+  [[nodiscard]] int dimension_of(Association association, Index position) const {
+    return association == Association::cells ? dimension(mesh_.cells.shapes[position]) : 0;
   }
 
   // ---- arrays
@@ -317,21 +274,20 @@ class Addition {
           "the array '{0}' of {1} components is written as the data '{0}{2}' to '{0}{3}'", array.name,
           array.components, suffix_of(array, 0), suffix_of(array, array.components - 1)));
     }
-    const bool on_vertices = array.association == Association::vertices;
-    const auto parts =
-        parts_of(array.association,
-                 array.is_dense() ? index_range(0, on_vertices ? mesh_.vertex_count() : mesh_.cell_count())
-                                  : array.indices);
+    std::map<std::pair<int, int>, std::vector<Index>> parts;  // by zone and dimension
+    for (Index row = 0; row < row_count(array); ++row) {
+      const Index item = array.is_dense() ? row : array.indices[row];
+      parts[{metadata_.zone_of(array.association, item), dimension_of(array.association, item)}].push_back(
+          item);
+    }
     for (const auto& [place, members] : parts) {
       const auto [zone, dimension] = place;
-      if (!on_vertices && dimension < metadata_.cell_dimension) {
+      if (array.association == Association::cells && dimension < metadata_.cell_dimension) {
         add_to_sections(array, members);
         continue;
       }
-      const bool is_full = index_size(members) == full_count(array.association, zone);
-      Node& solution =
-          is_full ? full_solution(zone, array.association) : part_solution(zone, array.association, members);
-      add_components(array, solution, {.place = zone, .list = is_full ? -1 : list_of(solution)});
+      Node& solution = solution_on(zone, array.association, members);
+      add_components(array, solution, {.place = zone, .list = list_of(solution)});
     }
   }
 
@@ -339,14 +295,13 @@ class Addition {
   void add_components(const DataArray& array, Node& parent, const Field& rows) {
     NodeNames& names = names_below(parent, rows.place, rows.section);
     for (Index k = 0; k < array.components; ++k) {
-      Node node{.name = names.take(array.name + suffix_of(array, k), notes_), .label = "DataArray_t"};
       Field field = rows;
       field.type = type_of_values(array.values);
       field.array = array.name;
       field.component = k;
       field.association = array.association;
-      node.field = bind(metadata_, std::move(field));
-      parent.children.push_back(std::move(node));
+      parent.children.push_back(field_node(metadata_, names.take(array.name + suffix_of(array, k), notes_),
+                                           "DataArray_t", std::move(field)));
     }
   }
 
@@ -356,7 +311,7 @@ class Addition {
     for (const Index member : members) ++counts[metadata_.section_of_cell[member]];
     for (const auto& [s, count] : counts) {
       const Section& section = metadata_.sections[s];
-      if (count != section_count(s)) {
+      if (count != index_size(numbering_.cells_of(s))) {
         notes_.push_back(
             fmt::format("{} values of the array '{}' are not written: CGNS has no place for values on a part "
                         "of a boundary",
@@ -371,18 +326,10 @@ class Addition {
     }
   }
 
-  /// Returns the present number of cells of a section.
-  [[nodiscard]] Index section_count(int s) {
-    if (section_counts_.empty()) {
-      section_counts_.resize(metadata_.sections.size());
-      for (const Index of_cell : metadata_.section_of_cell) ++section_counts_[of_cell];
-    }
-    return section_counts_[s];
-  }
-
+  /// Returns the list of a solution, −1 if it is on a whole zone.
   [[nodiscard]] int list_of(const Node& solution) const {
     const Node* const list = solution.child("PointList");
-    return metadata_.fields[static_cast<std::size_t>(list->field)].place;
+    return list == nullptr ? -1 : metadata_.fields[list->field].place;
   }
 
   Node& new_node(int zone, const std::string& name, const std::string& label) {
@@ -392,41 +339,33 @@ class Addition {
     return zones_[zone]->children.back();
   }
 
-  /// Returns the solution on all vertices or cells of a zone; adds it at the first call.
-  Node& full_solution(int zone, Association association) {
-    const bool on_vertices = association == Association::vertices;
-    std::string& name = full_solutions_[{zone, association}];
-    if (name.empty()) {
-      Node& node = new_node(zone, on_vertices ? "VertexSolution" : "CellSolution", "FlowSolution_t");
-      node.children.push_back(
-          text_node("GridLocation", "GridLocation_t", on_vertices ? "Vertex" : "CellCenter"));
-      name = node.name;
-    }
-    return *zones_[zone]->child(name);
-  }
-
   Node list_node(int zone, Association association, std::vector<Index> members, std::string set) {
-    Node node{.name = "PointList", .label = "IndexArray_t"};
-    node.field = bind(metadata_, {.role = Field::Role::list,
-                                  .place = static_cast<int>(metadata_.lists.size()),
-                                  .association = association});
     metadata_.lists.push_back(
         {.zone = zone, .association = association, .members = std::move(members), .set = std::move(set)});
-    return node;
+    return field_node(
+        metadata_, "PointList", "IndexArray_t",
+        {.role = Field::Role::list, .place = index_size(metadata_.lists) - 1, .association = association});
   }
 
   /// Returns a solution on exactly these vertices or cells of a zone; adds it if there is none.
-  Node& part_solution(int zone, Association association, const std::vector<Index>& members) {
-    const std::string_view location = association == Association::vertices ? "Vertex" : "CellCenter";
-    for (const std::string& name : part_solutions_[zone]) {
-      Node& known = *zones_[zone]->child(name);
-      const PointList& list = metadata_.lists[list_of(known)];
-      if (list.association == association && list.members == members) return known;
+  Node& solution_on(int zone, Association association, const std::vector<Index>& members) {
+    const bool on_vertices = association == Association::vertices;
+    const std::int64_t full = on_vertices ? numbering_.vertex_count(zone) : numbering_.centred_count(zone);
+    const bool is_full = std::ssize(members) == full;
+    std::vector<std::string>& known = solutions_[{zone, association}];
+    for (const std::string& name : known) {
+      Node& solution = *zones_[zone]->child(name);
+      const int list = list_of(solution);
+      if (list < 0 ? is_full : metadata_.lists[list].members == members) return solution;
     }
-    Node& node = new_node(zone, fmt::format("{}Part", location), "FlowSolution_t");
+    const std::string_view location = on_vertices ? "Vertex" : "CellCenter";
+    const std::string name = !is_full      ? fmt::format("{}Part", location)
+                             : on_vertices ? "VertexSolution"
+                                           : "CellSolution";
+    Node& node = new_node(zone, name, "FlowSolution_t");
     node.children.push_back(text_node("GridLocation", "GridLocation_t", location));
-    node.children.push_back(list_node(zone, association, members, ""));
-    part_solutions_[zone].push_back(node.name);
+    if (!is_full) node.children.push_back(list_node(zone, association, members, ""));
+    known.push_back(node.name);
     return node;
   }
 
@@ -436,28 +375,22 @@ class Addition {
     if (set.members.empty()) return note_set_unsupported(set, "CGNS", notes_);
     std::map<int, std::vector<Index>> members_of_zone;
     for (const Index member : set.members)
-      members_of_zone[zone_of(set.association, member)].push_back(member);
+      members_of_zone[metadata_.zone_of(set.association, member)].push_back(member);
     for (auto& [zone, members] : members_of_zone) {
       int highest = 0;
-      if (set.association == Association::cells) {
-        for (const Index member : members) highest = std::max(highest, dimension_of(member));
-      }
+      for (const Index member : members) highest = std::max(highest, dimension_of(set.association, member));
       const bool is_region = set.association == Association::cells && highest == metadata_.cell_dimension;
       Node& parent = is_region ? *zones_[zone] : conditions(zone);
       NodeNames& names = names_below(parent, zone);
-      Node node{.name = names.take(set.name, notes_), .label = "ZoneSubRegion_t"};
-      if (is_region) {
-        node.type = "I4";
-        node = integer_node(node.name, node.label, {metadata_.cell_dimension});
-      } else {
-        node = text_node(node.name, "BC_t", "FamilySpecified");
-      }
-      node.children.push_back(text_node("GridLocation", "GridLocation_t",
-                                        set.association == Association::vertices
+      const std::string name = names.take(set.name, notes_);
+      Node node = is_region ? integer_node(name, "ZoneSubRegion_t", {metadata_.cell_dimension})
+                            : text_node(name, "BC_t", "FamilySpecified");
+      const std::string_view location = set.association == Association::vertices
                                             ? "Vertex"
-                                            : location_name(highest, metadata_.cell_dimension)));
-      node.children.push_back(list_node(zone, set.association, std::move(members), set.name));
-      node.children.push_back(text_node("FamilyName", "FamilyName_t", family_for(node.name)));
+                                            : location_name(highest, metadata_.cell_dimension);
+      node.children = {text_node("GridLocation", "GridLocation_t", location),
+                       list_node(zone, set.association, std::move(members), set.name),
+                       text_node("FamilyName", "FamilyName_t", family_for(name))};
       parent.children.push_back(std::move(node));
     }
   }
@@ -471,7 +404,7 @@ class Addition {
     constexpr std::string_view kEnd = "_family";
     std::string family(is_of_zone ? utf8_prefix(name, kLongestName - kEnd.size()) : name);
     if (is_of_zone) family += kEnd;
-    if (family_names_.insert(family).second) families_.push_back({.name = family, .label = "Family_t"});
+    if (names_in_base_.insert(family).second) families_.push_back({.name = family, .label = "Family_t"});
     return family;
   }
 
@@ -482,16 +415,15 @@ class Addition {
 
   const Mesh& mesh_;
   CgnsMetadata& metadata_;
+  const Numbering& numbering_;
   Notes& notes_;
   Tree tree_;
+  Node& base_;
   std::vector<Node*> zones_;
   std::vector<Node> families_;
-  std::set<std::string> family_names_;
+  std::set<std::string> names_in_base_;
   std::map<std::string, NodeNames> names_;  // names of the children of a node, by the node's path
-  std::map<std::pair<Association, int>, Index> full_counts_;
-  std::vector<Index> section_counts_;
-  std::map<std::pair<int, Association>, std::string> full_solutions_;
-  std::map<int, std::vector<std::string>> part_solutions_;
+  std::map<std::pair<int, Association>, std::vector<std::string>> solutions_;  // names of added solutions
 };
 
 }  // namespace
@@ -502,8 +434,8 @@ std::string name_of_label(const ElementType& type, std::int64_t label) {
 
 std::shared_ptr<CgnsMetadata> layout_of(const Mesh& mesh) { return MetadataMaker(mesh).make(); }
 
-void add_missing(const Mesh& mesh, CgnsMetadata& metadata, Notes& notes) {
-  Addition(mesh, metadata, notes).add();
+void add_missing(const Mesh& mesh, CgnsMetadata& metadata, const Numbering& numbering, Notes& notes) {
+  Addition(mesh, metadata, numbering, notes).add();
 }
 
 }  // namespace meshorder::cgns

@@ -27,19 +27,12 @@ int Reading::bind(Node& node, Field field) {
 }
 
 Values numbers_of(const Node& node) {
-  const auto copied = [&](auto zero) -> Values {
+  if (node.type == "MT" || node.type == "C1") return std::vector<std::string>();
+  return with_number_of_type(node.type, [&](auto zero) -> Values {
     std::vector<decltype(zero)> numbers(node.bytes.size() / sizeof(zero));
     if (!numbers.empty()) std::memcpy(numbers.data(), node.bytes.data(), numbers.size() * sizeof(zero));
     return numbers;
-  };
-  if (node.type == "R8") return copied(double{});
-  if (node.type == "R4") return copied(float{});
-  if (node.type == "I8") return copied(std::int64_t{});
-  if (node.type == "U4") return copied(std::uint32_t{});
-  if (node.type == "U8") return copied(std::uint64_t{});
-  if (node.type == "I4") return copied(std::int32_t{});
-  if (node.type == "B1") return copied(std::uint8_t{});
-  return std::vector<std::string>();
+  });
 }
 
 std::vector<std::int64_t> whole_numbers(const Reading& reading, const Node& node, const std::string& path) {
@@ -233,15 +226,12 @@ class MeshReader {
       }
     }
     PolyhedraReader polyhedra(reading_, zone, found);
-    if (std::any_of(found.begin(), found.end(), has_polyhedra)) {
+    if (std::any_of(found.begin(), found.end(),
+                    [](const FoundSection& one) { return one.section.is_of_polyhedra(); })) {
       if (listed_.empty()) listed_ = listed_elements(reading_);
       polyhedra.read(listed_[z]);
     }
     for (FoundSection& one : found) read_section(zone, one, polyhedra);
-  }
-
-  static bool has_polyhedra(const FoundSection& found) {
-    return found.section.type == kPolygons || found.section.type == kPolyhedra;
   }
 
   void read_section(ZonePlaces& zone, FoundSection& found, PolyhedraReader& polyhedra) {
@@ -256,7 +246,7 @@ class MeshReader {
     }
     const Index first = mesh.cell_count();
     found.section.number_type = connectivity->type;
-    if (has_polyhedra(found)) {
+    if (found.section.is_of_polyhedra()) {
       polyhedra.append_cells(found);
     } else {
       read_elements(zone, found, *connectivity);
@@ -265,7 +255,7 @@ class MeshReader {
     Node* const range = found.node->child("ElementRange");
     reading_.bind(*range, {.role = Field::Role::range, .place = s});
     if (Node* const offsets = found.node->child("ElementStartOffset")) {
-      if (found.section.type == kMixedElements || has_polyhedra(found)) {
+      if (found.section.type == kMixedElements || found.section.is_of_polyhedra()) {
         found.section.offset_type = offsets->type;
         reading_.bind(*offsets, {.role = Field::Role::offsets, .place = s});
       }

@@ -47,6 +47,18 @@ Node integer_node(std::string name, std::string label, const std::vector<std::in
 /// Returns the bytes of one value of a type, 0 for an unknown type.
 std::size_t size_of_type(std::string_view type);
 
+/// Calls `work` with a zero of the C++ type for a type of numbers and returns its result.
+template <class Work>
+auto with_number_of_type(std::string_view type, const Work& work) {
+  if (type == "R4") return work(float{});
+  if (type == "B1") return work(std::uint8_t{});
+  if (type == "I4") return work(std::int32_t{});
+  if (type == "U4") return work(std::uint32_t{});
+  if (type == "I8") return work(std::int64_t{});
+  if (type == "U8") return work(std::uint64_t{});
+  return work(double{});
+}
+
 /// The kind of file that stores the nodes.
 enum class Storage : std::uint8_t { hdf5, adf };
 

@@ -4,7 +4,7 @@
 #include "io/cell_division.hpp"
 #include "io/cgns/cgns.hpp"
 #include "io/cgns/cgns_library.hpp"
-#include "io/cgns/filler.hpp"
+#include "io/cgns/numbering.hpp"
 #include "io/labels.hpp"
 #include "io/named_parts.hpp"
 #include "io/unsupported.hpp"
@@ -16,7 +16,6 @@
 #include <map>
 #include <set>
 #include <string>
-#include <unordered_set>
 #include <utility>
 
 // Chooses the nodes of a file and writes them with the values of the mesh.
@@ -61,6 +60,49 @@ std::vector<Index> unique_members(const std::vector<Index>& members) {
   return result;
 }
 
+/// Returns whether the vertices of a cell are the corners of a polyhedron's faces, each once.
+/// `polyhedron_with`: for each vertex, the last polyhedron that has it as a corner. Call it only once for
+/// each polyhedron.
+bool has_corners_of(Index polyhedron, std::span<const Index> cell, const CgnsMetadata& metadata,
+                    std::vector<Index>& polyhedron_with) {
+  std::size_t corners = 0;
+  for (const Index face : metadata.polyhedra->faces_of(polyhedron)) {
+    for (const Index corner : metadata.polyhedra->corners_of(Polyhedra::polygon_of(face))) {
+      if (std::exchange(polyhedron_with[metadata.vertex_at(corner)], polyhedron) != polyhedron) ++corners;
+    }
+  }
+  if (cell.size() != corners) return false;
+  return std::all_of(cell.begin(), cell.end(),
+                     [&](Index vertex) { return std::exchange(polyhedron_with[vertex], -1) == polyhedron; });
+}
+
+/// Returns whether the polygons and polyhedra of the metadata are cells of the mesh with the same vertices.
+/// O(size of the mesh).
+bool polyhedra_fit(const Mesh& mesh, const CgnsMetadata& metadata) {
+  if (metadata.polyhedra == nullptr) return true;
+  Index cells = 0;
+  for (Index p = 0; p < index_size(metadata.cell_of_polygon); ++p) {
+    const Index c = metadata.cell_of_polygon[p];
+    if (c < 0) continue;
+    ++cells;
+    if (!std::ranges::equal(mesh.cells[c], metadata.polyhedra->corners_of(p), {}, {},
+                            [&](Index corner) { return metadata.vertex_at(corner); })) {
+      return false;
+    }
+  }
+  std::vector<Index> polyhedron_with(mesh.points.size(), -1);
+  for (Index p = 0; p < index_size(metadata.cell_of_polyhedron); ++p) {
+    const Index c = metadata.cell_of_polyhedron[p];
+    if (c < 0) continue;
+    ++cells;
+    if (dimension(mesh.cells.shapes[c]) < 3 || !has_corners_of(p, mesh.cells[c], metadata, polyhedron_with)) {
+      return false;
+    }
+  }
+  return cells == std::count_if(metadata.section_of_cell.begin(), metadata.section_of_cell.end(),
+                                [&](Index s) { return metadata.sections[s].is_of_polyhedra(); });
+}
+
 /// Returns whether the vertices, the cells and their types still agree with the metadata.
 bool still_fits(const Mesh& mesh, const CgnsMetadata& metadata) {
   if (index_size(metadata.section_of_cell) != mesh.cell_count()) return false;
@@ -96,67 +138,37 @@ void take_sets(const Mesh& mesh, CgnsMetadata& metadata) {
     // only members of the list's zone: a condition belongs to one zone
     list.members.clear();
     for (const Index member : set->members) {
-      const Index zone = list.association == Association::cells
-                             ? metadata.sections[metadata.section_of_cell[member]].zone
-                             : metadata.zone_of(member);
-      if (zone == list.zone) list.members.push_back(member);
+      if (metadata.zone_of(list.association, member) == list.zone) list.members.push_back(member);
     }
     list.is_shortened = true;
   }
 }
 
-/// The fields with the values of an array, and the vertices or cells that they cover.
-class ArrayFields {
- public:
-  explicit ArrayFields(const CgnsMetadata& metadata) : metadata_(metadata) {}
-
-  void add(const Field& field) {
-    if (field.section >= 0) {
-      sections_.insert(field.section);
-    } else if (field.list >= 0) {
-      const std::vector<Index>& members = metadata_.lists[field.list].members;
-      listed_.insert(members.begin(), members.end());
-    } else {
-      zones_.insert(field.place);
-    }
+/// Returns whether an array has one number in each row, and these fields have a place for each row.
+bool fits(const DataArray& array, const std::vector<const Field*>& fields, const Mesh& mesh,
+          const Numbering& numbering) {
+  if (array.components != 1 || are_texts(array.values)) return false;
+  std::vector<bool> has_place(item_count(mesh, array.association));
+  for (const Field* const field : fields) {
+    for (const Index item : numbering.rows_of(*field)) has_place[item] = true;
   }
-
-  /// Returns whether there is a place for each row of an array. O(rows · log fields).
-  [[nodiscard]] bool hold(const Mesh& mesh, const DataArray& array) const {
-    if (array.components != 1 || are_texts(array.values)) return false;
-    for (Index row = 0; row < row_count(array); ++row) {
-      if (!has_place(mesh, array.association, array.is_dense() ? row : array.indices[row])) return false;
-    }
-    return true;
-  }
-
- private:
-  [[nodiscard]] bool has_place(const Mesh& mesh, Association association, Index item) const {
-    if (listed_.contains(item)) return true;
-    if (association == Association::vertices) return zones_.contains(metadata_.zone_of(item));
-    const int s = metadata_.section_of_cell[item];
-    return sections_.contains(s) || (zones_.contains(metadata_.sections[s].zone) &&
-                                     dimension(mesh.cells.shapes[item]) == metadata_.cell_dimension);
-  }
-
-  const CgnsMetadata& metadata_;
-  std::set<int> zones_;
-  std::set<int> sections_;
-  std::unordered_set<Index> listed_;
-};
+  const auto has_value = [&](Index item) { return has_place[item]; };
+  return array.is_dense() ? std::find(has_place.begin(), has_place.end(), false) == has_place.end()
+                          : std::all_of(array.indices.begin(), array.indices.end(), has_value);
+}
 
 /// Releases the fields of each array that no longer fits into its fields.
-void release_arrays(const Mesh& mesh, CgnsMetadata& metadata) {
-  std::map<std::pair<Association, std::string>, ArrayFields> by_array;
+void release_arrays(const Mesh& mesh, CgnsMetadata& metadata, const Numbering& numbering) {
+  std::map<std::pair<Association, std::string>, std::vector<const Field*>> by_array;
   for (const Field& field : metadata.fields) {
     if (field.role != Field::Role::values || field.has_left) continue;
-    by_array.try_emplace({field.association, field.array}, metadata).first->second.add(field);
+    by_array[{field.association, field.array}].push_back(&field);
   }
   const NamedParts parts(mesh);
   std::set<std::pair<Association, std::string>> released;
   for (const auto& [key, fields] : by_array) {
     const DataArray* const array = parts.array(key.second, key.first);
-    if (array != nullptr && !fields.hold(mesh, *array)) released.insert(key);
+    if (array != nullptr && !fits(*array, fields, mesh, numbering)) released.insert(key);
   }
   for (Field& field : metadata.fields) {
     if (released.contains({field.association, field.array})) field.has_left = true;
@@ -167,8 +179,8 @@ void release_arrays(const Mesh& mesh, CgnsMetadata& metadata) {
 /// members, and arrays that are gone. Also removes data in the order of a list that changed, with a note.
 class Pruner {
  public:
-  Pruner(const CgnsMetadata& metadata, const Filler& filler, Notes& notes)
-      : metadata_(metadata), filler_(filler), notes_(notes) {}
+  Pruner(const Mesh& mesh, const CgnsMetadata& metadata, const Numbering& numbering, Notes& notes)
+      : mesh_(mesh), metadata_(metadata), numbering_(numbering), notes_(notes) {}
 
   void prune(Node& node) const {
     if (node.label == "Zone_t") prune_regions(node);
@@ -225,8 +237,21 @@ class Pruner {
     return {};
   }
 
+  /// Returns whether a node has a field with nothing to write: an empty section or list, or an array that is
+  /// gone or no longer fits.
   [[nodiscard]] bool has_gone_field(const Node& node) const {
-    return node.field >= 0 && filler_.is_gone(metadata_.fields[static_cast<std::size_t>(node.field)]);
+    if (node.field < 0) return false;
+    const Field& field = metadata_.fields[node.field];
+    switch (field.role) {
+      case Field::Role::connectivity:
+        return numbering_.elements_of(field.place).empty();
+      case Field::Role::values:
+        return field.has_left || find_array(mesh_, field.array, field.association) == nullptr;
+      case Field::Role::list:
+        return metadata_.lists[field.place].members.empty();
+      default:
+        return false;
+    }
   }
 
   [[nodiscard]] bool is_gone(const Node& node) const {
@@ -247,8 +272,9 @@ class Pruner {
     return nullptr;
   }
 
+  const Mesh& mesh_;
   const CgnsMetadata& metadata_;
-  const Filler& filler_;
+  const Numbering& numbering_;
   Notes& notes_;
 };
 
@@ -307,24 +333,24 @@ void write(const Mesh& mesh, const FilePath& path, Notes& notes) {
   std::shared_ptr<CgnsMetadata> metadata;
   if (own != nullptr && still_fits(mesh, *own)) {
     metadata = std::make_shared<CgnsMetadata>(*own);
-    take_sets(mesh, *metadata);
-    release_arrays(mesh, *metadata);
   } else {
     metadata = layout_of(mesh);
     note_metadata_unsupported(mesh, "CGNS", notes);
     note_number_markers(mesh, "labels of their sections, without boundary conditions", notes);
   }
-  add_missing(mesh, *metadata, notes);
+  const Numbering numbering(mesh, *metadata);
+  take_sets(mesh, *metadata);
+  release_arrays(mesh, *metadata, numbering);
+  add_missing(mesh, *metadata, numbering, notes);
   note_ids_unsupported(mesh, "CGNS", notes);
-  Filler filler(mesh, *metadata);
-  if (!filler.has_vertices_in_order()) {
+  if (!std::is_sorted(metadata->zone_of_vertex.begin(), metadata->zone_of_vertex.end())) {
     notes.push_back(
         "the vertices are written zone by zone; positions in the file differ from the maps; --group-by zone "
         "keeps zones together");
   }
   Tree tree = *metadata->tree;
-  Pruner(*metadata, filler, notes).prune(tree.root);
-  write_tree(tree, path, [&](Node& node) { filler.fill(node); });
+  Pruner(mesh, *metadata, numbering, notes).prune(tree.root);
+  write_tree(tree, path, [&](Node& node) { fill(node, mesh, *metadata, numbering); });
 }
 
 }  // namespace meshorder::cgns
