@@ -75,28 +75,25 @@ class AttachmentReader {
 
   /// Returns the cell of an element number in a zone, −1 if the number has no cell.
   [[nodiscard]] Index cell_of(const ZonePlaces& of_zone, std::int64_t number) const {
+    const auto begin = metadata_.sections.begin() + of_zone.first_section;
     const auto after =
-        std::upper_bound(of_zone.sections.begin(), of_zone.sections.end(), number,
-                         [&](std::int64_t wanted, int s) { return wanted < metadata_.sections[s].first; });
-    if (after == of_zone.sections.begin()) return -1;
-    const auto k = static_cast<std::size_t>(after - of_zone.sections.begin()) - 1;
-    const Section& section = metadata_.sections[of_zone.sections[k]];
+        std::upper_bound(begin, begin + of_zone.section_count, number,
+                         [](std::int64_t wanted, const Section& section) { return wanted < section.first; });
+    if (after == begin) return -1;
+    const Section& section = *(after - 1);
     const std::int64_t place = number - section.first;
     if (place >= section.count) return -1;
     if (section.type == kPolygons) {
       return metadata_.cell_of_polygon[section.first_item + static_cast<Index>(place)];
     }
-    return of_zone.first_cells[k] + static_cast<Index>(place);
+    return reading_.cells_of_section[after - 1 - metadata_.sections.begin()].first +
+           static_cast<Index>(place);
   }
 
   [[nodiscard]] Index position_of(const ZonePlaces& of_zone, Association association, std::int64_t number,
                                   const std::string& path) const {
     if (association == Association::vertices) {
-      if (number < 1 || number > of_zone.vertices) {
-        reading_.fail(path, fmt::format("vertex {} does not exist", number),
-                      fmt::format("the vertices are 1 to {}", of_zone.vertices));
-      }
-      return of_zone.first_vertex + static_cast<Index>(number) - 1;
+      return reading_.vertex_of(number, of_zone, [&] { return path; });
     }
     const Index cell = cell_of(of_zone, number);
     if (cell < 0) {
@@ -114,27 +111,25 @@ class AttachmentReader {
     list.is_range = node.label == "IndexRange_t";
     list.number_type = node.type;
     const std::vector<std::int64_t> numbers = whole_numbers(reading_, node, path);
-    if (list.is_range) {
-      if (numbers.size() != 2 || numbers[0] > numbers[1]) {
-        reading_.fail(path, "is not a range of two numbers", "a zone without structure has one index");
-      }
-      (void)position_of(owner, association, numbers[0], path);
-      (void)position_of(owner, association, numbers[1], path);
-      const std::size_t total = association == Association::vertices ? reading_.mesh.points.size()
-                                                                     : reading_.mesh.cells.shapes.size();
-      if (static_cast<std::uint64_t>(numbers[1] - numbers[0]) >= total) {
-        reading_.fail(path, "has more numbers than there are elements", "the file may be damaged");
-      }
-      claim_memory(2 * sizeof(Index) * (static_cast<std::uint64_t>(numbers[1] - numbers[0]) + 1), path);
-      for (std::int64_t number = numbers[0]; number <= numbers[1]; ++number) {
-        list.members.push_back(position_of(owner, association, number, path));
-      }
-    } else {
+    const auto add = [&](std::int64_t number) {
+      list.members.push_back(position_of(owner, association, number, path));
+    };
+    if (!list.is_range) {
       list.members.reserve(numbers.size());
-      for (const std::int64_t number : numbers) {
-        list.members.push_back(position_of(owner, association, number, path));
-      }
+      for (const std::int64_t number : numbers) add(number);
+      return list;
     }
+    if (numbers.size() != 2 || numbers[0] > numbers[1]) {
+      reading_.fail(path, "is not a range of two numbers", "a zone without structure has one index");
+    }
+    (void)position_of(owner, association, numbers[0], path);
+    (void)position_of(owner, association, numbers[1], path);
+    const std::int64_t after_first = numbers[1] - numbers[0];
+    if (after_first >= item_count(reading_.mesh, association)) {
+      reading_.fail(path, "has more numbers than there are elements");
+    }
+    claim_memory(2 * sizeof(Index) * (static_cast<std::uint64_t>(after_first) + 1), path);
+    for (std::int64_t number = numbers[0]; number <= numbers[1]; ++number) add(number);
     return list;
   }
 
@@ -160,7 +155,7 @@ class AttachmentReader {
     } else if (node.label == "ZoneGridConnectivity_t") {
       for (Node& child : node.children) read_connection(child, path + "/" + child.name);
     } else if (node.label == "Elements_t") {
-      read_parents(node, path);
+      read_section(node, path);
     } else if (is_one_of(node.label, kContainers)) {
       read_container(node, path);
     } else if (node.label == "UserDefinedData_t") {
@@ -175,7 +170,7 @@ class AttachmentReader {
     for (Node& child : node.children) {
       const bool of_elements = child.name == "ElementList" || child.name == "ElementRange";
       if (!of_elements && child.name != "PointList" && child.name != "PointRange") continue;
-      if (place >= 0) reading_.fail(path, "has two lists of points", "the file may be damaged");
+      if (place >= 0) reading_.fail(path, "has two lists of points");
       place =
           read_list(child, zone_, of_elements ? Association::cells : association, path + "/" + child.name);
     }
@@ -257,9 +252,8 @@ class AttachmentReader {
       return;
     }
     if (node.size() != rows->size()) {
-      reading_.fail(path,
-                    fmt::format("has {} values for {} {}", node.size(), rows->size(), to_string(association)),
-                    "the file may be damaged");
+      reading_.fail(
+          path, fmt::format("has {} values for {} {}", node.size(), rows->size(), to_string(association)));
     }
     const int field = reading_.bind(node, {.role = Field::Role::values,
                                            .place = zone_,
@@ -348,53 +342,43 @@ class AttachmentReader {
   }
 
   [[nodiscard]] int donor(const Node& node, const std::string& path) const {
-    std::string name = node.text();
-    if (const std::size_t slash = name.rfind('/'); slash != std::string::npos) name.erase(0, slash + 1);
-    for (std::size_t z = 0; z < metadata_.zones.size(); ++z) {
-      if (metadata_.zones[z].name == name) return static_cast<int>(z);
-    }
+    if (const int zone = reading_.zone_named(node.text()); zone >= 0) return zone;
     reading_.fail(path, "names the zone '" + node.text() + "', which does not exist",
                   "the donor is a zone of this file");
   }
 
-  // ---- parents of faces
+  // ---- values, labels and parents of the cells of a section
 
-  void read_parents(Node& node, const std::string& path) {
-    if (const Node* const label = node.child(kSectionLabel)) read_label(node, *label);
-    if (Node* const values = node.child(kSectionValues)) read_section_values(node, *values, path);
+  void read_section(Node& node, const std::string& path) {
+    int s = zone().first_section;
+    while (metadata_.sections[s].name != node.name) ++s;
+    if (const Node* const label = node.child(kSectionLabel)) read_label(s, *label, path);
+    if (Node* const values = node.child(kSectionValues)) read_section_values(s, *values, path);
     for (Node& child : node.children) {
-      if (child.name != "ParentElements" && child.name != "ParentElementsPosition" &&
-          child.name != "ParentData")
-        continue;
-      const ZonePlaces& owner = zone();
-      const auto section = std::find_if(owner.sections.begin(), owner.sections.end(),
-                                        [&](int s) { return metadata_.sections[s].name == node.name; });
-      if (section == owner.sections.end()) return;
-      const Index first = owner.first_cells[static_cast<std::size_t>(section - owner.sections.begin())];
-      read_parents_of(child, *section, first, path + "/" + child.name);
+      if (child.name == "ParentElements" || child.name == "ParentElementsPosition" ||
+          child.name == "ParentData") {
+        read_parents(child, s, path + "/" + child.name);
+      }
     }
   }
 
   /// Reads values of the cells of a section, as `kSectionValues` describes.
-  void read_section_values(const Node& node, Node& values, const std::string& path) {
-    const ZonePlaces& owner = zone();
-    for (std::size_t k = 0; k < owner.sections.size(); ++k) {
-      const int s = owner.sections[k];
-      if (metadata_.sections[s].name != node.name || values.label != "UserDefinedData_t") continue;
-      const auto shared =
-          std::make_shared<const std::vector<Index>>(index_range(owner.first_cells[k], owner.cell_counts[k]));
-      for (Node& child : values.children) {
-        if (child.label != "DataArray_t") continue;
-        if (metadata_.sections[s].type == kPolygons && child.size() != shared->size()) {
-          reading_.notes.push_back(
-              fmt::format("'{}/{}/{}' is kept as it is: it has {} values for {} polygons of a boundary", path,
-                          values.name, child.name, child.size(), shared->size()));
-          continue;
-        }
-        const std::size_t before = metadata_.fields.size();
-        read_values(child, node.name, Association::cells, shared, -1, path + "/" + child.name);
-        if (metadata_.fields.size() > before) metadata_.fields.back().section = s;
+  void read_section_values(int s, Node& values, const std::string& path) {
+    if (values.label != "UserDefinedData_t") return;
+    const Section& section = metadata_.sections[s];
+    const auto [first, count] = reading_.cells_of_section[s];
+    const auto rows = std::make_shared<const std::vector<Index>>(index_range(first, count));
+    for (Node& child : values.children) {
+      if (child.label != "DataArray_t") continue;
+      if (section.type == kPolygons && child.size() != rows->size()) {
+        reading_.notes.push_back(
+            fmt::format("'{}/{}/{}' is kept as it is: it has {} values for {} polygons of a boundary", path,
+                        values.name, child.name, child.size(), count));
+        continue;
       }
+      const std::size_t before = metadata_.fields.size();
+      read_values(child, section.name, Association::cells, rows, -1, path + "/" + child.name);
+      if (metadata_.fields.size() > before) metadata_.fields.back().section = s;
     }
   }
 
@@ -410,7 +394,7 @@ class AttachmentReader {
     });
     if (wrong == numbers.end()) return 0;
     std::vector<const Section*> polyhedra;
-    for (const int s : zone().sections) {
+    for (int s = zone().first_section; s < zone().first_section + zone().section_count; ++s) {
       if (metadata_.sections[s].type == kPolyhedra) polyhedra.push_back(&metadata_.sections[s]);
     }
     const bool from_one =
@@ -424,18 +408,18 @@ class AttachmentReader {
     return polyhedra.front()->first - 1;
   }
 
-  void read_parents_of(Node& node, int section, Index first, const std::string& path) {
+  void read_parents(Node& node, int s, const std::string& path) {
     const std::vector<std::int64_t> values = whole_numbers(reading_, node, path);
-    const auto count = static_cast<std::size_t>(metadata_.sections[section].count);
-    Parents parents{.section = section, .columns = node.name == "ParentData" ? 4U : 2U};
+    const Section& section = metadata_.sections[s];
+    const auto count = static_cast<std::size_t>(section.count);
+    Parents parents{.section = s, .columns = node.name == "ParentData" ? 4U : 2U};
     if (values.size() != parents.columns * count) {
-      reading_.fail(path, fmt::format("has {} values for {} elements", values.size(), count),
-                    "the file may be damaged");
+      reading_.fail(path, fmt::format("has {} values for {} elements", values.size(), count));
     }
     parents.number_type = node.type;
-    parents.of_polygons = metadata_.sections[section].type == kPolygons;
-    parents.rows = index_range(parents.of_polygons ? metadata_.sections[section].first_item : first,
-                               metadata_.sections[section].count);
+    parents.of_polygons = section.type == kPolygons;
+    parents.rows = index_range(parents.of_polygons ? section.first_item : reading_.cells_of_section[s].first,
+                               section.count);
     std::size_t column = 0;
     if (node.name != "ParentElementsPosition") {
       constexpr std::size_t kParents = 2;
@@ -454,24 +438,17 @@ class AttachmentReader {
     reading_.bind(node, {.role = Field::Role::parents, .place = place});
   }
 
-  // ---- labels of sections
-
-  void read_label(const Node& node, const Node& label) {
+  void read_label(int s, const Node& label, const std::string& path) {
     const Node* const value = label.child("Value");
     if (label.label != "UserDefinedData_t" || value == nullptr) return;
-    const std::vector<std::int64_t> numbers = whole_numbers(reading_, *value, zone().path + "/" + node.name);
+    const std::vector<std::int64_t> numbers = whole_numbers(reading_, *value, path);
     if (numbers.size() != 1) return;
-    for (std::size_t k = 0; k < zone().sections.size(); ++k) {
-      const Section& section = metadata_.sections[zone().sections[k]];
-      if (section.name != node.name) continue;
-      labels_.resize(reading_.mesh.cells.shapes.size(), 0);
-      const auto first = labels_.begin() + zone().first_cells[k];
-      std::fill(first, first + zone().cell_counts[k], numbers.front());
-      const ElementType* const type = element_type(section.type);
-      if (type != nullptr && section.name == name_of_label(*type, numbers.front())) {
-        label_sections_.insert(zone().sections[k]);
-      }
-    }
+    labels_.resize(reading_.mesh.cells.shapes.size(), 0);
+    const auto [first, count] = reading_.cells_of_section[s];
+    std::fill_n(labels_.begin() + first, count, numbers.front());
+    const Section& section = metadata_.sections[s];
+    const ElementType* const type = element_type(section.type);
+    if (type != nullptr && section.name == name_of_label(*type, numbers.front())) label_sections_.insert(s);
   }
 
   // ---- times
@@ -507,16 +484,8 @@ class AttachmentReader {
     const std::string name = numbers_.free_name(
         wanted, [&](int k) { return fmt::format("{} {}", wanted, k); },
         [&](const std::string& free) { return names.insert(free).second; });
-    EntitySet set{name, list.association, {}};
-    std::vector<bool> taken(list.association == Association::vertices ? reading_.mesh.points.size()
-                                                                      : reading_.mesh.cells.shapes.size());
-    for (const Index member : list.members) {
-      if (taken[member]) continue;
-      taken[member] = true;
-      set.members.push_back(member);
-    }
     list.set = name;
-    reading_.mesh.sets.push_back(std::move(set));
+    reading_.mesh.sets.push_back({name, list.association, unique_members(list.members)});
   }
 
   /// Makes a set of each boundary section whose cells are not all in sets: some programs name boundaries by
@@ -529,23 +498,20 @@ class AttachmentReader {
       if (set.association == Association::vertices) continue;
       for (const Index member : set.members) is_named[member] = true;
     }
-    for (const ZonePlaces& owner : reading_.zones) {
-      for (std::size_t k = 0; k < owner.sections.size(); ++k) {
-        const Section& section = metadata_.sections[owner.sections[k]];
-        const Index first = owner.first_cells[k];
-        // a section with polygons between cells is not a boundary
-        if (owner.cell_counts[k] < section.count) continue;
-        const auto begin = is_named.begin() + first;
-        if (std::all_of(begin, begin + section.count, [](bool named) { return named; }) ||
-            dimension(reading_.mesh.cells.shapes[first]) == metadata_.cell_dimension ||
-            label_sections_.contains(owner.sections[k])) {
-          continue;
-        }
-        PointList list{.zone = section.zone, .association = Association::cells};
-        list.members = index_range(first, section.count);
-        add_set(list, section.name, names);
-        metadata_.lists.push_back(std::move(list));
+    for (int s = 0; s < index_size(metadata_.sections); ++s) {
+      const Section& section = metadata_.sections[s];
+      const auto [first, count] = reading_.cells_of_section[s];
+      // a section with polygons between cells is not a boundary
+      if (count < section.count || label_sections_.contains(s) ||
+          dimension(reading_.mesh.cells.shapes[first]) == metadata_.cell_dimension) {
+        continue;
       }
+      const auto begin = is_named.begin() + first;
+      if (std::find(begin, begin + count, false) == begin + count) continue;
+      PointList list{.zone = section.zone, .association = Association::cells};
+      list.members = index_range(first, count);
+      add_set(list, section.name, names);
+      metadata_.lists.push_back(std::move(list));
     }
     if (labels_.empty()) return;
     metadata_.has_labels = true;
@@ -600,6 +566,18 @@ Association location_of(const Node& node, Association inherited) {
   const Node* const location = node.child_of_label("GridLocation_t");
   if (location == nullptr) return inherited;
   return is_one_of(location->text(), kVertexLocations) ? Association::vertices : Association::cells;
+}
+
+std::vector<Index> unique_members(const std::vector<Index>& members) {
+  std::vector<Index> sorted = members;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) return members;
+  std::set<Index> seen;
+  std::vector<Index> result;
+  for (const Index member : members) {
+    if (seen.insert(member).second) result.push_back(member);
+  }
+  return result;
 }
 
 void read_attachments(Reading& reading) { AttachmentReader(reading).read(); }

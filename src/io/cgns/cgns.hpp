@@ -197,6 +197,9 @@ std::string name_of_label(const ElementType& type, std::int64_t label);
 /// only hold values of cells of the base's dimension.
 inline constexpr std::string_view kSectionValues = "CellValues";
 
+/// Returns the members in their order, each once.
+std::vector<Index> unique_members(const std::vector<Index>& members);
+
 /// Returns the metadata of a mesh that was read from CGNS, null for other meshes.
 const CgnsMetadata* own_metadata(const Mesh& mesh);
 

@@ -26,6 +26,13 @@ int Reading::bind(Node& node, Field field) {
   return node.field;
 }
 
+int Reading::zone_named(std::string_view path) const {
+  path.remove_prefix(path.rfind('/') + 1);
+  const auto found = std::find_if(metadata->zones.begin(), metadata->zones.end(),
+                                  [&](const Zone& zone) { return zone.name == path; });
+  return found == metadata->zones.end() ? -1 : static_cast<int>(found - metadata->zones.begin());
+}
+
 Values numbers_of(const Node& node) {
   if (node.type == "MT" || node.type == "C1") return std::vector<std::string>();
   return with_number_of_type(node.type, [&](auto zero) -> Values {
@@ -140,15 +147,15 @@ class MeshReader {
     if (grid == nullptr || grid->label != "GridCoordinates_t") {
       reading_.fail(zone.path, "has no coordinates", "a node GridCoordinates is expected");
     }
+    if (std::int64_t{mesh.vertex_count()} + zone.vertices > kMaxIndex) {
+      reading_.fail("", "has more than 2,147,483,647 vertices", "split the mesh");
+    }
     const std::string path = zone.path + "/" + grid->name;
-    std::array<Values, 3> axes;
     for (int k = 0; k < physical_dimension_; ++k) {
       const std::string name = std::string("Coordinate") + "XYZ"[k];
       const std::string axis_path = fmt::format("{}/{}", path, name);
       Node* const axis = grid->child(name);
-      if (axis == nullptr) {
-        reading_.fail(path, "has no " + name, "save the file with Cartesian coordinates");
-      }
+      if (axis == nullptr) reading_.fail(path, "has no " + name, "save the file with Cartesian coordinates");
       if (axis->type != "R4" && axis->type != "R8") {
         reading_.fail(axis_path, "is of the type '" + axis->type + "'", "R4 or R8 is expected");
       }
@@ -156,24 +163,12 @@ class MeshReader {
         reading_.fail(axis_path, fmt::format("has {} values for {} vertices", axis->size(), zone.vertices),
                       "ghost vertices (Rind_t) are not understood");
       }
-      axes.at(static_cast<std::size_t>(k)) = numbers_of(*axis);
+      mesh.points.resize(zone.first_vertex + axis->size(), Point{0, 0, 0});
+      with_numbers(numbers_of(*axis), [&](const auto& values) {
+        Point* const points = mesh.points.data() + zone.first_vertex;
+        for (std::size_t v = 0; v < values.size(); ++v) points[v][k] = static_cast<double>(values[v]);
+      });
       reading_.bind(*axis, {.role = Field::Role::coordinate, .place = z, .axis = k, .type = axis->type});
-    }
-    if (std::int64_t{mesh.vertex_count()} + zone.vertices > kMaxIndex) {
-      reading_.fail("", "has more than 2,147,483,647 vertices", "split the mesh");
-    }
-    mesh.points.resize(mesh.points.size() + static_cast<std::size_t>(zone.vertices), Point{0, 0, 0});
-    for (std::size_t k = 0; k < static_cast<std::size_t>(physical_dimension_); ++k) {
-      std::visit(
-          [&](const auto& values) {
-            using Number = typename std::decay_t<decltype(values)>::value_type;
-            if constexpr (std::is_floating_point_v<Number>) {
-              for (Index v = 0; v < zone.vertices; ++v) {
-                mesh.points[zone.first_vertex + v][k] = double{values[v]};
-              }
-            }
-          },
-          axes.at(k));
     }
     auto& zones = reading_.metadata->zone_of_vertex;
     if (reading_.zones.size() > 1) zones.resize(mesh.points.size(), z);
@@ -189,9 +184,10 @@ class MeshReader {
                                                   : whole_numbers(reading_, *range, path + "/ElementRange");
     if (type.empty() || numbers.size() != 2 || numbers[0] < 1 || numbers[1] < numbers[0] ||
         numbers[1] - numbers[0] >= kMaxIndex) {
-      reading_.fail(path, "does not give its type and the range of its elements", "the file may be damaged");
+      reading_.fail(path, "does not give its type and the range of its elements");
     }
-    FoundSection found{&node, path, {}, numbers[1]};
+    FoundSection found{&node, node.child("ElementConnectivity"), path, {}};
+    if (found.connectivity == nullptr) reading_.fail(path, "has no ElementConnectivity");
     found.section.zone = z;
     found.section.name = node.name;
     found.section.type = static_cast<int>(std::clamp<std::int64_t>(type[0], -1, 1000));
@@ -218,51 +214,49 @@ class MeshReader {
     std::sort(found.begin(), found.end(),
               [](const FoundSection& a, const FoundSection& b) { return a.section.first < b.section.first; });
     for (std::size_t s = 0; s < found.size(); ++s) {
-      if (s > 0 && found[s].section.first <= found[s - 1].last) {
+      if (s > 0 && found[s].section.first <= found[s - 1].last()) {
         reading_.fail(found[s].path,
                       fmt::format("its elements {} to {} have numbers of '{}'", found[s].section.first,
-                                  found[s].last, found[s - 1].section.name),
+                                  found[s].last(), found[s - 1].section.name),
                       "element numbers are unique in a zone");
       }
     }
-    PolyhedraReader polyhedra(reading_, zone, found);
     if (std::any_of(found.begin(), found.end(),
                     [](const FoundSection& one) { return one.section.is_of_polyhedra(); })) {
       if (listed_.empty()) listed_ = listed_elements(reading_);
-      polyhedra.read(listed_[z]);
+      read_polyhedra(reading_, zone, found, listed_[z]);
     }
-    for (FoundSection& one : found) read_section(zone, one, polyhedra);
+    zone.first_section = static_cast<int>(reading_.metadata->sections.size());
+    zone.section_count = static_cast<int>(found.size());
+    for (FoundSection& one : found) read_section(zone, one);
   }
 
-  void read_section(ZonePlaces& zone, FoundSection& found, PolyhedraReader& polyhedra) {
+  void read_section(ZonePlaces& zone, FoundSection& found) {
     Mesh& mesh = reading_.mesh;
     CgnsMetadata& metadata = *reading_.metadata;
     const auto s = static_cast<int>(metadata.sections.size());
-    Node* const connectivity = found.node->child("ElementConnectivity");
-    if (connectivity == nullptr)
-      reading_.fail(found.path, "has no ElementConnectivity", "the file may be damaged");
+    const bool is_of_polyhedra = found.section.is_of_polyhedra();
     if (std::int64_t{mesh.cell_count()} + found.section.count > kMaxIndex) {
       reading_.fail("", "has more than 2,147,483,647 elements", "split the mesh");
     }
     const Index first = mesh.cell_count();
-    found.section.number_type = connectivity->type;
-    if (found.section.is_of_polyhedra()) {
-      polyhedra.append_cells(found);
+    found.section.number_type = found.connectivity->type;
+    if (is_of_polyhedra) {
+      append_cells(reading_, found);
     } else {
-      read_elements(zone, found, *connectivity);
+      const std::string path = found.path + "/ElementConnectivity";
+      with_whole_numbers(reading_, *found.connectivity, path,
+                         [&](const auto& numbers) { add_elements(zone, found, numbers, path); });
     }
-    reading_.bind(*connectivity, {.role = Field::Role::connectivity, .place = s});
-    Node* const range = found.node->child("ElementRange");
-    reading_.bind(*range, {.role = Field::Role::range, .place = s});
+    reading_.bind(*found.connectivity, {.role = Field::Role::connectivity, .place = s});
+    reading_.bind(*found.node->child("ElementRange"), {.role = Field::Role::range, .place = s});
     if (Node* const offsets = found.node->child("ElementStartOffset")) {
-      if (found.section.type == kMixedElements || found.section.is_of_polyhedra()) {
+      if (found.section.type == kMixedElements || is_of_polyhedra) {
         found.section.offset_type = offsets->type;
         reading_.bind(*offsets, {.role = Field::Role::offsets, .place = s});
       }
     }
-    zone.sections.push_back(s);
-    zone.first_cells.push_back(first);
-    zone.cell_counts.push_back(mesh.cell_count() - first);
+    reading_.cells_of_section.push_back({first, mesh.cell_count() - first});
     if (mesh.cell_count() > first) mesh.cell_blocks.push_back(first);
     metadata.section_of_cell.resize(mesh.cells.shapes.size(), s);
     for (Index c = first; c < mesh.cell_count(); ++c) {
@@ -272,86 +266,60 @@ class MeshReader {
   }
 
   /// Appends the cells of a section of standard elements.
-  void read_elements(const ZonePlaces& zone, const FoundSection& found, const Node& connectivity) {
-    const std::string path = found.path + "/ElementConnectivity";
-    const bool is_whole = with_integers(numbers_of(connectivity), [&](const auto& numbers) {
-      if (found.section.type == kMixedElements) {
-        add_mixed(zone, found, numbers, path);
-      } else {
-        add_alike(zone, found, numbers, path);
-      }
-      return true;
-    });
-    if (!is_whole) reading_.fail(path, "does not hold whole numbers", "I4 or I8 is expected");
-  }
-
-  /// Appends a cell, given by its vertex numbers in the order of the file.
   template <class Number>
-  void add_cell(const ZonePlaces& zone, const ElementType& type, const Number* numbers, std::size_t entry,
-                const std::string& path) {
-    const std::span<const int> order = file_order(type.shape, type.nodes);
-    const auto nodes = static_cast<std::size_t>(type.nodes);
-    cell_.resize(nodes);
-    for (std::size_t k = 0; k < nodes; ++k) {
-      const Number number = numbers[order.empty() ? k : static_cast<std::size_t>(order[k])];
-      if (number < 1 || static_cast<std::uint64_t>(number) > static_cast<std::uint64_t>(zone.vertices)) {
-        reading_.fail(fmt::format("{}, element {}", path, entry + 1),
-                      fmt::format("vertex {} does not exist", number),
-                      fmt::format("the vertices are 1 to {}", zone.vertices));
-      }
-      cell_[k] = zone.first_vertex + static_cast<Index>(number) - 1;
-    }
-    reading_.mesh.cells.push_back(type.shape, cell_);
-  }
-
-  template <class Number>
-  void add_alike(const ZonePlaces& zone, const FoundSection& found, const std::vector<Number>& numbers,
-                 const std::string& path) {
-    const ElementType* const type = element_type(found.section.type);
-    if (type == nullptr) {
-      reading_.fail(found.path, fmt::format("has elements of the unknown type {}", found.section.type),
-                    "the types are those of ElementType_t");
-    }
+  void add_elements(const ZonePlaces& zone, const FoundSection& found, const std::vector<Number>& numbers,
+                    const std::string& path) {
+    const bool is_mixed = found.section.type == kMixedElements;
+    const ElementType* type = element_type(found.section.type);
     const auto count = static_cast<std::size_t>(found.section.count);
-    const auto nodes = static_cast<std::size_t>(type->nodes);
-    if (numbers.size() != count * nodes) {
-      reading_.fail(path,
-                    fmt::format("has {} numbers for {} elements of {} nodes", numbers.size(), count, nodes),
-                    "the file may be damaged");
+    if (!is_mixed) {
+      if (type == nullptr) {
+        reading_.fail(found.path, fmt::format("has elements of the unknown type {}", found.section.type),
+                      "the types are those of ElementType_t");
+      }
+      if (numbers.size() != count * static_cast<std::size_t>(type->nodes)) {
+        reading_.fail(path, fmt::format("has {} numbers for {} elements of {} nodes", numbers.size(), count,
+                                        type->nodes));
+      }
+      Cells& cells = reading_.mesh.cells;
+      cells.reserve(static_cast<Offset>(cells.shapes.size() + count),
+                    static_cast<Offset>(cells.vertices.size() + numbers.size()));
     }
-    Cells& cells = reading_.mesh.cells;
-    cells.reserve(static_cast<Offset>(cells.shapes.size() + count),
-                  static_cast<Offset>(cells.vertices.size() + numbers.size()));
-    for (std::size_t e = 0; e < count; ++e) add_cell(zone, *type, numbers.data() + e * nodes, e, path);
-  }
-
-  template <class Number>
-  void add_mixed(const ZonePlaces& zone, const FoundSection& found, const std::vector<Number>& numbers,
-                 const std::string& path) {
-    const auto count = static_cast<std::size_t>(found.section.count);
     std::size_t at = 0;
     for (std::size_t e = 0; e < count; ++e) {
-      if (at >= numbers.size()) {
-        reading_.fail(path, fmt::format("has {} of {} elements", e, count), "the file may be damaged");
+      const auto place = [&] { return fmt::format("{}, element {}", path, e + 1); };
+      if (is_mixed) {
+        if (at >= numbers.size()) reading_.fail(path, fmt::format("has {} of {} elements", e, count));
+        type = element_type(static_cast<std::int64_t>(numbers[at]));
+        if (type == nullptr || element_type_of(type->shape, type->nodes) != type) {
+          reading_.fail(
+              place(), fmt::format("has the unknown type {}", numbers[at]),
+              "the types are those of ElementType_t, polygons and polyhedra in sections of their own");
+        }
+        ++at;
+        if (numbers.size() - at < static_cast<std::size_t>(type->nodes)) {
+          reading_.fail(place(), "has too few nodes");
+        }
       }
-      const ElementType* const type = element_type(static_cast<std::int64_t>(numbers[at]));
-      if (type == nullptr || element_type_of(type->shape, type->nodes) != type) {
-        reading_.fail(
-            fmt::format("{}, element {}", path, e + 1), fmt::format("has the unknown type {}", numbers[at]),
-            "the types are those of ElementType_t, polygons and polyhedra in sections of their own");
-      }
-      if (numbers.size() - at - 1 < static_cast<std::size_t>(type->nodes)) {
-        reading_.fail(fmt::format("{}, element {}", path, e + 1), "has too few nodes",
-                      "the file may be damaged");
-      }
-      add_cell(zone, *type, numbers.data() + at + 1, e, path);
-      at += static_cast<std::size_t>(type->nodes) + 1;
+      add_cell(zone, *type, numbers.data() + at, place);
+      at += static_cast<std::size_t>(type->nodes);
     }
     if (at != numbers.size()) {
       reading_.fail(path,
-                    fmt::format("has {} numbers more than its {} elements need", numbers.size() - at, count),
-                    "the file may be damaged");
+                    fmt::format("has {} numbers more than its {} elements need", numbers.size() - at, count));
     }
+  }
+
+  /// Appends a cell, given by its vertex numbers in the order of the file.
+  template <class Number, class Place>
+  void add_cell(const ZonePlaces& zone, const ElementType& type, const Number* numbers, const Place& place) {
+    const std::span<const int> order = file_order(type.shape, type.nodes);
+    cell_.resize(static_cast<std::size_t>(type.nodes));
+    for (std::size_t k = 0; k < cell_.size(); ++k) {
+      cell_[k] =
+          reading_.vertex_of(numbers[order.empty() ? k : static_cast<std::size_t>(order[k])], zone, place);
+    }
+    reading_.mesh.cells.push_back(type.shape, cell_);
   }
 
   Reading& reading_;

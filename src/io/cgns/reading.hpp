@@ -2,12 +2,15 @@
 #pragma once
 
 #include "io/cgns/cgns.hpp"
+#include "mesh/values.hpp"
+
+#include <fmt/format.h>
 
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,11 +22,9 @@ struct ZonePlaces {
   std::string path;
   Index first_vertex = 0;
   Index vertices = 0;
-  std::vector<int> sections = {};       ///< ascending by their numbers
-  std::vector<Index> first_cells = {};  ///< first cell of each of these sections
-  std::vector<Index> cell_counts = {};  ///< number of cells in the mesh of each of these sections
-  std::vector<Index> centred_cells =
-      {};  ///< cells of the base's dimension, which have values at their centres
+  int first_section = 0;  ///< in the metadata; the sections of a zone ascend by their numbers
+  int section_count = 0;
+  std::vector<Index> centred_cells = {};  ///< of the base's dimension: they have values at their centres
   std::map<std::string, int> steps = {};  ///< time step of solutions and grids, from 1, if there are several
 };
 
@@ -38,13 +39,32 @@ struct Piece {
   int field = 0;
 };
 
+/// Consecutive cells of the mesh.
+struct CellRange {
+  Index first = 0;
+  Index count = 0;
+};
+
 /// A file that is being read, and the results so far.
 struct Reading {
   Reading(const FilePath& path, Notes& warnings) : file(path.string()), notes(warnings) {}
 
-  [[noreturn]] void fail(const std::string& place, const std::string& what, const std::string& remedy) const;
+  [[noreturn]] void fail(const std::string& place, const std::string& what,
+                         const std::string& remedy = "the file may be damaged") const;
   /// Replaces the bytes of a node by a field, and returns the index of the field.
   int bind(Node& node, Field field);
+  /// Returns the vertex with a number in a zone. If there is none, throws InputError with the text of
+  /// `place`.
+  template <class Number, class Place>
+  [[nodiscard]] Index vertex_of(Number number, const ZonePlaces& zone, const Place& place) const {
+    if (number < 1 || std::cmp_greater(number, zone.vertices)) {
+      fail(place(), fmt::format("vertex {} does not exist", number),
+           fmt::format("the vertices are 1 to {}", zone.vertices));
+    }
+    return zone.first_vertex + static_cast<Index>(number) - 1;
+  }
+  /// Returns the zone of that name or path, −1 if there is none.
+  [[nodiscard]] int zone_named(std::string_view path) const;
 
   std::string file;
   Notes& notes;
@@ -52,6 +72,7 @@ struct Reading {
   Tree tree = {};
   std::shared_ptr<CgnsMetadata> metadata = std::make_shared<CgnsMetadata>();
   std::vector<ZonePlaces> zones = {};
+  std::vector<CellRange> cells_of_section = {};
   std::vector<Piece> pieces = {};
   std::shared_ptr<Polyhedra> polyhedra = std::make_shared<Polyhedra>();
 };
@@ -59,9 +80,12 @@ struct Reading {
 /// A section before its cells are in the mesh.
 struct FoundSection {
   Node* node;
+  Node* connectivity;
   std::string path;
   Section section;
-  std::int64_t last = 0;
+
+  /// Returns the number of the last element.
+  [[nodiscard]] std::int64_t last() const { return section.first + section.count - 1; }
 };
 
 /// Returns the values of a node as whole numbers; throws InputError if they are of another type.
@@ -69,6 +93,14 @@ std::vector<std::int64_t> whole_numbers(const Reading& reading, const Node& node
 
 /// Returns the numbers of a node in their own type; an empty vector of strings if it holds no numbers.
 Values numbers_of(const Node& node);
+
+/// Calls `work` with the numbers of a node in their own type; throws InputError unless they are whole.
+template <class Work>
+void with_whole_numbers(const Reading& reading, const Node& node, const std::string& path, const Work& work) {
+  const Values values = numbers_of(node);
+  if (!are_integers(values)) reading.fail(path, "does not hold whole numbers", "I4 or I8 is expected");
+  with_integers(values, work);
+}
 
 /// Returns whether values and lists of a node belong to vertices or cells; faces and edges count as cells.
 Association location_of(const Node& node, Association inherited);
@@ -79,41 +111,12 @@ using NumberRanges = std::vector<std::pair<std::int64_t, std::int64_t>>;
 /// Returns, for each zone, the elements that conditions, solutions and connectivities list by number.
 std::vector<NumberRanges> listed_elements(const Reading& reading);
 
-/// Reads the polygons and polyhedra of a zone. Throws InputError if they are damaged.
-class PolyhedraReader {
- public:
-  /// `sections`: the sections of the zone, ascending by their numbers.
-  PolyhedraReader(Reading& reading, const ZonePlaces& zone, std::vector<FoundSection>& sections)
-      : reading_(reading), zone_(zone), sections_(sections) {}
-
-  /// Reads all sections of polygons and polyhedra into `reading.polyhedra`. `listed`: elements that become
-  /// cells even if they lie between two polyhedra.
-  void read(const NumberRanges& listed);
-  /// Appends the cells of a section to the mesh.
-  void append_cells(const FoundSection& found);
-
- private:
-  void read_section(FoundSection& found);
-  template <class Number>
-  void read_rows(const FoundSection& found, const std::vector<Number>& numbers);
-  void add_polygon(const FoundSection& found, std::span<const std::int64_t> corners);
-  void add_polyhedron(const FoundSection& found, std::span<const std::int64_t> faces);
-  [[nodiscard]] Index polygon_of(std::uint64_t number) const;
-  [[nodiscard]] std::int64_t number_of(Index polygon) const;
-  void require_cells() const;
-  void count_uses();
-  void append_polygons(const FoundSection& found);
-  void append_polyhedra(const FoundSection& found);
-  void turn_by_volumes(Index first, const std::string& path, Index contradictions, int sign);
-
-  Reading& reading_;
-  const ZonePlaces& zone_;
-  std::vector<FoundSection>& sections_;
-  Index first_polygon_ = 0;
-  Index first_polyhedron_ = 0;
-  /// For each polygon, the number of polyhedra that have it as a face; 0 if the polygon is listed.
-  std::vector<std::uint8_t> uses_ = {};
-};
+/// Reads the polygons and polyhedra of a zone into `reading.polyhedra`. `sections`: the sections of the zone,
+/// ascending by their numbers; `listed`: elements that become cells even if they lie between two polyhedra.
+void read_polyhedra(Reading& reading, const ZonePlaces& zone, std::vector<FoundSection>& sections,
+                    const NumberRanges& listed);
+/// Appends the cells of a section of polygons or polyhedra to the mesh.
+void append_cells(Reading& reading, const FoundSection& found);
 
 /// Reads all nodes of the zones that refer to vertices or cells: solutions, boundary conditions and others.
 void read_attachments(Reading& reading);

@@ -263,6 +263,14 @@ void write_to_disk(const Tree& tree, const fs::path& path, const std::string& na
   session.require_no_fault(name);  // the library does not check all results of its own calls
 }
 
+/// Returns the first node with that name or label, null if there is none.
+template <class Nodes>
+auto* first_with(std::string Node::*text, std::string_view wanted, Nodes& nodes) {
+  const auto found =
+      std::find_if(nodes.begin(), nodes.end(), [&](const Node& node) { return node.*text == wanted; });
+  return found == nodes.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 std::uint64_t Node::size() const {
@@ -276,28 +284,14 @@ std::string Node::text() const {
 }
 
 const Node* Node::child_of_label(std::string_view wanted) const {
-  const auto found =
-      std::find_if(children.begin(), children.end(), [&](const Node& node) { return node.label == wanted; });
-  return found == children.end() ? nullptr : &*found;
+  return first_with(&Node::label, wanted, children);
 }
 
-Node* Node::child_of_label(std::string_view wanted) {
-  const auto found =
-      std::find_if(children.begin(), children.end(), [&](const Node& node) { return node.label == wanted; });
-  return found == children.end() ? nullptr : &*found;
-}
+Node* Node::child_of_label(std::string_view wanted) { return first_with(&Node::label, wanted, children); }
 
-const Node* Node::child(std::string_view wanted) const {
-  const auto found =
-      std::find_if(children.begin(), children.end(), [&](const Node& node) { return node.name == wanted; });
-  return found == children.end() ? nullptr : &*found;
-}
+const Node* Node::child(std::string_view wanted) const { return first_with(&Node::name, wanted, children); }
 
-Node* Node::child(std::string_view wanted) {
-  const auto found =
-      std::find_if(children.begin(), children.end(), [&](const Node& node) { return node.name == wanted; });
-  return found == children.end() ? nullptr : &*found;
-}
+Node* Node::child(std::string_view wanted) { return first_with(&Node::name, wanted, children); }
 
 Node text_node(std::string name, std::string label, std::string_view text) {
   return {.name = std::move(name),

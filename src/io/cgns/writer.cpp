@@ -47,19 +47,6 @@ void move_parents(Parents& parents, std::span<const Index> cells) {
   move_positions(parents.cells, cells);
 }
 
-/// Returns the members in their order, each once.
-std::vector<Index> unique_members(const std::vector<Index>& members) {
-  std::vector<Index> sorted = members;
-  std::sort(sorted.begin(), sorted.end());
-  if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) return members;
-  std::set<Index> seen;
-  std::vector<Index> result;
-  for (const Index member : members) {
-    if (seen.insert(member).second) result.push_back(member);
-  }
-  return result;
-}
-
 /// Returns whether the vertices of a cell are the corners of a polyhedron's faces, each once.
 /// `polyhedron_with`: for each vertex, the last polyhedron that has it as a corner. Call it only once for
 /// each polyhedron.
